@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace resight {
+
+/// Throws std::invalid_argument with `message` unless `condition` holds. For the caller's mistakes.
+void require(bool condition, std::string_view message);
+
+/// Option checks. Each throws std::invalid_argument as "field = value (must be rule)"; NaN fails all of them.
+void check_positive(std::string_view field, double value);
+void check_not_negative(std::string_view field, double value);
+void check_in_range(std::string_view field, double value, double min, double max);
+
+}  // namespace resight

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/core/parallel.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+
+void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
+                         const std::function<void(std::size_t, std::size_t)>& body) {
+  require(grain > 0, "parallel_for_blocks: grain = 0 (must be > 0)");
+  check_positive("num_threads", num_threads);
+  const std::size_t num_blocks = (count + grain - 1) / grain;
+  const auto run_block = [&](std::size_t block) { body(block * grain, std::min((block + 1) * grain, count)); };
+  if (num_threads == 1 || num_blocks <= 1) {
+    for (std::size_t block = 0; block < num_blocks; ++block) run_block(block);
+    return;
+  }
+  tbb::task_arena arena(num_threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, num_blocks, run_block, tbb::simple_partitioner()); });
+}
+
+int num_hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+}  // namespace resight

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+
+/// Why an operation on the outside world (file, format, data set) failed: one line, ready for the user, that names
+/// the file, what is wrong and what was expected.
+struct Error {
+  std::string message;
+};
+
+/// A value, or the error that stands in its place. For the world's mistakes; a caller's mistake throws (check.hpp).
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] bool ok() const { return std::holds_alternative<T>(content_); }
+  explicit operator bool() const { return ok(); }
+
+  /// The value. Throws std::logic_error with the message if there is none: ask ok() first.
+  [[nodiscard]] const T& value() const& { return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_)); }
+  [[nodiscard]] T& value() & { return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_)); }
+  [[nodiscard]] T&& value() && {
+    if (!ok()) throw_error();
+    return std::move(std::get<T>(content_));
+  }
+  const T& operator*() const& { return value(); }
+  T& operator*() & { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  const T* operator->() const { return &value(); }
+  T* operator->() { return &value(); }
+
+  /// The error; only to be called when !ok().
+  [[nodiscard]] const Error& error() const { return std::get<Error>(content_); }
+
+ private:
+  void throw_error() const { throw std::logic_error("Result has no value: " + error().message); }
+  std::variant<T, Error> content_;
+};
+
+/// Success without a value, or an error.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] bool ok() const { return !error_.has_value(); }
+  explicit operator bool() const { return ok(); }
+  [[nodiscard]] const Error& error() const { return error_.value(); }
+
+ private:
+  std::optional<Error> error_;
+};
+
+}  // namespace resight

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/features/feature_set.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+
+struct SiftOptions {
+  double contrast_threshold = 0.03;  ///< OpenCV's convention; the paper's code uses 0.03.
+  double edge_threshold = 10.0;
+  int num_octave_layers = 3;
+  bool root_sift = false;            ///< Arandjelovic & Zisserman 2012: L1-normalise, then square root. Presets decide.
+  void check() const;
+};
+
+/// SIFT at the DoG keypoints (Lowe 2004, by OpenCV) of the grey image that have depth and a normal at the nearest pixel
+/// (and lie in `mask`, if given: the camera's size, non-zero = use). Camera frame.
+[[nodiscard]] FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options = {},
+                                      const Image<std::uint8_t>* mask = nullptr);
+
+}  // namespace resight

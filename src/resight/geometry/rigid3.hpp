@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace resight {
+
+/// A rigid motion. Named by its frames: `p_in_a = a_from_b * p_in_b`, `a_from_c = a_from_b * b_from_c`.
+/// Metres. The rotation is kept as a proper orthonormal matrix; is_rigid() tells whether it is one.
+struct Rigid3 {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] static Rigid3 identity() { return {}; }
+  /// From the upper 3x4 of a homogeneous matrix, unchecked (see is_rigid()).
+  [[nodiscard]] static Rigid3 from_matrix(const Eigen::Matrix4d& m) {
+    return {m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
+  }
+  [[nodiscard]] static Rigid3 from_rotation(const Eigen::Matrix3d& r) { return {r, Eigen::Vector3d::Zero()}; }
+  [[nodiscard]] static Rigid3 from_translation(const Eigen::Vector3d& t) { return {Eigen::Matrix3d::Identity(), t}; }
+  /// Rotation by `angle_rad` about `axis` (need not be normalised) through the origin.
+  [[nodiscard]] static Rigid3 from_axis_angle(const Eigen::Vector3d& axis, double angle_rad) {
+    return from_rotation(Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix());
+  }
+
+  [[nodiscard]] Eigen::Matrix4d matrix() const {
+    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+    m.topLeftCorner<3, 3>() = rotation;
+    m.topRightCorner<3, 1>() = translation;
+    return m;
+  }
+  [[nodiscard]] Rigid3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+
+  /// Finite, orthonormal within `tolerance`, and not a reflection.
+  [[nodiscard]] bool is_rigid(double tolerance = 1e-3) const {
+    return rotation.allFinite() && translation.allFinite() &&
+           (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
+           rotation.determinant() > 0;
+  }
+};
+
+[[nodiscard]] inline Rigid3 operator*(const Rigid3& a_from_b, const Rigid3& b_from_c) {
+  return {a_from_b.rotation * b_from_c.rotation, a_from_b.rotation * b_from_c.translation + a_from_b.translation};
+}
+[[nodiscard]] inline Eigen::Vector3d operator*(const Rigid3& a_from_b, const Eigen::Vector3d& p_in_b) {
+  return a_from_b.rotation * p_in_b + a_from_b.translation;
+}
+/// A rigid motion in single precision, for loops over points: `Rigid3f f(a_from_b); p_in_a = f * p_in_b;`
+struct Rigid3f {
+  explicit Rigid3f(const Rigid3& a_from_b)
+      : rotation(a_from_b.rotation.cast<float>()), translation(a_from_b.translation.cast<float>()) {}
+  Eigen::Matrix3f rotation;
+  Eigen::Vector3f translation;
+  [[nodiscard]] Eigen::Vector3f operator*(const Eigen::Vector3f& p_in_b) const { return rotation * p_in_b + translation; }
+};
+
+/// Geodesic angle between two rotations, radians in [0, pi].
+[[nodiscard]] inline double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  // atan2 of the skew part against the trace stays exact near 0 and near pi, where acos loses half of the digits.
+  const Eigen::Matrix3d r = a.transpose() * b;
+  const Eigen::Vector3d skew(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
+  return std::atan2(0.5 * skew.norm(), 0.5 * (r.trace() - 1.0));
+}
+
+/// The nearest proper rotation (SVD), for matrices read from text with few digits.
+[[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m);
+
+}  // namespace resight

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+namespace resight {
+
+/// Regular bins of directions around the origin, Eq. (4). Deviations: atan2 for the printed arctan(y/x), which confuses
+/// opposite quadrants; the pole lies along the camera's y axis (up/down), not along its viewing axis, where the paper's
+/// bins degenerate in the middle of the image; theta covers pi, so there are half as many rows as columns.
+class SphericalBins {
+ public:
+  explicit SphericalBins(double bin_size_rad = 0.0349066);  ///< Paper: 2 deg.
+  [[nodiscard]] int num_bins() const { return num_theta_ * num_phi_; }
+  /// Bin of the direction of a point; -1 for the origin and for NaN.
+  [[nodiscard]] int bin(const Eigen::Vector3f& p_in_camera) const;
+
+ private:
+  int num_theta_;
+  int num_phi_;
+  float inverse_size_;
+};
+
+}  // namespace resight

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <vector>
+
+#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/models/object_model.hpp"
+
+namespace resight {
+
+/// How Eq. (1) compares rotations.
+enum class RotationTest : std::uint8_t {
+  kGeodesic,        ///< One angle, below max_rotation_rad. Ours.
+  kAbsoluteEuler,   ///< |yaw|, |pitch|, |roll| each below it: the paper's Eq. (1) with the absolute values it lacks.
+};
+
+struct ClusterHypothesesOptions {
+  double max_translation_m = 0.02;     ///< delta_t; paper: 2 cm. Between the objects' centres (the paper: model origins).
+  double max_rotation_rad = 0.174533;  ///< delta_r; paper: 10 deg.
+  RotationTest rotation_test = RotationTest::kGeodesic;
+  EstimatePoseOptions pose;            ///< Of the final RANSAC over all correspondences of a cluster.
+  int num_threads = 1;
+  void check() const;
+};
+
+struct ClusterResult {
+  std::vector<Hypothesis> hypotheses;      ///< One a cluster; id of its seed; correspondences pooled without repeats; newest origin view.
+  std::vector<std::vector<int>> members;   ///< Indices of the input, per cluster.
+};
+
+/// Paper Eq. (1): merges near hypotheses of one object. Seeds in a defined order (most correspondences, then newest, then smallest id) instead of
+/// the paper's random one; symmetric objects by their symmetries (the member's correspondences are carried over to the seed's equivalent pose).
+[[nodiscard]] ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const ClusterHypothesesOptions& options = {});
+
+}  // namespace resight

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <vector>
+
+#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/hypotheses/pose_estimation.hpp"
+
+namespace resight {
+
+struct GroupCorrespondencesOptions {
+  double max_distance_difference_m = 0.015;  ///< | |m_i - m_j| - |s_i - s_j| | below this (V4R: 1.5 cm).
+  double max_dot_difference = 0.2;           ///< Of the normals' dot products (V4R: 0.2).
+  double min_distance_m = 0.005;             ///< Pairs nearer than this say nothing on the pose.
+  int min_group_size = 5;                    ///< V4R: 5.
+  int max_correspondences = 1000;            ///< Per object; the best by descriptor distance are kept.
+  int max_cliques = 20000;                   ///< Budget of the clique search in steps, never in milliseconds; then greedy.
+  int max_uses = 3;                          ///< A correspondence may serve in this many groups (V4R: 3).
+  EstimatePoseOptions pose;
+  void check() const;
+};
+
+struct CorrespondenceGroup {
+  std::vector<int> members;   ///< Inliers of the pose, ascending indices.
+  Rigid3 scene_from_object;
+};
+
+/// Consistency graph over the correspondences of ONE object (edge: distances and normals agree, and neither keypoint is shared),
+/// its cliques, and a pose for each (paper Sec. III-A; [11]). Several instances side by side give several groups.
+[[nodiscard]] std::vector<CorrespondenceGroup> group_correspondences(std::span<const Correspondence> correspondences, const GroupCorrespondencesOptions& options = {});
+
+}  // namespace resight

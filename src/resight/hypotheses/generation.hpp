@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "resight/features/descriptor_index.hpp"
+#include "resight/hypotheses/correspondence_grouping.hpp"
+#include "resight/models/object_model.hpp"
+
+namespace resight {
+
+struct MatchFeaturesOptions {
+  int sift_neighbors = 3;       ///< k of the kNN search (V4R P branch: 3).
+  int shot_neighbors = 1;
+  double max_sift_distance = 0; ///< L2 between unit descriptors; 0 = no limit (paper).
+  double max_shot_distance = 0;
+  DescriptorIndexOptions index;
+  void check() const;
+};
+
+/// The descriptors of all objects, ready to be searched. The library must outlive it.
+class ModelFeatureIndex {
+ public:
+  ModelFeatureIndex(const ModelLibrary& library, const MatchFeaturesOptions& options = {});
+  ~ModelFeatureIndex();
+  ModelFeatureIndex(ModelFeatureIndex&&) noexcept;
+  ModelFeatureIndex& operator=(ModelFeatureIndex&&) noexcept;
+  /// Correspondences of each object (library order), SIFT and SHOT pooled; scene side in the frame of the features given.
+  [[nodiscard]] std::vector<std::vector<Correspondence>> match(const FeatureSet& sift, const FeatureSet& shot) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+struct GenerateHypothesesOptions {
+  GroupCorrespondencesOptions grouping;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const;
+};
+
+/// Hypotheses of one view from its correspondences per object (scene side in the camera frame). Results and their
+/// correspondences are in the WORLD frame; ids start at `first_id`.
+[[nodiscard]] std::vector<Hypothesis> generate_hypotheses(std::span<const std::vector<Correspondence>> correspondences_per_object, const Rigid3& world_from_camera,
+                                                          int view, std::uint64_t first_id, const GenerateHypothesesOptions& options = {});
+
+}  // namespace resight

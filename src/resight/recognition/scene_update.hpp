@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "resight/changes/change_detector.hpp"
+#include "resight/core/timing.hpp"
+#include "resight/geometry/rigid3.hpp"
+
+namespace resight {
+
+/// What one of the views in use says about a detection.
+struct DetectionViewEvidence {
+  int view = 0;                ///< Number of the view in the sequence.
+  bool allowed = true;         ///< False: the change detection excludes it (the object was not there yet, or had left).
+  double visible_share = 0;    ///< Of the model's points.
+  double explained_share = 0;  ///< Of the visible ones.
+};
+
+/// An object recognised in the scene as it stands at a view.
+struct Detection {
+  int object = -1;             ///< Index into the ModelLibrary.
+  int track = -1;              ///< Number in the object history; the same object keeps it when it moves.
+  std::uint64_t hypothesis_id = 0;
+  Rigid3 world_from_object;
+  double score = 0;            ///< In [0, 1].
+  double visible_share = 0;    ///< Of the model's points, over all views in use.
+  std::vector<DetectionViewEvidence> views;
+};
+
+enum class ObjectEventKind : std::uint8_t { kAdded, kMoved, kRemoved, kStillThere, kNotSeen };
+[[nodiscard]] std::string to_string(ObjectEventKind kind);
+
+/// What happened to one object of the history at a view.
+struct ObjectEvent {
+  ObjectEventKind kind = ObjectEventKind::kAdded;
+  int object = -1;
+  int track = -1;
+  int view = 0;
+  std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
+  std::optional<Rigid3> world_from_object_after;   ///< kAdded, kMoved, kStillThere.
+  double confidence = 0;                           ///< In [0, 1].
+};
+
+/// Numbers of hypotheses on their way through a view.
+struct HypothesisCounts {
+  int correspondences = 0;
+  int generated = 0;
+  int merged = 0;      ///< With those of the last K views.
+  int clustered = 0;
+  int accepted = 0;
+};
+
+/// All that one view brought.
+struct SceneUpdate {
+  int view = 0;                ///< Number in the sequence, from 0.
+  std::string view_name;
+  Rigid3 world_from_camera;
+  std::vector<Detection> detections;
+  std::vector<ObjectEvent> events;
+  ChangeResult changes;        ///< Empty under preset mvr.
+  HypothesisCounts counts;
+  std::size_t reconstruction_points = 0;
+  StageTimes times;
+};
+
+}  // namespace resight

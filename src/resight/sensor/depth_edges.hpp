@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/core/image.hpp"
+
+namespace resight {
+
+struct DepthEdgeOptions {
+  double max_depth_jump = 0.05;  ///< Share of z; a larger step between neighbours is a discontinuity (V4R: 0.05 z).
+  double max_distance_px = 5.0;  ///< Distances are capped here (V4R searches within 5 px).
+  void check() const;
+};
+
+/// 1 at pixels beside a depth discontinuity: a step to a neighbour of more than the limit, or a border to missing depth
+/// (both sides of a step are marked; the image border is none). NaN pixels are 0.
+[[nodiscard]] Image<std::uint8_t> find_depth_edges(const Image<float>& depth_m, const DepthEdgeOptions& options = {});
+
+/// Euclidean distance of every pixel to the nearest edge pixel, px, capped at max_distance_px.
+[[nodiscard]] Image<float> find_edge_distance(const Image<std::uint8_t>& edges, double max_distance_px);
+
+}  // namespace resight

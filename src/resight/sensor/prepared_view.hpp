@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/sensor/depth_edges.hpp"
+#include "resight/sensor/noise_model.hpp"
+#include "resight/sensor/organized_cloud.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
+
+namespace resight {
+
+struct PrepareViewOptions {
+  ComputeNormalsOptions normals;
+  DepthEdgeOptions edges;
+  double max_depth_m = 0;  ///< Farther points are dropped ("chop z"); 0 keeps all.
+  int num_threads = 1;
+  void check() const;
+};
+
+/// A frame and all that the stages share of it, computed once.
+struct PreparedView {
+  RgbdFrame frame;
+  OrganizedCloud cloud;           ///< With normals, camera frame.
+  Image<float> edge_distance_px;  ///< Distance to the next depth discontinuity, px, capped (see find_edge_distance()).
+  NoiseImages noise;              ///< Axial and lateral sigma in metres, NaN where there is no point.
+};
+
+/// Throws std::invalid_argument for a frame that fails check_frame().
+[[nodiscard]] PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options = {});
+
+}  // namespace resight
