@@ -1,1 +1,139 @@
-int main() { return 0; }
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+#include "commands.hpp"
+#include "resight/core/parallel.hpp"
+
+namespace {
+
+using namespace resight::app;  // NOLINT(google-build-using-namespace): this file is the program's face
+
+constexpr int kExitFailed = 1;
+constexpr int kExitBadInput = 2;
+
+struct Arguments {
+  TrainArguments train;
+  RecognizeArguments recognize;
+  ChangesArguments changes;
+  SimulateArguments simulate;
+  ConvertArguments convert;
+  DemoArguments demo;
+};
+
+const CLI::Validator kFormats = CLI::IsMember({"tuw", "bop"});
+const CLI::Validator kPresets = CLI::IsMember({"mvr", "mvr-chd", "default"});
+
+void add_threads(CLI::App* command, int& num_threads) {
+  num_threads = resight::num_hardware_threads();
+  command->add_option("-j,--threads", num_threads, "Number of threads; the results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+template <typename Recognition>
+void add_recognition_options(CLI::App* command, Recognition& arguments) {
+  command
+      ->add_option("-k,--previous-views", arguments.num_previous_views,
+                   "Views before the current one that are used with it [default: 5]")
+      ->check(CLI::Range(0, 1000));
+  command
+      ->add_option("--preset", arguments.preset, "mvr (static world), mvr-chd (the paper's system) or default (best)")
+      ->check(kPresets)
+      ->capture_default_str();
+  command->add_option("--config", arguments.config, "TOML file that overwrites single settings (see docs/formats.md)");
+  add_threads(command, arguments.num_threads);
+}
+
+std::function<void()> add_train(CLI::App& app, TrainArguments& a) {
+  CLI::App* command = app.add_subcommand("train", "Train a model library from scanned views or meshes");
+  command->add_option("inputs", a.inputs, "TUW model folder, BOP models folder, folder of meshes, or mesh files")
+      ->required();
+  command->add_option("--out", a.out, "Model library to write")->required();
+  add_threads(command, a.num_threads);
+  return [&a] { run_train(a); };
+}
+
+std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
+  CLI::App* command =
+      app.add_subcommand("recognize", "Recognise trained objects, and what changed, in a sequence of views");
+  command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder (TUW, BOP, TUM and others, detected)")->required();
+  command->add_option("--out", a.out, "Folder for the results")->required();
+  command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")->capture_default_str();
+  add_recognition_options(command, a);
+  return [&a] { run_recognize(a); };
+}
+
+std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
+  CLI::App* command =
+      app.add_subcommand("changes", "Find what was added and removed between the views, without models");
+  command->add_option("--sequence", a.sequence, "Sequence folder")->required();
+  command->add_option("--out", a.out, "Folder for coloured clouds (PLY) and overlays (PNG)")->required();
+  add_recognition_options(command, a);
+  return [&a] { run_changes(a); };
+}
+
+std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
+  CLI::App* command =
+      app.add_subcommand("simulate", "Ray-cast a scripted, changing scene into RGB-D views with ground truth");
+  CLI::Option* preset = command->add_option("--preset", a.preset, "Name of a built-in scene");
+  CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
+  preset->excludes(script);
+  command->add_option("--out", a.out, "Data set folder to write")->required();
+  command->add_option("--format", a.format, "tuw or bop")->check(kFormats)->capture_default_str();
+  command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->capture_default_str();
+  add_threads(command, a.num_threads);
+  return [&a] { run_simulate(a); };
+}
+
+std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
+  CLI::App* command = app.add_subcommand("convert", "Convert a data set (sequence or models) to another format");
+  command->add_option("in", a.in, "Sequence or models folder")->required();
+  command->add_option("out", a.out, "Folder to write; must not exist")->required();
+  command->add_option("--to", a.format, "tuw or bop")->required()->check(kFormats);
+  add_threads(command, a.num_threads);
+  return [&a] { run_convert(a); };
+}
+
+std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
+  CLI::App* command =
+      app.add_subcommand("demo", "The main job on a built-in scene: simulate, train, recognise, compare, report");
+  command->add_option("--out", a.out, "Folder for data, results and report")->capture_default_str();
+  command->add_option("--seed", a.seed, "Of the scene and of all random choices")->capture_default_str();
+  add_threads(command, a.num_threads);
+  return [&a] { run_demo(a); };
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "resight recognises known objects in RGB-D views of a scene that changes: which object is where, and what was\n"
+      "added, moved or removed.");
+  app.set_version_flag("--version", RESIGHT_VERSION);
+  app.require_subcommand(1);
+  Arguments a;
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
+                                          add_train(app, a.train),     add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes), add_convert(app, a.convert)};
+  const std::vector<CLI::App*> commands = app.get_subcommands({});
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitBadInput;
+  }
+  try {
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      if (commands[i]->parsed()) runs[i]();
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "resight: %s\n", error.what());
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "resight: failed: %s\n", error.what());
+    return kExitFailed;
+  }
+  return 0;
+}

@@ -21,26 +21,35 @@ struct DetectionViewEvidence {
 
 /// An object recognised in the scene as it stands at a view.
 struct Detection {
-  int object = -1;             ///< Index into the ModelLibrary.
-  int track = -1;              ///< Number in the object history; the same object keeps it when it moves.
+  int object = -1;  ///< Index into the ModelLibrary.
+  int track = -1;   ///< Number in the object history; the same object keeps it when it moves.
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
-  double score = 0;            ///< In [0, 1].
-  double visible_share = 0;    ///< Of the model's points, over all views in use.
+  double score = 0;          ///< In [0, 1].
+  double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
 };
 
-enum class ObjectEventKind : std::uint8_t { kAdded, kMoved, kRemoved, kStillThere, kNotSeen };
+enum class ObjectEventKind : std::uint8_t {
+  kFound,       ///< Recognised for the first time; nothing tells since when it has been there.
+  kAdded,       ///< Recognised where an earlier view saw free space.
+  kMoved,       ///< Recognised at a new place, its old place seen free.
+  kRemoved,     ///< Its place seen free, and not recognised elsewhere.
+  kStillThere,  ///< Recognised where it was.
+  kNotSeen,     ///< Not recognised, and nothing says that it has left.
+};
 [[nodiscard]] std::string to_string(ObjectEventKind kind);
+/// Added, moved or removed: a change of the scene, unlike the other kinds.
+[[nodiscard]] bool is_change(ObjectEventKind kind);
 
 /// What happened to one object of the history at a view.
 struct ObjectEvent {
-  ObjectEventKind kind = ObjectEventKind::kAdded;
+  ObjectEventKind kind = ObjectEventKind::kFound;
   int object = -1;
   int track = -1;
   int view = 0;
   std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
-  std::optional<Rigid3> world_from_object_after;   ///< kAdded, kMoved, kStillThere.
+  std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
   double confidence = 0;                           ///< In [0, 1].
 };
 
@@ -48,19 +57,19 @@ struct ObjectEvent {
 struct HypothesisCounts {
   int correspondences = 0;
   int generated = 0;
-  int merged = 0;      ///< With those of the last K views.
+  int merged = 0;  ///< With those of the last K views.
   int clustered = 0;
   int accepted = 0;
 };
 
 /// All that one view brought.
 struct SceneUpdate {
-  int view = 0;                ///< Number in the sequence, from 0.
+  int view = 0;  ///< Number in the sequence, from 0.
   std::string view_name;
   Rigid3 world_from_camera;
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
-  ChangeResult changes;        ///< Empty under preset mvr.
+  ChangeResult changes;  ///< Empty under preset mvr.
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;
   StageTimes times;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "resight/core/result.hpp"
+
+namespace resight::app {
+
+/// The input or the command line is wrong: one line for the user, exit status 2.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The value, or an InputError with its message.
+template <typename T>
+T value_or_throw(Result<T> result) {
+  if (!result.ok()) throw InputError(result.error().message);
+  return std::move(result).value();
+}
+inline void value_or_throw(const Result<void>& result) {
+  if (!result.ok()) throw InputError(result.error().message);
+}
+
+struct TrainArguments {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path out;
+  int num_threads = 1;
+};
+
+struct RecognizeArguments {
+  std::filesystem::path models;
+  std::filesystem::path sequence;
+  std::filesystem::path out;
+  std::string preset = "default";
+  std::optional<std::filesystem::path> config;
+  std::optional<int> num_previous_views;
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+};
+
+struct ChangesArguments {
+  std::filesystem::path sequence;
+  std::filesystem::path out;
+  std::string preset = "default";
+  std::optional<std::filesystem::path> config;
+  std::optional<int> num_previous_views;
+  int num_threads = 1;
+};
+
+struct SimulateArguments {
+  std::string preset;            ///< Either this
+  std::filesystem::path script;  ///< or this.
+  std::filesystem::path out;
+  std::string format = "tuw";
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+};
+
+struct ConvertArguments {
+  std::filesystem::path in;
+  std::filesystem::path out;
+  std::string format;
+  int num_threads = 1;
+};
+
+struct DemoArguments {
+  std::filesystem::path out = "resight-demo";
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+};
+
+// Each runs a subcommand to its end. InputError = exit status 2, any other exception = 1.
+void run_train(const TrainArguments& arguments);
+void run_recognize(const RecognizeArguments& arguments);
+void run_changes(const ChangesArguments& arguments);
+void run_simulate(const SimulateArguments& arguments);
+void run_convert(const ConvertArguments& arguments);
+void run_demo(const DemoArguments& arguments);
+
+}  // namespace resight::app

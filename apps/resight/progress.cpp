@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "progress.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace resight::app {
+
+Progress::Progress(std::string what, int num_items)
+    : what_(std::move(what)), num_items_(num_items), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (has_open_line_) std::fputc('\n', stderr);
+}
+
+void Progress::report(int done, const std::string& detail) {
+  // ESC[K clears the rest of a longer line before.
+  std::fprintf(stderr, is_terminal_ ? "\r%s %d/%d: %s\x1b[K" : "%s %d/%d: %s\n", what_.c_str(), done, num_items_,
+               detail.c_str());
+  std::fflush(stderr);
+  has_open_line_ = is_terminal_;
+}
+
+}  // namespace resight::app

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/object_history.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "resight/core/check.hpp"
+#include "resight/geometry/symmetry.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kUnmatched = -1;
+
+double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
+  const Eigen::Vector3d center = model.center.cast<double>();
+  return (a * center - b * center).norm();
+}
+
+}  // namespace
+
+std::string to_string(ObjectEventKind kind) {
+  switch (kind) {
+    case ObjectEventKind::kFound:
+      return "found";
+    case ObjectEventKind::kAdded:
+      return "added";
+    case ObjectEventKind::kMoved:
+      return "moved";
+    case ObjectEventKind::kRemoved:
+      return "removed";
+    case ObjectEventKind::kStillThere:
+      return "still_there";
+    case ObjectEventKind::kNotSeen:
+      return "not_seen";
+  }
+  return "unknown";
+}
+
+bool is_change(ObjectEventKind kind) {
+  return kind == ObjectEventKind::kAdded || kind == ObjectEventKind::kMoved || kind == ObjectEventKind::kRemoved;
+}
+
+void ObjectHistoryOptions::check() const {
+  check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
+  check_positive("ObjectHistoryOptions.same_rotation_rad", same_rotation_rad);
+  check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
+  presence.check();
+}
+
+ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
+    : library_(library), options_(std::move(options)) {
+  options_.check();
+}
+
+std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
+                                               std::span<const RgbdFrame* const> earlier, bool use_evidence) {
+  std::vector<ObjectEvent> events;
+  std::vector<int> track_of(detections.size(), kUnmatched);
+  match_in_place(detections, track_of, view, events);
+  look_at_old_places(detections, track_of, view, current, use_evidence, events);
+  for (std::size_t d = 0; d < detections.size(); ++d)
+    if (track_of[d] == kUnmatched) place_new(detections[d], view, earlier, use_evidence, events);
+  confirm_removals(view, events);
+  return events;
+}
+
+bool ObjectHistory::same_place(const Track& track, const Detection& detection) const {
+  if (track.object != detection.object) return false;
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
+  return center_distance_m(model, track.world_from_object, detection.world_from_object) <= options_.same_place_m &&
+         symmetric_rotation_distance_rad(detection.world_from_object, track.world_from_object, model.symmetries) <=
+             options_.same_rotation_rad;
+}
+
+void ObjectHistory::match_in_place(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
+                                   std::vector<ObjectEvent>& events) {
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    Track& track = tracks_[t];
+    if (track.state == State::kGone) continue;
+    int best = kUnmatched;
+    double best_m = 0;
+    for (std::size_t d = 0; d < detections.size(); ++d) {
+      if (track_of[d] != kUnmatched || !same_place(track, detections[d])) continue;
+      const double distance_m = center_distance_m(library_.objects[static_cast<std::size_t>(track.object)],
+                                                  track.world_from_object, detections[d].world_from_object);
+      if (best != kUnmatched && distance_m >= best_m) continue;
+      best = static_cast<int>(d);
+      best_m = distance_m;
+    }
+    if (best == kUnmatched) continue;
+    Detection& detection = detections[static_cast<std::size_t>(best)];
+    track_of[static_cast<std::size_t>(best)] = static_cast<int>(t);
+    detection.track = track.id;
+    events.push_back({ObjectEventKind::kStillThere, track.object, track.id, view, track.world_from_object,
+                      detection.world_from_object, detection.score});
+    track.world_from_object = detection.world_from_object;
+    track.state = State::kPresent;
+  }
+}
+
+bool ObjectHistory::is_displaced(const Track& track, std::span<const Detection> detections,
+                                 std::span<const int> track_of) const {
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    if (track_of[d] != kUnmatched || detections[d].object != track.object) continue;
+    if (center_distance_m(model, track.world_from_object, detections[d].world_from_object) < 0.5 * model.diameter_m)
+      return true;
+  }
+  return false;
+}
+
+void ObjectHistory::look_at_old_places(std::span<const Detection> detections, std::span<const int> track_of, int view,
+                                       const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events) {
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    Track& track = tracks_[t];
+    const bool seen = std::find(track_of.begin(), track_of.end(), static_cast<int>(t)) != track_of.end();
+    if (seen || track.state != State::kPresent) continue;
+    const ObjectPresence presence =
+        use_evidence ? assess_presence(library_.objects[static_cast<std::size_t>(track.object)].surface,
+                                       track.world_from_object, current, options_.presence)
+                     : ObjectPresence{};
+    // Two bodies of one kind cannot overlap: a detection inside the old place is the same object, moved a little.
+    const bool is_displaced_track = is_displaced(track, detections, track_of);
+    if (presence.is_gone || is_displaced_track) {
+      track.state = State::kLeaving;
+      track.left_view = view;
+      track.confidence = is_displaced_track ? 1.0 : presence.gone_share;
+    } else {
+      events.push_back(
+          {ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt, 0.0});
+    }
+  }
+}
+
+void ObjectHistory::place_new(Detection& detection, int view, std::span<const RgbdFrame* const> earlier,
+                              bool use_evidence, std::vector<ObjectEvent>& events) {
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
+  // The nearest old place of this kind of object that is seen free; one that is leaving goes before one long gone.
+  Track* from = nullptr;
+  for (Track& track : tracks_) {
+    if (track.object != detection.object || track.state == State::kPresent) continue;
+    const auto rank = [&](const Track& t) {
+      return std::pair(t.state == State::kGone,
+                       center_distance_m(model, t.world_from_object, detection.world_from_object));
+    };
+    if (from == nullptr || rank(track) < rank(*from)) from = &track;
+  }
+  if (from != nullptr && from->state == State::kLeaving) {
+    events.push_back({ObjectEventKind::kMoved, detection.object, from->id, view, from->world_from_object,
+                      detection.world_from_object, std::min(from->confidence, detection.score)});
+  } else {
+    const bool was_free =
+        use_evidence && std::any_of(earlier.begin(), earlier.end(), [&](const RgbdFrame* frame) {
+          return assess_presence(model.surface, detection.world_from_object, *frame, options_.presence).is_gone;
+        });
+    if (from == nullptr) {
+      tracks_.push_back({});
+      from = &tracks_.back();
+      from->id = static_cast<int>(tracks_.size()) - 1;
+      from->object = detection.object;
+    }
+    events.push_back({was_free ? ObjectEventKind::kAdded : ObjectEventKind::kFound, detection.object, from->id, view,
+                      std::nullopt, detection.world_from_object, detection.score});
+  }
+  from->world_from_object = detection.world_from_object;
+  from->state = State::kPresent;
+  detection.track = from->id;
+}
+
+void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events) {
+  for (Track& track : tracks_) {
+    if (track.state != State::kLeaving || view - track.left_view < options_.confirm_removal_views) continue;
+    track.state = State::kGone;
+    events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
+                      std::nullopt, track.confidence});
+  }
+}
+
+std::vector<ObjectEvent> ObjectHistory::finish() {
+  std::vector<ObjectEvent> events;
+  for (Track& track : tracks_) {
+    if (track.state != State::kLeaving) continue;
+    track.state = State::kGone;
+    events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
+                      std::nullopt, track.confidence});
+  }
+  return events;
+}
+
+}  // namespace resight

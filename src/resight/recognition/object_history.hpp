@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <vector>
+
+#include "resight/models/object_model.hpp"
+#include "resight/recognition/object_presence.hpp"
+#include "resight/recognition/scene_update.hpp"
+
+namespace resight {
+
+struct ObjectHistoryOptions {
+  double same_place_m = 0.03;  ///< A detection within this and same_rotation_rad of a track's pose: it is still there.
+  double same_rotation_rad = 0.349;  ///< 20 deg, over the object's symmetries.
+  int confirm_removal_views =
+      1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
+  PresenceOptions presence;
+  void check() const;
+};
+
+/// Remembers which object was where, and tells what happened to it. Memory grows with the number of objects, not of
+/// views.
+class ObjectHistory {
+ public:
+  explicit ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options = {});
+
+  /// Takes over the detections of a view (gives each its track) and returns one event per track concerned. `current` is
+  /// the view's frame, `earlier` are raw frames of views before it: what they see at a place decides between added and
+  /// found, moved and found. Without change detection (`use_evidence` false) no free space is looked for: nothing is
+  /// called added or removed.
+  [[nodiscard]] std::vector<ObjectEvent> update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
+                                                std::span<const RgbdFrame* const> earlier, bool use_evidence);
+  /// Removals that still wait for confirmation; to be called after the last view.
+  [[nodiscard]] std::vector<ObjectEvent> finish();
+
+ private:
+  enum class State { kPresent, kLeaving, kGone };
+  struct Track {
+    int id = 0;
+    int object = -1;
+    Rigid3 world_from_object;
+    State state = State::kPresent;
+    int left_view = -1;     // first view that saw its place free
+    double confidence = 0;  // of that
+  };
+
+  [[nodiscard]] bool same_place(const Track& track, const Detection& detection) const;
+  void match_in_place(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
+                      std::vector<ObjectEvent>& events);
+  [[nodiscard]] bool is_displaced(const Track& track, std::span<const Detection> detections,
+                                  std::span<const int> track_of) const;
+  void look_at_old_places(std::span<const Detection> detections, std::span<const int> track_of, int view,
+                          const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
+  void place_new(Detection& detection, int view, std::span<const RgbdFrame* const> earlier, bool use_evidence,
+                 std::vector<ObjectEvent>& events);
+  void confirm_removals(int view, std::vector<ObjectEvent>& events);
+
+  const ModelLibrary& library_;
+  ObjectHistoryOptions options_;
+  std::vector<Track> tracks_;
+};
+
+}  // namespace resight

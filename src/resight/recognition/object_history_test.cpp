@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/object_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "resight/recognition/square_world_test_util.hpp"
+
+namespace resight {
+namespace {
+
+using test::make_plate;
+using test::plate_at;
+using test::see_nothing;
+using test::see_plates;
+
+class ObjectHistoryTest : public ::testing::Test {
+ protected:
+  ObjectHistoryTest() {
+    library_.objects = {make_plate("a"), make_plate("b")};
+    history_ = std::make_unique<ObjectHistory>(library_);
+  }
+
+  // One view: what the recogniser reports, and what the camera sees.
+  std::vector<ObjectEvent> view(const std::vector<std::pair<int, Rigid3>>& detected, const RgbdFrame& frame,
+                                bool use_evidence = true) {
+    detections_.clear();
+    for (const auto& [object, pose] : detected) {
+      Detection detection;
+      detection.object = object;
+      detection.world_from_object = pose;
+      detection.score = 0.9;
+      detections_.push_back(detection);
+    }
+    std::vector<const RgbdFrame*> earlier;
+    for (const RgbdFrame& f : frames_) earlier.push_back(&f);
+    auto events = history_->update(static_cast<int>(frames_.size()), detections_, frame, earlier, use_evidence);
+    frames_.push_back(frame);
+    return events;
+  }
+  static std::vector<ObjectEventKind> kinds(const std::vector<ObjectEvent>& events) {
+    std::vector<ObjectEventKind> result;
+    for (const ObjectEvent& e : events) result.push_back(e.kind);
+    return result;
+  }
+
+  ModelLibrary library_;
+  std::unique_ptr<ObjectHistory> history_;
+  std::vector<Detection> detections_;
+  std::vector<RgbdFrame> frames_;
+  const Rigid3 left_ = plate_at(-0.3, 0, 1);
+  const Rigid3 right_ = plate_at(0.3, 0, 1);
+};
+using K = ObjectEventKind;
+
+TEST_F(ObjectHistoryTest, FoundThenStillThere) {
+  EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kFound}));
+  EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}));
+  EXPECT_EQ(detections_[0].track, 0);
+}
+
+TEST_F(ObjectHistoryTest, MissedButPresentIsNotSeenAndNeverRemoved) {
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_EQ(kinds(view({}, see_plates({left_}))), (std::vector{K::kNotSeen}));
+  EXPECT_EQ(kinds(view({}, see_nothing())), (std::vector{K::kNotSeen}));
+  EXPECT_TRUE(history_->finish().empty());
+  EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}));
+}
+
+TEST_F(ObjectHistoryTest, MovedIsOneEventWithBothPlaces) {
+  view({{0, left_}}, see_plates({left_}));
+  const auto events = view({{0, right_}}, see_plates({right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_after->translation.x(), 0.3);
+  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+TEST_F(ObjectHistoryTest, AMoveRecognisedOneViewLateIsStillAMove) {
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_TRUE(view({}, see_plates({right_})).empty());
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kMoved}));
+}
+
+TEST_F(ObjectHistoryTest, RemovedIsReportedOnceWithTheViewThatSawIt) {
+  view({{0, left_}, {1, right_}}, see_plates({left_, right_}));
+  view({{1, right_}}, see_plates({right_}));
+  const auto events = view({{1, right_}}, see_plates({right_}));
+  const auto removed = std::find_if(events.begin(), events.end(), [](const auto& e) { return e.kind == K::kRemoved; });
+  ASSERT_NE(removed, events.end());
+  EXPECT_EQ(removed->view, 1);
+  EXPECT_EQ(removed->object, 0);
+  EXPECT_EQ(kinds(view({{1, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
+}
+
+TEST_F(ObjectHistoryTest, RemovedInTheLastViewComesWithFinish) {
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_TRUE(view({}, see_plates({})).empty());
+  EXPECT_EQ(kinds(history_->finish()), (std::vector{K::kRemoved}));
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+TEST_F(ObjectHistoryTest, AddedNeedsAnEarlierViewOfFreeSpace) {
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_EQ(kinds(view({{0, left_}, {1, right_}}, see_plates({left_, right_}))),
+            (std::vector{K::kStillThere, K::kAdded}));
+}
+
+TEST_F(ObjectHistoryTest, FirstSeenWhereNoViewLookedIsOnlyFound) {
+  view({{0, left_}}, see_nothing());
+  EXPECT_EQ(kinds(view({{0, left_}, {1, right_}}, see_plates({left_, right_}))),
+            (std::vector{K::kStillThere, K::kFound}));
+}
+
+TEST_F(ObjectHistoryTest, PutBackAfterRemovalIsAddedUnderItsTrack) {
+  view({{0, left_}}, see_plates({left_}));
+  view({}, see_plates({}));
+  view({}, see_plates({}));
+  EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kAdded}));
+  EXPECT_EQ(detections_[0].track, 0);
+}
+
+TEST_F(ObjectHistoryTest, ASmallShiftIsAMoveAndNotASecondObject) {
+  const Rigid3 shifted = plate_at(-0.24, 0, 1);
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
+  EXPECT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kStillThere}));
+}
+
+TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {
+  view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
+  EXPECT_EQ(kinds(view({{0, right_}, {0, left_}}, see_plates({left_, right_}))),
+            (std::vector{K::kStillThere, K::kStillThere}));
+  EXPECT_NE(detections_[0].track, detections_[1].track);
+  EXPECT_EQ(detections_[1].track, 0);
+}
+
+TEST_F(ObjectHistoryTest, AStaticWorldKnowsNoRemoval) {
+  view({{0, left_}}, see_plates({left_}), false);
+  EXPECT_EQ(kinds(view({}, see_plates({}), false)), (std::vector{K::kNotSeen}));
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "resight/changes/removal_support.hpp"
+#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/models/object_model.hpp"
+
+namespace resight {
+
+/// The changes that one view of the window found.
+struct ViewChanges {
+  int view = 0;  ///< Number of the view in the sequence.
+  const PointCloud* removed_in_world = nullptr;
+  const PointCloud* novel_in_world = nullptr;
+};
+
+/// In which views of the window (ascending, the current one last) each hypothesis may be present: views x hypotheses,
+/// view-major, 1 = may be. Paper Sec. III-A: "only checks nearby points for test views where the object is indicated as
+/// present".
+///
+/// Each view may hold two events for the place of a hypothesis: removed points on its surface (from then on it is
+/// absent, unless the view or a later one generated the hypothesis again) and novel points on its surface (present from
+/// then on, absent before). The last event up to a view decides; before all events, the first one does.
+[[nodiscard]] std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses,
+                                                              const ModelLibrary& library,
+                                                              std::span<const ViewChanges> window,
+                                                              const RemovalSupportOptions& options = {},
+                                                              int num_threads = 1);
+
+}  // namespace resight

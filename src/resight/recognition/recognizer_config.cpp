@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/recognizer_config.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <fstream>
+#include <sstream>
+#include <variant>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+// The one list of what can be set from a file and what summary.json keeps. Thread counts are left out: results do not
+// depend on them.
+struct Field {
+  const char* name;  // "section.key", or "key" at the top
+  std::variant<double*, int*, bool*, std::uint64_t*, RotationTest*, OcclusionTest*> value;
+};
+
+constexpr std::pair<const char*, RotationTest> kRotationTests[] = {{"geodesic", RotationTest::kGeodesic},
+                                                                   {"absolute_euler", RotationTest::kAbsoluteEuler}};
+constexpr std::pair<const char*, OcclusionTest> kOcclusionTests[] = {{"spherical_bins", OcclusionTest::kSphericalBins},
+                                                                     {"depth_image", OcclusionTest::kDepthImage}};
+
+void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  fields.insert(fields.end(), {
+                                  {"prepare.max_depth_m", &c.prepare.max_depth_m},
+                                  {"prepare.normals_window_radius_px", &c.prepare.normals.window_radius_px},
+                                  {"prepare.normals_max_depth_change", &c.prepare.normals.max_depth_change},
+                                  {"prepare.normals_min_neighbors", &c.prepare.normals.min_neighbors},
+                                  {"prepare.edge_max_depth_jump", &c.prepare.edges.max_depth_jump},
+                                  {"prepare.edge_max_distance_px", &c.prepare.edges.max_distance_px},
+                                  {"sift.contrast_threshold", &c.sift.contrast_threshold},
+                                  {"sift.edge_threshold", &c.sift.edge_threshold},
+                                  {"sift.num_octave_layers", &c.sift.num_octave_layers},
+                                  {"sift.root_sift", &c.sift.root_sift},
+                                  {"shot.keypoint_spacing_m", &c.shot.keypoint_spacing_m},
+                                  {"shot.support_radius_m", &c.shot.support_radius_m},
+                                  {"shot.support_voxel_m", &c.shot.support_voxel_m},
+                                  {"shot.min_surface_variation", &c.shot.min_surface_variation},
+                                  {"shot.min_neighbors", &c.shot.min_neighbors},
+                                  {"match.sift_neighbors", &c.match.sift_neighbors},
+                                  {"match.shot_neighbors", &c.match.shot_neighbors},
+                                  {"match.max_sift_distance", &c.match.max_sift_distance},
+                                  {"match.max_shot_distance", &c.match.max_shot_distance},
+                                  {"match.index_num_cells", &c.match.index.num_cells},
+                                  {"match.index_num_probes", &c.match.index.num_probes},
+                                  {"match.index_exact_below", &c.match.index.exact_below},
+                                  {"match.index_seed", &c.match.index.seed},
+                              });
+}
+
+void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  GroupCorrespondencesOptions& g = c.generate.grouping;
+  fields.insert(fields.end(), {
+                                  {"grouping.max_distance_difference_m", &g.max_distance_difference_m},
+                                  {"grouping.max_dot_difference", &g.max_dot_difference},
+                                  {"grouping.min_distance_m", &g.min_distance_m},
+                                  {"grouping.min_group_size", &g.min_group_size},
+                                  {"grouping.max_correspondences", &g.max_correspondences},
+                                  {"grouping.max_cliques", &g.max_cliques},
+                                  {"grouping.max_uses", &g.max_uses},
+                                  {"grouping.pose_inlier_distance_m", &g.pose.inlier_distance_m},
+                                  {"grouping.pose_max_normal_angle_rad", &g.pose.max_normal_angle_rad},
+                                  {"grouping.pose_max_iterations", &g.pose.max_iterations},
+                                  {"grouping.pose_min_inliers", &g.pose.min_inliers},
+                                  {"grouping.pose_seed", &g.pose.seed},
+                                  {"cluster.max_translation_m", &c.cluster.max_translation_m},
+                                  {"cluster.max_rotation_rad", &c.cluster.max_rotation_rad},
+                                  {"cluster.rotation_test", &c.cluster.rotation_test},
+                                  {"cluster.pose_inlier_distance_m", &c.cluster.pose.inlier_distance_m},
+                                  {"cluster.pose_max_normal_angle_rad", &c.cluster.pose.max_normal_angle_rad},
+                                  {"cluster.pose_max_iterations", &c.cluster.pose.max_iterations},
+                                  {"cluster.pose_min_inliers", &c.cluster.pose.min_inliers},
+                                  {"cluster.pose_seed", &c.cluster.pose.seed},
+                              });
+}
+
+void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  fields.insert(fields.end(), {
+                                  {"changes.tolerance_m", &c.changes.tolerance_m},
+                                  {"changes.voxel_m", &c.changes.voxel_m},
+                                  {"changes.occlusion_test", &c.changes.occlusion_test},
+                                  {"changes.bin_size_rad", &c.changes.bin_size_rad},
+                                  {"changes.occlusion_margin_m", &c.changes.occlusion_margin_m},
+                                  {"changes.min_depth_m", &c.changes.min_depth_m},
+                                  {"changes.max_depth_m", &c.changes.max_depth_m},
+                                  {"changes.frustum_margin_rad", &c.changes.frustum_margin_rad},
+                                  {"changes.max_changed_share", &c.changes.max_changed_share},
+                                  {"removal.cluster_distance_m", &c.removal.cluster_distance_m},
+                                  {"removal.min_cluster_points", &c.removal.min_cluster_points},
+                                  {"removal.model_distance_m", &c.removal.model_distance_m},
+                                  {"removal.min_overlap", &c.removal.min_overlap},
+                                  {"removal.min_support_points", &c.removal.min_support_points},
+                                  {"integrate.voxel_m", &c.integrate.voxel_m},
+                                  {"integrate.min_edge_distance_px", &c.integrate.min_edge_distance_px},
+                                  {"integrate.min_points_per_voxel", &c.integrate.min_points_per_voxel},
+                                  {"history.same_place_m", &c.history.same_place_m},
+                                  {"history.same_rotation_rad", &c.history.same_rotation_rad},
+                                  {"history.confirm_removal_views", &c.history.confirm_removal_views},
+                                  {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
+                                  {"history.presence_min_seen_points", &c.history.presence.min_seen_points},
+                                  {"history.presence_min_seen_share", &c.history.presence.min_seen_share},
+                                  {"history.presence_min_gone_share", &c.history.presence.min_gone_share},
+                              });
+}
+
+void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  VerifyOptions& v = c.verify;
+  fields.insert(fields.end(), {
+                                  {"verify.resolution_m", &v.resolution_m},
+                                  {"verify.inlier_distance_m", &v.inlier_distance_m},
+                                  {"verify.occlusion_margin_m", &v.occlusion_margin_m},
+                                  {"verify.outlier_weight", &v.outlier_weight},
+                                  {"verify.duplicity_weight", &v.duplicity_weight},
+                                  {"verify.clutter_radius_m", &v.clutter_radius_m},
+                                  {"verify.clutter_weight", &v.clutter_weight},
+                                  {"verify.occupancy_weight", &v.occupancy_weight},
+                                  {"verify.occupancy_voxel_m", &v.occupancy_voxel_m},
+                                  {"verify.hypothesis_penalty", &v.hypothesis_penalty},
+                                  {"verify.use_color", &v.use_color},
+                                  {"verify.color_sigma_l", &v.color_sigma_l},
+                                  {"verify.color_sigma_ab", &v.color_sigma_ab},
+                                  {"verify.use_planes", &v.use_planes},
+                                  {"verify.min_plane_points", &v.min_plane_points},
+                                  {"verify.plane_distance_m", &v.plane_distance_m},
+                                  {"verify.smooth_angle_rad", &v.smooth_angle_rad},
+                                  {"verify.smooth_distance_m", &v.smooth_distance_m},
+                                  {"verify.min_smooth_points", &v.min_smooth_points},
+                                  {"verify.max_smooth_curvature", &v.max_smooth_curvature},
+                                  {"verify.max_moves", &v.max_moves},
+                                  {"verify.min_visible_points", &v.min_visible_points},
+                                  {"verify.seed", &v.seed},
+                              });
+}
+
+std::vector<Field> list_fields(RecognizerConfig& c) {
+  std::vector<Field> fields{{"num_previous_views", &c.num_previous_views},
+                            {"detect_changes", &c.detect_changes},
+                            {"cluster_hypotheses", &c.cluster_hypotheses},
+                            {"clear_tolerance_m", &c.clear_tolerance_m}};
+  add_feature_fields(c, fields);
+  add_hypothesis_fields(c, fields);
+  add_change_fields(c, fields);
+  add_verification_fields(c, fields);
+  return fields;
+}
+
+template <typename Enum, std::size_t N>
+std::string name_of(Enum value, const std::pair<const char*, Enum> (&names)[N]) {
+  for (const auto& [name, entry] : names)
+    if (entry == value) return name;
+  return "";
+}
+
+struct ToText {
+  std::string operator()(const double* v) const { return fmt::format("{}", *v); }
+  std::string operator()(const int* v) const { return fmt::format("{}", *v); }
+  std::string operator()(const bool* v) const { return *v ? "true" : "false"; }
+  std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
+  std::string operator()(const RotationTest* v) const { return name_of(*v, kRotationTests); }
+  std::string operator()(const OcclusionTest* v) const { return name_of(*v, kOcclusionTests); }
+};
+
+// Takes a TOML value over into a field; returns what was expected if it does not fit.
+struct Assign {
+  const toml::node& node;
+  std::string operator()(double* v) const {
+    const auto value = node.value<double>();
+    if (value) *v = *value;
+    return value ? "" : "a number";
+  }
+  std::string operator()(int* v) const {
+    const auto value = node.value_exact<std::int64_t>();
+    const bool fits = value && *value >= -1000000000 && *value <= 1000000000;
+    if (fits) *v = static_cast<int>(*value);
+    return fits ? "" : "a whole number";
+  }
+  std::string operator()(bool* v) const {
+    const auto value = node.value_exact<bool>();
+    if (value) *v = *value;
+    return value ? "" : "true or false";
+  }
+  std::string operator()(std::uint64_t* v) const {
+    const auto value = node.value_exact<std::int64_t>();
+    const bool fits = value && *value >= 0;
+    if (fits) *v = static_cast<std::uint64_t>(*value);
+    return fits ? "" : "a whole number >= 0";
+  }
+  std::string operator()(RotationTest* v) const { return choose(v, kRotationTests); }
+  std::string operator()(OcclusionTest* v) const { return choose(v, kOcclusionTests); }
+
+  template <typename Enum, std::size_t N>
+  std::string choose(Enum* v, const std::pair<const char*, Enum> (&names)[N]) const {
+    const auto text = node.value<std::string>();
+    std::string expected = "one of";
+    for (const auto& [name, entry] : names) {
+      if (text && *text == name) {
+        *v = entry;
+        return "";
+      }
+      expected += fmt::format(" \"{}\"", name);
+    }
+    return expected;
+  }
+};
+
+std::string assign(std::vector<Field>& fields, const std::string& name, const toml::node& node) {
+  for (Field& field : fields) {
+    if (name != field.name) continue;
+    const std::string expected = std::visit(Assign{node}, field.value);
+    return expected.empty() ? "" : fmt::format("{} must be {}", name, expected);
+  }
+  return fmt::format("unknown key {}", name);
+}
+
+}  // namespace
+
+RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
+  RecognizerConfig config;
+  config.preset = name;
+  // The paper's thresholds are the defaults of the stages; here stands only what tells the presets apart.
+  config.changes.occlusion_test = OcclusionTest::kSphericalBins;
+  if (name == "mvr-chd") return config;
+  if (name == "mvr") {
+    config.detect_changes = false;
+    return config;
+  }
+  if (name == "default") {
+    config.changes.occlusion_test = OcclusionTest::kDepthImage;
+    return config;
+  }
+  throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));
+}
+
+void RecognizerConfig::set_num_threads(int num_threads) {
+  check_positive("num_threads", num_threads);
+  for (int* field :
+       {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.index.num_threads,
+        &generate.num_threads, &cluster.num_threads, &changes.num_threads, &integrate.num_threads, &verify.num_threads})
+    *field = num_threads;
+}
+
+void RecognizerConfig::set_seed(std::uint64_t seed) {
+  for (std::uint64_t* field : {&match.index.seed, &generate.grouping.pose.seed, &cluster.pose.seed, &verify.seed})
+    *field = seed;
+}
+
+void RecognizerConfig::check() const {
+  check_in_range("num_previous_views", num_previous_views, 0, 1000);
+  check_positive("clear_tolerance_m", clear_tolerance_m);
+  prepare.check();
+  sift.check();
+  shot.check();
+  match.check();
+  generate.check();
+  cluster.check();
+  changes.check();
+  removal.check();
+  integrate.check();
+  verify.check();
+  history.check();
+}
+
+std::vector<std::pair<std::string, std::string>> RecognizerConfig::to_settings() const {
+  RecognizerConfig copy = *this;
+  std::vector<std::pair<std::string, std::string>> settings{{"preset", preset}};
+  for (const Field& field : list_fields(copy)) settings.emplace_back(field.name, std::visit(ToText{}, field.value));
+  return settings;
+}
+
+Result<RecognizerConfig> read_config(const std::filesystem::path& path, RecognizerConfig config) {
+  const auto fail = [&](const std::string& what) { return Error{fmt::format("{}: {}", path.string(), what)}; };
+  std::ifstream file(path);
+  if (!file) return fail("cannot be read (a TOML file was expected)");
+  std::stringstream text;
+  text << file.rdbuf();
+  toml::table table;
+  try {
+    table = toml::parse(text.str());
+  } catch (const toml::parse_error& error) {
+    return fail(fmt::format("line {}: {}", error.source().begin.line, error.description()));
+  }
+  std::vector<Field> fields = list_fields(config);
+  for (const auto& [key, node] : table) {
+    const std::string section(key.str());
+    std::string problem;
+    if (const toml::table* entries = node.as_table()) {
+      for (const auto& [name, value] : *entries) {
+        problem = assign(fields, fmt::format("{}.{}", section, std::string_view(name.str())), value);
+        if (!problem.empty()) return fail(problem);
+      }
+    } else if (problem = assign(fields, section, node); !problem.empty()) {
+      return fail(problem);
+    }
+  }
+  try {
+    config.check();
+  } catch (const std::invalid_argument& error) {
+    return fail(error.what());
+  }
+  return config;
+}
+
+}  // namespace resight

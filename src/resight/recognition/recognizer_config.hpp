@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "resight/changes/change_detector.hpp"
+#include "resight/changes/removal_support.hpp"
+#include "resight/core/result.hpp"
+#include "resight/features/shot.hpp"
+#include "resight/features/sift.hpp"
+#include "resight/hypotheses/clustering.hpp"
+#include "resight/hypotheses/generation.hpp"
+#include "resight/recognition/object_history.hpp"
+#include "resight/reconstruction/integration.hpp"
+#include "resight/sensor/prepared_view.hpp"
+#include "resight/verification/verification.hpp"
+
+namespace resight {
+
+/// Every setting of the recogniser. Start from a preset, then change single fields.
+struct RecognizerConfig {
+  std::string preset = "default";
+  int num_previous_views =
+      5;  ///< K: the current view is recognised together with up to K views before it; 0 = single view.
+  bool detect_changes = true;       ///< Off: the static world of the paper's baseline.
+  bool cluster_hypotheses = true;   ///< Off: Tables II and III without clustering.
+  double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
+  PrepareViewOptions prepare;
+  SiftOptions sift;
+  ShotOptions shot;
+  MatchFeaturesOptions match;
+  GenerateHypothesesOptions generate;
+  ClusterHypothesesOptions cluster;
+  DetectChangesOptions changes;
+  RemovalSupportOptions removal;
+  IntegrateOptions integrate;
+  VerifyOptions verify;
+  ObjectHistoryOptions history;
+
+  /// "mvr" (the paper's baseline: a static world), "mvr-chd" (the paper's system) or "default" (the best we know).
+  /// Throws std::invalid_argument, listing the names, for any other.
+  [[nodiscard]] static RecognizerConfig from_preset(const std::string& name);
+
+  /// Same bytes for any value >= 1.
+  void set_num_threads(int num_threads);
+  void set_seed(std::uint64_t seed);
+  void check() const;
+  /// Every field as "section.name" and its value as text, in order: what summary.json keeps of a run.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;
+};
+
+/// Overwrites fields of `config` by a TOML file: sections and keys as in to_settings() (e.g. "[changes]\ntolerance_m =
+/// 0.01"). Unknown keys, wrong types and values out of range are errors that name file and key.
+[[nodiscard]] Result<RecognizerConfig> read_config(const std::filesystem::path& path, RecognizerConfig config);
+
+}  // namespace resight

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "resight/models/object_model.hpp"
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/recognition/scene_update.hpp"
+
+namespace resight {
+
+/// The whole way from views to objects and changes: the one class that knows all stages.
+///
+///     SceneRecognizer recognizer(library, RecognizerConfig::from_preset("default"));
+///     for (frame : sequence) SceneUpdate update = recognizer.add_view(frame);
+///
+/// Keeps the last K views; its memory does not grow with the length of the sequence. Not thread-safe; it uses threads
+/// itself.
+class SceneRecognizer {
+ public:
+  /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check().
+  SceneRecognizer(const ModelLibrary& library, RecognizerConfig config);
+  ~SceneRecognizer();
+  SceneRecognizer(SceneRecognizer&&) noexcept;
+
+  /// Recognises the scene as it stands at this view. Views in time order; poses in one world frame. Throws
+  /// std::invalid_argument for a frame that fails check_frame(); the recogniser is then as before.
+  SceneUpdate add_view(RgbdFrame frame);
+  /// Events that were waiting for a further view; call once after the last view.
+  std::vector<ObjectEvent> finish();
+
+  [[nodiscard]] const RecognizerConfig& config() const;
+  /// Psi_k: the scene as reconstructed from the window, world frame.
+  [[nodiscard]] const PointCloud& reconstruction() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace resight
