@@ -15,8 +15,11 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
                          const std::function<void(std::size_t, std::size_t)>& body) {
   require(grain > 0, "parallel_for_blocks: grain = 0 (must be > 0)");
   check_positive("num_threads", num_threads);
-  const std::size_t num_blocks = (count + grain - 1) / grain;
-  const auto run_block = [&](std::size_t block) { body(block * grain, std::min((block + 1) * grain, count)); };
+  const std::size_t num_blocks = count / grain + (count % grain != 0 ? 1 : 0);  // no overflow for a huge grain
+  const auto run_block = [&](std::size_t block) {
+    const std::size_t begin = block * grain;
+    body(begin, begin + std::min(grain, count - begin));
+  };
   if (num_threads == 1 || num_blocks <= 1) {
     for (std::size_t block = 0; block < num_blocks; ++block) run_block(block);
     return;
