@@ -10,11 +10,16 @@ namespace {
 struct Adaptor {
   std::vector<Eigen::Vector3f> points;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
+  [[nodiscard]] float kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
   template <typename Box>
-  bool kdtree_get_bbox(Box&) const { return false; }
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
 };
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
 
 }  // namespace
 
@@ -36,7 +41,7 @@ PointNeighbor KdTree::nearest(const Eigen::Vector3f& query) const {
   if (impl_->adaptor.points.empty()) return {};
   std::uint32_t index = 0;
   float distance_sq = 0;
-  impl_->tree.knnSearch(query.data(), 1, &index, &distance_sq);
+  if (impl_->tree.knnSearch(query.data(), 1, &index, &distance_sq) == 0) return {};  // a NaN is near to nothing
   return {static_cast<int>(index), distance_sq};
 }
 
@@ -44,7 +49,8 @@ std::vector<PointNeighbor> KdTree::nearest(const Eigen::Vector3f& query, int k) 
   if (impl_->adaptor.points.empty() || k <= 0) return {};
   std::vector<std::uint32_t> indices(static_cast<std::size_t>(k));
   std::vector<float> distances_sq(static_cast<std::size_t>(k));
-  const std::size_t found = impl_->tree.knnSearch(query.data(), static_cast<std::size_t>(k), indices.data(), distances_sq.data());
+  const std::size_t found =
+      impl_->tree.knnSearch(query.data(), static_cast<std::size_t>(k), indices.data(), distances_sq.data());
   std::vector<PointNeighbor> result;
   for (std::size_t i = 0; i < found; ++i) result.push_back({static_cast<int>(indices[i]), distances_sq[i]});
   return result;

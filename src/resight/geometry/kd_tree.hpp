@@ -21,11 +21,11 @@ class KdTree {
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
 
-  /// The nearest point; index -1 for an empty cloud.
+  /// The nearest point; index -1 for an empty cloud or a NaN query.
   [[nodiscard]] PointNeighbor nearest(const Eigen::Vector3f& query) const;
   /// Up to `k` nearest, nearest first.
   [[nodiscard]] std::vector<PointNeighbor> nearest(const Eigen::Vector3f& query, int k) const;
-  /// All points within `radius_m`, in ascending order of index; `neighbors` is overwritten.
+  /// All points nearer than `radius_m`, in ascending order of index; `neighbors` is overwritten.
   void within(const Eigen::Vector3f& query, double radius_m, std::vector<PointNeighbor>& neighbors) const;
 
  private:

@@ -10,6 +10,7 @@ namespace resight {
 
 void PointCloud::append(const PointCloud& other) {
   if (other.empty()) return;
+  if (&other == this) return append(PointCloud(other));  // insert() must not read from the vector it grows
   require(empty() || (has_normals() == other.has_normals() && has_colors() == other.has_colors()),
           "PointCloud::append: the clouds have different attributes");
   points.insert(points.end(), other.points.begin(), other.points.end());
@@ -46,13 +47,14 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d color = Eigen::Vector3d::Zero();
+    std::size_t first = 0;
     int count = 0;
   };
   VoxelMap voxels(cloud.size() / 4);
   std::vector<Sums> sums;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const auto number = static_cast<std::size_t>(voxels.insert(voxel_key(cloud.points[i], inverse_size)));
-    if (number == sums.size()) sums.emplace_back();
+    if (number == sums.size()) sums.emplace_back().first = i;
     Sums& s = sums[number];
     s.point += cloud.points[i].cast<double>();
     if (cloud.has_normals()) s.normal += cloud.normals[i].cast<double>();
@@ -63,7 +65,13 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
   result.points.reserve(sums.size());
   for (const Sums& s : sums) {
     result.points.push_back((s.point / s.count).cast<float>());
-    if (cloud.has_normals()) result.normals.push_back(s.normal.normalized().cast<float>());
+    if (cloud.has_normals()) {
+      // Opposite normals (both sides of a thin wall) cancel out: then the first one stands, so that it is always a unit
+      // vector.
+      const bool cancelled = s.normal.norm() < 1e-3 * s.count;
+      result.normals.push_back(cancelled ? cloud.normals[s.first]
+                                         : Eigen::Vector3f(s.normal.normalized().cast<float>()));
+    }
     if (cloud.has_colors()) {
       const Eigen::Vector3d c = s.color / s.count;
       const auto round = [](double x) { return static_cast<std::uint8_t>(x + 0.5); };
@@ -76,7 +84,8 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
 Eigen::Vector3f centroid(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3f& p : points) sum += p.cast<double>();
-  return points.empty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f((sum / static_cast<double>(points.size())).cast<float>());
+  return points.empty() ? Eigen::Vector3f::Zero()
+                        : Eigen::Vector3f((sum / static_cast<double>(points.size())).cast<float>());
 }
 
 }  // namespace resight

@@ -29,8 +29,8 @@ struct PointCloud {
 /// The points with the given indices, in that order, with their attributes.
 [[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const int> indices);
 
-/// One point per occupied cube of side `voxel_size_m`: the mean of its points, normals (renormalised) and colours, in the
-/// order of each voxel's first point.
+/// One point per occupied cube of side `voxel_size_m`: the mean of its points, normals (renormalised) and colours, in
+/// the order of each voxel's first point.
 [[nodiscard]] PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m);
 
 /// Mean of the points; zero for an empty cloud.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/geometry/symmetry.hpp"
 
-#include <algorithm>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +23,26 @@ double best_angle_rad(const Rigid3& pose, const Rigid3& reference, const Eigen::
   return 2.0 * std::atan2(q.vec().dot(axis.normalized()), q.w());
 }
 
+// Two axes of continuous symmetry that are not parallel generate all rotations: a ball.
+bool is_ball(const ObjectSymmetries& symmetries) {
+  for (const auto& c : symmetries.continuous)
+    if (symmetries.continuous.front().axis.normalized().cross(c.axis.normalized()).norm() > 1e-6) return true;
+  return false;
+}
+
+// The point nearest to all axes (they meet in the centre of the ball).
+Eigen::Vector3d ball_center(const ObjectSymmetries& symmetries) {
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (const auto& c : symmetries.continuous) {
+    const Eigen::Vector3d axis = c.axis.normalized();
+    const Eigen::Matrix3d off_axis = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    a += off_axis;
+    b += off_axis * c.offset;
+  }
+  return a.inverse() * b;
+}
+
 }  // namespace
 
 std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, double max_step_rad) {
@@ -41,6 +61,10 @@ std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, dou
 }
 
 Rigid3 nearest_symmetric_pose(const Rigid3& pose, const Rigid3& reference, const ObjectSymmetries& symmetries) {
+  if (is_ball(symmetries)) {
+    const Eigen::Vector3d center = ball_center(symmetries);
+    return {reference.rotation, pose * center - reference.rotation * center};
+  }
   Rigid3 best = pose;
   double best_angle = std::numbers::pi * 2;
   const auto consider = [&](const Rigid3& candidate) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/geometry/triangle_mesh.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,8 +9,15 @@
 #include "resight/core/check.hpp"
 
 namespace resight {
+namespace {
+
+// Repeats the texture outside [0, 1], but keeps 1 itself at the far border, where corners of unwrapped faces often lie.
+float wrap_unit(float t) { return t >= 0 && t <= 1 ? t : t - std::floor(t); }
+
+}  // namespace
 
 void TriangleMesh::append(const TriangleMesh& other) {
+  if (&other == this) return append(TriangleMesh(other));  // insert() must not read from the vector it grows
   require(texture.empty() || other.texture.empty(), "TriangleMesh::append: both meshes have a texture");
   const bool was_empty = vertices.empty();
   const auto merge = [&](auto& own, const auto& added) {
@@ -29,7 +37,8 @@ void TriangleMesh::append(const TriangleMesh& other) {
 void compute_vertex_normals(TriangleMesh& mesh) {
   mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
   for (const auto& f : mesh.faces) {
-    const Eigen::Vector3f area_normal = (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
+    const Eigen::Vector3f area_normal =
+        (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
     for (const int v : f) mesh.normals[v] += area_normal;
   }
   for (Eigen::Vector3f& n : mesh.normals) n = n.norm() > 0 ? n.normalized() : Eigen::Vector3f::UnitZ();
@@ -47,18 +56,21 @@ Rgb8 surface_color(const TriangleMesh& mesh, int face, float b0, float b1) {
     const Eigen::Vector2f uv = b0 * mesh.uvs[f[0]] + b1 * mesh.uvs[f[1]] + b2 * mesh.uvs[f[2]];
     const int w = mesh.texture.width();
     const int h = mesh.texture.height();
-    const float x = (uv.x() - std::floor(uv.x())) * static_cast<float>(w) - 0.5F;
-    const float y = (uv.y() - std::floor(uv.y())) * static_cast<float>(h) - 0.5F;
+    const float x = wrap_unit(uv.x()) * static_cast<float>(w) - 0.5F;
+    const float y = wrap_unit(uv.y()) * static_cast<float>(h) - 0.5F;
     const int x0 = static_cast<int>(std::floor(x));
     const int y0 = static_cast<int>(std::floor(y));
     const float ax = x - static_cast<float>(x0);
     const float ay = y - static_cast<float>(y0);
-    const auto at = [&](int u, int v) { return to_vector(mesh.texture(std::clamp(u, 0, w - 1), std::clamp(v, 0, h - 1))); };
+    const auto at = [&](int u, int v) {
+      return to_vector(mesh.texture(std::clamp(u, 0, w - 1), std::clamp(v, 0, h - 1)));
+    };
     return to_color((1 - ay) * ((1 - ax) * at(x0, y0) + ax * at(x0 + 1, y0)) +
                     ay * ((1 - ax) * at(x0, y0 + 1) + ax * at(x0 + 1, y0 + 1)));
   }
   if (mesh.colors.size() == mesh.vertices.size()) {
-    return to_color(b0 * to_vector(mesh.colors[f[0]]) + b1 * to_vector(mesh.colors[f[1]]) + b2 * to_vector(mesh.colors[f[2]]));
+    return to_color(b0 * to_vector(mesh.colors[f[0]]) + b1 * to_vector(mesh.colors[f[1]]) +
+                    b2 * to_vector(mesh.colors[f[2]]));
   }
   return {128, 128, 128};
 }
@@ -72,7 +84,8 @@ float diameter(std::span<const Eigen::Vector3f> points) {
       const double z = (i + 0.5) / kDirections;
       const double phi = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
       const double r = std::sqrt(1 - z * z);
-      const Eigen::Vector3f direction(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), static_cast<float>(z));
+      const Eigen::Vector3f direction(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
+                                      static_cast<float>(z));
       const auto less = [&](const auto& a, const auto& b) { return a.dot(direction) < b.dot(direction); };
       const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
       candidates.push_back(*low);

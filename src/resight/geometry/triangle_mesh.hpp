@@ -9,9 +9,9 @@
 
 namespace resight {
 
-/// A triangle mesh in metres, object frame. Faces are counter-clockwise seen from outside. `normals` (unit, per vertex),
-/// `uvs` (origin top left, as in the texture image) and `colors` are empty or as long as `vertices`. A texture wins
-/// over vertex colours.
+/// A triangle mesh in metres, object frame. Faces are counter-clockwise seen from outside. `normals` (unit, per
+/// vertex), `uvs` (origin top left, as in the texture image) and `colors` are empty or as long as `vertices`. A texture
+/// wins over vertex colours.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3f> normals;
@@ -29,7 +29,8 @@ struct TriangleMesh {
 /// Area-weighted vertex normals.
 void compute_vertex_normals(TriangleMesh& mesh);
 
-/// Colour at barycentric coordinates (b0, b1, 1 - b0 - b1) of a face: texture (bilinear), else vertex colours, else grey.
+/// Colour at barycentric coordinates (b0, b1, 1 - b0 - b1) of a face: texture (bilinear), else vertex colours, else
+/// grey.
 [[nodiscard]] Rgb8 surface_color(const TriangleMesh& mesh, int face, float b0, float b1);
 
 /// Largest distance between two points (metres), as BOP's "diameter"; exact up to 2,000 points, else over the extreme
