@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/ghosts.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+const ObjectModel* find_model(const std::string& name, const ModelLibrary& library) {
+  const int index = library.find(name);
+  return index < 0 ? nullptr : &library.objects[static_cast<std::size_t>(index)];
+}
+
+bool is_same_placement(const FormerPlace& place, const std::string& object, const Rigid3& world_from_object,
+                       const ObjectModel& model, const FindFormerPlacesOptions& options) {
+  if (place.object != object) return false;
+  const PoseDifference difference = compare_poses(world_from_object, place.world_from_object, model);
+  return difference.center_distance_m <= options.max_center_distance_m &&
+         difference.rotation_rad <= options.max_rotation_rad;
+}
+
+bool is_explained_by_truth(const DetectedObject& detection, const std::vector<GroundTruthObject>& truth,
+                           const ObjectModel& model, const MatchDetectionsOptions& options) {
+  return std::any_of(truth.begin(), truth.end(), [&](const GroundTruthObject& object) {
+    return object.object == detection.object &&
+           is_within(compare_poses(detection.camera_from_object, object.camera_from_object, model), options);
+  });
+}
+
+bool sees(const Camera& camera, const Rigid3& camera_from_object, const ObjectModel& model) {
+  const Eigen::Vector3d center_in_camera = camera_from_object * Eigen::Vector3d(model.center.cast<double>());
+  return center_in_camera.z() > 0 && camera.contains(camera.project(center_in_camera));
+}
+
+}  // namespace
+
+void FindFormerPlacesOptions::check() const {
+  check_positive("FindFormerPlacesOptions.max_center_distance_m", max_center_distance_m);
+  check_positive("FindFormerPlacesOptions.max_rotation_rad", max_rotation_rad);
+}
+
+std::vector<FormerPlace> find_former_places(std::span<const TruthView> views, const ModelLibrary& library,
+                                            const FindFormerPlacesOptions& options) {
+  options.check();
+  std::vector<FormerPlace> places;
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    for (const GroundTruthObject& object : views[view].objects) {
+      const ObjectModel* model = find_model(object.object, library);
+      if (model == nullptr) continue;
+      const Rigid3 world_from_object = views[view].world_from_camera * object.camera_from_object;
+      const auto known = std::find_if(places.begin(), places.end(), [&](const FormerPlace& place) {
+        return is_same_placement(place, object.object, world_from_object, *model, options);
+      });
+      if (known != places.end()) {
+        known->last_view = static_cast<int>(view);
+      } else {
+        places.push_back({object.object, world_from_object, static_cast<int>(view)});
+      }
+    }
+  }
+  std::erase_if(places,
+                [&](const FormerPlace& place) { return place.last_view + 1 >= static_cast<int>(views.size()); });
+  return places;
+}
+
+std::vector<Ghost> find_ghosts(std::span<const FormerPlace> places, const TruthView& truth, int view,
+                               std::span<const DetectedObject> detections, const Camera& camera,
+                               const ModelLibrary& library, const MatchDetectionsOptions& options) {
+  options.check();
+  require(camera.is_valid(), "find_ghosts: the camera is not valid");
+  const Rigid3 camera_from_world = truth.world_from_camera.inverse();
+  std::vector<Ghost> ghosts;
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    const ObjectModel* model = find_model(detections[d].object, library);
+    require(model != nullptr, "find_ghosts: no object '" + detections[d].object + "' in the library");
+    if (is_explained_by_truth(detections[d], truth.objects, *model, options)) continue;
+    std::optional<Ghost> nearest;
+    for (std::size_t p = 0; p < places.size(); ++p) {
+      if (places[p].object != detections[d].object || places[p].last_view >= view) continue;
+      const Rigid3 camera_from_object = camera_from_world * places[p].world_from_object;
+      if (!sees(camera, camera_from_object, *model)) continue;
+      const PoseDifference difference = compare_poses(detections[d].camera_from_object, camera_from_object, *model);
+      if (!is_within(difference, options)) continue;
+      if (!nearest || difference.center_distance_m < nearest->difference.center_distance_m) {
+        nearest = Ghost{static_cast<int>(d), static_cast<int>(p), difference};
+      }
+    }
+    if (nearest) ghosts.push_back(*nearest);
+  }
+  return ghosts;
+}
+
+}  // namespace resight
