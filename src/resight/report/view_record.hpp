@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "resight/evaluation/ghosts.hpp"
+#include "resight/evaluation/match_detections.hpp"
+#include "resight/report/overlay.hpp"
+
+namespace resight {
+
+/// How a view compares with its ground truth.
+struct ViewEvaluation {
+  MatchDetectionsResult matching;  ///< Within 5 cm and 30 deg, unless asked otherwise.
+  RecognitionScore strict_score;   ///< Within 1 cm and 10 deg.
+  std::vector<Ghost> ghosts;
+  std::vector<GroundTruthObject> missed;  ///< The false negatives.
+};
+
+/// What the results and the report keep of a view: no clouds and no images but one compressed picture, so that a long
+/// run stays small.
+struct ViewRecord {
+  int scene_id = 0;    ///< BOP scene; 0 elsewhere.
+  int image_id = 0;    ///< BOP image; the number of the view elsewhere.
+  SceneUpdate update;  ///< Without the clouds and the mask of `changes`.
+  std::size_t num_novel_points = 0;
+  std::size_t num_removed_points = 0;
+  std::vector<DetectionMark> marks;          ///< One per detection.
+  std::optional<ViewEvaluation> evaluation;  ///< Where there is ground truth.
+  std::vector<std::uint8_t> picture_jpeg;    ///< The overlay; empty = none.
+  int picture_width_px = 0;
+  int picture_height_px = 0;
+};
+
+/// One recognition run over a sequence: what the results files and a column of the report show.
+struct ReportRun {
+  std::string preset;
+  std::string sequence;                         ///< Name or path, for the reader.
+  std::string version;                          ///< Of resight.
+  std::map<std::string, std::string> settings;  ///< Every setting by name, with its unit in the name.
+  std::vector<ViewRecord> views;
+  std::size_t peak_memory_bytes = 0;  ///< 0 = unknown.
+  int num_threads = 0;                ///< 0 = unknown.
+};
+
+/// The detections of a view in the camera frame, by name, as the evaluation takes them.
+[[nodiscard]] std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const ModelLibrary& library);
+
+/// Scores one view. `former_places`: see find_former_places(); `update.view` says which of them are former by now.
+[[nodiscard]] ViewEvaluation evaluate_view(const SceneUpdate& update, std::span<const GroundTruthObject> truth,
+                                           std::span<const FormerPlace> former_places, const Camera& camera,
+                                           const ModelLibrary& library, const MatchDetectionsOptions& options = {});
+
+struct MakeViewRecordOptions {
+  bool picture = true;
+  int picture_quality = 82;
+  int max_picture_width_px = 640;  ///< 0 = as wide as the view.
+  DrawOverlayOptions overlay;
+  void check() const;  ///< Throws std::invalid_argument: field, value, rule.
+};
+
+/// Condenses one view for the results and the report: draws its overlay, judged by `evaluation` if there is one, and
+/// drops the clouds.
+[[nodiscard]] ViewRecord make_view_record(const RgbdFrame& frame, const ModelLibrary& library, SceneUpdate update,
+                                          std::optional<ViewEvaluation> evaluation = std::nullopt,
+                                          const MakeViewRecordOptions& options = {});
+
+/// Sums over the views of a run.
+struct RunSummary {
+  int num_views = 0;
+  int num_detections = 0;
+  int num_events = 0;        ///< Added, moved and removed.
+  int num_judged_views = 0;  ///< Views with ground truth; the scores are theirs.
+  RecognitionScore score;
+  RecognitionScore strict_score;
+  int num_ghosts = 0;
+  StageTimes times;
+  double mean_view_wall_s = 0;    ///< NaN without views.
+  double median_view_wall_s = 0;  ///< NaN without views.
+};
+[[nodiscard]] RunSummary summarize(const ReportRun& run);
+
+}  // namespace resight
