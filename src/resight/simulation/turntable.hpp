@@ -8,17 +8,20 @@
 namespace resight {
 
 struct TurntableOptions {
-  double step_deg = 15.0;            ///< Between neighbouring views around the object (paper: 15 deg).
-  double elevation_deg = 30.0;       ///< Of the camera above the turntable.
-  bool both_sides = true;            ///< Also with the object turned upside down.
-  double distance_m = 0.0;           ///< Camera to object centre; 0 = so that the object fills about half of the image height, at least 0.5 m.
-  bool sensor_noise = false;         ///< Kinect noise on the views, seeded.
+  double step_deg = 15.0;       ///< Between neighbouring views around the object (paper: 15 deg).
+  double elevation_deg = 30.0;  ///< Of the camera above the turntable.
+  bool both_sides = true;       ///< Also with the object turned upside down.
+  double distance_m =
+      0.0;  ///< Camera to object centre; 0 = so that the object fills about half of the image height, at least 0.5 m.
+  bool sensor_noise = false;  ///< Kinect noise on the views, seeded.
   std::uint64_t seed = 1;
   int num_threads = 1;
   void check() const;
 };
 
-/// Ray-casts a mesh from a ring of views at +elevation (and -elevation for the other side). The mask is where the object is hit.
-[[nodiscard]] std::vector<TrainingView> render_turntable(const TriangleMesh& mesh, const TurntableOptions& options = {});
+/// Ray-casts a mesh from a ring of views at +elevation (and -elevation for the other side). The mask is where the
+/// object is hit.
+[[nodiscard]] std::vector<TrainingView> render_turntable(const TriangleMesh& mesh,
+                                                         const TurntableOptions& options = {});
 
 }  // namespace resight

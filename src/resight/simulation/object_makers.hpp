@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "resight/simulation/procedural_objects.hpp"
+
+namespace resight {
+
+/// An object that can be drawn.
+struct ObjectMaker {
+  std::string name;
+  std::function<ProceduralObject()> make;
+};
+
+// The makers by family; procedural_object_names() lists them in this order.
+[[nodiscard]] std::vector<ObjectMaker> package_makers();  ///< Boxes, cartons, books.
+[[nodiscard]] std::vector<ObjectMaker> round_makers();    ///< Cans, bottles, crockery.
+[[nodiscard]] std::vector<ObjectMaker> toy_makers();      ///< Toys and plain things.
+
+}  // namespace resight
