@@ -8,20 +8,15 @@
 #include "resight/core/check.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
+#include "resight/reconstruction/dynamic_scene.hpp"
 
 namespace resight {
 namespace {
 
-// A view of the window. The raw frame is what history looks back at; the prepared view loses points as later views see
-// them gone.
-struct StoredView {
-  int number = 0;
-  RgbdFrame raw;
-  PreparedView cleared;
-  std::vector<Hypothesis> hypotheses;
-  PointCloud removed_in_world;
-  PointCloud novel_in_world;
-};
+DynamicSceneOptions scene_options(const RecognizerConfig& config) {
+  return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
+          config.integrate};
+}
 
 }  // namespace
 
@@ -30,12 +25,11 @@ struct SceneRecognizer::Impl {
       : library(models),
         config((settings.check(), std::move(settings))),
         index(models, config.match),
-        history(models, config.history) {}
+        history(models, config.history),
+        scene(scene_options(config)) {}
 
   SceneUpdate add_view(RgbdFrame frame);
-  void detect_view_changes(StoredView& current, SceneUpdate& update);
-  void generate_view_hypotheses(StoredView& current, SceneUpdate& update);
-  void reconstruct(SceneUpdate& update);
+  [[nodiscard]] std::vector<Hypothesis> generate_view_hypotheses(const PreparedView& view, SceneUpdate& update);
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update) const;
@@ -44,8 +38,8 @@ struct SceneRecognizer::Impl {
   RecognizerConfig config;
   ModelFeatureIndex index;
   ObjectHistory history;
-  std::deque<StoredView> window;  // oldest first, the current view last
-  Reconstruction reconstruction;  // Psi of the window
+  DynamicScene scene;
+  std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
 };
@@ -55,23 +49,23 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame) {
   update.view = num_views;
   update.view_name = frame.name;
   update.world_from_camera = frame.world_from_camera;
-  StoredView current;
-  current.number = num_views;
-  current.raw = frame;
+  PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
-    current.cleared = prepare_view(std::move(frame), config.prepare);
+    view = prepare_view(std::move(frame), config.prepare);
   }
   ++num_views;
-  while (static_cast<int>(window.size()) > config.num_previous_views) window.pop_front();
-
-  generate_view_hypotheses(current, update);
-  if (config.detect_changes && !window.empty()) detect_view_changes(current, update);
-  window.push_back(std::move(current));
-  reconstruct(update);
+  hypotheses_of_view.push_back(generate_view_hypotheses(view, update));
+  {
+    const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
+    update.changes = scene.add_view(std::move(view));
+  }
+  while (hypotheses_of_view.size() > scene.window().size()) hypotheses_of_view.pop_front();
+  update.reconstruction_points = scene.reconstruction().size();
   verify(merge_and_cluster(update), update);
 
   const ScopedTimer timer(update.times, "history");
+  const auto& window = scene.window();
   std::vector<const RgbdFrame*> earlier;
   for (std::size_t v = 0; v + 1 < window.size(); ++v) earlier.push_back(&window[v].raw);
   update.events = history.update(update.view, update.detections, window.back().raw, earlier, config.detect_changes);
@@ -79,16 +73,16 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame) {
 }
 
 // Paper Sec. III-A: features of both kinds, matched, grouped into hypotheses of this view alone.
-void SceneRecognizer::Impl::generate_view_hypotheses(StoredView& current, SceneUpdate& update) {
+std::vector<Hypothesis> SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, SceneUpdate& update) {
   FeatureSet sift;
   FeatureSet shot;
   {
     const ScopedTimer timer(update.times, "sift");
-    sift = extract_sift(current.cleared, config.sift);
+    sift = extract_sift(view, config.sift);
   }
   {
     const ScopedTimer timer(update.times, "shot");
-    shot = extract_shot(current.cleared, config.shot);
+    shot = extract_shot(view, config.shot);
   }
   std::vector<std::vector<Correspondence>> correspondences;
   {
@@ -97,41 +91,18 @@ void SceneRecognizer::Impl::generate_view_hypotheses(StoredView& current, SceneU
   }
   for (const auto& c : correspondences) update.counts.correspondences += static_cast<int>(c.size());
   const ScopedTimer timer(update.times, "hypotheses");
-  current.hypotheses = generate_hypotheses(correspondences, current.raw.world_from_camera, current.number,
-                                           next_hypothesis_id, config.generate);
-  next_hypothesis_id += current.hypotheses.size();
-  update.counts.generated = static_cast<int>(current.hypotheses.size());
-}
-
-// Alg. 1, lines 1 to 5. What this view saw removed is cleared from all views before it, and from none after: an object
-// put back at its old place survives.
-void SceneRecognizer::Impl::detect_view_changes(StoredView& current, SceneUpdate& update) {
-  const ScopedTimer timer(update.times, "changes");
-  std::vector<const PreparedView*> earlier_views;
-  for (const StoredView& view : window) earlier_views.push_back(&view.cleared);
-  update.changes = detect_changes(reconstruction.cloud_in_world, current.cleared, config.changes, earlier_views);
-  current.removed_in_world = update.changes.removed_in_world;
-  current.novel_in_world = update.changes.novel_in_world;
-  if (current.removed_in_world.empty()) return;
-  for (StoredView& view : window)
-    view.cleared = clear_removed_points(std::move(view.cleared), current.removed_in_world, config.clear_tolerance_m,
-                                        config.prepare);
-}
-
-// Alg. 1, line 6.
-void SceneRecognizer::Impl::reconstruct(SceneUpdate& update) {
-  const ScopedTimer timer(update.times, "reconstruction");
-  std::vector<const PreparedView*> views;
-  for (const StoredView& view : window) views.push_back(&view.cleared);
-  reconstruction = integrate_views(views, config.integrate);
-  update.reconstruction_points = reconstruction.cloud_in_world.size();
+  std::vector<Hypothesis> hypotheses = generate_hypotheses(correspondences, view.frame.world_from_camera, update.view,
+                                                           next_hypothesis_id, config.generate);
+  next_hypothesis_id += hypotheses.size();
+  update.counts.generated = static_cast<int>(hypotheses.size());
+  return hypotheses;
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
 std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update) const {
   const ScopedTimer timer(update.times, "cluster");
   std::vector<Hypothesis> merged;
-  for (const StoredView& view : window) merged.insert(merged.end(), view.hypotheses.begin(), view.hypotheses.end());
+  for (const auto& of_view : hypotheses_of_view) merged.insert(merged.end(), of_view.begin(), of_view.end());
   update.counts.merged = static_cast<int>(merged.size());
   if (config.cluster_hypotheses) merged = cluster_hypotheses(merged, library, config.cluster).hypotheses;
   update.counts.clustered = static_cast<int>(merged.size());
@@ -163,10 +134,11 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
 void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update) const {
   const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
   const ScopedTimer timer(update.times, "verification");
+  const auto& window = scene.window();
   std::vector<VerificationView> views;
-  for (const StoredView& view : window) views.push_back({&view.cleared});
+  for (const DynamicScene::View& view : window) views.push_back({&view.cleared});
   const VerifyResult result =
-      verify_hypotheses(hypotheses, library, reconstruction.cloud_in_world, views, present, config.verify);
+      verify_hypotheses(hypotheses, library, scene.reconstruction(), views, present, config.verify);
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const HypothesisEvidence& evidence = result.evidence[h];
     if (!evidence.accepted) continue;
@@ -192,6 +164,6 @@ SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 SceneUpdate SceneRecognizer::add_view(RgbdFrame frame) { return impl_->add_view(std::move(frame)); }
 std::vector<ObjectEvent> SceneRecognizer::finish() { return impl_->history.finish(); }
 const RecognizerConfig& SceneRecognizer::config() const { return impl_->config; }
-const PointCloud& SceneRecognizer::reconstruction() const { return impl_->reconstruction.cloud_in_world; }
+const PointCloud& SceneRecognizer::reconstruction() const { return impl_->scene.reconstruction(); }
 
 }  // namespace resight

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "recognition_run.hpp"
+#include "resight/io/images.hpp"
+#include "resight/io/ply.hpp"
+#include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/report/overlay.hpp"
+
+namespace resight::app {
+namespace {
+
+constexpr Rgb8 kRemovedColor{220, 30, 30};
+constexpr Rgb8 kNovelColor{30, 190, 60};
+
+// The reconstruction with its changes: red = removed, green = novel, else the scene's own colours.
+PointCloud paint(PointCloud scene, const ChangeResult& changes) {
+  const auto add = [&](PointCloud cloud, Rgb8 color) {
+    cloud.normals.clear();
+    cloud.colors.assign(cloud.size(), color);
+    scene.append(cloud);
+  };
+  scene.normals.clear();
+  add(changes.removed_in_world, kRemovedColor);
+  add(changes.novel_in_world, kNovelColor);
+  return scene;
+}
+
+}  // namespace
+
+// Alg. 1 without models: the changes of each view against the reconstruction of the views before it.
+void run_changes(const ChangesArguments& arguments) {
+  const RecognizerConfig config =
+      make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
+  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  std::filesystem::create_directories(arguments.out);
+  DynamicScene scene(
+      {config.num_previous_views, true, config.clear_tolerance_m, config.prepare, config.changes, config.integrate});
+  Progress progress("changes", sequence->num_views());
+  for (int v = 0; v < sequence->num_views(); ++v) {
+    const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));
+    const RgbdFrame& frame = scene.window().back().raw;
+    value_or_throw(write_color(arguments.out / (frame.name + ".png"), draw_changes(frame, changes)));
+    value_or_throw(write_ply(arguments.out / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
+    progress.report(v + 1,
+                    fmt::format("{}: {} removed, {} novel points{}", frame.name, changes.removed_in_world.size(),
+                                changes.novel_in_world.size(), changes.pose_suspect ? ", camera pose suspect" : ""));
+  }
+  fmt::print("{} views: {}\n", sequence->num_views(), arguments.out.string());
+}
+
+}  // namespace resight::app

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recognition_run.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "progress.hpp"
+#include "resight/core/timing.hpp"
+#include "resight/evaluation/ghosts.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
+
+namespace resight::app {
+namespace {
+
+// The truth of all views, and from it the places that objects left; empty without ground truth.
+struct SequenceTruth {
+  std::vector<TruthView> views;
+  std::vector<FormerPlace> former_places;
+};
+
+SequenceTruth read_truth(const Sequence& sequence, const ModelLibrary& library) {
+  SequenceTruth truth;
+  if (!sequence.has_ground_truth()) return truth;
+  for (int v = 0; v < sequence.num_views(); ++v)
+    truth.views.push_back(
+        {value_or_throw(sequence.read_view(v)).world_from_camera, value_or_throw(sequence.read_ground_truth(v))});
+  truth.former_places = find_former_places(truth.views, library);
+  return truth;
+}
+
+std::string describe(const SceneUpdate& update) {
+  std::string text = fmt::format("{}: {} objects", update.view_name, update.detections.size());
+  for (const ObjectEvent& event : update.events)
+    if (is_change(event.kind)) text += fmt::format(", {}", to_string(event.kind));
+  return text + fmt::format(", {:.2f} s", update.times.total_wall_s());
+}
+
+}  // namespace
+
+RecognizerConfig make_config(const std::string& preset, const std::optional<std::filesystem::path>& file,
+                             std::optional<int> num_previous_views, int num_threads) {
+  RecognizerConfig config = RecognizerConfig::from_preset(preset);
+  if (file) config = value_or_throw(read_config(*file, config));
+  if (num_previous_views) config.num_previous_views = *num_previous_views;
+  config.set_num_threads(num_threads);
+  return config;
+}
+
+ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
+                             int num_threads) {
+  const SequenceTruth truth = read_truth(sequence, library);
+  ReportRun run;
+  run.preset = config.preset;
+  run.version = RESIGHT_VERSION;
+  run.num_threads = num_threads;
+  for (const auto& [name, value] : config.to_settings()) run.settings[name] = value;
+
+  SceneRecognizer recognizer(library, config);
+  Progress progress(config.preset, sequence.num_views());
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const RgbdFrame frame = value_or_throw(sequence.read_view(v));
+    SceneUpdate update = recognizer.add_view(frame);
+    if (v + 1 == sequence.num_views())
+      for (ObjectEvent& event : recognizer.finish()) update.events.push_back(std::move(event));
+    progress.report(v + 1, describe(update));
+    std::optional<ViewEvaluation> evaluation;
+    if (!truth.views.empty())
+      evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,
+                                 frame.camera, library);
+    run.views.push_back(make_view_record(frame, library, std::move(update), std::move(evaluation)));
+    run.views.back().scene_id = sequence.scene_id();
+    run.views.back().image_id = sequence.image_id(v);
+  }
+  run.peak_memory_bytes = peak_memory_bytes();
+  return run;
+}
+
+}  // namespace resight::app

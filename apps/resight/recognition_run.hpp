@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "commands.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/models/object_model.hpp"
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/report/view_record.hpp"
+
+namespace resight::app {
+
+/// Preset, then config file, then the command line's own settings.
+[[nodiscard]] RecognizerConfig make_config(const std::string& preset, const std::optional<std::filesystem::path>& file,
+                                           std::optional<int> num_previous_views, int num_threads);
+
+/// Recognises every view of a sequence, with progress; scored where the sequence has ground truth.
+[[nodiscard]] ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequence,
+                                           const RecognizerConfig& config, int num_threads);
+
+}  // namespace resight::app

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "recognition_run.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/models/training.hpp"
+#include "resight/report/html_report.hpp"
+#include "resight/report/results.hpp"
+
+namespace resight::app {
+
+void run_recognize(const RecognizeArguments& arguments) {
+  RecognizerConfig config =
+      make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
+  config.set_seed(arguments.seed);
+  const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
+  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  ReportRun run = recognize_sequence(library, *sequence, config, arguments.num_threads);
+  run.sequence = arguments.sequence.string();
+  value_or_throw(write_results(arguments.out, run, library));
+  value_or_throw(write_report(arguments.out / "report.html", "resight: " + arguments.sequence.filename().string(),
+                              std::span(&run, 1), library));
+  const RunSummary summary = summarize(run);
+  fmt::print("{} views, {} detections, {} changes, {:.2f} s a view (median)\n", summary.num_views,
+             summary.num_detections, summary.num_events, summary.median_view_wall_s);
+  if (summary.num_judged_views > 0)
+    fmt::print("precision {:.3f}, recall {:.3f} (5 cm, 30 deg), {} ghosts\n", summary.score.precision(),
+               summary.score.recall(), summary.num_ghosts);
+  fmt::print("report: {}\n", (arguments.out / "report.html").string());
+}
+
+}  // namespace resight::app
