@@ -9,9 +9,13 @@ namespace resight {
 /// bins degenerate in the middle of the image; theta covers pi, so there are half as many rows as columns.
 class SphericalBins {
  public:
-  explicit SphericalBins(double bin_size_rad = 0.0349066);  ///< Paper: 2 deg.
+  /// `bin_size_rad` in [0.001, pi/2] (paper: 2 deg); shrunk to the next size that divides pi, so that all bins are
+  /// equal.
+  explicit SphericalBins(double bin_size_rad = 0.0349066);
   [[nodiscard]] int num_bins() const { return num_theta_ * num_phi_; }
-  /// Bin of the direction of a point; -1 for the origin and for NaN.
+  [[nodiscard]] int num_theta() const { return num_theta_; }
+  [[nodiscard]] int num_phi() const { return num_phi_; }
+  /// Bin of the direction of a point, row (theta) by row; -1 for the origin and for NaN.
   [[nodiscard]] int bin(const Eigen::Vector3f& p_in_camera) const;
 
  private:

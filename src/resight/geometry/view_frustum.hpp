@@ -6,8 +6,25 @@
 
 namespace resight {
 
-/// The view volume of a camera, Eq. (5). The paper prints a sine against the full field of view, without a sign test; we test
-/// the angles of a point against what the intrinsics see, less a margin, and z within (min_depth_m, max_depth_m).
+/// The four sides of a view volume as slopes x/z and y/z, and its depth range: ViewFrustum, ready for loops over
+/// points.
+struct FrustumLimits {
+  float min_x_over_z, max_x_over_z;
+  float min_y_over_z, max_y_over_z;
+  float min_depth_m, max_depth_m;
+
+  /// Strictly inside; false for NaN.
+  [[nodiscard]] bool contains(const Eigen::Vector3f& p_in_camera) const {
+    const float z = p_in_camera.z();
+    return z > min_depth_m && z < max_depth_m && p_in_camera.x() > min_x_over_z * z &&
+           p_in_camera.x() < max_x_over_z * z && p_in_camera.y() > min_y_over_z * z &&
+           p_in_camera.y() < max_y_over_z * z;
+  }
+};
+
+/// The view volume of a camera, Eq. (5). The paper prints a sine against the full field of view, without a sign test;
+/// we test the angles of a point against what the intrinsics see, less a margin, and z within (min_depth_m,
+/// max_depth_m).
 struct ViewFrustum {
   Camera camera;
   double min_depth_m = 0.5;       ///< Paper's code: 0.5 (Xtion).
@@ -16,7 +33,10 @@ struct ViewFrustum {
 
   /// Throws std::invalid_argument for an invalid camera, range or margin.
   void check() const;
-  /// Strictly inside; false for NaN.
+  /// The sides, each from its own intrinsics: with a principal point off the middle, left and right differ. Calls
+  /// check(). A margin that leaves nothing gives limits that contain no point.
+  [[nodiscard]] FrustumLimits limits() const;
+  /// Strictly inside; false for NaN. Throws as check(). For many points, keep limits() instead.
   [[nodiscard]] bool contains(const Eigen::Vector3f& p_in_camera) const;
 };
 
