@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "resight/evaluation/ghosts.hpp"
@@ -32,19 +32,18 @@ struct ViewRecord {
   std::vector<DetectionMark> marks;          ///< One per detection.
   std::optional<ViewEvaluation> evaluation;  ///< Where there is ground truth.
   std::vector<std::uint8_t> picture_jpeg;    ///< The overlay; empty = none.
-  int picture_width_px = 0;
-  int picture_height_px = 0;
 };
 
 /// One recognition run over a sequence: what the results files and a column of the report show.
 struct ReportRun {
   std::string preset;
-  std::string sequence;                         ///< Name or path, for the reader.
-  std::string version;                          ///< Of resight.
-  std::map<std::string, std::string> settings;  ///< Every setting by name, with its unit in the name.
+  std::string sequence;                                       ///< Name or path, for the reader.
+  std::string version;                                        ///< Of resight.
+  std::vector<std::pair<std::string, std::string>> settings;  ///< RecognizerConfig::to_settings().
   std::vector<ViewRecord> views;
-  std::size_t peak_memory_bytes = 0;  ///< 0 = unknown.
-  int num_threads = 0;                ///< 0 = unknown.
+  std::vector<ObjectEvent> final_events;  ///< SceneRecognizer::finish(): events that were waiting for a further view.
+  std::size_t peak_memory_bytes = 0;      ///< 0 = unknown.
+  int num_threads = 0;                    ///< 0 = unknown.
 };
 
 /// The detections of a view in the camera frame, by name, as the evaluation takes them.
@@ -73,7 +72,7 @@ struct MakeViewRecordOptions {
 struct RunSummary {
   int num_views = 0;
   int num_detections = 0;
-  int num_events = 0;        ///< Added, moved and removed.
+  int num_changes = 0;       ///< Events added, moved and removed.
   int num_judged_views = 0;  ///< Views with ground truth; the scores are theirs.
   RecognitionScore score;
   RecognitionScore strict_score;

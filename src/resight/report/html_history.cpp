@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "resight/report/internal/html.hpp"
+
+namespace resight::report {
+namespace {
+
+struct CellLook {
+  const char* css_class;
+  const char* glyph;
+  int weight;  // of several events in one cell, the weightiest is shown
+};
+
+CellLook look_of(ObjectEventKind kind) {
+  switch (kind) {
+    case ObjectEventKind::kFound:
+      return {"found", "●", 2};
+    case ObjectEventKind::kAdded:
+      return {"added", "+", 3};
+    case ObjectEventKind::kMoved:
+      return {"moved", "→", 4};
+    case ObjectEventKind::kRemoved:
+      return {"removed", "×", 5};
+    case ObjectEventKind::kStillThere:
+      return {"still", "●", 1};
+    case ObjectEventKind::kNotSeen:
+      return {"unseen", "?", 0};
+  }
+  return {"none", "", -1};
+}
+
+/// The rows of the table: what happened to each tracked object, by view.
+struct Timeline {
+  struct Row {
+    int object = -1;
+    std::map<int, ObjectEventKind> events;  // by view
+  };
+  std::map<int, Row> rows;  // by track
+
+  void add(const ObjectEvent& event) {
+    Row& row = rows[event.track];
+    row.object = event.object;
+    const auto [place, is_new] = row.events.emplace(event.view, event.kind);
+    if (!is_new && look_of(event.kind).weight > look_of(place->second).weight) place->second = event.kind;
+  }
+};
+
+Timeline make_timeline(const ReportRun& run) {
+  Timeline timeline;
+  for (const ViewRecord& view : run.views) {
+    for (const ObjectEvent& event : view.update.events) timeline.add(event);
+  }
+  for (const ObjectEvent& event : run.final_events) timeline.add(event);
+  return timeline;
+}
+
+std::string cell(const CellLook& look, const std::string& title) {
+  return fmt::format("<span class=\"cell {}\" title=\"{}\">{}</span>", look.css_class, title, look.glyph);
+}
+
+std::string timeline_table(const ReportRun& run, const Timeline& timeline, const ModelLibrary& library) {
+  std::string html = "<table class=\"history\"><thead><tr><th class=\"name\">Object</th>";
+  for (const ViewRecord& view : run.views) html += fmt::format("<th>{}</th>", view.update.view);
+  html += "</tr></thead><tbody>\n";
+  for (const auto& [track, row] : timeline.rows) {
+    html += fmt::format("<tr><th class=\"name\">{} <span class=\"soft\">#{}</span></th>",
+                        object_tag(row.object, library), track);
+    for (const ViewRecord& view : run.views) {
+      const auto event = row.events.find(view.update.view);
+      html += "<td>";
+      if (event != row.events.end()) {
+        html += cell(look_of(event->second), fmt::format("view {}: {}", view.update.view, to_string(event->second)));
+      } else {
+        html += "<span class=\"cell none\"></span>";
+      }
+      html += "</td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table>";
+}
+
+std::string legend() {
+  const std::pair<ObjectEventKind, const char*> entries[] = {{ObjectEventKind::kFound, "first recognised"},
+                                                             {ObjectEventKind::kStillThere, "still there"},
+                                                             {ObjectEventKind::kAdded, "added"},
+                                                             {ObjectEventKind::kMoved, "moved"},
+                                                             {ObjectEventKind::kRemoved, "removed"},
+                                                             {ObjectEventKind::kNotSeen, "not seen"}};
+  std::string html = "<p class=\"soft legend\">";
+  for (const auto& [kind, text] : entries) html += "<span>" + cell(look_of(kind), text) + text + "</span>";
+  return html + "</p>\n";
+}
+
+}  // namespace
+
+std::string history_section(std::span<const ReportRun> runs, const ModelLibrary& library) {
+  std::string tables;
+  for (const ReportRun& run : runs) {
+    const Timeline timeline = make_timeline(run);
+    if (timeline.rows.empty()) continue;
+    tables += "<section class=\"card\" style=\"margin-bottom:12px\"><h3>" + escape(run.preset) + "</h3>\n" +
+              timeline_table(run, timeline, library) + "</section>\n";
+  }
+  if (tables.empty()) return "";
+  return "<h2 id=\"history\">What happened to the objects</h2>\n" + legend() + tables;
+}
+
+}  // namespace resight::report

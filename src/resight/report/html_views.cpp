@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <iterator>
+#include <map>
+#include <numbers>
+
+#include "resight/report/internal/html.hpp"
+
+namespace resight::report {
+namespace {
+
+std::string position_text(const Rigid3& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  return fmt::format("{:.3f} {:.3f} {:.3f}", t.x(), t.y(), t.z());
+}
+
+/// Rotation vector in degrees: the axis, as long as the angle.
+std::string rotation_text(const Rigid3& pose) {
+  const Eigen::AngleAxisd turn(pose.rotation);
+  const Eigen::Vector3d degrees = turn.axis() * (turn.angle() * 180 / std::numbers::pi);
+  return fmt::format("{:.1f} {:.1f} {:.1f}", degrees.x(), degrees.y(), degrees.z());
+}
+
+std::string verdict_cell(DetectionMark mark) {
+  const char* css_class = mark == DetectionMark::kCorrect                                          ? "good"
+                          : mark == DetectionMark::kFalsePositive || mark == DetectionMark::kGhost ? "bad"
+                                                                                                   : "soft";
+  return fmt::format("<td class=\"{}\">{}</td>", css_class, to_string(mark));
+}
+
+std::string detections_table(const ViewRecord& view, const ModelLibrary& library) {
+  if (view.update.detections.empty()) return "<p class=\"soft\">Nothing recognised.</p>\n";
+  const bool judged = view.evaluation.has_value();
+  std::string html =
+      "<table><thead><tr><th>Object</th><th class=\"n\">Track</th><th class=\"n\">Score</th><th "
+      "class=\"n\">Visible</th>"
+      "<th>Position in world, m</th><th>Rotation vector, °</th>";
+  html += judged ? "<th>Verdict</th></tr></thead><tbody>\n" : "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
+    const Detection& detection = view.update.detections[i];
+    fmt::format_to(std::back_inserter(html),
+                   "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
+                   "<td>{}</td><td>{}</td>{}</tr>\n",
+                   object_tag(detection.object, library),
+                   detection.track < 0 ? std::string("–") : fmt::format("#{}", detection.track),
+                   number(detection.score, 2), percent(detection.visible_share),
+                   position_text(detection.world_from_object), rotation_text(detection.world_from_object),
+                   judged ? verdict_cell(view.marks.at(i)) : std::string());
+  }
+  return html + "</tbody></table>\n";
+}
+
+std::string event_text(const ObjectEvent& event, const ModelLibrary& library) {
+  const std::string kind = to_string(event.kind);
+  std::string html = fmt::format("<li><span class=\"tag {0}\">{0}</span>{1} <span class=\"soft\">#{2}</span>", kind,
+                                 object_tag(event.object, library), event.track);
+  if (event.world_from_object_before && event.world_from_object_after) {
+    const double distance_m =
+        (event.world_from_object_after->translation - event.world_from_object_before->translation).norm();
+    html += fmt::format(" by {:.1f} cm", 100 * distance_m);
+  }
+  return html + fmt::format(" <span class=\"soft\">confidence {}</span></li>\n", number(event.confidence, 2));
+}
+
+std::string events_list(const std::vector<ObjectEvent>& events, const ModelLibrary& library) {
+  std::string items;
+  for (const ObjectEvent& event : events) {
+    if (is_change(event.kind) || event.kind == ObjectEventKind::kFound) items += event_text(event, library);
+  }
+  return items.empty() ? "" : "<ul class=\"events\">\n" + items + "</ul>\n";
+}
+
+std::string missed_line(const ViewRecord& view) {
+  if (!view.evaluation || view.evaluation->missed.empty()) return "";
+  std::string names;
+  for (const GroundTruthObject& missed : view.evaluation->missed) {
+    names += (names.empty() ? "" : ", ") + escape(missed.object);
+  }
+  return "<p class=\"soft\">Missed: " + names + "</p>\n";
+}
+
+std::string details(const ViewRecord& view) {
+  const HypothesisCounts& counts = view.update.counts;
+  std::string html = fmt::format(
+      "<details><summary>{} in {} stages; {} hypotheses verified</summary>"
+      "<p>Correspondences {} · hypotheses of this view {} · with those of earlier views {} · after clustering {} · "
+      "accepted {}<br>Scene points {} · novel {} · removed {} · share of the seen surface that changed {}{}</p>"
+      "<table><thead><tr><th>Stage</th><th class=\"n\">Wall</th><th class=\"n\">CPU</th></tr></thead><tbody>\n",
+      duration(view.update.times.total_wall_s()), view.update.times.stages().size(), counts.clustered,
+      counts.correspondences, counts.generated, counts.merged, counts.clustered, counts.accepted,
+      view.update.reconstruction_points, view.num_novel_points, view.num_removed_points,
+      percent(view.update.changes.changed_share),
+      view.update.changes.pose_suspect ? " · <b>camera pose suspect: no changes taken from this view</b>" : "");
+  for (const StageTime& time : view.update.times.stages()) {
+    html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n", escape(time.stage),
+                        duration(time.wall_s), duration(time.cpu_s));
+  }
+  return html + "</tbody></table></details>\n";
+}
+
+std::string view_column(const ReportRun& run, const ViewRecord& view, const ModelLibrary& library, bool name_run) {
+  std::string html = "<div>";
+  if (name_run) html += "<h3>" + escape(run.preset) + "</h3>\n";
+  if (!view.picture_jpeg.empty()) {
+    html += fmt::format("<img alt=\"View {}, {}: recognised objects\" src=\"data:image/jpeg;base64,{}\">\n",
+                        view.update.view, escape(run.preset), base64(view.picture_jpeg));
+  }
+  return html + events_list(view.update.events, library) + detections_table(view, library) + missed_line(view) +
+         details(view) + "</div>\n";
+}
+
+std::string picture_legend() {
+  return "<p class=\"soft\">Solid outline: recognised. Dashed: false by the ground truth (crossed out: a ghost, where "
+         "the "
+         "object has left). Dotted white: missed. <span class=\"patch\" style=\"background:#1ec83c\"></span>new "
+         "surface, "
+         "<span class=\"patch\" style=\"background:#eb1e28\"></span>surface seen to be gone.</p>\n";
+}
+
+}  // namespace
+
+std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& library) {
+  std::map<int, std::vector<std::pair<const ReportRun*, const ViewRecord*>>> by_view;
+  for (const ReportRun& run : runs) {
+    for (const ViewRecord& view : run.views) by_view[view.update.view].emplace_back(&run, &view);
+  }
+  if (by_view.empty()) return "";
+  std::string html = "<h2 id=\"views\">Views</h2>\n" + picture_legend();
+  for (const auto& [number_of_view, columns] : by_view) {
+    html += fmt::format(
+        "<article id=\"view-{0}\"><h3>View {0} <span class=\"soft\">{1}</span></h3>\n<div class=\"runs\">\n",
+        number_of_view, escape(columns.front().second->update.view_name));
+    for (const auto& [run, view] : columns) html += view_column(*run, *view, library, runs.size() > 1);
+    html += "</div></article>\n";
+  }
+  for (const ReportRun& run : runs) {
+    const std::string late = events_list(run.final_events, library);
+    if (late.empty()) continue;
+    html += "<article><h3>Known after the last view <span class=\"soft\">" + escape(run.preset) + "</span></h3>\n" +
+            late + "</article>\n";
+  }
+  return html;
+}
+
+}  // namespace resight::report

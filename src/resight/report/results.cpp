@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/report/results.hpp"
+
+#include <utility>
+
+#include "resight/report/internal/files.hpp"
+
+namespace resight {
+
+Result<void> write_results(const std::filesystem::path& directory, const ReportRun& run, const ModelLibrary& library) {
+  // All are made before the first is written: a mistake in one must not leave half a set.
+  const std::pair<const char*, std::string> files[] = {{"detections.csv", format_detections_csv(run, library)},
+                                                       {"detections.json", format_detections_json(run, library)},
+                                                       {"changes.json", format_changes_json(run, library)},
+                                                       {"summary.json", format_summary_json(run)}};
+  for (const auto& [name, text] : files) {
+    const Result<void> written = report::write_whole_file(directory / name, text);
+    if (!written.ok()) return written;
+  }
+  return {};
+}
+
+}  // namespace resight

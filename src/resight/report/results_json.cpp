@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "resight/core/check.hpp"
+#include "resight/report/results.hpp"
+
+namespace resight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const ObjectModel& model_of(int object, const ModelLibrary& library) {
+  require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
+          "results: an object is not in the library");
+  return library.objects[static_cast<std::size_t>(object)];
+}
+
+Json pose_json(const Rigid3& pose) {
+  Json rotation = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) rotation.push_back(pose.rotation(row, column));
+  }
+  return {{"rotation", rotation},
+          {"translation_m", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
+}
+
+Json optional_pose_json(const std::optional<Rigid3>& pose) { return pose ? pose_json(*pose) : Json(nullptr); }
+
+Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrary& library) {
+  const Detection& detection = view.update.detections[index];
+  const ObjectModel& model = model_of(detection.object, library);
+  Json evidence = Json::array();
+  for (const DetectionViewEvidence& e : detection.views) {
+    evidence.push_back({{"view", e.view},
+                        {"allowed", e.allowed},
+                        {"visible_share", e.visible_share},
+                        {"explained_share", e.explained_share}});
+  }
+  Json json = {{"object", model.name},
+               {"obj_id", model.bop_id},
+               {"track", detection.track},
+               {"score", detection.score},
+               {"visible_share", detection.visible_share},
+               {"camera_from_object", pose_json(view.update.world_from_camera.inverse() * detection.world_from_object)},
+               {"world_from_object", pose_json(detection.world_from_object)},
+               {"evidence", evidence}};
+  if (view.evaluation) json["verdict"] = to_string(view.marks.at(index));
+  return json;
+}
+
+Json event_json(const ObjectEvent& event, const ModelLibrary& library) {
+  return {{"view", event.view},
+          {"kind", to_string(event.kind)},
+          {"object", model_of(event.object, library).name},
+          {"track", event.track},
+          {"world_from_object_before", optional_pose_json(event.world_from_object_before)},
+          {"world_from_object_after", optional_pose_json(event.world_from_object_after)},
+          {"confidence", event.confidence}};
+}
+
+Json score_json(const RecognitionScore& score) {
+  return {{"true_positives", score.true_positives},
+          {"false_positives", score.false_positives},
+          {"false_negatives", score.false_negatives},
+          {"precision", score.precision()},
+          {"recall", score.recall()},
+          {"f_score", score.f_score()}};
+}
+
+Json stage_times_json(const StageTimes& times, int num_views) {
+  Json json = Json::array();
+  for (const StageTime& time : times.stages()) {
+    json.push_back({{"stage", time.stage},
+                    {"wall_s", time.wall_s},
+                    {"cpu_s", time.cpu_s},
+                    {"wall_s_per_view", time.wall_s / std::max(1, num_views)}});
+  }
+  return json;
+}
+
+Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
+
+std::string to_text(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json header(const ReportRun& run) {
+  return {{"version", run.version}, {"preset", run.preset}, {"sequence", run.sequence}};
+}
+
+}  // namespace
+
+std::string format_detections_json(const ReportRun& run, const ModelLibrary& library) {
+  Json views = Json::array();
+  for (const ViewRecord& view : run.views) {
+    Json detections = Json::array();
+    for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
+      detections.push_back(detection_json(view, i, library));
+    }
+    views.push_back({{"view", view.update.view},
+                     {"name", view.update.view_name},
+                     {"scene_id", view.scene_id},
+                     {"image_id", view.image_id},
+                     {"world_from_camera", pose_json(view.update.world_from_camera)},
+                     {"detections", detections}});
+  }
+  Json json = header(run);
+  json["views"] = views;
+  return to_text(json);
+}
+
+std::string format_changes_json(const ReportRun& run, const ModelLibrary& library) {
+  Json events = Json::array();
+  Json views = Json::array();
+  for (const ViewRecord& view : run.views) {
+    for (const ObjectEvent& event : view.update.events) events.push_back(event_json(event, library));
+    views.push_back({{"view", view.update.view},
+                     {"name", view.update.view_name},
+                     {"novel_points", view.num_novel_points},
+                     {"removed_points", view.num_removed_points},
+                     {"changed_share", view.update.changes.changed_share},
+                     {"pose_suspect", view.update.changes.pose_suspect}});
+  }
+  for (const ObjectEvent& event : run.final_events) events.push_back(event_json(event, library));
+  Json json = header(run);
+  json["events"] = events;
+  json["views"] = views;
+  return to_text(json);
+}
+
+std::string format_summary_json(const ReportRun& run) {
+  const RunSummary summary = summarize(run);
+  Json settings = Json::object();
+  for (const auto& [name, value] : run.settings) settings[name] = value;
+  Json json = header(run);
+  json["settings"] = settings;
+  json["num_threads"] = unknown_if_zero(static_cast<std::size_t>(std::max(0, run.num_threads)));
+  json["num_views"] = summary.num_views;
+  json["num_detections"] = summary.num_detections;
+  json["num_changes"] = summary.num_changes;
+  json["mean_view_wall_s"] = summary.mean_view_wall_s;
+  json["median_view_wall_s"] = summary.median_view_wall_s;
+  json["stages"] = stage_times_json(summary.times, summary.num_views);
+  json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
+  if (summary.num_judged_views > 0) {
+    json["evaluation"] = {{"num_views", summary.num_judged_views},
+                          {"score", score_json(summary.score)},
+                          {"strict_score", score_json(summary.strict_score)},
+                          {"num_ghosts", summary.num_ghosts}};
+  }
+  return to_text(json);
+}
+
+}  // namespace resight
