@@ -20,11 +20,13 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
     const std::size_t begin = block * grain;
     body(begin, begin + std::min(grain, count - begin));
   };
-  if (num_threads == 1 || num_blocks <= 1) {
+  // More threads than the hardware has win nothing, and make TBB print a warning.
+  const int num_workers = std::min(num_threads, num_hardware_threads());
+  if (num_workers == 1 || num_blocks <= 1) {
     for (std::size_t block = 0; block < num_blocks; ++block) run_block(block);
     return;
   }
-  tbb::task_arena arena(num_threads);
+  tbb::task_arena arena(num_workers);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, num_blocks, run_block, tbb::simple_partitioner()); });
 }
 

@@ -5,7 +5,8 @@
 
 namespace resight {
 
-/// Calls body(begin, end) for consecutive blocks of [0, count), on up to `num_threads` threads (>= 1; 1 = serial).
+/// Calls body(begin, end) for consecutive blocks of [0, count), on up to `num_threads` threads (>= 1; 1 = serial),
+/// but no more than the hardware has.
 ///
 /// Blocks are [i * grain, min((i + 1) * grain, count)): the same for every number of threads. A body that writes only
 /// the slots of its own items gives the same bytes on any number of threads; reduce over blocks in order afterwards.
