@@ -12,21 +12,22 @@ namespace resight {
 
 /// A trained object. Everything in the object frame, metres.
 struct ObjectModel {
-  std::string name;        ///< Unique in its library; also the name in TUW files.
-  int bop_id = 0;          ///< obj_id of BOP files, >= 1, unique in its library.
-  PointCloud surface;      ///< Voxelised complete surface with normals and colours, for verification and drawing.
+  std::string name;    ///< Unique in its library; also the name in TUW files.
+  int bop_id = 0;      ///< obj_id of BOP files, >= 1, unique in its library.
+  PointCloud surface;  ///< Voxelised complete surface with normals and colours, for verification and drawing.
   FeatureSet sift;
   FeatureSet shot;
   ObjectSymmetries symmetries;
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the surface: poses are compared there, not at the origin.
+  Eigen::Vector3f center =
+      Eigen::Vector3f::Zero();  ///< Centroid of the surface: poses are compared there, not at the origin.
   float diameter_m = 0;
 };
 
 /// All trained objects. What a recogniser is given.
 struct ModelLibrary {
   std::vector<ObjectModel> objects;
-  std::uint64_t options_hash = 0;   ///< Of the training options: tells a stale library.
-  float surface_voxel_m = 0.003F;   ///< Of every object's surface.
+  std::uint64_t options_hash = 0;                         ///< Of the training options: tells a stale library.
+  float surface_voxel_m = 0.003F;                         ///< Of every object's surface.
   [[nodiscard]] int find(const std::string& name) const;  ///< Index, or -1.
 };
 

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <model_library_generated.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "resight/models/descriptor_code.hpp"
+#include "resight/models/internal/library_payload.hpp"
+
+namespace resight::internal {
+namespace {
+
+constexpr float kUnitTolerance = 1e-2F;
+
+bool read(const flatbuffers::Vector<float>* values, std::vector<Eigen::Vector3f>& vectors) {
+  if (values == nullptr || values->size() % 3 != 0) return false;
+  vectors.resize(values->size() / 3);
+  if (!vectors.empty()) std::memcpy(vectors.front().data(), values->data(), sizeof(float) * values->size());
+  for (const Eigen::Vector3f& v : vectors)
+    if (!v.allFinite()) return false;
+  return true;
+}
+
+bool are_unit(const std::vector<Eigen::Vector3f>& normals) {
+  for (const Eigen::Vector3f& n : normals)
+    if (!(std::abs(n.norm() - 1) < kUnitTolerance)) return false;
+  return true;
+}
+
+bool read(const schema::Surface* surface, PointCloud& cloud) {
+  if (surface == nullptr || surface->colors() == nullptr) return false;
+  if (!read(surface->points(), cloud.points) || !read(surface->normals(), cloud.normals)) return false;
+  const std::size_t n = cloud.points.size();
+  if (cloud.normals.size() != n || surface->colors()->size() != 3 * n || !are_unit(cloud.normals)) return false;
+  cloud.colors.resize(n);
+  if (n > 0) std::memcpy(cloud.colors.data(), surface->colors()->data(), 3 * n);
+  return true;
+}
+
+bool read(const schema::Features* stored, FeatureType type, int dimension, FeatureSet& features) {
+  if (stored == nullptr || stored->descriptors() == nullptr) return false;
+  features.type = type;
+  features.dimension = stored->dimension();
+  if (!read(stored->points(), features.points) || !read(stored->normals(), features.normals)) return false;
+  const std::size_t n = features.size();
+  if (features.normals.size() != n || !are_unit(features.normals)) return false;
+  if (n == 0) return stored->descriptors()->size() == 0 && (features.dimension == 0 || features.dimension == dimension);
+  if (features.dimension != dimension || stored->descriptors()->size() != n * static_cast<std::size_t>(dimension))
+    return false;
+  const std::span codes(stored->descriptors()->data(), stored->descriptors()->size());
+  if (has_zero_row(codes, dimension)) return false;
+  features.descriptors = decode_descriptors(codes, dimension);
+  return true;
+}
+
+bool read(const schema::Motion& stored, Rigid3& motion) {
+  for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = stored.rotation()->Get(static_cast<std::uint16_t>(i));
+  for (int i = 0; i < 3; ++i) motion.translation(i) = stored.translation()->Get(static_cast<std::uint16_t>(i));
+  return motion.is_rigid();
+}
+
+bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
+  for (int i = 0; i < 3; ++i) {
+    symmetry.axis(i) = stored.direction()->Get(static_cast<std::uint16_t>(i));
+    symmetry.offset(i) = stored.offset()->Get(static_cast<std::uint16_t>(i));
+  }
+  return symmetry.axis.allFinite() && symmetry.offset.allFinite() && symmetry.axis.norm() > 0;
+}
+
+template <typename Stored, typename Value>
+bool read_all(const flatbuffers::Vector<const Stored*>* stored, std::vector<Value>& values) {
+  if (stored == nullptr) return false;
+  for (const Stored* s : *stored)
+    if (!read(*s, values.emplace_back())) return false;
+  return true;
+}
+
+// Empty if all is well, else which part is damaged.
+std::string read(const schema::Object& stored, ObjectModel& object) {
+  if (stored.name() == nullptr || stored.name()->size() == 0) return "name";
+  object.name = stored.name()->str();
+  object.bop_id = stored.bop_id();
+  if (object.bop_id < 0) return "obj_id";
+  if (!read(stored.surface(), object.surface)) return "surface";
+  if (!read(stored.sift(), FeatureType::kSift, 128, object.sift)) return "SIFT features";
+  if (!read(stored.shot(), FeatureType::kShot, 352, object.shot)) return "SHOT features";
+  if (!read_all(stored.discrete_symmetries(), object.symmetries.discrete)) return "symmetries";
+  if (!read_all(stored.continuous_symmetries(), object.symmetries.continuous)) return "symmetries";
+  if (stored.center() == nullptr) return "centre";
+  object.center = {stored.center()->x(), stored.center()->y(), stored.center()->z()};
+  object.diameter_m = stored.diameter_m();
+  if (!object.center.allFinite()) return "centre";
+  return object.diameter_m >= 0 && std::isfinite(object.diameter_m) ? "" : "diameter";
+}
+
+}  // namespace
+
+Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
+  flatbuffers::Verifier verifier(payload.data(), payload.size());
+  if (!schema::VerifyLibraryBuffer(verifier)) return Error{"damaged: its payload is not a model library"};
+  const schema::Library& stored = *schema::GetLibrary(payload.data());
+  ModelLibrary library;
+  library.surface_voxel_m = stored.surface_voxel_m();
+  if (!(library.surface_voxel_m > 0 && std::isfinite(library.surface_voxel_m)) || stored.objects() == nullptr)
+    return Error{"damaged: no objects, or no voxel size of their surfaces"};
+  std::set<std::string> names;
+  for (const schema::Object* object : *stored.objects()) {
+    const std::string damaged_part = read(*object, library.objects.emplace_back());
+    const std::string& name = library.objects.back().name;
+    if (!damaged_part.empty())
+      return Error{fmt::format("damaged: the {} of object '{}' cannot be read", damaged_part, name)};
+    if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
+  }
+  return library;
+}
+
+}  // namespace resight::internal

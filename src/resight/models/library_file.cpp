@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/models/library_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "resight/core/hash.hpp"
+#include "resight/models/internal/library_payload.hpp"
+
+namespace resight {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file format is little-endian");
+
+constexpr std::array<char, 8> kMagic{'R', 'E', 'S', 'I', 'G', 'H', 'T', 'M'};
+constexpr std::uint32_t kFormatVersion = 1;
+
+struct Header {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kFormatVersion;
+  std::uint32_t reserved = 0;
+  std::uint64_t options_hash = 0;
+  std::uint64_t payload_bytes = 0;
+  std::uint64_t checksum = 0;  ///< Of the fields above and the payload.
+};
+static_assert(sizeof(Header) == 40);
+
+using HeaderBytes = std::array<std::uint8_t, sizeof(Header)>;
+
+std::uint64_t compute_checksum(const Header& header, std::span<const std::uint8_t> payload) {
+  const auto bytes = std::bit_cast<HeaderBytes>(header);
+  return checksum_bytes(payload, checksum_bytes(std::span(bytes).first(offsetof(Header, checksum))));
+}
+
+Error fail(const std::filesystem::path& path, const std::string& what) {
+  return {fmt::format("model library {}: {}", path.string(), what)};
+}
+
+bool write_file(const std::filesystem::path& path, const Header& header, std::span<const std::uint8_t> payload) {
+  std::ofstream file(path, std::ios::binary);
+  const auto bytes = std::bit_cast<HeaderBytes>(header);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
+  file.close();
+  return file.good();
+}
+
+Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) {
+    return fail(path, std::filesystem::exists(path, code) ? "not a file" : "no such file");
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, code);
+  std::ifstream file(path, std::ios::binary);
+  if (code || !file) return fail(path, "cannot be opened");
+  std::vector<std::uint8_t> bytes(size);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(file.gcount()) != size) return fail(path, "cannot be read to its end");
+  return bytes;
+}
+
+// The order of the tests decides what the user is told first: the kind of file, its version, its wholeness.
+Result<Header> read_header(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  Header header;
+  const std::size_t magic_bytes = std::min(bytes.size(), kMagic.size());
+  if (magic_bytes == 0 || std::memcmp(bytes.data(), kMagic.data(), magic_bytes) != 0)
+    return fail(path, "not a model library (expected a file written by 'train')");
+  if (bytes.size() < sizeof(Header))
+    return fail(path, fmt::format("truncated within its header ({} bytes)", bytes.size()));
+  std::memcpy(&header, bytes.data(), sizeof(Header));
+  if (header.version != kFormatVersion) {
+    return fail(path,
+                fmt::format("written in format version {} (expected {}); train again", header.version, kFormatVersion));
+  }
+  const std::uint64_t present = bytes.size() - sizeof(Header);
+  if (present < header.payload_bytes)
+    return fail(path, fmt::format("truncated: {} of {} bytes are there", present, header.payload_bytes));
+  if (present > header.payload_bytes)
+    return fail(path, fmt::format("damaged: {} bytes too many at its end", present - header.payload_bytes));
+  if (header.checksum != compute_checksum(header, bytes.subspan(sizeof(Header))))
+    return fail(path, "damaged: its checksum does not match its content");
+  return header;
+}
+
+}  // namespace
+
+Result<void> save_library(const ModelLibrary& library, const std::filesystem::path& path) {
+  const Result<std::vector<std::uint8_t>> payload = internal::encode_payload(library);
+  if (!payload.ok()) return fail(path, payload.error().message);
+  Header header;
+  header.options_hash = library.options_hash;
+  header.payload_bytes = payload->size();
+  header.checksum = compute_checksum(header, *payload);
+  std::filesystem::path partial = path;
+  partial += fmt::format(".{}.partial", getpid());
+  std::error_code code;
+  if (!write_file(partial, header, *payload)) {
+    std::filesystem::remove(partial, code);
+    return fail(path, "cannot be written (does the folder exist, is the disk full?)");
+  }
+  std::filesystem::rename(partial, path, code);
+  if (!code) return {};
+  const std::string reason = code.message();
+  std::filesystem::remove(partial, code);
+  return fail(path, "cannot be put in place: " + reason);
+}
+
+Result<ModelLibrary> load_library(const std::filesystem::path& path,
+                                  std::optional<std::uint64_t> expected_options_hash) {
+  const Result<std::vector<std::uint8_t>> bytes = read_file(path);
+  if (!bytes.ok()) return bytes.error();
+  const Result<Header> header = read_header(path, *bytes);
+  if (!header.ok()) return header.error();
+  if (expected_options_hash.has_value() && header->options_hash != *expected_options_hash) {
+    return fail(path, fmt::format("trained with other options (hash {:016x}, expected {:016x}); train again",
+                                  header->options_hash, *expected_options_hash));
+  }
+  Result<ModelLibrary> library = internal::decode_payload(std::span(*bytes).subspan(sizeof(Header)));
+  if (!library.ok()) return fail(path, library.error().message);
+  library->options_hash = header->options_hash;
+  return library;
+}
+
+}  // namespace resight

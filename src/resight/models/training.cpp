@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/models/training.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/models/descriptor_code.hpp"
+#include "resight/models/surface.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kMinDiameter_m = 0.005;
+constexpr double kMaxDiameter_m = 5.0;
+constexpr double kSamplesPerVoxelFace = 6.0;  // of voxel_size^2: a face that fills its voxel is missed once in 400
+
+Error fail(const std::string& name, const std::string& what) { return {fmt::format("model '{}': {}", name, what)}; }
+
+Result<void> check_views(const std::string& name, std::span<const TrainingView> views) {
+  if (views.empty()) return fail(name, "no training views");
+  bool any_object_pixel = false;
+  for (const TrainingView& view : views) {
+    const Result<void> frame = check_frame(view.frame);
+    if (!frame.ok()) return fail(name, frame.error().message);
+    if (view.mask.width() != view.frame.camera.width || view.mask.height() != view.frame.camera.height) {
+      return fail(
+          name, fmt::format("view '{}': the mask is {}x{}, but the image is {}x{}", view.frame.name, view.mask.width(),
+                            view.mask.height(), view.frame.camera.width, view.frame.camera.height));
+    }
+    any_object_pixel = any_object_pixel || std::ranges::any_of(view.mask.data(), [](std::uint8_t m) { return m != 0; });
+  }
+  if (!any_object_pixel) return fail(name, "the masks of all training views are empty");
+  return {};
+}
+
+struct ViewPart {
+  ObjectFeatures features;
+  SurfaceSamples samples;
+};
+
+ViewPart process_view(const TrainingView& view, const TrainOptions& options, bool with_surface) {
+  const PreparedView prepared = prepare_view(view.frame);
+  const Rigid3& object_from_camera = view.frame.world_from_camera;
+  ShotOptions shot = options.shot;
+  shot.num_threads = 1;  // the views are already spread over the threads
+  ViewPart part;
+  part.features.sift = transform(object_from_camera, extract_sift(prepared, options.sift, &view.mask));
+  part.features.shot = transform(object_from_camera, extract_shot(prepared, shot, &view.mask));
+  if (with_surface) part.samples = collect_surface_samples(prepared, view.mask, options.min_edge_distance_px);
+  return part;
+}
+
+// All views, joined in their order, whatever thread was done first.
+ViewPart process_views(std::span<const TrainingView> views, const TrainOptions& options, bool with_surface) {
+  std::vector<ViewPart> parts(views.size());
+  parallel_for(views.size(), options.num_threads,
+               [&](std::size_t i) { parts[i] = process_view(views[i], options, with_surface); });
+  ViewPart joined = std::move(parts.front());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    joined.features.sift.append(parts[i].features.sift);
+    joined.features.shot.append(parts[i].features.shot);
+    joined.samples.cloud.append(parts[i].samples.cloud);
+    joined.samples.sigma_m.insert(joined.samples.sigma_m.end(), parts[i].samples.sigma_m.begin(),
+                                  parts[i].samples.sigma_m.end());
+    parts[i] = {};
+  }
+  return joined;
+}
+
+FeatureSet reduce(const FeatureSet& features, const FeatureMerging& merging, int num_threads) {
+  FeatureSet reduced = merge_similar_features(features, merging, num_threads);
+  quantize_descriptors(reduced);
+  return reduced;
+}
+
+Result<ObjectFeatures> reduce_features(const std::string& name, const ObjectFeatures& features,
+                                       const TrainOptions& options) {
+  if (features.sift.size() + features.shot.size() == 0) {
+    return fail(name, "no SIFT and no SHOT feature in any training view; it could never be recognised");
+  }
+  return ObjectFeatures{reduce(features.sift, options.sift_merging, options.num_threads),
+                        reduce(features.shot, options.shot_merging, options.num_threads)};
+}
+
+ObjectModel make_model(const std::string& name, ObjectFeatures features, PointCloud surface) {
+  ObjectModel model;
+  model.name = name;
+  model.sift = std::move(features.sift);
+  model.shot = std::move(features.shot);
+  model.surface = std::move(surface);
+  model.center = centroid(model.surface.points);
+  model.diameter_m = diameter(model.surface.points);
+  return model;
+}
+
+std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const auto& f : mesh.faces)
+    for (const int v : f) used[v] = 1;
+  std::vector<Eigen::Vector3f> vertices;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] != 0) vertices.push_back(mesh.vertices[i]);
+  return vertices;
+}
+
+Result<void> check_mesh(const std::string& name, const TriangleMesh& mesh) {
+  if (mesh.empty()) return fail(name, "the mesh has no triangles");
+  const int num_vertices = static_cast<int>(mesh.vertices.size());
+  for (const auto& f : mesh.faces)
+    for (const int v : f) {
+      if (v < 0 || v >= num_vertices) {
+        return fail(name, fmt::format("a triangle refers to vertex {}, but the mesh has {} vertices", v, num_vertices));
+      }
+      if (!mesh.vertices[v].allFinite()) return fail(name, fmt::format("vertex {} of the mesh is not finite", v));
+    }
+  const double size_m = diameter(used_vertices(mesh));
+  if (size_m > kMaxDiameter_m) {
+    return fail(name,
+                fmt::format("the mesh is {:g} m across (expected {} to {}): it looks as if it were in millimetres",
+                            size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  if (size_m < kMinDiameter_m) {
+    return fail(name,
+                fmt::format("the mesh is only {:g} m across (expected {} to {}): metres are needed, this looks like "
+                            "another unit",
+                            size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
+                                      const TrainOptions& options) {
+  options.check();
+  const Result<void> checked = check_views(name, views);
+  if (!checked.ok()) return checked.error();
+  return reduce_features(name, process_views(views, options, false).features, options);
+}
+
+Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
+  options.check();
+  const Result<void> checked = check_mesh(name, mesh);
+  if (!checked.ok()) return checked.error();
+  const double voxel_face = options.surface_voxel_m * options.surface_voxel_m;
+  SurfaceSamples samples{.cloud = sample_surface(mesh, kSamplesPerVoxelFace / voxel_face), .sigma_m = {}};
+  samples.sigma_m.assign(samples.cloud.size(), 1.0F);
+  if (samples.cloud.empty()) return fail(name, "the triangles of the mesh have no area");
+  return fuse_surface(samples, options.surface_voxel_m);
+}
+
+Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
+                                 const TrainOptions& options) {
+  options.check();
+  const Result<void> checked = check_views(name, views);
+  if (!checked.ok()) return checked.error();
+  const ViewPart joined = process_views(views, options, true);
+  if (joined.samples.cloud.empty()) {
+    return fail(name, "no object pixel of any training view has depth, a normal and a distance from depth edges");
+  }
+  Result<ObjectFeatures> features = reduce_features(name, joined.features, options);
+  if (!features.ok()) return features.error();
+  return make_model(name, *std::move(features), fuse_surface(joined.samples, options.surface_voxel_m));
+}
+
+Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
+  Result<PointCloud> surface = train_surface(name, mesh, options);
+  if (!surface.ok()) return surface.error();
+  TurntableOptions turntable = options.turntable;
+  turntable.num_threads = options.num_threads;
+  Result<ObjectFeatures> features = train_features(name, render_turntable(mesh, turntable), options);
+  if (!features.ok()) return features.error();
+  ObjectModel model = make_model(name, *std::move(features), *std::move(surface));
+  model.diameter_m = diameter(used_vertices(mesh));
+  return model;
+}
+
+}  // namespace resight
