@@ -10,7 +10,8 @@ struct DepthEdgeOptions {
   void check() const;
 };
 
-/// 1 at pixels beside a depth discontinuity: a step to a neighbour of more than the limit, or a border to missing depth
+/// 1 at pixels beside a depth discontinuity: a step to one of the 8 neighbours of more than the limit (a share of the
+/// nearer depth), or a border to missing depth
 /// (both sides of a step are marked; the image border is none). NaN pixels are 0.
 [[nodiscard]] Image<std::uint8_t> find_depth_edges(const Image<float>& depth_m, const DepthEdgeOptions& options = {});
 

@@ -27,14 +27,15 @@ struct OrganizedCloud {
 [[nodiscard]] OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m);
 
 struct ComputeNormalsOptions {
-  int window_radius_px = 2;            ///< 2 = a 5x5 window.
-  double max_depth_change = 0.02;      ///< A neighbour counts when its z differs by less than this share of z.
-  int min_neighbors = 6;               ///< Fewer: no normal.
-  int num_threads = 1;                 ///< Same bits for any value >= 1.
+  int window_radius_px = 2;        ///< 2 = a 5x5 window.
+  double max_depth_change = 0.02;  ///< A neighbour counts when its z differs by less than this share of z.
+  int min_neighbors = 6;           ///< Fewer (the pixel itself not counted): no normal.
+  int num_threads = 1;             ///< Same bits for any value >= 1.
   void check() const;
 };
 
-/// Normals by the covariance of the window's points (smallest eigenvector), turned to the camera. Fills nx, ny, nz.
+/// Normals by the covariance of the window's points (smallest eigenvector), turned to the camera. Fills nx, ny, nz. NaN
+/// where there is no point, too few neighbours count, or those lie on a line.
 void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options = {});
 
 /// The points that have a measurement (and a normal, if `require_normal`), with normals where the cloud has them and

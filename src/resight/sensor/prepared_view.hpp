@@ -8,10 +8,11 @@
 namespace resight {
 
 struct PrepareViewOptions {
-  ComputeNormalsOptions normals;
-  DepthEdgeOptions edges;
-  double max_depth_m = 0;  ///< Farther points are dropped ("chop z"); 0 keeps all.
-  int num_threads = 1;
+  ComputeNormalsOptions normals = {};
+  DepthEdgeOptions edges = {};
+  double max_depth_m = 0;  ///< Farther points are dropped from cloud and noise ("chop z"); 0 keeps all. The frame's
+                           ///< depth stays whole: what lies beyond is still evidence of free space, and no depth edge.
+  int num_threads = 1;     ///< Of all steps (normals.num_threads is not used). Same bits for any value >= 1.
   void check() const;
 };
 

@@ -11,10 +11,10 @@ namespace resight {
 
 /// One RGB-D view: colour and depth registered to it, and where the camera stood.
 struct RgbdFrame {
-  std::string name;       ///< Stem of the file it came from; unique in its sequence.
+  std::string name;  ///< Stem of the file it came from; unique in its sequence.
   Camera camera;
   Image<Rgb8> color;
-  Image<float> depth_m;   ///< Along z; NaN = no return. Never 0, negative or infinite.
+  Image<float> depth_m;  ///< Along z; NaN = no return. Never 0, negative or infinite.
   Rigid3 world_from_camera;
 };
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/sensor/prepared_view.hpp"
+
+#include <limits>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+void drop_farther_points(double max_depth_m, OrganizedCloud& cloud) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const auto limit_m = static_cast<float>(max_depth_m);
+  for (std::size_t i = 0; i < cloud.z.size(); ++i) {
+    if (!(cloud.z[i] > limit_m)) continue;
+    for (Image<float>* image : {&cloud.x, &cloud.y, &cloud.z, &cloud.nx, &cloud.ny, &cloud.nz}) (*image)[i] = kNan;
+  }
+}
+
+}  // namespace
+
+void PrepareViewOptions::check() const {
+  normals.check();
+  edges.check();
+  check_not_negative("PrepareViewOptions.max_depth_m", max_depth_m);
+  check_positive("PrepareViewOptions.num_threads", num_threads);
+}
+
+PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
+  options.check();
+  if (const Result<void> valid = check_frame(frame); !valid) throw std::invalid_argument(valid.error().message);
+  PreparedView view;
+  view.frame = std::move(frame);
+  view.cloud = back_project(view.frame.camera, view.frame.depth_m);
+  ComputeNormalsOptions normals = options.normals;
+  normals.num_threads = options.num_threads;
+  compute_normals(view.cloud, normals);
+  if (options.max_depth_m > 0) drop_farther_points(options.max_depth_m, view.cloud);
+  view.edge_distance_px =
+      find_edge_distance(find_depth_edges(view.frame.depth_m, options.edges), options.edges.max_distance_px);
+  view.noise = model_noise(view.cloud, view.frame.camera, options.num_threads);
+  return view;
+}
+
+}  // namespace resight
