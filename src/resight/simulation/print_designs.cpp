@@ -136,7 +136,7 @@ void print_grain(TextureCanvas canvas, Rng rng, Rgb8 color, int count, double mi
     return static_cast<std::uint8_t>(std::clamp(c + by, 0.0, 255.0));
   };
   for (int i = 0; i < count; ++i) {
-    const double by = 14 * rng.normal();
+    const double by = 4 * rng.normal();
     const double x = rng.uniform(0, canvas.width());
     const double y = rng.uniform(0, canvas.height());
     canvas.disc(x, y, rng.uniform(min_radius_mm, max_radius_mm),

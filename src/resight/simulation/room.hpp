@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "resight/core/result.hpp"
+#include "resight/geometry/triangle_mesh.hpp"
+#include "resight/simulation/procedural_objects.hpp"
+
+namespace resight {
+
+/// A piece of furniture: metres, origin at the bottom centre, +z up, front to -y. Things stand on its levels.
+struct Furniture {
+  TriangleMesh mesh;
+  std::vector<double> level_heights_m;  ///< From the lowest to the highest; empty = nothing stands on it.
+};
+
+/// Kinds: table, shelf (four boards), cabinet, monitor, keyboard, papers. `seed` varies colours and prints.
+[[nodiscard]] const std::vector<std::string>& furniture_kinds();
+
+/// Draws a piece of furniture of the given outer size. An error for an unknown kind, which lists the known ones; throws
+/// std::invalid_argument for a size that is not positive.
+[[nodiscard]] Result<Furniture> make_furniture(std::string_view kind, const Eigen::Vector3d& size_m,
+                                               std::uint64_t seed);
+
+/// Floor at z = 0, ceiling and four walls with pictures, centred in x and y.
+[[nodiscard]] TriangleMesh make_room(const Eigen::Vector3d& size_m, std::uint64_t seed);
+
+/// Names of things that belong to no library: vase, lamp, plant, speaker, globe, pyramid, basket, thermos.
+[[nodiscard]] const std::vector<std::string>& distractor_names();
+/// Draws one of them, of kind "distractor". An error for an unknown name.
+[[nodiscard]] Result<ProceduralObject> make_distractor(std::string_view name);
+
+}  // namespace resight

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "resight/core/result.hpp"
+#include "resight/geometry/camera.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/simulation/sensor_model.hpp"
+
+namespace resight {
+
+/// Where a thing stands: on a support (furniture or another object), or at a full pose.
+struct Placement {
+  std::string support;  ///< Key of what it stands on; empty = the floor. Its lowest point touches the support.
+  int level = -1;       ///< Board of a piece of furniture, from below; -1 = the highest.
+  double x_m = 0;       ///< Of its origin from the support's centre, along the support's own axes.
+  double y_m = 0;
+  double yaw_rad = 0;                       ///< About +z, relative to the support; applied last.
+  double pitch_rad = 0;                     ///< About y, applied second: tilts.
+  double roll_rad = 0;                      ///< About x, applied first: lays down.
+  std::optional<Rigid3> world_from_object;  ///< If set, all of the above is ignored.
+};
+
+struct FurnitureScript {
+  std::string key;
+  std::string kind;  ///< See furniture_kinds().
+  Eigen::Vector3d size_m = Eigen::Vector3d(1.2, 0.8, 0.74);
+  Placement placement;
+};
+
+struct ObjectScript {
+  std::string key;             ///< Unique; names the instance in changes.
+  std::string model;           ///< Of procedural_object_names() or distractor_names(), or any name if `mesh` is set.
+  std::filesystem::path mesh;  ///< Mesh file (metres, +z up) in place of a procedural object.
+  bool known = true;           ///< In the library. Distractors never are.
+  std::optional<Placement> start;  ///< Absent = not there until added.
+};
+
+enum class ChangeKind { kAdded, kMoved, kRemoved };
+[[nodiscard]] std::string_view to_string(ChangeKind kind);
+
+/// Takes effect before the given view is seen.
+struct ChangeScript {
+  int view = 0;
+  ChangeKind kind = ChangeKind::kMoved;
+  std::string object;   ///< Key.
+  Placement placement;  ///< The new place; without meaning for kRemoved.
+};
+
+/// A scene, the way of the camera through it, and what happens meanwhile.
+struct SceneScript {
+  std::string name = "scene";
+  std::optional<Eigen::Vector3d> room_size_m = Eigen::Vector3d(5.0, 5.0, 2.6);  ///< nullopt = no room.
+  std::vector<FurnitureScript> furniture;
+  std::vector<ObjectScript> objects;
+  std::vector<ChangeScript> changes;
+  Camera camera = make_kinect_camera();
+  std::vector<Rigid3> world_from_camera;  ///< One a view.
+  SensorOptions sensor;
+  Lighting lighting;
+};
+
+/// Cameras on an arc around `center_m`, all looking at it. Angles from +x towards +y; -90 deg is in front of the
+/// furniture.
+struct OrbitScript {
+  Eigen::Vector3d center_m = Eigen::Vector3d(0, 0, 0.8);
+  double radius_m = 1.0;                    ///< Horizontal distance at the first view.
+  double height_m = 0.6;                    ///< Above the centre at the first view.
+  std::optional<double> end_radius_m = {};  ///< At the last view; in between they change evenly. Absent = the same.
+  std::optional<double> end_height_m = {};
+  double start_rad = -2.6179938779914944;  ///< -150 deg.
+  double end_rad = -0.5235987755982988;    ///< -30 deg.
+  int num_views = 12;
+};
+[[nodiscard]] std::vector<Rigid3> make_orbit(const OrbitScript& orbit);
+
+/// Keys are unique, supports and objects exist when they are used, changes make sense (a removed object was there,
+/// ...), there is a view. The error names the entry and the rule.
+[[nodiscard]] Result<void> check_script(const SceneScript& script);
+
+/// Reads a scene from TOML (examples/scenes/ documents the keys). Errors name file, key and rule; unknown keys are
+/// errors. Mesh paths are relative to the file.
+[[nodiscard]] Result<SceneScript> read_scene_script(const std::filesystem::path& path);
+
+}  // namespace resight
