@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "resight/sensor/sensor_test_scenes.hpp"
 
@@ -14,17 +15,36 @@ namespace {
 
 using test::kNan;
 
-Image<std::uint8_t> edges_by_definition(const Image<float>& depth, float max_jump) {
+bool is_missing(const Image<float>& depth, int u, int v) { return !depth.contains(u, v) || std::isnan(depth(u, v)); }
+bool is_step(float a, float b, float max_jump) { return std::abs(a - b) > max_jump * std::min(a, b); }
+
+/// From each measurement walks over runs of missing pixels in each direction, and fills those that end at a like depth.
+Image<float> bridged_by_definition(const Image<float>& depth, float max_jump, int max_gap) {
+  Image<float> bridged = depth;
+  for (const auto& [du, dv] : {std::pair{1, -1}, {1, 1}, {0, 1}, {1, 0}})  // the last one wins: rows first
+    for (int v = 0; v < depth.height(); ++v)
+      for (int u = 0; u < depth.width(); ++u) {
+        if (is_missing(depth, u, v)) continue;
+        int gap = 0;
+        while (gap <= max_gap && is_missing(depth, u + (gap + 1) * du, v + (gap + 1) * dv)) ++gap;
+        if (gap == 0 || gap > max_gap) continue;
+        const float end = depth(u + (gap + 1) * du, v + (gap + 1) * dv);
+        if (is_step(depth(u, v), end, max_jump)) continue;
+        for (int i = 1; i <= gap; ++i) bridged(u + i * du, v + i * dv) = (depth(u, v) + end) / 2;
+      }
+  return bridged;
+}
+
+Image<std::uint8_t> edges_by_definition(const Image<float>& depth, float max_jump, int max_gap) {
+  const Image<float> bridged = bridged_by_definition(depth, max_jump, max_gap);
   Image<std::uint8_t> edges(depth.width(), depth.height());
   for (int v = 0; v < depth.height(); ++v)
     for (int u = 0; u < depth.width(); ++u)
-      for (int dv = -1; dv <= 1; ++dv)
-        for (int du = -1; du <= 1; ++du) {
-          if (std::isnan(depth(u, v)) || !depth.contains(u + du, v + dv)) continue;
-          const float a = depth(u, v);
-          const float b = depth(u + du, v + dv);
-          if (std::isnan(b) || std::abs(a - b) > max_jump * std::min(a, b)) edges(u, v) = 1;
-        }
+      for (int y = v - 1; y <= v + 1; ++y)
+        for (int x = u - 1; x <= u + 1; ++x)
+          if (!std::isnan(depth(u, v)) && depth.contains(x, y) &&
+              (std::isnan(bridged(x, y)) || is_step(depth(u, v), bridged(x, y), max_jump)))
+            edges(u, v) = 1;
   return edges;
 }
 
@@ -37,11 +57,18 @@ double distance_by_definition(const Image<std::uint8_t>& edges, int u, int v, do
 }
 
 TEST(FindDepthEdges, AgreesWithTheDefinition) {
-  const Image<float> depth = test::render_noisy_sphere(test::small_camera(), 11);
-  const Image<std::uint8_t> edges = find_depth_edges(depth, {.max_depth_jump = 0.05});
-  EXPECT_EQ(edges, edges_by_definition(depth, 0.05F));
-  EXPECT_GT(std::ranges::count(edges.data(), 1), 1000);
-  EXPECT_GT(std::ranges::count(edges.data(), 0), 1000);
+  Image<float> depth = test::render_noisy_sphere(test::small_camera(), 11);
+  for (int v = 20; v < 30; ++v)
+    for (int u = 0; u < 40; ++u) depth(u, v) = kNan;
+  long num_before = 0;
+  for (const int max_gap : {4, 2, 1, 0}) {
+    const Image<std::uint8_t> edges = find_depth_edges(depth, {.max_depth_jump = 0.05, .max_gap_px = max_gap});
+    EXPECT_EQ(edges, edges_by_definition(depth, 0.05F, max_gap));
+    const auto num_edges = std::ranges::count(edges.data(), 1);
+    EXPECT_GT(num_edges, num_before);  // the fewer gaps are bridged, the more edges
+    EXPECT_GT(std::ranges::count(edges.data(), 0), 1000);
+    num_before = num_edges;
+  }
 }
 
 TEST(FindDepthEdges, MarksBothSidesOfAStepButNotTheImageBorder) {
@@ -54,13 +81,21 @@ TEST(FindDepthEdges, MarksBothSidesOfAStepButNotTheImageBorder) {
   EXPECT_EQ(std::ranges::count(find_depth_edges(depth, {.max_depth_jump = 0.07}).data(), 1), 0);
 }
 
-TEST(FindDepthEdges, MarksTheRimOfAHole) {
+TEST(FindDepthEdges, MarksTheRimOfAHoleUnlessItIsAGapInASurface) {
   Image<float> depth(9, 9, 1.0F);
   depth(4, 4) = kNan;
-  const Image<std::uint8_t> edges = find_depth_edges(depth);
+  EXPECT_EQ(std::ranges::count(find_depth_edges(depth, {.max_gap_px = 1}).data(), 1), 0);
+  const Image<std::uint8_t> edges = find_depth_edges(depth, {.max_gap_px = 0});
   EXPECT_EQ(std::ranges::count(edges.data(), 1), 8);
   EXPECT_EQ(edges(4, 4), 0);
   EXPECT_EQ(edges(3, 3), 1);
+  for (int v = 0; v < 9; ++v) {  // a gap between two surfaces
+    depth(4, v) = kNan;
+    for (int u = 5; u < 9; ++u) depth(u, v) = 1.5F;
+  }
+  const Image<std::uint8_t> step = find_depth_edges(depth);
+  for (int v = 0; v < 9; ++v)
+    for (int u = 0; u < 9; ++u) EXPECT_EQ(step(u, v), u == 3 || u == 5 ? 1 : 0) << u << ", " << v;
   EXPECT_TRUE(find_depth_edges(Image<float>()).empty());
 }
 
@@ -88,6 +123,7 @@ TEST(FindEdgeDistance, IsTheCapWithoutEdges) {
 TEST(DepthEdges, RefuseBadOptions) {
   const Image<float> depth(5, 5, 1.0F);
   EXPECT_THROW((void)find_depth_edges(depth, {.max_depth_jump = 0}), std::invalid_argument);
+  EXPECT_THROW((void)find_depth_edges(depth, {.max_gap_px = -1}), std::invalid_argument);
   EXPECT_THROW((void)find_depth_edges(depth, {.max_distance_px = kNan}), std::invalid_argument);
   EXPECT_THROW((void)find_edge_distance(Image<std::uint8_t>(5, 5), 0), std::invalid_argument);
 }

@@ -51,14 +51,14 @@ inline float angle_ratio(float c) {
 void model_row(const OrganizedCloud& cloud, int v, float focal_px, NoiseImages& noise) {
   const std::size_t first = cloud.z.index(0, v);
   const bool has_normals = !cloud.nx.empty();
-  const float* x = &cloud.x[first];
-  const float* y = &cloud.y[first];
-  const float* z = &cloud.z[first];
-  const float* nx = has_normals ? &cloud.nx[first] : z;
-  const float* ny = has_normals ? &cloud.ny[first] : z;
-  const float* nz = has_normals ? &cloud.nz[first] : z;
-  float* lateral = &noise.lateral_m[first];
-  float* axial = &noise.axial_m[first];
+  const float* __restrict x = &cloud.x[first];
+  const float* __restrict y = &cloud.y[first];
+  const float* __restrict z = &cloud.z[first];
+  const float* __restrict nx = has_normals ? &cloud.nx[first] : z;
+  const float* __restrict ny = has_normals ? &cloud.ny[first] : z;
+  const float* __restrict nz = has_normals ? &cloud.nz[first] : z;
+  float* __restrict lateral = &noise.lateral_m[first];
+  float* __restrict axial = &noise.axial_m[first];
   const float unknown = has_normals ? 1.0F : std::numeric_limits<float>::quiet_NaN();
   for (int u = 0; u < cloud.width(); ++u) {
     const float along_ray = std::abs(nx[u] * x[u] + ny[u] * y[u] + nz[u] * z[u]);

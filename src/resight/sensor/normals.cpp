@@ -123,33 +123,63 @@ inline Vector eigenvector(const Symmetric& a, float l) {
   return best;
 }
 
-/// Normals of `num` pixels whose windows were summed, written to nx, ny, nz.
-void solve_normals(const WindowSums& s, const float* x, const float* y, const float* z, int num, float min_neighbors,
-                   float* nx, float* ny, float* nz) {
+/// Covariance of each of `num` windows, scaled to unit trace. Overwrites the sums of squares.
+void normalize_covariances(WindowSums& s, int num) {
   for (int i = 0; i < num; ++i) {
     const float weight = 1.0F / (s.count[i] + 1.0F);  // the pixel itself, at difference 0, is part of its window
     const float mx = s.x[i] * weight;
     const float my = s.y[i] * weight;
     const float mz = s.z[i] * weight;
-    Symmetric a{s.xx[i] * weight - mx * mx, s.xy[i] * weight - mx * my, s.xz[i] * weight - mx * mz,
-                s.yy[i] * weight - my * my, s.yz[i] * weight - my * mz, s.zz[i] * weight - mz * mz};
-    const float trace = a.xx + a.yy + a.zz;
+    const float xx = s.xx[i] * weight - mx * mx;
+    const float yy = s.yy[i] * weight - my * my;
+    const float zz = s.zz[i] * weight - mz * mz;
+    const float trace = xx + yy + zz;
     const float scale = trace > 0 ? 1.0F / trace : 0.0F;
-    a = {a.xx * scale, a.xy * scale, a.xz * scale, a.yy * scale, a.yz * scale, a.zz * scale};
+    s.xx[i] = xx * scale;
+    s.yy[i] = yy * scale;
+    s.zz[i] = zz * scale;
+    s.xy[i] = (s.xy[i] * weight - mx * my) * scale;
+    s.xz[i] = (s.xz[i] * weight - mx * mz) * scale;
+    s.yz[i] = (s.yz[i] * weight - my * mz) * scale;
+  }
+}
+
+/// Smallest eigenvector of each covariance, not normalised: into x, y, z of the sums.
+void solve_eigenvectors(WindowSums& s, int num) {
+  for (int i = 0; i < num; ++i) {
+    const Symmetric a{s.xx[i], s.xy[i], s.xz[i], s.yy[i], s.yz[i], s.zz[i]};
     // The polynomial gives the eigenvalue to some 1e-7 of the trace; the Rayleigh quotient squares the error of the
     // vector that follows from it, and a second vector from that is as good as single precision allows.
     const Vector rough = eigenvector(a, smallest_eigenvalue(a));
     const float rough_sq = rough.dot(rough);
-    const float l = rough.dot(a * rough) / (rough_sq > 0 ? rough_sq : 1.0F);
-    const Vector n = eigenvector(a, l);
-    const float length_sq = n.dot(n);
-    const bool good = s.count[i] >= min_neighbors && length_sq > kMinSpread * kMinSpread;
-    const float towards = n.x * x[i] + n.y * y[i] + n.z * z[i];
-    const float length = std::sqrt(length_sq);
-    const float factor = good ? (towards > 0 ? -1.0F : 1.0F) / length : kNan;
-    nx[i] = n.x * factor;
-    ny[i] = n.y * factor;
-    nz[i] = n.z * factor;
+    const Vector n = eigenvector(a, rough.dot(a * rough) / (rough_sq > 0 ? rough_sq : 1.0F));
+    s.x[i] = n.x;
+    s.y[i] = n.y;
+    s.z[i] = n.z;
+  }
+}
+
+/// Unit normals towards the camera, NaN for windows that do not span a plane.
+void write_normals(const WindowSums& s, std::size_t first_pixel, int num, float min_neighbors, OrganizedCloud& cloud) {
+  const float* __restrict x = cloud.x.data().data() + first_pixel;
+  const float* __restrict y = cloud.y.data().data() + first_pixel;
+  const float* __restrict z = cloud.z.data().data() + first_pixel;
+  const float* __restrict count = s.count.data();
+  const float* __restrict vx = s.x.data();
+  const float* __restrict vy = s.y.data();
+  const float* __restrict vz = s.z.data();
+  float* __restrict nx = cloud.nx.data().data() + first_pixel;
+  float* __restrict ny = cloud.ny.data().data() + first_pixel;
+  float* __restrict nz = cloud.nz.data().data() + first_pixel;
+  for (int i = 0; i < num; ++i) {
+    const float length_sq = vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i];
+    const float towards = vx[i] * x[i] + vy[i] * y[i] + vz[i] * z[i];
+    const float enough = count[i] >= min_neighbors ? 1.0F : kNan;
+    const float spans = length_sq > kMinSpread * kMinSpread ? 1.0F : kNan;
+    const float factor = enough * spans * (towards > 0 ? -1.0F : 1.0F) / std::sqrt(length_sq);
+    nx[i] = vx[i] * factor;
+    ny[i] = vy[i] * factor;
+    nz[i] = vz[i] * factor;
   }
 }
 
@@ -176,9 +206,10 @@ void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options
                           for (int begin = 0; begin < width; begin += kBlock) {
                             const int end = std::min(begin + kBlock, width);
                             sum_windows(cloud, v, begin, end, options, sums);
-                            const std::size_t at = cloud.z.index(begin, v);
-                            solve_normals(sums, &cloud.x[at], &cloud.y[at], &cloud.z[at], end - begin, min_neighbors,
-                                          &cloud.nx[at], &cloud.ny[at], &cloud.nz[at]);
+                            const int num = end - begin;
+                            normalize_covariances(sums, num);
+                            solve_eigenvectors(sums, num);
+                            write_normals(sums, cloud.z.index(begin, v), num, min_neighbors, cloud);
                           }
                       });
 }
