@@ -16,11 +16,12 @@ namespace resight {
 /// What an object can be trained from: views or a mesh (at least one of them), metres, object frame.
 struct ModelSource {
   std::string name;
-  int bop_id = 0;                     ///< obj_id; 0 = none given.
-  std::vector<TrainingView> views;    ///< TUW training views (or BOP train split).
+  int bop_id = 0;                   ///< obj_id; 0 = none given.
+  std::vector<TrainingView> views;  ///< TUW training views (or BOP train split).
   std::optional<TriangleMesh> mesh;
   std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd), if any.
   ObjectSymmetries symmetries;
+  std::vector<std::string> warnings;  ///< What the model names but lacks (a texture file), one line each.
 };
 
 /// Where a model lies on disk; cheap to list, read one by one.
@@ -31,9 +32,9 @@ struct ModelLocation {
   std::string format;  ///< "tuw", "bop", "mesh", "cloud".
 };
 
-/// Lists the models under each path: a TUW model folder (or a folder of those), a BOP models folder or data set, a folder of
-/// meshes (each file, or each sub-folder with one), a mesh file, or a PCD of one view of an object. In order of name. The error
-/// says what was looked for.
+/// Lists the models under each path: a TUW model folder (or a folder of those), a BOP models folder or data set, a
+/// folder of meshes (each file, or each sub-folder with one), a mesh file, or a PCD of one view of an object. In order
+/// of name. The error says what was looked for.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_models(const std::vector<std::filesystem::path>& paths);
 [[nodiscard]] Result<ModelSource> read_model(const ModelLocation& location);
 

@@ -12,9 +12,9 @@ namespace resight {
 
 /// Where an object is in one view, by annotation or by simulation.
 struct GroundTruthObject {
-  std::string object;          ///< Name of the model.
-  int bop_id = 0;              ///< obj_id; 0 = unknown.
-  int instance = 0;            ///< Number among the objects of this name in this view.
+  std::string object;  ///< Name of the model.
+  int bop_id = 0;      ///< obj_id; 0 = unknown.
+  int instance = 0;    ///< Number among the objects of this name in this view.
   Rigid3 camera_from_object;
   double visible_share = 1.0;  ///< Of the object's silhouette (BOP visib_fract); NaN = unknown.
 };
@@ -30,6 +30,8 @@ class Sequence {
   [[nodiscard]] virtual int image_id(int view) const { return view; }
   /// The view, checked by check_frame().
   [[nodiscard]] virtual Result<RgbdFrame> read_view(int view) const = 0;
+  /// False when the data hold no camera poses, so that world_from_camera is the identity for want of better.
+  [[nodiscard]] virtual bool has_poses() const { return true; }
   [[nodiscard]] virtual bool has_ground_truth() const { return false; }
   /// Empty where there is none.
   [[nodiscard]] virtual Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const;
@@ -42,10 +44,12 @@ class Sequence {
 class SequenceWriter {
  public:
   virtual ~SequenceWriter() = default;
-  [[nodiscard]] virtual Result<void> write_view(const RgbdFrame& frame, const std::vector<GroundTruthObject>& ground_truth) = 0;
+  [[nodiscard]] virtual Result<void> write_view(const RgbdFrame& frame,
+                                                const std::vector<GroundTruthObject>& ground_truth) = 0;
   [[nodiscard]] virtual Result<void> finish() = 0;
 };
 enum class DatasetFormat { kTuw, kBop };
-[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_sequence(const std::filesystem::path& directory, DatasetFormat format);
+[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_sequence(const std::filesystem::path& directory,
+                                                                      DatasetFormat format);
 
 }  // namespace resight

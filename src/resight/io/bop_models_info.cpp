@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "resight/io/internal/bop_dataset.hpp"
+#include "resight/io/internal/json.hpp"
+#include "resight/io/internal/model_info.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/pose_text.hpp"
+
+namespace resight::io {
+namespace {
+
+Result<Rigid3> parse_discrete(const nlohmann::json& json, std::string_view what) {
+  const auto numbers = as_numbers(json);
+  if (!numbers || numbers->size() != 16)
+    return Error{fmt::format("{}: symmetries_discrete must be 4x4 matrices of 16 numbers", what)};
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[i];
+  matrix.topRightCorner<3, 1>() *= 1e-3;
+  return rigid_from_matrix(matrix, fmt::format("{}: symmetries_discrete", what));
+}
+
+Result<ObjectSymmetries::Continuous> parse_continuous(const nlohmann::json& json, std::string_view what) {
+  const auto axis = as_numbers(member(json, "axis"));
+  const auto offset = as_numbers(member(json, "offset"));
+  const bool sized = axis && axis->size() == 3 && (!offset || offset->size() == 3);
+  ObjectSymmetries::Continuous symmetry;
+  if (sized) symmetry.axis = {(*axis)[0], (*axis)[1], (*axis)[2]};
+  if (!sized || !(symmetry.axis.norm() > 1e-6))
+    return Error{fmt::format("{}: symmetries_continuous need an axis and an offset of 3 numbers", what)};
+  symmetry.axis.normalize();
+  if (offset) symmetry.offset = Eigen::Vector3d((*offset)[0], (*offset)[1], (*offset)[2]) * 1e-3;
+  return symmetry;
+}
+
+}  // namespace
+
+Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::string_view what) {
+  ObjectSymmetries symmetries;
+  const nlohmann::json& discrete = member(json, "symmetries_discrete");
+  const nlohmann::json& continuous = member(json, "symmetries_continuous");
+  if ((!discrete.is_null() && !discrete.is_array()) || (!continuous.is_null() && !continuous.is_array()))
+    return Error{fmt::format("{}: the symmetries must be lists", what)};
+  for (const auto& item : discrete) {
+    const auto symmetry = parse_discrete(item, what);
+    if (!symmetry) return symmetry.error();
+    symmetries.discrete.push_back(*symmetry);
+  }
+  for (const auto& item : continuous) {
+    const auto symmetry = parse_continuous(item, what);
+    if (!symmetry) return symmetry.error();
+    symmetries.continuous.push_back(*symmetry);
+  }
+  return symmetries;
+}
+
+void add_symmetries(nlohmann::json& json, const ObjectSymmetries& symmetries) {
+  for (const Rigid3& symmetry : symmetries.discrete) {
+    Eigen::Matrix4d m = symmetry.matrix();
+    m.topRightCorner<3, 1>() *= 1e3;
+    nlohmann::json numbers = nlohmann::json::array();
+    for (int i = 0; i < 16; ++i) numbers.push_back(m(i / 4, i % 4));
+    json["symmetries_discrete"].push_back(std::move(numbers));
+  }
+  for (const auto& symmetry : symmetries.continuous)
+    json["symmetries_continuous"].push_back({{"axis", {symmetry.axis.x(), symmetry.axis.y(), symmetry.axis.z()}},
+                                             {"offset", translation_to_json_mm(symmetry.offset)}});
+}
+
+std::string bop_object_name(int bop_id) { return fmt::format("obj_{:06}", bop_id); }
+std::string bop_number(int number) { return fmt::format("{:06}", number); }
+
+std::optional<int> parse_bop_object_name(std::string_view stem) {
+  if (!stem.starts_with("obj_")) return std::nullopt;
+  const auto number = parse_integer(stem.substr(4));
+  return number && *number >= 0 && *number <= INT32_MAX ? std::optional(static_cast<int>(*number)) : std::nullopt;
+}
+
+Result<std::map<int, BopModelInfo>> read_models_info(const fs::path& file) {
+  const auto json = read_json(file);
+  if (!json) return json.error();
+  const auto members = numbered_members(*json, file.string());
+  if (!members) return members.error();
+  std::map<int, BopModelInfo> infos;
+  for (const auto& [id, entry] : *members) {
+    auto symmetries = parse_symmetries(*entry, fmt::format("{}: object {}", file.string(), id));
+    if (!symmetries) return symmetries.error();
+    infos[id] = {as_text(member(*entry, "name")).value_or(bop_object_name(id)), std::move(*symmetries)};
+  }
+  return infos;
+}
+
+std::optional<fs::path> find_models_info(const fs::path& directory) {
+  fs::path base = fs::absolute(directory).lexically_normal();
+  if (!base.has_filename()) base = base.parent_path();
+  for (int level = 0; level < 4 && !base.empty(); ++level, base = base.parent_path()) {
+    for (const char* folder : {"models", "models_eval", "models_cad", "models_fine"})
+      if (is_file(base / folder / "models_info.json")) return base / folder / "models_info.json";
+  }
+  return std::nullopt;
+}
+
+}  // namespace resight::io

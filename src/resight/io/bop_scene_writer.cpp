@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/bop_scene_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/bop_dataset.hpp"
+#include "resight/io/internal/json.hpp"
+#include "resight/io/internal/sequences.hpp"
+#include "resight/io/internal/text.hpp"
+
+namespace resight::io {
+namespace {
+
+class BopSequenceWriter final : public SequenceWriter {
+ public:
+  BopSequenceWriter(PendingDirectory directory, std::map<std::string, int> ids)
+      : directory_(std::move(directory)), scene_(directory_.path(), std::move(ids)) {}
+
+  [[nodiscard]] Result<void> write_view(const RgbdFrame& frame,
+                                        const std::vector<GroundTruthObject>& ground_truth) override {
+    if (const auto done = check_frame(frame); !done) return done;
+    const auto id = scene_.write_view(frame, ground_truth, true);
+    return id ? Result<void>() : Result<void>(id.error());
+  }
+  [[nodiscard]] Result<void> finish() override {
+    if (scene_.num_views() == 0) return file_error(directory_.final_path(), "no view was written");
+    if (const auto done = scene_.finish(); !done) return done;
+    return directory_.commit();
+  }
+
+ private:
+  PendingDirectory directory_;
+  BopSceneWriter scene_;
+};
+
+}  // namespace
+
+double choose_depth_unit_m(const Image<float>& depth_m) {
+  float farthest_m = 0;
+  for (const float z : depth_m.data())
+    if (z > farthest_m) farthest_m = z;
+  return farthest_m < 6.5F ? 1e-4 : 1e-3;
+}
+
+Result<int> BopSceneWriter::find_id(const GroundTruthObject& object) {
+  const auto known = ids_.find(object.object);
+  if (known != ids_.end()) {
+    if (object.bop_id > 0 && object.bop_id != known->second)
+      return file_error(directory_,
+                        fmt::format("object '{}' has the ids {} and {}", object.object, known->second, object.bop_id));
+    return known->second;
+  }
+  int id = object.bop_id;
+  const auto is_taken = [&](int candidate) {
+    return std::ranges::any_of(ids_, [&](const auto& entry) { return entry.second == candidate; });
+  };
+  if (id > 0 && is_taken(id))
+    return file_error(directory_, fmt::format("the id {} of object '{}' belongs to another one", id, object.object));
+  if (id <= 0)
+    for (id = 1; is_taken(id);) ++id;
+  ids_[object.object] = id;
+  return id;
+}
+
+Result<int> BopSceneWriter::write_view(const RgbdFrame& frame, const std::vector<GroundTruthObject>& ground_truth,
+                                       bool with_camera_pose) {
+  const auto number = trailing_number(frame.name);
+  const int image_id = number && *number > last_image_id_ ? *number : last_image_id_ + 1;
+  last_image_id_ = image_id;
+  ++num_views_;
+  const double unit_m = choose_depth_unit_m(frame.depth_m);
+  const std::string file = bop_number(image_id) + ".png";
+  if (const auto done = write_color(directory_ / "rgb" / file, frame.color); !done) return done.error();
+  if (const auto done = write_depth(directory_ / "depth" / file, frame.depth_m, unit_m); !done) return done.error();
+
+  const std::string key = std::to_string(image_id);
+  const Camera& k = frame.camera;
+  nlohmann::json& camera = cameras_[key];
+  camera = {{"cam_K", {k.fx, 0.0, k.cx, 0.0, k.fy, k.cy, 0.0, 0.0, 1.0}}, {"depth_scale", unit_m == 1e-4 ? 0.1 : 1.0}};
+  if (with_camera_pose) {
+    const Rigid3 camera_from_world = frame.world_from_camera.inverse();
+    camera["cam_R_w2c"] = rotation_to_json(camera_from_world.rotation);
+    camera["cam_t_w2c"] = translation_to_json_mm(camera_from_world.translation);
+  }
+  truth_[key] = nlohmann::json::array();
+  info_[key] = nlohmann::json::array();
+  std::map<std::string, int> counts;
+  for (const GroundTruthObject& object : ground_truth) {
+    const auto id = find_id(object);
+    if (!id) return id.error();
+    nlohmann::json entry = {{"obj_id", *id},
+                            {"cam_R_m2c", rotation_to_json(object.camera_from_object.rotation)},
+                            {"cam_t_m2c", translation_to_json_mm(object.camera_from_object.translation)}};
+    // Two keys of ours, so that nothing is lost without a models folder; other readers skip them.
+    if (object.object != bop_object_name(*id)) entry["name"] = object.object;
+    if (object.instance != counts[object.object]++) entry["instance"] = object.instance;
+    truth_[key].push_back(std::move(entry));
+    nlohmann::json info = nlohmann::json::object();
+    if (!std::isnan(object.visible_share)) info["visib_fract"] = object.visible_share;
+    info_[key].push_back(std::move(info));
+  }
+  return image_id;
+}
+
+Result<void> BopSceneWriter::write_object_mask(int image_id, int index, const Image<std::uint8_t>& mask) const {
+  const std::string file = fmt::format("{}_{}.png", bop_number(image_id), bop_number(index));
+  if (const auto done = write_mask(directory_ / "mask" / file, mask); !done) return done;
+  return write_mask(directory_ / "mask_visib" / file, mask);
+}
+
+Result<void> BopSceneWriter::finish() const {
+  if (const auto done = write_json(directory_ / "scene_camera.json", cameras_); !done) return done;
+  if (const auto done = write_json(directory_ / "scene_gt.json", truth_); !done) return done;
+  return write_json(directory_ / "scene_gt_info.json", info_);
+}
+
+Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const fs::path& directory) {
+  std::map<std::string, int> ids;
+  if (const auto models = find_models_info(directory)) {
+    const auto infos = read_models_info(*models);
+    if (!infos) return infos.error();
+    for (const auto& [id, info] : *infos) ids[info.name] = id;
+  }
+  auto pending = PendingDirectory::create(directory);
+  if (!pending) return pending.error();
+  return std::unique_ptr<SequenceWriter>(std::make_unique<BopSequenceWriter>(std::move(*pending), std::move(ids)));
+}
+
+}  // namespace resight::io

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/convert.hpp"
+
+#include "resight/io/bop_models.hpp"
+#include "resight/io/internal/files.hpp"
+#include "resight/io/tuw_models.hpp"
+
+namespace resight {
+namespace {
+
+Result<ConversionSummary> convert_to_bop(std::span<const ModelLocation> models,
+                                         const std::filesystem::path& directory) {
+  std::vector<int> wanted;
+  for (const ModelLocation& location : models) wanted.push_back(location.bop_id);
+  const auto ids = assign_bop_ids(wanted);
+  if (!ids) return io::file_error(directory, ids.error().message);
+  const auto writer = BopModelsWriter::create(directory);
+  if (!writer) return writer.error();
+  ConversionSummary summary;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto model = read_model(models[i]);
+    if (!model) return model.error();
+    if (const auto done = (*writer)->write_model(*model, (*ids)[i]); !done) return done.error();
+    summary.num_views += static_cast<int>(model->views.size());
+    ++summary.num_objects;
+  }
+  if (const auto done = (*writer)->finish(); !done) return done.error();
+  return summary;
+}
+
+Result<ConversionSummary> convert_to_tuw(std::span<const ModelLocation> models,
+                                         const std::filesystem::path& directory) {
+  auto pending = io::PendingDirectory::create(directory);
+  if (!pending) return pending.error();
+  ConversionSummary summary;
+  for (const ModelLocation& location : models) {
+    const auto model = read_model(location);
+    if (!model) return model.error();
+    if (model->views.empty())
+      return io::file_error(location.path,
+                            "is a mesh without views; a TUW model consists of views, which have to be rendered first");
+    const auto done = write_tuw_model(pending->path(), model->name, model->views,
+                                      model->surface ? &*model->surface : nullptr, model->symmetries, model->bop_id);
+    if (!done) return done.error();
+    summary.num_views += static_cast<int>(model->views.size());
+    ++summary.num_objects;
+  }
+  if (const auto done = pending->commit(); !done) return done.error();
+  return summary;
+}
+
+}  // namespace
+
+Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::filesystem::path& directory,
+                                           DatasetFormat format) {
+  const auto writer = create_sequence(directory, format);
+  if (!writer) return writer.error();
+  ConversionSummary summary;
+  for (int i = 0; i < sequence.num_views(); ++i) {
+    const auto frame = sequence.read_view(i);
+    if (!frame) return frame.error();
+    const auto truth = sequence.read_ground_truth(i);
+    if (!truth) return truth.error();
+    if (const auto done = (*writer)->write_view(*frame, *truth); !done) return done.error();
+    ++summary.num_views;
+    summary.num_objects += static_cast<int>(truth->size());
+  }
+  if (const auto done = (*writer)->finish(); !done) return done.error();
+  return summary;
+}
+
+Result<ConversionSummary> convert_models(std::span<const ModelLocation> models, const std::filesystem::path& directory,
+                                         DatasetFormat format) {
+  require(!models.empty(), "convert_models: no models");
+  return format == DatasetFormat::kBop ? convert_to_bop(models, directory) : convert_to_tuw(models, directory);
+}
+
+}  // namespace resight

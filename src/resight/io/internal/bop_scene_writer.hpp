@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/sequence.hpp"
+
+namespace resight::io {
+
+/// Metres of one unit of a depth image in which all depths fit: 0.1 mm up to 6.5 m, 1 mm beyond.
+[[nodiscard]] double choose_depth_unit_m(const Image<float>& depth_m);
+
+/// Fills a BOP scene directory view by view: images at once, the JSON files with finish().
+class BopSceneWriter {
+ public:
+  /// `names` = obj_ids already given to names; an unknown name gets the next free one.
+  BopSceneWriter(fs::path directory, std::map<std::string, int> ids)
+      : directory_(std::move(directory)), ids_(std::move(ids)) {}
+  /// The image id is the number at the end of the frame's name if that ascends, else the next one. Returned.
+  Result<int> write_view(const RgbdFrame& frame, const std::vector<GroundTruthObject>& ground_truth,
+                         bool with_camera_pose);
+  /// The mask of the `index`-th object of the view.
+  [[nodiscard]] Result<void> write_object_mask(int image_id, int index, const Image<std::uint8_t>& mask) const;
+  [[nodiscard]] Result<void> finish() const;
+  [[nodiscard]] int num_views() const { return num_views_; }
+
+ private:
+  Result<int> find_id(const GroundTruthObject& object);
+  fs::path directory_;
+  std::map<std::string, int> ids_;
+  nlohmann::json cameras_ = nlohmann::json::object();
+  nlohmann::json truth_ = nlohmann::json::object();
+  nlohmann::json info_ = nlohmann::json::object();
+  int last_image_id_ = -1;
+  int num_views_ = 0;
+};
+
+}  // namespace resight::io

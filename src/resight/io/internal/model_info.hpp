@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+#include "resight/core/result.hpp"
+#include "resight/geometry/symmetry.hpp"
+
+namespace resight::io {
+
+/// The keys symmetries_discrete and symmetries_continuous of an entry of models_info.json (mm on disk).
+[[nodiscard]] Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::string_view what);
+void add_symmetries(nlohmann::json& json, const ObjectSymmetries& symmetries);
+
+}  // namespace resight::io

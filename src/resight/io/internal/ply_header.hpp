@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "resight/core/result.hpp"
+
+namespace resight::io {
+
+enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::kFloat32;  ///< Of the value, or of each value of a list.
+  bool is_list = false;
+  PlyType count_type = PlyType::kUint8;  ///< Of a list's length.
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<PlyProperty> properties;
+  /// Index of the property of that name, -1 if there is none.
+  [[nodiscard]] int find(std::string_view property) const;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  std::string texture_file;
+  std::size_t body_offset = 0;
+};
+
+[[nodiscard]] std::size_t size_of(PlyType type);
+
+/// The header, checked against the size of the file: no element claims more items than the bytes behind it can hold.
+[[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name);
+
+/// Reads the values of a body one after the other.
+class PlyValueReader {
+ public:
+  PlyValueReader(std::string_view body, PlyEncoding encoding) : rest_(body), encoding_(encoding) {}
+  /// The next value; false at the end of the body or if it is no number.
+  bool next(PlyType type, double& value);
+  [[nodiscard]] std::size_t bytes_left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_;
+  PlyEncoding encoding_;
+};
+
+}  // namespace resight::io

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "resight/io/sequence.hpp"
+
+/// The openers of the single formats, and what a directory has to hold for each. is_*() only look at names.
+namespace resight::io {
+
+using SequenceResult = Result<std::unique_ptr<Sequence>>;
+
+[[nodiscard]] bool is_bop_scene(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_bop_scene(const std::filesystem::path& directory);
+
+[[nodiscard]] bool is_tum_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_tum_sequence(const std::filesystem::path& directory);
+
+[[nodiscard]] bool is_tuw_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_tuw_sequence(const std::filesystem::path& directory);
+/// One organised PCD as a sequence of one view.
+[[nodiscard]] SequenceResult open_single_pcd(const std::filesystem::path& file);
+
+[[nodiscard]] bool is_npy_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_npy_sequence(const std::filesystem::path& directory);
+[[nodiscard]] bool is_fixed_camera_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_fixed_camera_sequence(const std::filesystem::path& directory);
+[[nodiscard]] bool is_camera_info_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_camera_info_sequence(const std::filesystem::path& directory);
+[[nodiscard]] bool is_numbered_cameras_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_numbered_cameras_sequence(const std::filesystem::path& directory);
+
+[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_tuw_sequence(const std::filesystem::path& directory);
+[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const std::filesystem::path& directory);
+
+}  // namespace resight::io

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/listed_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/files.hpp"
+
+namespace resight::io {
+namespace {
+
+Result<Image<float>> read_rotated_depth(const fs::path& file, double metres_per_unit) {
+  const auto raw = read_depth_raw(file);
+  if (!raw) return raw.error();
+  Image<float> depth_m(raw->width(), raw->height());
+  for (std::size_t i = 0; i < raw->size(); ++i) {
+    const std::uint16_t value = std::rotl((*raw)[i], 13);
+    depth_m[i] = value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value * metres_per_unit);
+  }
+  return depth_m;
+}
+
+class ListedSequence final : public Sequence {
+ public:
+  explicit ListedSequence(SequenceTable table) : table_(std::move(table)) {}
+
+  [[nodiscard]] std::string format() const override { return table_.format; }
+  [[nodiscard]] int num_views() const override { return static_cast<int>(table_.views.size()); }
+  [[nodiscard]] std::string view_name(int view) const override { return table_.views.at(view).name; }
+  [[nodiscard]] int scene_id() const override { return table_.scene_id; }
+  [[nodiscard]] int image_id(int view) const override { return table_.views.at(view).image_id; }
+  [[nodiscard]] bool has_poses() const override { return table_.has_poses; }
+  [[nodiscard]] bool has_ground_truth() const override { return table_.has_ground_truth; }
+
+  [[nodiscard]] Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const override {
+    return table_.views.at(view).ground_truth;
+  }
+
+  [[nodiscard]] Result<RgbdFrame> read_view(int view) const override {
+    const ListedView& listed = table_.views.at(view);
+    auto color = read_color(listed.color);
+    if (!color) return color.error();
+    auto depth = read_depth_image(listed);
+    if (!depth) return depth.error();
+    if (color->width() != depth->width() || color->height() != depth->height())
+      return file_error(listed.depth,
+                        fmt::format("is {}x{}, but its colour image {}x{}; expected depth registered to colour",
+                                    depth->width(), depth->height(), color->width(), color->height()));
+    const Intrinsics& k = listed.intrinsics;
+    RgbdFrame frame{listed.name,
+                    {color->width(), color->height(), k.fx, k.fy, k.cx, k.cy},
+                    std::move(*color),
+                    std::move(*depth),
+                    listed.world_from_camera};
+    if (const auto done = check_frame(frame); !done) return file_error(listed.color, done.error().message);
+    return frame;
+  }
+
+ private:
+  [[nodiscard]] Result<Image<float>> read_depth_image(const ListedView& view) const {
+    switch (table_.depth_storage) {
+      case DepthStorage::kNpy:
+        return read_depth_npy(view.depth);
+      case DepthStorage::kRotatedPng:
+        return read_rotated_depth(view.depth, view.metres_per_unit);
+      case DepthStorage::kPng:
+        break;
+    }
+    return read_depth(view.depth, view.metres_per_unit);
+  }
+
+  SequenceTable table_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sequence> make_listed_sequence(SequenceTable table) {
+  return std::make_unique<ListedSequence>(std::move(table));
+}
+
+Result<Intrinsics> intrinsics_from_matrix(const std::vector<double>& matrix, std::string_view what) {
+  const auto fail = [&](std::string_view why) { return Error{fmt::format("{}: {}", what, why)}; };
+  if (matrix.size() != 9) return fail("expected the 9 numbers of a camera matrix");
+  for (const double value : matrix)
+    if (!std::isfinite(value)) return fail("the camera matrix holds NaN or infinite numbers");
+  const Intrinsics k{matrix[0], matrix[4], matrix[2], matrix[5]};
+  if (!(k.fx > 0 && k.fy > 0)) return fail(fmt::format("the focal lengths {} and {} must be positive", k.fx, k.fy));
+  if (std::abs(matrix[1]) > 1e-3 * k.fx) return fail("the camera matrix has skew, which is not supported");
+  if (matrix[3] != 0 || matrix[6] != 0 || matrix[7] != 0 || std::abs(matrix[8] - 1) > 1e-6)
+    return fail("is not a camera matrix (fx 0 cx 0 fy cy 0 0 1)");
+  return k;
+}
+
+}  // namespace resight::io

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/mesh_parts.hpp"
+#include "resight/io/ply.hpp"
+
+namespace resight {
+namespace {
+
+Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
+  auto content = read_ply(file);
+  if (!content) return content.error();
+  if (content->mesh.faces.empty()) return io::file_error(file, "has points but no faces; expected a mesh");
+  MeshFile result{std::move(content->mesh), {}};
+  if (!content->texture_file.empty() && !result.mesh.uvs.empty()) {
+    auto texture = read_color(file.parent_path() / content->texture_file);
+    if (texture)
+      result.mesh.texture = std::move(*texture);
+    else
+      result.warnings.push_back(file.string() + ": its texture is left out: " + texture.error().message);
+  }
+  if (result.mesh.has_texture()) result.mesh.colors.clear();
+  return result;
+}
+
+Result<MeshFile> import_mesh(const std::filesystem::path& file) {
+  auto imported = io::import_mesh_parts(file);
+  if (!imported) return imported.error();
+  return MeshFile{io::join_parts(std::move(imported->parts)), std::move(imported->warnings)};
+}
+
+/// What the numbers would be in if they were plausible: a hint, not a decision.
+std::string guess_unit(double size_m, double metres_per_unit) {
+  const double size_units = size_m / metres_per_unit;
+  if (metres_per_unit == 0.001 && size_m < 0.005)
+    return "looks like metres; models of a BOP data set must be in millimetres";
+  if (metres_per_unit == 1.0 && size_units >= 5 && size_units <= 5000)
+    return "looks like millimetres; scale it to metres (by 0.001), or put it into a BOP models folder (as "
+           "obj_000001.ply), which is in millimetres";
+  return "check its unit";
+}
+
+}  // namespace
+
+void ReadMeshOptions::check() const {
+  check_positive("ReadMeshOptions.metres_per_unit", metres_per_unit);
+  check_not_negative("ReadMeshOptions.min_size_m", min_size_m);
+  require(max_size_m > min_size_m, "ReadMeshOptions.max_size_m must be more than min_size_m");
+}
+
+bool is_mesh_file(const std::filesystem::path& file) {
+  const std::string extension = io::extension_of(file);
+  return extension == "ply" || extension == "obj" || extension == "glb" || extension == "gltf" || extension == "stl";
+}
+
+Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMeshOptions& options,
+                        const std::filesystem::path& file) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points_m) box.extend(p);
+  const double size_m = box.isEmpty() ? 0 : box.diagonal().cast<double>().norm();
+  if (size_m >= options.min_size_m && size_m <= options.max_size_m) return {};
+  return io::file_error(
+      file, fmt::format("the object is {:.4g} m large (expected {} to {} m): {}", size_m, options.min_size_m,
+                        options.max_size_m, guess_unit(size_m, options.metres_per_unit)));
+}
+
+Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options) {
+  options.check();
+  if (!is_mesh_file(file))
+    return io::file_error(file, "is not a mesh file we read (expected ply, obj, glb, gltf or stl)");
+  auto result = io::extension_of(file) == "ply" ? read_ply_mesh(file) : import_mesh(file);
+  if (!result) return result;
+  TriangleMesh& mesh = result->mesh;
+  for (Eigen::Vector3f& p : mesh.vertices) {
+    if (options.metres_per_unit != 1.0) p = (p.cast<double>() * options.metres_per_unit).cast<float>();
+    if (!p.allFinite()) return io::file_error(file, "holds vertices that are not finite");
+  }
+  for (Eigen::Vector2f& uv : mesh.uvs)
+    if (!uv.allFinite()) uv.setZero();
+  if (const auto done = check_size(mesh.vertices, options, file); !done) return done.error();
+  const auto is_unit = [](const Eigen::Vector3f& n) { return std::abs(n.squaredNorm() - 1) < 1e-3F; };
+  if (mesh.normals.empty() || !std::ranges::all_of(mesh.normals, is_unit)) compute_vertex_normals(mesh);
+  return result;
+}
+
+}  // namespace resight

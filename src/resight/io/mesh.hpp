@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "resight/core/result.hpp"
+#include "resight/geometry/triangle_mesh.hpp"
+
+namespace resight {
+
+struct ReadMeshOptions {
+  double metres_per_unit = 1.0;  ///< 0.001 for BOP models, which are in millimetres.
+  double min_size_m = 0.005;     ///< A mesh with a smaller or larger bounding box diagonal is refused: its unit is
+  double max_size_m = 5.0;       ///< most likely another one. 0 and infinity switch the checks off.
+  void check() const;
+};
+
+struct MeshFile {
+  TriangleMesh mesh;                  ///< Metres, with normals (computed where the file has none).
+  std::vector<std::string> warnings;  ///< What the file names but what could not be read: a missing texture.
+};
+
+/// Reads a triangle mesh: PLY by ourselves (read_ply()), OBJ, GLB/glTF and STL through Assimp. Scene transforms are
+/// applied, polygons become triangles, points and lines are dropped. Several textures are stacked into one. Same file,
+/// same bytes: vertices come in the order of the file (PLY) or of Assimp's importer.
+[[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options = {});
+
+/// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
+
+/// Error when the points do not span between min and max metres, with the unit that the file seems to have.
+[[nodiscard]] Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMeshOptions& options,
+                                      const std::filesystem::path& file);
+
+}  // namespace resight

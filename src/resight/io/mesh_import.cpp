@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <map>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/mesh_parts.hpp"
+
+namespace resight::io {
+namespace {
+
+std::uint8_t to_channel(float value) {
+  return std::isnan(value) ? std::uint8_t{0} : static_cast<std::uint8_t>(std::clamp(value * 255 + 0.5F, 0.0F, 255.0F));
+}
+
+Rgb8 to_color(const aiColor4D& c) { return {to_channel(c.r), to_channel(c.g), to_channel(c.b)}; }
+
+/// The texture of a material, as the file names it; empty = none.
+std::string texture_name(const aiMaterial& material) {
+  aiString name;
+  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
+    if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS && name.length > 0) break;
+  std::string text = name.C_Str();
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.pop_back();
+  std::ranges::replace(text, '\\', '/');
+  return text;
+}
+
+/// Loads each texture once. One that cannot be read leaves a warning and an empty image.
+class TextureLoader {
+ public:
+  TextureLoader(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings)
+      : scene_(scene), file_(file), warnings_(warnings) {}
+
+  const Image<Rgb8>& load(const std::string& name) {
+    const auto [it, is_new] = loaded_.try_emplace(name);
+    if (!is_new) return it->second;
+    auto texture = read(name);
+    if (texture)
+      it->second = std::move(*texture);
+    else
+      warnings_.push_back(file_.string() + ": its texture is left out: " + texture.error().message);
+    return it->second;
+  }
+
+ private:
+  Result<Image<Rgb8>> read(const std::string& name) const {
+    const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
+    if (embedded == nullptr) return read_color(file_.parent_path() / name);
+    if (embedded->mHeight == 0)  // a compressed image, mWidth bytes
+      return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
+                          file_.string() + " (texture)");
+    Image<Rgb8> texture(static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight));
+    for (std::size_t i = 0; i < texture.size(); ++i)
+      texture[i] = {embedded->pcData[i].r, embedded->pcData[i].g, embedded->pcData[i].b};
+    return texture;
+  }
+
+  const aiScene& scene_;
+  const fs::path& file_;
+  std::vector<std::string>& warnings_;
+  std::map<std::string, Image<Rgb8>> loaded_;
+};
+
+TriangleMesh convert_geometry(const aiMesh& source) {
+  TriangleMesh mesh;
+  const auto vector3 = [](const aiVector3D& v) { return Eigen::Vector3f(v.x, v.y, v.z); };
+  for (unsigned i = 0; i < source.mNumVertices; ++i) {
+    mesh.vertices.push_back(vector3(source.mVertices[i]));
+    if (source.HasNormals()) mesh.normals.push_back(vector3(source.mNormals[i]));
+    // Assimp puts the origin bottom left for every format.
+    if (source.HasTextureCoords(0))
+      mesh.uvs.push_back({source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y});
+    if (source.HasVertexColors(0)) mesh.colors.push_back(to_color(source.mColors[0][i]));
+  }
+  for (unsigned i = 0; i < source.mNumFaces; ++i) {
+    const aiFace& face = source.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    const auto in_range = [&](unsigned v) { return v < source.mNumVertices; };
+    if (!in_range(face.mIndices[0]) || !in_range(face.mIndices[1]) || !in_range(face.mIndices[2])) continue;
+    mesh.faces.push_back(
+        {static_cast<int>(face.mIndices[0]), static_cast<int>(face.mIndices[1]), static_cast<int>(face.mIndices[2])});
+  }
+  return mesh;
+}
+
+MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
+  MeshPart part;
+  part.mesh = convert_geometry(source);
+  if (source.mMaterialIndex >= scene.mNumMaterials) return part;
+  const aiMaterial& material = *scene.mMaterials[source.mMaterialIndex];
+  aiString material_name;
+  material.Get(AI_MATKEY_NAME, material_name);
+  aiColor4D color;
+  // Assimp's own default material is no statement of the file about its colour.
+  part.has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
+                   (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
+                    material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
+  if (part.has_color) part.color = to_color(color);
+  const std::string texture = texture_name(material);
+  if (!texture.empty() && !part.mesh.uvs.empty()) part.mesh.texture = textures.load(texture);
+  if (part.mesh.has_texture()) part.mesh.colors.clear();
+  return part;
+}
+
+/// Parts of the same texture become one, so that a texture shared by several meshes is not stacked several times.
+bool try_merge(std::vector<MeshPart>& parts, const MeshPart& part) {
+  for (MeshPart& other : parts) {
+    const bool same_kind = other.mesh.uvs.empty() == part.mesh.uvs.empty() &&
+                           other.mesh.normals.empty() == part.mesh.normals.empty() &&
+                           other.mesh.colors.empty() == part.mesh.colors.empty();
+    if (!same_kind || !part.mesh.has_texture() || !(other.mesh.texture == part.mesh.texture)) continue;
+    TriangleMesh geometry = part.mesh;
+    geometry.texture = {};
+    other.mesh.append(geometry);
+    return true;
+  }
+  return false;
+}
+
+/// Normals and uvs that not every part has would be lost or wrong in the whole.
+void unify_attributes(std::vector<MeshPart>& parts) {
+  if (std::ranges::any_of(parts, [](const MeshPart& p) { return p.mesh.normals.empty(); }))
+    for (MeshPart& part : parts) part.mesh.normals.clear();
+  for (MeshPart& part : parts)
+    if (!part.mesh.has_texture()) part.mesh.uvs.clear();
+}
+
+}  // namespace
+
+Result<ImportedParts> import_mesh_parts(const fs::path& file) {
+  if (const auto start = read_file_start(file, 16); !start) return start.error();
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                                              aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  if (scene == nullptr) {
+    std::string why = importer.GetErrorString();
+    std::ranges::replace(why, '\n', ' ');
+    return file_error(file, "cannot be read as a mesh (" + why + ")");
+  }
+  ImportedParts imported;
+  TextureLoader textures(*scene, file, imported.warnings);
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+    MeshPart part = convert_part(*scene->mMeshes[i], *scene, textures);
+    if (!part.mesh.empty() && !try_merge(imported.parts, part)) imported.parts.push_back(std::move(part));
+  }
+  if (imported.parts.empty()) return file_error(file, "has no triangles");
+  unify_attributes(imported.parts);
+  return imported;
+}
+
+}  // namespace resight::io

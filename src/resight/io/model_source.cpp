@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/model_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/model_files.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/pcd.hpp"
+#include "resight/io/ply.hpp"
+#include "resight/io/tuw_models.hpp"
+
+namespace resight {
+namespace {
+
+using io::fs::path;
+using Locations = std::vector<ModelLocation>;
+
+/// Of several files of one stem, the first of these is the model: the others are conversions of it with less in them.
+constexpr std::array<std::string_view, 6> kExtensions = {"obj", "glb", "gltf", "ply", "stl", "pcd"};
+
+std::size_t extension_rank(const path& file) {
+  return static_cast<std::size_t>(std::ranges::find(kExtensions, io::extension_of(file)) - kExtensions.begin());
+}
+
+std::string format_of(const path& file) { return io::extension_of(file) == "pcd" ? "cloud" : "mesh"; }
+
+/// Scene views and damaged files that lie in a folder are no models; whoever means such a file names it.
+bool is_model_cloud(const path& file) {
+  const auto size = read_pcd_size(file);
+  return size.ok() && size->height == 1;
+}
+
+/// The model files right in a directory, one for each stem.
+std::map<std::string, path> list_model_files(const path& directory) {
+  std::map<std::string, path> files;
+  for (const std::string& name : io::list_files(directory)) {
+    const path file = directory / name;
+    if (extension_rank(file) == kExtensions.size()) continue;
+    if (io::extension_of(file) == "pcd" && !is_model_cloud(file)) continue;
+    const auto [it, is_new] = files.try_emplace(file.stem().string(), file);
+    if (!is_new && extension_rank(file) < extension_rank(it->second)) it->second = file;
+  }
+  return files;
+}
+
+Result<ModelLocation> locate_tuw_model(const path& directory) {
+  const auto extras = io::read_model_extras(directory / "model_info.json");
+  if (!extras) return extras.error();
+  return ModelLocation{io::folder_name(directory), extras->bop_id, directory, "tuw"};
+}
+
+/// The mesh of a folder of its own: the only one, the one called like the folder, or "textured".
+std::optional<path> find_own_mesh(const path& folder) {
+  const auto files = list_model_files(folder);
+  if (files.size() == 1) return files.begin()->second;
+  for (const std::string& stem :
+       {std::string("textured"), io::folder_name(folder), std::string("textured_simple"), std::string("model")})
+    if (const auto it = files.find(stem); it != files.end()) return it->second;
+  return std::nullopt;
+}
+
+/// Models in a folder of models: files, sub-folders of one model, and (one level deeper) the same by class.
+Result<void> collect(const path& directory, int levels_below, Locations& found) {
+  for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
+  for (const std::string& name : io::list_directories(directory)) {
+    const path folder = directory / name;
+    if (is_tuw_model(folder)) {
+      auto location = locate_tuw_model(folder);
+      if (!location) return location.error();
+      found.push_back(std::move(*location));
+    } else if (const auto mesh = find_own_mesh(folder)) {
+      const auto extras = io::read_model_extras(folder / "model_info.json");
+      if (!extras) return extras.error();
+      found.push_back({name, extras->bop_id, *mesh, format_of(*mesh)});
+    } else if (levels_below > 0) {
+      if (const auto done = collect(folder, levels_below - 1, found); !done) return done;
+    }
+  }
+  return {};
+}
+
+constexpr std::string_view kExpected =
+    "expected a TUW model (views/cloud_*.pcd) or a folder of those, a BOP models folder or data set, a folder of "
+    "meshes "
+    "(ply, obj, glb, stl), a mesh file, or a PCD of one view of an object";
+
+Result<Locations> find_under(const path& where) {
+  Locations found;
+  if (io::is_file(where)) {
+    if (extension_rank(where) == kExtensions.size())
+      return io::file_error(where, fmt::format("is no model file; {}", kExpected));
+    return Locations{{where.stem().string(), 0, where, format_of(where)}};
+  }
+  if (!io::is_folder(where)) return io::file_error(where, "no such file or directory");
+  if (is_tuw_model(where)) {
+    auto location = locate_tuw_model(where);
+    if (!location) return location.error();
+    return Locations{std::move(*location)};
+  }
+  auto bop = io::find_bop_models(where);
+  if (!bop || !bop->empty()) return bop;
+  // A folder of one mesh and its conversions is that model.
+  if (const auto mesh = find_own_mesh(where); mesh && mesh->stem() == "textured") {
+    const auto extras = io::read_model_extras(where / "model_info.json");
+    if (!extras) return extras.error();
+    return Locations{{io::folder_name(where), extras->bop_id, *mesh, format_of(*mesh)}};
+  }
+  if (const auto done = collect(where, 1, found); !done) return done.error();
+  if (found.empty()) return io::file_error(where, fmt::format("no model found; {}", kExpected));
+  return found;
+}
+
+Result<ModelSource> read_mesh_model(const ModelLocation& location) {
+  if (io::extension_of(location.path) == "ply") {
+    const auto content = read_ply(location.path);
+    if (!content) return content.error();
+    if (content->mesh.faces.empty()) return io::read_cloud_model(location.path, location.name);
+  }
+  auto mesh = read_mesh(location.path);
+  if (!mesh) return mesh.error();
+  auto extras = io::read_model_extras(location.path.parent_path() / "model_info.json");
+  if (!extras) return extras.error();
+  ModelSource model;
+  model.name = location.name;
+  model.bop_id = location.bop_id;
+  model.mesh = std::move(mesh->mesh);
+  model.warnings = std::move(mesh->warnings);
+  model.symmetries = std::move(extras->symmetries);
+  return model;
+}
+
+}  // namespace
+
+Result<Locations> find_models(const std::vector<path>& paths) {
+  Locations all;
+  for (const path& where : paths) {
+    auto found = find_under(where);
+    if (!found) return found;
+    all.insert(all.end(), found->begin(), found->end());
+  }
+  if (all.empty()) return Error{"no path to models was given"};
+  std::ranges::stable_sort(all, io::natural_less, &ModelLocation::name);
+  for (std::size_t i = 1; i < all.size(); ++i)
+    if (all[i].name == all[i - 1].name)
+      return Error{fmt::format("two models are called '{}': {} and {}", all[i].name, all[i - 1].path.string(),
+                               all[i].path.string())};
+  return all;
+}
+
+Result<ModelSource> read_model(const ModelLocation& location) {
+  if (location.format == "tuw") return read_tuw_model(location.path, location.name);
+  if (location.format == "bop") return io::read_bop_model(location);
+  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name);
+  require(location.format == "mesh", "read_model: the format of the location must be tuw, bop, mesh or cloud");
+  return read_mesh_model(location);
+}
+
+}  // namespace resight

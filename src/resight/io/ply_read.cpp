@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/ply_header.hpp"
+#include "resight/io/ply.hpp"
+
+namespace resight {
+namespace {
+
+using io::PlyElement;
+using io::PlyHeader;
+using io::PlyProperty;
+using io::PlyType;
+
+constexpr int kMaxPolygonCorners = 10000;
+
+/// Column of the first of several names for the same property, -1 if there is none.
+int find_first(const PlyElement& element, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    if (const int i = element.find(name); i >= 0 && !element.properties[i].is_list) return i;
+  return -1;
+}
+
+/// Where the attributes of a vertex stand in its row.
+struct VertexColumns {
+  explicit VertexColumns(const PlyElement& e)
+      : position{find_first(e, {"x"}), find_first(e, {"y"}), find_first(e, {"z"})},
+        normal{find_first(e, {"nx", "normal_x"}), find_first(e, {"ny", "normal_y"}), find_first(e, {"nz", "normal_z"})},
+        color{find_first(e, {"red", "diffuse_red", "r"}), find_first(e, {"green", "diffuse_green", "g"}),
+              find_first(e, {"blue", "diffuse_blue", "b"})},
+        uv{find_first(e, {"texture_u", "u", "s", "tx"}), find_first(e, {"texture_v", "v", "t", "ty"})} {}
+
+  template <typename Columns>
+  static bool all(const Columns& columns) {
+    return std::ranges::all_of(columns, [](int c) { return c >= 0; });
+  }
+  std::array<int, 3> position, normal, color;
+  std::array<int, 2> uv;
+};
+
+std::uint8_t to_channel(double value, PlyType type) {
+  if (type == PlyType::kFloat32 || type == PlyType::kFloat64) value *= 255;
+  if (type == PlyType::kUint16) value /= 257;
+  return std::isnan(value) ? std::uint8_t{0} : static_cast<std::uint8_t>(std::clamp(std::round(value), 0.0, 255.0));
+}
+
+Eigen::Vector2f to_top_left(double u, double v) { return {static_cast<float>(u), static_cast<float>(1 - v)}; }
+
+class PlyReader {
+ public:
+  PlyReader(std::string_view bytes, const PlyHeader& header, std::string_view name)
+      : header_(header), name_(name), values_(bytes.substr(header.body_offset), header.encoding) {}
+
+  Result<PlyContent> read() {
+    for (const PlyElement& element : header_.elements) {
+      const auto done = element.name == "vertex" ? read_vertices(element)
+                        : element.name == "face" ? read_faces(element)
+                                                 : skip(element);
+      if (!done) return done.error();
+    }
+    if (mesh_.vertices.empty()) return fail("has no vertices");
+    for (const auto& face : mesh_.faces)
+      for (const int v : face)
+        if (v < 0 || static_cast<std::size_t>(v) >= mesh_.vertices.size())
+          return fail(fmt::format("a face refers to vertex {} of {}", v, mesh_.vertices.size()));
+    if (mesh_.uvs.empty() && corner_uvs_.size() == mesh_.faces.size() && !mesh_.faces.empty()) split_at_seams();
+    return PlyContent{std::move(mesh_), header_.texture_file};
+  }
+
+ private:
+  Error fail(std::string_view what) const { return Error{fmt::format("{}: {}", name_, what)}; }
+  Error cut_off(const PlyElement& element) const {
+    return fail(fmt::format("the data of '{}' end too early or are no numbers", element.name));
+  }
+
+  /// The values of a list, at most kMaxPolygonCorners of them.
+  bool read_list(const PlyProperty& property, std::vector<double>& list) {
+    double count = 0;
+    if (!values_.next(property.count_type, count) || !(count >= 0 && count <= kMaxPolygonCorners) ||
+        count != std::floor(count))
+      return false;
+    list.resize(static_cast<std::size_t>(count));
+    return std::ranges::all_of(list, [&](double& value) { return values_.next(property.type, value); });
+  }
+
+  /// One item: scalars into `row`, lists into `lists`, both by column.
+  bool read_item(const PlyElement& element, std::vector<double>& row, std::vector<std::vector<double>>& lists) {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (property.is_list ? !read_list(property, lists[i]) : !values_.next(property.type, row[i])) return false;
+    }
+    return true;
+  }
+
+  Result<void> skip(const PlyElement& element) {
+    std::vector<double> row(element.properties.size());
+    std::vector<std::vector<double>> lists(element.properties.size());
+    for (std::size_t i = 0; i < element.count; ++i)
+      if (!read_item(element, row, lists)) return cut_off(element);
+    return {};
+  }
+
+  Result<void> read_vertices(const PlyElement& element) {
+    if (!mesh_.vertices.empty()) return fail("has two elements 'vertex'");
+    const VertexColumns columns(element);
+    if (!VertexColumns::all(columns.position)) return fail("its vertices have no x, y, z");
+    const bool has_normal = VertexColumns::all(columns.normal);
+    const bool has_color = VertexColumns::all(columns.color);
+    const bool has_uv = VertexColumns::all(columns.uv);
+    std::vector<double> row(element.properties.size());
+    std::vector<std::vector<double>> lists(element.properties.size());
+    const auto vector3 = [&](const std::array<int, 3>& c) {
+      return Eigen::Vector3d(row[c[0]], row[c[1]], row[c[2]]).cast<float>().eval();
+    };
+    for (std::size_t i = 0; i < element.count; ++i) {
+      if (!read_item(element, row, lists)) return cut_off(element);
+      const Eigen::Vector3f point = vector3(columns.position);
+      if (!point.allFinite()) return fail(fmt::format("vertex {} is not finite", i));
+      mesh_.vertices.push_back(point);
+      if (has_normal) {
+        const Eigen::Vector3f n = vector3(columns.normal);
+        const float norm = n.norm();
+        mesh_.normals.push_back(std::isfinite(norm) && norm > 0 ? Eigen::Vector3f(n / norm) : Eigen::Vector3f::UnitZ());
+      }
+      if (has_color) {
+        const auto channel = [&](int k) {
+          return to_channel(row[columns.color[k]], element.properties[columns.color[k]].type);
+        };
+        mesh_.colors.push_back({channel(0), channel(1), channel(2)});
+      }
+      if (has_uv) mesh_.uvs.push_back(to_top_left(row[columns.uv[0]], row[columns.uv[1]]));
+    }
+    return {};
+  }
+
+  Result<void> read_faces(const PlyElement& element) {
+    int indices = element.find("vertex_indices");
+    if (indices < 0) indices = element.find("vertex_index");
+    if (indices < 0 || !element.properties[indices].is_list) return fail("its faces have no list vertex_indices");
+    const int texcoord = element.find("texcoord");
+    const bool has_texcoord = texcoord >= 0 && element.properties[texcoord].is_list;
+    std::vector<double> row(element.properties.size());
+    std::vector<std::vector<double>> lists(element.properties.size());
+    for (std::size_t i = 0; i < element.count; ++i) {
+      if (!read_item(element, row, lists)) return cut_off(element);
+      const std::vector<double>& polygon = lists[indices];
+      for (const double v : polygon)
+        if (!(v >= 0 && v <= INT32_MAX)) return fail(fmt::format("face {} refers to vertex {}", i, v));
+      for (std::size_t k = 2; k < polygon.size(); ++k) {
+        mesh_.faces.push_back(
+            {static_cast<int>(polygon[0]), static_cast<int>(polygon[k - 1]), static_cast<int>(polygon[k])});
+        if (!has_texcoord || lists[texcoord].size() != 2 * polygon.size()) continue;
+        const auto corner = [&](std::size_t c) {
+          return to_top_left(lists[texcoord][2 * c], lists[texcoord][2 * c + 1]);
+        };
+        corner_uvs_.push_back({corner(0), corner(k - 1), corner(k)});
+      }
+    }
+    return {};
+  }
+
+  /// Texture coordinates per corner become per vertex: a vertex with several is repeated.
+  void split_at_seams() {
+    std::map<std::tuple<int, float, float>, int> numbers;
+    TriangleMesh split;
+    for (std::size_t i = 0; i < mesh_.faces.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int old = mesh_.faces[i][k];
+        const Eigen::Vector2f uv = corner_uvs_[i][k].allFinite() ? corner_uvs_[i][k] : Eigen::Vector2f(0, 0);
+        const auto [it, is_new] = numbers.try_emplace({old, uv.x(), uv.y()}, static_cast<int>(split.vertices.size()));
+        if (is_new) {
+          split.vertices.push_back(mesh_.vertices[old]);
+          split.uvs.push_back(uv);
+          if (!mesh_.normals.empty()) split.normals.push_back(mesh_.normals[old]);
+          if (!mesh_.colors.empty()) split.colors.push_back(mesh_.colors[old]);
+        }
+        mesh_.faces[i][k] = it->second;
+      }
+    split.faces = std::move(mesh_.faces);
+    mesh_ = std::move(split);
+  }
+
+  const PlyHeader& header_;
+  std::string_view name_;
+  io::PlyValueReader values_;
+  TriangleMesh mesh_;
+  std::vector<std::array<Eigen::Vector2f, 3>> corner_uvs_;
+};
+
+}  // namespace
+
+Result<PlyContent> parse_ply(std::string_view bytes, std::string_view name) {
+  const auto header = io::parse_ply_header(bytes, name);
+  if (!header) return header.error();
+  return PlyReader(bytes, *header, name).read();
+}
+
+Result<PlyContent> read_ply(const std::filesystem::path& file) {
+  const auto bytes = io::read_file(file, io::kMaxBinaryBytes);
+  if (!bytes) return bytes.error();
+  return parse_ply(*bytes, file.string());
+}
+
+Result<PointCloud> read_ply_cloud(const std::filesystem::path& file, double metres_per_unit) {
+  auto content = read_ply(file);
+  if (!content) return content.error();
+  PointCloud cloud{std::move(content->mesh.vertices), std::move(content->mesh.normals),
+                   std::move(content->mesh.colors)};
+  if (metres_per_unit != 1.0)
+    for (Eigen::Vector3f& p : cloud.points) p = (p.cast<double>() * metres_per_unit).cast<float>();
+  return cloud;
+}
+
+}  // namespace resight

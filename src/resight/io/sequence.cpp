@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/sequences.hpp"
+#include "resight/io/internal/text.hpp"
+
+namespace resight {
+namespace {
+
+using io::fs::path;
+
+struct FormatEntry {
+  bool (*matches)(const path& directory);
+  io::SequenceResult (*open)(const path& directory);
+};
+
+/// In the order in which they are tried: the most specific first.
+constexpr std::array<FormatEntry, 7> kFormats = {
+    {{io::is_bop_scene, io::open_bop_scene},
+     {io::is_tum_sequence, io::open_tum_sequence},
+     {io::is_npy_sequence, io::open_npy_sequence},
+     {io::is_fixed_camera_sequence, io::open_fixed_camera_sequence},
+     {io::is_camera_info_sequence, io::open_camera_info_sequence},
+     {io::is_numbered_cameras_sequence, io::open_numbered_cameras_sequence},
+     {io::is_tuw_sequence, io::open_tuw_sequence}}};
+
+const FormatEntry* find_format(const path& directory) {
+  const auto it = std::ranges::find_if(kFormats, [&](const FormatEntry& entry) { return entry.matches(directory); });
+  return it == kFormats.end() ? nullptr : &*it;
+}
+
+/// Sequences below a data set's root: its sub-folders, and the scenes of its BOP splits. Test splits go before training
+/// ones, and folders of models are none.
+std::vector<path> find_sequences_below(const path& directory) {
+  std::vector<path> found;
+  std::vector<path> training;
+  for (const std::string& name : io::list_directories(directory)) {
+    if (name.starts_with("models")) continue;
+    const path below = directory / name;
+    if (find_format(below) != nullptr) {
+      found.push_back(below);
+      continue;
+    }
+    for (const std::string& scene : io::list_directories(below))
+      if (io::is_bop_scene(below / scene)) (name.starts_with("train") ? training : found).push_back(below / scene);
+  }
+  return found.empty() ? training : found;
+}
+
+constexpr std::string_view kExpected =
+    "expected a BOP scene (scene_camera.json), a TUM recording (rgb, depth, associations.txt or rgb.txt and "
+    "depth.txt), "
+    "organised *.pcd views (TUW), or colour and depth images with their camera as docs/formats.md says";
+
+}  // namespace
+
+Result<std::vector<GroundTruthObject>> Sequence::read_ground_truth(int) const {
+  return std::vector<GroundTruthObject>{};
+}
+
+Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
+  if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
+  if (!io::is_folder(directory)) return io::file_error(directory, "no such directory");
+  if (const FormatEntry* format = find_format(directory)) return format->open(directory);
+  const std::vector<path> below = find_sequences_below(directory);
+  if (below.size() == 1) return find_format(below.front())->open(below.front());
+  if (below.size() > 1)
+    return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
+                                                 below.front().string()));
+  return io::file_error(directory, fmt::format("no sequence found; {}", kExpected));
+}
+
+Result<std::unique_ptr<SequenceWriter>> create_sequence(const path& directory, DatasetFormat format) {
+  return format == DatasetFormat::kBop ? io::create_bop_scene(directory) : io::create_tuw_sequence(directory);
+}
+
+}  // namespace resight
