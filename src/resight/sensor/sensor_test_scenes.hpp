@@ -41,11 +41,11 @@ inline Image<float> render_sphere(const Camera& camera, const Eigen::Vector3d& c
 }
 
 /// The sphere scene with noise that grows with depth and with scattered holes.
-inline Image<float> render_noisy_sphere(const Camera& camera, std::uint64_t seed) {
+inline Image<float> render_noisy_sphere(const Camera& camera, std::uint64_t seed, double noise_share = 0.001) {
   Image<float> depth = render_sphere(camera, {0.05, 0.02, 1.0}, 0.25, 1.6);
   Rng rng(seed);
   for (float& z : depth.data()) {
-    z += static_cast<float>(0.001 * rng.normal()) * z;
+    z += static_cast<float>(noise_share * rng.normal()) * z;
     if (rng.uniform() < 0.03) z = kNan;
   }
   return depth;
