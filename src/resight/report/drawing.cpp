@@ -9,6 +9,7 @@ namespace resight::report {
 namespace {
 
 constexpr float kMinDepth_m = 0.05F;
+constexpr double kRemovedPointSize_m = 0.005;  // removed points come from clouds thinned to 5 mm
 constexpr int kMaxSplat_px = 24;  // a surface right before the lens must not fill the picture with one point
 
 void fill_square(Image<std::uint8_t>& mask, float u, float v, int radius) {
@@ -24,20 +25,31 @@ void fill_square(Image<std::uint8_t>& mask, float u, float v, int radius) {
   }
 }
 
-/// Marks where the points project; each as a square that covers `size_m` and half a pixel more.
-Image<std::uint8_t> splat(const Camera& camera, const Rigid3& camera_from_cloud, const PointCloud& cloud,
-                          double size_m) {
+/// Half the side, in pixels, of a square that covers `size_m` at the mean depth of the points before the camera.
+int splat_radius_px(const Camera& camera, const Rigid3f& camera_from_cloud, const PointCloud& cloud, double size_m) {
+  double depth_sum_m = 0;
+  int count = 0;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    const float z = (camera_from_cloud * point).z();
+    if (!(z > kMinDepth_m)) continue;
+    depth_sum_m += z;
+    ++count;
+  }
+  if (count == 0) return 0;
+  return std::min(kMaxSplat_px, static_cast<int>(std::ceil(0.5 * camera.fx * size_m * count / depth_sum_m)));
+}
+
+/// Marks where the points project, each as a square.
+Image<std::uint8_t> splat(const Camera& camera, const Rigid3f& camera_from_cloud, const PointCloud& cloud,
+                          int radius_px) {
   Image<std::uint8_t> mask(camera.width, camera.height, 0);
-  const Rigid3f motion(camera_from_cloud);
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   for (const Eigen::Vector3f& point : cloud.points) {
-    const Eigen::Vector3f p = motion * point;
+    const Eigen::Vector3f p = camera_from_cloud * point;
     if (!(p.z() > kMinDepth_m)) continue;
-    const float half_px = 0.5F * fx * static_cast<float>(size_m) / p.z();
-    const int radius = std::min(kMaxSplat_px, static_cast<int>(std::ceil(half_px)));
     fill_square(mask, fx * p.x() / p.z() + static_cast<float>(camera.cx),
-                fy * p.y() / p.z() + static_cast<float>(camera.cy), radius);
+                fy * p.y() / p.z() + static_cast<float>(camera.cy), radius_px);
   }
   return mask;
 }
@@ -59,10 +71,15 @@ cv::Scalar to_scalar(Rgb8 color) { return cv::Scalar(color.r, color.g, color.b);
 
 Outline project_outline(const Camera& camera, const Rigid3& camera_from_object, const PointCloud& surface,
                         double voxel_m) {
-  Image<std::uint8_t> mask = splat(camera, camera_from_object, surface, voxel_m);
+  const Rigid3f motion(camera_from_object);
+  const int radius_px = splat_radius_px(camera, motion, surface, voxel_m);
+  Image<std::uint8_t> mask = splat(camera, motion, surface, radius_px);
   cv::Mat mask_mat(mask.height(), mask.width(), CV_8UC1, mask.data().data());
   const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(5, 5));
   cv::morphologyEx(mask_mat, mask_mat, cv::MORPH_CLOSE, disc);
+  // The squares reach beyond the outermost points; taken off again, so that the line lies on the object's border.
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * radius_px + 1, 2 * radius_px + 1));
+  cv::erode(mask_mat, mask_mat, square);
   Outline outline;
   cv::findContours(mask_mat, outline, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
   return outline;
@@ -102,7 +119,8 @@ void tint(Image<Rgb8>& image, const Image<std::uint8_t>& mask, Rgb8 color, doubl
 
 Image<std::uint8_t> project_points(const Camera& camera, const Rigid3& camera_from_world,
                                    const PointCloud& points_in_world) {
-  return splat(camera, camera_from_world, points_in_world, 0.003);
+  const Rigid3f motion(camera_from_world);
+  return splat(camera, motion, points_in_world, splat_radius_px(camera, motion, points_in_world, kRemovedPointSize_m));
 }
 
 void LabelPainter::draw(const std::string& text, const cv::Rect& target, Rgb8 color) {

@@ -58,7 +58,7 @@ struct MakeViewRecordOptions {
   bool picture = true;
   int picture_quality = 82;
   int max_picture_width_px = 640;  ///< 0 = as wide as the view.
-  DrawOverlayOptions overlay;
+  DrawOverlayOptions overlay = {};
   void check() const;  ///< Throws std::invalid_argument: field, value, rule.
 };
 
