@@ -26,7 +26,9 @@ td.good { color:var(--good); } td.bad { color:var(--bad); }
 .soft { color:var(--soft); font-size:13px; }
 .runs { display:grid; grid-template-columns:repeat(auto-fit,minmax(min(100%,420px),1fr)); gap:18px; margin-top:8px; }
 .runs img { display:block; width:100%; max-width:640px; height:auto; border-radius:4px; background:#000; }
-.runs table { font-size:13px; margin-top:8px; }
+.runs > div { min-width:0; overflow-x:auto; }
+.runs table { font-size:12px; margin-top:8px; }
+.runs th { font-size:12px; } .runs th, .runs td { padding-right:9px; }
 .patch { display:inline-block; width:11px; height:11px; border-radius:3px; margin-right:6px; border:1px solid rgba(0,0,0,.35); }
 .events { list-style:none; margin:8px 0 0; padding:0; font-size:13px; }
 .tag { display:inline-block; min-width:64px; padding:0 7px; margin-right:7px; border-radius:9px; text-align:center; font-size:12px; color:#fff; background:#77818f; }

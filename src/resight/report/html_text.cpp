@@ -62,7 +62,7 @@ std::string percent(double share) {
 
 std::string duration(double seconds) {
   if (std::isnan(seconds)) return "–";
-  return seconds < 1.0 ? fmt::format("{:.{}f} ms", 1000 * seconds, seconds < 0.01 ? 1 : 0)
+  return seconds < 1.0 ? fmt::format("{:.{}f} ms", 1000 * seconds, seconds < 0.00995 ? 1 : 0)
                        : fmt::format("{:.2f} s", seconds);
 }
 

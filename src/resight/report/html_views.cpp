@@ -33,21 +33,21 @@ std::string verdict_cell(DetectionMark mark) {
 std::string detections_table(const ViewRecord& view, const ModelLibrary& library) {
   if (view.update.detections.empty()) return "<p class=\"soft\">Nothing recognised.</p>\n";
   const bool judged = view.evaluation.has_value();
-  std::string html =
-      "<table><thead><tr><th>Object</th><th class=\"n\">Track</th><th class=\"n\">Score</th><th "
-      "class=\"n\">Visible</th>"
-      "<th>Position in world, m</th><th>Rotation vector, °</th>";
-  html += judged ? "<th>Verdict</th></tr></thead><tbody>\n" : "</tr></thead><tbody>\n";
+  std::string html = "<table><thead><tr><th>Object</th>";
+  if (judged) html += "<th>Verdict</th>";
+  html +=
+      "<th class=\"n\">Track</th><th class=\"n\">Score</th><th class=\"n\">Visible</th>"
+      "<th>Position in world, m</th><th title=\"Rotation vector: the axis, as long as the angle\">Rotation, "
+      "°</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
     const Detection& detection = view.update.detections[i];
     fmt::format_to(std::back_inserter(html),
-                   "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
-                   "<td>{}</td><td>{}</td>{}</tr>\n",
-                   object_tag(detection.object, library),
+                   "<tr><td>{}</td>{}<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
+                   "<td>{}</td><td>{}</td></tr>\n",
+                   object_tag(detection.object, library), judged ? verdict_cell(view.marks.at(i)) : std::string(),
                    detection.track < 0 ? std::string("–") : fmt::format("#{}", detection.track),
                    number(detection.score, 2), percent(detection.visible_share),
-                   position_text(detection.world_from_object), rotation_text(detection.world_from_object),
-                   judged ? verdict_cell(view.marks.at(i)) : std::string());
+                   position_text(detection.world_from_object), rotation_text(detection.world_from_object));
   }
   return html + "</tbody></table>\n";
 }
@@ -56,7 +56,7 @@ std::string event_text(const ObjectEvent& event, const ModelLibrary& library) {
   const std::string kind = to_string(event.kind);
   std::string html = fmt::format("<li><span class=\"tag {0}\">{0}</span>{1} <span class=\"soft\">#{2}</span>", kind,
                                  object_tag(event.object, library), event.track);
-  if (event.world_from_object_before && event.world_from_object_after) {
+  if (event.kind == ObjectEventKind::kMoved && event.world_from_object_before && event.world_from_object_after) {
     const double distance_m =
         (event.world_from_object_after->translation - event.world_from_object_before->translation).norm();
     html += fmt::format(" by {:.1f} cm", 100 * distance_m);
