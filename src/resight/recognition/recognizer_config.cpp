@@ -82,10 +82,14 @@ void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
 void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
+                                  {"changes.tolerance_sigmas", &c.changes.tolerance_sigmas},
                                   {"changes.voxel_m", &c.changes.voxel_m},
                                   {"changes.occlusion_test", &c.changes.occlusion_test},
                                   {"changes.bin_size_rad", &c.changes.bin_size_rad},
                                   {"changes.occlusion_margin_m", &c.changes.occlusion_margin_m},
+                                  {"changes.occlusion_sigmas", &c.changes.occlusion_sigmas},
+                                  {"changes.window_radius_px", &c.changes.window_radius_px},
+                                  {"changes.require_return", &c.changes.require_return},
                                   {"changes.min_depth_m", &c.changes.min_depth_m},
                                   {"changes.max_depth_m", &c.changes.max_depth_m},
                                   {"changes.frustum_margin_rad", &c.changes.frustum_margin_rad},

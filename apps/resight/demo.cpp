@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "recognition_run.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/models/training.hpp"
+#include "resight/report/html_report.hpp"
+#include "resight/report/results.hpp"
+
+namespace resight::app {
+namespace {
+
+void print_table(const std::vector<ReportRun>& runs) {
+  fmt::print("\n{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "preset", "precision", "recall", "F", "ghosts",
+             "changes", "s a view");
+  for (const ReportRun& run : runs) {
+    const RunSummary s = summarize(run);
+    fmt::print("{:<10} {:>9.3f} {:>7.3f} {:>7.3f} {:>7} {:>8} {:>10.2f}\n", run.preset, s.score.precision(),
+               s.score.recall(), s.score.f_score(), s.num_ghosts, s.num_events, s.median_view_wall_s);
+  }
+  fmt::print("(true within 5 cm and 30 deg; ghost: an object reported at a place that it has left)\n\n");
+}
+
+}  // namespace
+
+// Everything through the same files and commands that a user has.
+void run_demo(const DemoArguments& arguments) {
+  if (std::filesystem::exists(arguments.out) && !std::filesystem::is_empty(arguments.out))
+    throw InputError(fmt::format("{}: is not empty (a new or empty folder was expected)", arguments.out.string()));
+  const std::filesystem::path data = arguments.out / "data";
+  const std::filesystem::path models = arguments.out / "models.resight";
+  run_simulate({.preset = "demo",
+                .script = {},
+                .out = data,
+                .format = "bop",
+                .seed = arguments.seed,
+                .num_threads = arguments.num_threads});
+  run_train({.inputs = {data / "models"}, .out = models, .num_threads = arguments.num_threads});
+
+  const ModelLibrary library = value_or_throw(load_library(models, TrainOptions{}.hash()));
+  const auto sequence = value_or_throw(open_sequence(data));
+  std::vector<ReportRun> runs;
+  for (const char* preset : {"mvr", "mvr-chd", "default"}) {
+    RecognizerConfig config = make_config(preset, std::nullopt, std::nullopt, arguments.num_threads);
+    config.set_seed(arguments.seed);
+    runs.push_back(recognize_sequence(library, *sequence, config, arguments.num_threads));
+    runs.back().sequence = data.string();
+    value_or_throw(write_results(arguments.out / preset, runs.back(), library));
+  }
+  const std::filesystem::path report = arguments.out / "report.html";
+  value_or_throw(write_report(report, "resight demo", runs, library));
+  print_table(runs);
+  fmt::print("report: {}\n", std::filesystem::absolute(report).string());
+}
+
+}  // namespace resight::app
