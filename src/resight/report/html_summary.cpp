@@ -103,7 +103,7 @@ std::string summary_section(std::span<const ReportRun> runs) {
   table.add_row("Views", [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_views); });
   table.add_row("Detections", [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_detections); });
   table.add_row("Objects added, moved or removed",
-                [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_changes); });
+                [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_events); });
   const bool judged = std::any_of(table.summaries.begin(), table.summaries.end(),
                                   [](const RunSummary& s) { return s.num_judged_views > 0; });
   if (judged) add_score_rows(table);

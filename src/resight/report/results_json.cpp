@@ -135,7 +135,7 @@ std::string format_summary_json(const ReportRun& run) {
   json["num_threads"] = unknown_if_zero(static_cast<std::size_t>(std::max(0, run.num_threads)));
   json["num_views"] = summary.num_views;
   json["num_detections"] = summary.num_detections;
-  json["num_changes"] = summary.num_changes;
+  json["num_changes"] = summary.num_events;
   json["mean_view_wall_s"] = summary.mean_view_wall_s;
   json["median_view_wall_s"] = summary.median_view_wall_s;
   json["stages"] = stage_times_json(summary.times, summary.num_views);

@@ -102,7 +102,7 @@ RunSummary summarize(const ReportRun& run) {
   for (const ViewRecord& view : run.views) {
     ++summary.num_views;
     summary.num_detections += static_cast<int>(view.update.detections.size());
-    summary.num_changes += count_changes(view.update.events);
+    summary.num_events += count_changes(view.update.events);
     summary.times.add(view.update.times);
     view_wall_s.push_back(view.update.times.total_wall_s());
     total_wall_s += view_wall_s.back();
@@ -112,7 +112,7 @@ RunSummary summarize(const ReportRun& run) {
     summary.strict_score += view.evaluation->strict_score;
     summary.num_ghosts += static_cast<int>(view.evaluation->ghosts.size());
   }
-  summary.num_changes += count_changes(run.final_events);
+  summary.num_events += count_changes(run.final_events);
   summary.mean_view_wall_s =
       summary.num_views == 0 ? std::numeric_limits<double>::quiet_NaN() : total_wall_s / summary.num_views;
   summary.median_view_wall_s = median(view_wall_s);

@@ -72,7 +72,7 @@ struct MakeViewRecordOptions {
 struct RunSummary {
   int num_views = 0;
   int num_detections = 0;
-  int num_changes = 0;       ///< Events added, moved and removed.
+  int num_events = 0;        ///< Changes of the scene: events added, moved and removed.
   int num_judged_views = 0;  ///< Views with ground truth; the scores are theirs.
   RecognitionScore score;
   RecognitionScore strict_score;
