@@ -14,11 +14,11 @@ struct DescriptorMatch {
 };
 
 struct DescriptorIndexOptions {
-  int num_cells = 0;        ///< Of the inverted file; 0 = about 4 sqrt(n); 1 = exact search.
-  int num_probes = 32;      ///< Cells looked into per query: recall against time.
-  int exact_below = 8192;   ///< Smaller sets are searched exactly.
-  std::uint64_t seed = 1;   ///< Of the k-means start.
-  int num_threads = 1;      ///< For building and searching. Same bits for any value >= 1.
+  int num_cells = 0;       ///< Of the inverted file; 0 = about 4 sqrt(n); 1 = exact search.
+  int num_probes = 32;     ///< Cells looked into per query: recall against time.
+  int exact_below = 8192;  ///< Smaller sets are searched exactly.
+  std::uint64_t seed = 1;  ///< Of the k-means start.
+  int num_threads = 1;     ///< For building and searching. Same bits for any value >= 1.
   void check() const;
 };
 

@@ -14,10 +14,10 @@ enum class FeatureType : std::uint8_t { kSift = 0, kShot = 1 };
 /// Keypoints with descriptors, n of them, in one frame (camera when extracted, object in a model), metres.
 struct FeatureSet {
   FeatureType type = FeatureType::kSift;
-  int dimension = 0;                      ///< 128 (SIFT) or 352 (SHOT).
+  int dimension = 0;  ///< 128 (SIFT) or 352 (SHOT).
   std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;   ///< Unit, as long as points.
-  std::vector<float> descriptors;         ///< n x dimension, row by row, each of unit L2 norm, finite.
+  std::vector<Eigen::Vector3f> normals;  ///< Unit, as long as points.
+  std::vector<float> descriptors;        ///< n x dimension, row by row, each of unit L2 norm, finite.
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] std::span<const float> descriptor(std::size_t i) const {

@@ -9,12 +9,13 @@ struct SiftOptions {
   double contrast_threshold = 0.03;  ///< OpenCV's convention; the paper's code uses 0.03.
   double edge_threshold = 10.0;
   int num_octave_layers = 3;
-  bool root_sift = false;            ///< Arandjelovic & Zisserman 2012: L1-normalise, then square root. Presets decide.
+  bool root_sift = false;  ///< Arandjelovic & Zisserman 2012: L1-normalise, then square root. Presets decide.
   void check() const;
 };
 
-/// SIFT at the DoG keypoints (Lowe 2004, by OpenCV) of the grey image that have depth and a normal at the nearest pixel
-/// (and lie in `mask`, if given: the camera's size, non-zero = use). Camera frame.
+/// SIFT at the DoG keypoints (Lowe 2004, by OpenCV, its quarter-pixel shift undone) of the grey image that have depth
+/// and a normal at the nearest pixel (and lie in `mask`, if given: the camera's size, non-zero = use). A point lies on
+/// the ray of its sub-pixel position, at the depth of the nearest pixel. Camera frame; in order of v, then u.
 [[nodiscard]] FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options = {},
                                       const Image<std::uint8_t>* mask = nullptr);
 

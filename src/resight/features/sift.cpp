@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/features/sift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <tuple>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kDimension = 128;
+// OpenCV halves the coordinates found in the doubled image, whose pixel centres lie at (u - 0.5) / 2 of the image: its
+// keypoints are a quarter of a pixel too far right and down (measured on blobs at known places, 4.6).
+constexpr double kDoublingShiftPx = 0.25;
+
+cv::Mat grey_image(const Image<Rgb8>& color) {
+  static_assert(sizeof(Rgb8) == 3);
+  // OpenCV has no view of constant data; it only reads.
+  const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data().data()));
+  cv::Mat grey;
+  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+/// Where a keypoint may lie: given to the detector, so that no time is spent on describing others.
+cv::Mat usable_pixels(const OrganizedCloud& cloud, const Image<std::uint8_t>* mask) {
+  cv::Mat usable(cloud.height(), cloud.width(), CV_8UC1);
+  for (int v = 0; v < cloud.height(); ++v) {
+    auto* row = usable.ptr<std::uint8_t>(v);
+    for (int u = 0; u < cloud.width(); ++u) {
+      const std::size_t i = cloud.z.index(u, v);
+      row[u] = cloud.has_normal(i) && (mask == nullptr || (*mask)[i] != 0) ? 255 : 0;
+    }
+  }
+  // With the shift of OpenCV's keypoints the pixel right of (below) the nearest one may be asked for.
+  cv::dilate(usable, usable, cv::Mat::ones(2, 2, CV_8UC1), cv::Point(1, 1));
+  return usable;
+}
+
+/// Rows of keypoints in a total order of their own, whatever order the detector's threads left them in.
+std::vector<int> reading_order(const std::vector<cv::KeyPoint>& keypoints) {
+  std::vector<int> order(keypoints.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  const auto key = [&](int i) {
+    const cv::KeyPoint& k = keypoints[i];
+    return std::make_tuple(k.pt.y, k.pt.x, k.size, k.angle, k.octave, k.response);
+  };
+  std::ranges::stable_sort(order, [&](int a, int b) { return key(a) < key(b); });
+  return order;
+}
+
+/// Scales a descriptor to unit L2 norm (RootSIFT: by L1 norm and square root). False if it is zero.
+bool normalize(bool root_sift, std::span<float> descriptor) {
+  double sum = 0;
+  for (const float x : descriptor) sum += root_sift ? x : static_cast<double>(x) * x;  // SIFT holds no negative values
+  if (!(sum > 0)) return false;
+  for (float& x : descriptor) x = static_cast<float>(root_sift ? std::sqrt(x / sum) : x / std::sqrt(sum));
+  return true;
+}
+
+}  // namespace
+
+void SiftOptions::check() const {
+  check_not_negative("SiftOptions.contrast_threshold", contrast_threshold);
+  check_positive("SiftOptions.edge_threshold", edge_threshold);
+  check_in_range("SiftOptions.num_octave_layers", num_octave_layers, 1, 20);
+}
+
+FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, const Image<std::uint8_t>* mask) {
+  options.check();
+  const OrganizedCloud& cloud = view.cloud;
+  const Image<Rgb8>& color = view.frame.color;
+  require(color.width() == cloud.width() && color.height() == cloud.height(),
+          "extract_sift: the colour image has not the cloud's size");
+  require(mask == nullptr || (mask->width() == cloud.width() && mask->height() == cloud.height()),
+          "extract_sift: the mask has not the camera's size");
+  FeatureSet features;
+  features.type = FeatureType::kSift;
+  features.dimension = kDimension;
+  if (color.empty()) return features;
+
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors;
+  cv::SIFT::create(0, options.num_octave_layers, options.contrast_threshold, options.edge_threshold)
+      ->detectAndCompute(grey_image(color), usable_pixels(cloud, mask), keypoints, descriptors);
+  for (const int row : reading_order(keypoints)) {
+    const double u = keypoints[row].pt.x - kDoublingShiftPx;
+    const double v = keypoints[row].pt.y - kDoublingShiftPx;
+    const int nearest_u = static_cast<int>(std::lround(u));
+    const int nearest_v = static_cast<int>(std::lround(v));
+    if (!cloud.z.contains(nearest_u, nearest_v)) continue;
+    const std::size_t pixel = cloud.z.index(nearest_u, nearest_v);
+    if (!cloud.has_normal(pixel) || (mask != nullptr && (*mask)[pixel] == 0)) continue;
+    const auto* values = descriptors.ptr<float>(row);
+    const std::size_t begin = features.descriptors.size();
+    features.descriptors.insert(features.descriptors.end(), values, values + kDimension);
+    if (!normalize(options.root_sift, std::span(features.descriptors).subspan(begin))) {
+      features.descriptors.resize(begin);
+      continue;
+    }
+    features.points.push_back(view.frame.camera.unproject(u, v, cloud.z[pixel]).cast<float>());
+    features.normals.push_back(cloud.normal(pixel));
+  }
+  return features;
+}
+
+}  // namespace resight
