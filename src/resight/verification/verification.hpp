@@ -11,65 +11,122 @@
 
 namespace resight {
 
+/// What a scene point costs that several accepted hypotheses explain.
+enum class DuplicityRule : std::uint8_t {
+  kBeyondBest,  ///< All weights but the largest. Ours: what touches another object pays only for the overlap.
+  kAllWeights,  ///< All weights, the largest included (V4R's mode 2): such a point is worse than an unexplained one.
+};
+
 /// Options of the global verification (paper [11], as in V4R's GO3D; reference values from there).
 struct VerifyOptions {
-  double resolution_m = 0.005;          ///< Models and scene are thinned to this.
-  double inlier_distance_m = 0.015;     ///< A scene point explains a model point within this.
-  double occlusion_margin_m = 0.02;     ///< A model point farther than the depth image by more than this is hidden.
+  double resolution_m = 0.005;       ///< Models and scene are thinned to this.
+  double inlier_distance_m = 0.015;  ///< A scene point explains a model point within this.
+  double occlusion_margin_m = 0.02;  ///< A model point farther than the depth image by more than this is hidden.
   double outlier_weight = 1.0;
-  double duplicity_weight = 1.0;        ///< Scene points explained twice.
+  double duplicity_weight = 1.0;  ///< Scene points explained twice, at most 1000.
+  DuplicityRule duplicity_rule = DuplicityRule::kBeyondBest;
   double clutter_radius_m = 0.03;
-  double clutter_weight = 1.0;
-  double occupancy_weight = 2.0;        ///< Voxels filled by two objects.
+  double clutter_weight = 1.0;  ///< Of an unexplained point in the smooth segment of an explained one.
+  double near_clutter_weight =
+      1.0;  ///< Of one in no segment, times (1 - d^2/r^2) max(0, n_p n_q); in another segment: none.
+  double occupancy_weight = 2.0;  ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
-  double color_sigma_l = 0.6;
-  double color_sigma_ab = 0.6;
+  double color_sigma_l = 0.6;   ///< Of (L - 50)/50, after the exposure is adapted.
+  double color_sigma_ab = 0.6;  ///< Of a/128, b/128.
+  double max_l_shift = 0.3;     ///< Exposure: the model's mean L is shifted by at most this (scaled L)...
+  double max_l_gain = 1.5;      ///< ...and its contrast by this factor at most. A black object never turns white.
   bool use_planes = true;
-  int min_plane_points = 5000;          ///< At the resolution of a full view; scaled with the reconstruction's.
-  double plane_distance_m = 0.02;
-  double smooth_angle_rad = 0.25;       ///< Smooth segments: neighbours' normals differ by less.
+  int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
+  double plane_distance_m = 0.01;     ///< V4R: 2 cm, which swallows boxes that lie flat.
+  double plane_angle_rad = 0.523599;  ///< Normals of a plane's points deviate by less (V4R: 30 deg).
+  double plane_weight = 0.8;          ///< How well a plane explains its points (V4R: 0.8, half of it with colour).
+  double smooth_angle_rad = 0.25;     ///< Smooth segments: neighbours' normals differ by less.
   double smooth_distance_m = 0.01;
   int min_smooth_points = 100;
-  double max_smooth_curvature = 0.04;
-  int max_moves = 5000;                 ///< Of the local search: a budget in steps.
-  int min_visible_points = 20;          ///< Fewer visible model points: no evidence, rejected.
+  double max_smooth_curvature = 0.04;  ///< 1 - |mean normal| within smooth_distance_m.
+  double min_facing = 0.1;             ///< Cosine between normal and viewing ray from which a model point can be seen.
+  double steep_angle_rad = 1.0472;     ///< Outliers seen more steeply than this (V4R: 60 deg)...
+  double steep_weight = 0.1;           ///< ...count only this much (V4R: 0.1): depth is worst there.
+  double min_inlier_weight = 0.8;  ///< Distance times colour weight from which a model point is explained (V4R: 0.8).
+  double max_inlier_angle_rad = 1.0472;  ///< ...by a scene point whose normal deviates by less.
+  double max_seen_through_share = 0.5;   ///< A point that more of the views seeing it look through is an outlier,
+                                        ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
+  int max_moves = 5000;               ///< Accepted moves of the local search, per component: a budget in steps.
+  int max_exact_hypotheses = 12;      ///< Components up to this size (at most 20) are solved exactly.
+  int min_shared_points = 10;         ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
+  int min_visible_points = 20;        ///< Fewer visible model points: no evidence, rejected.
+  double min_visible_share = 0.1;     ///< As later V4R: less of the model visible is rejected...
+  double min_explained_share = 0.35;  ///< ...and less of the visible points explained too. 0 turns either off.
   std::uint64_t seed = 1;
-  int num_threads = 1;                  ///< Same bits for any value >= 1.
+  int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
 };
 
 /// A view that hypotheses are checked in.
 struct VerificationView {
-  const PreparedView* view = nullptr;   ///< As used for the reconstruction (removed points cleared).
+  const PreparedView* view = nullptr;  ///< As used for the reconstruction (removed points cleared).
 };
+
+/// Why a hypothesis was accepted or not.
+enum class Verdict : std::uint8_t {
+  kAccepted,
+  kTooFewVisible,  ///< min_visible_points or min_visible_share not reached: hidden, outside, or the mask allows no
+                   ///< view.
+  kNoSupport,      ///< Less than min_explained_share of the visible points is explained.
+  kOutvoted,       ///< Pays off alone, but not beside `outvoted_by`.
+  kCost,           ///< Costs more than it explains even alone (outliers, clutter, planes).
+};
+
+/// Short lower-case name for reports.
+[[nodiscard]] const char* to_string(Verdict verdict);
 
 /// What speaks for and against one hypothesis.
 struct HypothesisEvidence {
   bool accepted = false;
-  double score = 0;             ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour).
-  double visible_share = 0;     ///< Visible / all model points.
-  int num_visible = 0;          ///< Model points visible in at least one allowed view.
-  int num_explained = 0;        ///< Of these, inliers.
-  double explained_scene = 0;   ///< Sum of weights of the scene points it explains.
+  double score = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
+                     ///< each weighted by how well; steep ones count little.
+  double visible_share = 0;    ///< Visible / all model points.
+  int num_visible = 0;         ///< Model points visible in at least one allowed view.
+  int num_explained = 0;       ///< Of these, inliers.
+  double explained_scene = 0;  ///< Sum of weights of the scene points it explains, without those of a plane.
   double outlier_cost = 0;
   std::vector<float> visible_share_per_view;    ///< One per view; 0 where the presence mask excludes it.
-  std::vector<float> explained_share_per_view;  ///< Of the visible points in that view, those with an inlier.
+  std::vector<float> explained_share_per_view;  ///< Of the visible points in that view, those with an inlier and not
+                                                ///< looked through by that view.
+  double explained_share =
+      0;  ///< Inliers / visible points, steep ones counting steep_weight: what min_explained_share tests.
+  double clutter_cost = 0;  ///< Alone: unexplained rest of the segments that it explains in part.
+  double plane_cost = 0;    ///< Points of planes that it claims, and model points on the far side of a plane.
+  double cost_alone = 0;    ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
+  Verdict verdict = Verdict::kTooFewVisible;
+  int outvoted_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
 };
 
 struct VerifyResult {
-  std::vector<HypothesisEvidence> evidence;   ///< One per hypothesis.
-  double cost = 0;                            ///< Of the chosen set; the empty set costs 0.
-  int num_moves = 0;                          ///< Accepted moves of the local search.
+  std::vector<HypothesisEvidence> evidence;  ///< One per hypothesis.
+  double cost = 0;                           ///< Of the chosen set; the empty set costs 0.
+  int num_moves = 0;                         ///< Accepted moves of the local search.
   int num_planes = 0;
   int num_segments = 0;
+  int num_components = 0;  ///< Sets of hypotheses that share no scene point and no voxel: chosen independently.
+  bool is_optimal = true;  ///< Every component was solved exactly.
 };
 
-/// Chooses the set of hypotheses that explains the scene best (binary cost of [11], local search with activate, deactivate and replace moves).
-/// `present`: views x hypotheses (view-major), non-zero where the change detection says that the object may be present; empty = everywhere.
-/// A model point counts as visible if one allowed view sees it (its own back and self-occluded parts do not count). Scene and views in the world frame.
-[[nodiscard]] VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const PointCloud& scene_in_world,
-                                             std::span<const VerificationView> views, std::span<const std::uint8_t> present, const VerifyOptions& options = {});
+/// Chooses the set of hypotheses that explains the scene best (binary cost of [11], local search with activate,
+/// deactivate and replace moves). `present`: views x hypotheses (view-major), non-zero where the change detection says
+/// that the object may be present; empty = everywhere. A model point counts as visible if one allowed view sees it (its
+/// own back and self-occluded parts do not count). Scene and views in the world frame.
+///
+/// Minimises J = -( E - r Out - Dup - Clut - w Occ - p |x| - Plane ). Deviations from V4R, each because the published
+/// form fails where our tests look: small components are solved exactly; planes are always active, and count against a
+/// hypothesis only where they are larger than its object; Occ is summed over pairs and does not count voxels whose
+/// normals oppose (contact). A model or a scene without colours is judged by its shape, without normals by distance and
+/// colour. Throws std::invalid_argument for bad options, a null view, a wrong size of `present`, an unknown object or a
+/// pose that is not rigid. Non-finite scene points are ignored.
+[[nodiscard]] VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                                             const PointCloud& scene_in_world, std::span<const VerificationView> views,
+                                             std::span<const std::uint8_t> present, const VerifyOptions& options = {});
 
 }  // namespace resight

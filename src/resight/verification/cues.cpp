@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/cues.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "resight/verification/local_scene.hpp"
+
+namespace resight {
+namespace {
+
+constexpr float kMinWeight = 0.05F;
+
+// Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
+// 0.
+float angle_of(float dot) {
+  const float x = std::min(dot, 1.0F);
+  return std::sqrt(1 - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - 0.0187293F * x)));
+}
+
+// A visible model point and a scene point within the inlier distance.
+struct Match {
+  int visible;  // Position in ModelVisibility::visible.
+  int local;    // Index into the LocalScene.
+  float distance_sq;
+};
+
+// Works out the cues of one hypothesis step by step. Everything in the world frame.
+class CueComputer {
+ public:
+  CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+              const VerifyOptions& options)
+      : model_(model),
+        scene_(scene),
+        options_(options),
+        use_normals_(!model.normals.empty() && !scene.normals.empty()),
+        use_color_(!model.lab.empty() && !scene.lab.empty()) {
+    const Rigid3f motion(world_from_object);
+    points_.reserve(model.points.size());
+    normals_.reserve(model.normals.size());
+    for (const Eigen::Vector3f& p : model.points) points_.push_back(motion * p);
+    for (const Eigen::Vector3f& n : model.normals) normals_.push_back(motion.rotation * n);
+  }
+
+  HypothesisCues run(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
+    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+    cues_.state.assign(points_.size(), ModelPointState::kNotVisible);
+    if (!visibility_.visible.empty()) {
+      std::vector<Eigen::Vector3f> visible_points;
+      visible_points.reserve(visibility_.visible.size());
+      for (const int i : visibility_.visible) visible_points.push_back(points_[i]);
+      const float inlier_distance = static_cast<float>(options_.inlier_distance_m);
+      const LocalScene local(scene_.points, scene_.blocks, visible_points,
+                             inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
+      find_matches(local);
+      fit_exposure_of_matches(local);
+      weigh_matches(local);
+      classify_model_points();
+      claim_scene_points(local);
+      find_clutter(local);
+      add_pierced_planes();
+    }
+    fill_evidence(views.size());
+    return std::move(cues_);
+  }
+
+ private:
+  void find_matches(const LocalScene& local) {
+    matches_.reserve(visibility_.visible.size() * 24);
+    for (std::size_t v = 0; v < visibility_.visible.size(); ++v)
+      local.visit_within(points_[visibility_.visible[v]], static_cast<float>(options_.inlier_distance_m),
+                         [&](std::size_t q, float distance_sq) {
+                           matches_.push_back({static_cast<int>(v), static_cast<int>(q), distance_sq});
+                           return true;
+                         });
+  }
+
+  // Cosine between the normals of a match; 1 where there are none.
+  float normal_dot(const Match& m, const LocalScene& local) const {
+    return use_normals_ ? normals_[visibility_.visible[m.visible]].dot(scene_.normals[local.scene_index(m.local)])
+                        : 1.0F;
+  }
+
+  // From each visible point and its nearest scene point of similar normal.
+  void fit_exposure_of_matches(const LocalScene& local) {
+    if (!use_color_) return;
+    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
+    std::vector<float> model_l;
+    std::vector<float> scene_l;
+    for (std::size_t i = 0; i < matches_.size();) {
+      const Match* nearest = nullptr;
+      const int v = matches_[i].visible;
+      for (; i < matches_.size() && matches_[i].visible == v; ++i)
+        if (normal_dot(matches_[i], local) >= min_dot &&
+            (nearest == nullptr || matches_[i].distance_sq < nearest->distance_sq))
+          nearest = &matches_[i];
+      if (nearest == nullptr) continue;
+      model_l.push_back(model_.lab[visibility_.visible[v]].l);
+      scene_l.push_back(scene_.lab[local.scene_index(nearest->local)].l);
+    }
+    exposure_ = fit_exposure(model_l, scene_l, static_cast<float>(options_.max_l_shift),
+                             static_cast<float>(options_.max_l_gain));
+  }
+
+  // -log of the colour similarity.
+  float color_exponent(const Match& m, const LocalScene& local) const {
+    if (!use_color_) return 0;
+    const LabColor& p = model_.lab[visibility_.visible[m.visible]];
+    const LabColor& q = scene_.lab[local.scene_index(m.local)];
+    const float dl = exposure_(p.l) - q.l;
+    const float da = p.a - q.a;
+    const float db = p.b - q.b;
+    return dl * dl * inverse_color_l_ + (da * da + db * db) * inverse_color_ab_;
+  }
+
+  void weigh_matches(const LocalScene& local) {
+    const auto quarter_inverse_sq = [](double sigma) { return static_cast<float>(1 / (4 * sigma * sigma)); };
+    inverse_color_l_ = quarter_inverse_sq(options_.color_sigma_l);
+    inverse_color_ab_ = quarter_inverse_sq(options_.color_sigma_ab);
+    const float t = static_cast<float>(options_.inlier_distance_m);
+    const float wide = t + static_cast<float>(options_.resolution_m);
+    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
+    scene_weight_.assign(local.size(), 0);
+    fit_exponent_.assign(visibility_.visible.size(), std::numeric_limits<float>::infinity());
+    for (const Match& m : matches_) {
+      const float dot = normal_dot(m, local);
+      if (dot <= 0) continue;
+      const float color = color_exponent(m, local);
+      if (dot >= min_dot)
+        fit_exponent_[m.visible] = std::min(fit_exponent_[m.visible], m.distance_sq / (2 * wide * wide) + color);
+      const float upright = 1 - angle_of(dot) * (2 / std::numbers::pi_v<float>);
+      if (upright <= scene_weight_[m.local]) continue;  // The exponential is at most 1.
+      scene_weight_[m.local] =
+          std::max(scene_weight_[m.local], upright * std::exp(-m.distance_sq / (2 * t * t) - color));
+    }
+  }
+
+  void classify_model_points() {
+    const float steep_cosine = static_cast<float>(std::cos(options_.steep_angle_rad));
+    double sum_weight = 0;
+    double sum_explained = 0;
+    double sum_fit = 0;
+    for (std::size_t v = 0; v < visibility_.visible.size(); ++v) {
+      const double weight = visibility_.facing[v] < steep_cosine ? options_.steep_weight : 1.0;
+      const double fit = std::exp(-static_cast<double>(fit_exponent_[v]));
+      const bool explained = fit > options_.min_inlier_weight && visibility_.seen_through[v] == 0;
+      sum_weight += weight;
+      if (explained) {
+        ++cues_.evidence.num_explained;
+        sum_explained += weight;
+        sum_fit += weight * fit;
+      } else {
+        cues_.evidence.outlier_cost += options_.outlier_weight * weight;
+      }
+      cues_.state[visibility_.visible[v]] = explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
+    }
+    if (sum_weight > 0) {
+      cues_.evidence.explained_share = sum_explained / sum_weight;
+      cues_.evidence.score = sum_fit / sum_weight;
+    }
+  }
+
+  // A plane no larger than the object may be the object's own face.
+  bool is_background(int scene_point) const {
+    const int plane = scene_.plane[scene_point];
+    return plane >= 0 && scene_.planes[plane].extent_m > 1.2F * model_.diameter_m;
+  }
+
+  void claim_scene_points(const LocalScene& local) {
+    const double plane_weight = options_.plane_weight * (use_color_ ? 0.5 : 1.0);
+    for (std::size_t q = 0; q < local.size(); ++q) {
+      const float weight = scene_weight_[q];
+      if (weight < kMinWeight) continue;
+      if (is_background(local.scene_index(q))) {
+        cues_.evidence.plane_cost += std::min<double>(weight, plane_weight);
+      } else {
+        cues_.explained.push_back({local.scene_index(q), weight});
+        cues_.evidence.explained_scene += weight;
+      }
+    }
+    std::sort(cues_.explained.begin(), cues_.explained.end(),
+              [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
+  }
+
+  // Cost of leaving q unexplained beside the explained points around it.
+  float clutter_weight(const LocalScene& local, std::size_t q) const {
+    const int scene_q = local.scene_index(q);
+    const int segment = scene_.segment[scene_q];
+    const float radius = static_cast<float>(options_.clutter_radius_m);
+    const float near_weight = static_cast<float>(options_.near_clutter_weight);
+    float weight = 0;
+    local.visit_within(local.point(q), radius, [&](std::size_t p, float distance_sq) {
+      const int scene_p = local.scene_index(p);
+      if (scene_weight_[p] < kMinWeight || is_background(scene_p)) return true;
+      if (segment >= 0 && scene_.segment[scene_p] == segment) {
+        weight = static_cast<float>(options_.clutter_weight);
+        return false;  // Nothing else can be said of it.
+      }
+      if (segment <
+          0) {  // A segment that is not explained at all is another surface, such as what the object stands on.
+        const float dot = std::max(0.0F, scene_.normals[scene_p].dot(scene_.normals[scene_q]));
+        weight = std::max(weight, near_weight * dot * (1 - distance_sq / (radius * radius)));
+      }
+      return true;
+    });
+    return weight;
+  }
+
+  void find_clutter(const LocalScene& local) {
+    if (scene_.normals.empty() || cues_.explained.empty()) return;
+    for (std::size_t q = 0; q < local.size(); ++q) {
+      if (scene_weight_[q] >= kMinWeight || is_background(local.scene_index(q))) continue;
+      const float weight = clutter_weight(local, q);
+      if (weight < kMinWeight) continue;
+      cues_.clutter.push_back({local.scene_index(q), weight});
+      cues_.evidence.clutter_cost += weight;
+    }
+    std::sort(cues_.clutter.begin(), cues_.clutter.end(),
+              [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
+  }
+
+  // The smaller of the two parts that a plane cuts the model into, over the part of the plane that was seen.
+  void add_pierced_planes() {
+    const float clearance = static_cast<float>(options_.inlier_distance_m);
+    for (const ScenePlane& plane : scene_.planes) {
+      if (plane.extent_m <= 1.2F * model_.diameter_m) continue;
+      int above = 0;
+      int below = 0;
+      for (const Eigen::Vector3f& p : points_) {
+        const float distance = plane.signed_distance(p);
+        if (std::abs(distance) <= clearance || !plane.covers(p)) continue;
+        ++(distance > 0 ? above : below);
+      }
+      cues_.evidence.plane_cost += std::min(above, below);
+    }
+  }
+
+  void fill_evidence(std::size_t num_views) {
+    HypothesisEvidence& evidence = cues_.evidence;
+    evidence.num_visible = static_cast<int>(visibility_.visible.size());
+    evidence.visible_share =
+        points_.empty() ? 0 : static_cast<double>(evidence.num_visible) / static_cast<double>(points_.size());
+    evidence.visible_share_per_view.assign(num_views, 0);
+    evidence.explained_share_per_view.assign(num_views, 0);
+    for (std::size_t view = 0; view < num_views; ++view) {
+      int visible = 0;
+      int explained = 0;
+      for (std::size_t i = 0; i < visibility_.sight[view].size(); ++i) {
+        const Sight sight = visibility_.sight[view][i];
+        if (sight == Sight::kHidden) continue;
+        ++visible;
+        if (sight == Sight::kConsistent && cues_.state[i] == ModelPointState::kExplained) ++explained;
+      }
+      if (visible == 0) continue;
+      evidence.visible_share_per_view[view] = static_cast<float>(visible) / static_cast<float>(points_.size());
+      evidence.explained_share_per_view[view] = static_cast<float>(explained) / static_cast<float>(visible);
+    }
+  }
+
+  const PreparedModel& model_;
+  const PreparedScene& scene_;
+  const VerifyOptions& options_;
+  bool use_normals_;
+  bool use_color_;
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<Eigen::Vector3f> normals_;
+  ModelVisibility visibility_;
+  std::vector<Match> matches_;  // Those of one visible point stand side by side.
+  ExposureMap exposure_;
+  float inverse_color_l_ = 0;
+  float inverse_color_ab_ = 0;
+  std::vector<float> scene_weight_;  // Per local scene point.
+  std::vector<float> fit_exponent_;  // Per visible point: -log of its best fit.
+  HypothesisCues cues_;
+};
+
+}  // namespace
+
+HypothesisCues compute_cues(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+                            std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
+                            const VerifyOptions& options) {
+  return CueComputer(model, world_from_object, scene, options).run(views, allowed);
+}
+
+}  // namespace resight

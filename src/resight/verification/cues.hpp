@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "resight/verification/scene_preparation.hpp"
+#include "resight/verification/visibility.hpp"
+
+namespace resight {
+
+/// A scene point with a weight.
+struct WeightedPoint {
+  int point = -1;
+  float weight = 0;
+};
+
+/// What the scene says about one model point.
+enum class ModelPointState : std::uint8_t { kNotVisible, kExplained, kOutlier };
+
+/// The cues of one hypothesis, before any choice between hypotheses.
+struct HypothesisCues {
+  HypothesisEvidence evidence;  ///< All but what only the choice decides.
+  std::vector<WeightedPoint>
+      explained;  ///< Scene points that it explains, weight in (0, 1]; ascending; none that a plane claims.
+  std::vector<WeightedPoint> clutter;  ///< Scene points that it leaves unexplained and should not; ascending.
+  std::vector<ModelPointState> state;  ///< Per model point.
+};
+
+/// Cues of a model at its pose. `allowed`: per view, non-zero = the object may be present there.
+///
+/// Scene point q is explained with the largest weight over visible model points p within t = inlier_distance_m:
+///   exp(-d^2 / 2t^2) * colour(p, q) * max(0, 1 - angle(n_p, n_q) / 90 deg),
+///   colour = exp(-1/2 (dl^2 / 2 sigma_l^2 + (da^2 + db^2) / 2 sigma_ab^2));
+/// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
+/// exceeds min_inlier_weight for a scene point within t and max_inlier_angle_rad, and most views do not look through
+/// it. Points of a plane larger than the object cost min(weight, plane_weight) instead of being explained.
+[[nodiscard]] HypothesisCues compute_cues(const PreparedModel& model, const Rigid3& world_from_object,
+                                          const PreparedScene& scene, std::span<const DepthView> views,
+                                          std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+
+}  // namespace resight

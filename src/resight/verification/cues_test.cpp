@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/cues.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "resight/verification/analytic_scene_test_util.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+
+TEST(FillSmallHoles, FillsSinglePixelsOnly) {
+  Image<float> depth(20, 20, 1.0F);
+  depth(5, 5) = kNan;
+  for (int v = 10; v < 14; ++v)
+    for (int u = 10; u < 14; ++u) depth(u, v) = kNan;
+  for (int v = 0; v < 20; ++v)
+    for (int u = 0; u < 6; ++u)
+      if (depth(u, v) == 1.0F && u == 4) depth(u, v) = 1.2F;
+  const Image<float> filled = fill_small_holes(depth);
+  EXPECT_EQ(filled(5, 5), 1.0F);
+  for (const int i : {10, 13})
+    for (int j = 11; j < 13; ++j) {
+      EXPECT_TRUE(std::isnan(filled(i, j)));
+      EXPECT_TRUE(std::isnan(filled(j, i)));
+    }
+  EXPECT_EQ(filled(10, 10), 1.0F);  // A hole's convex corner: five neighbours.
+  EXPECT_EQ(filled(0, 0), 1.0F);
+}
+
+struct SmallCase {
+  Solid solid{Shape::kBox, {0.08, 0.06, 0.1}, checks({200, 50, 40}, {40, 50, 200}, 0.03), on_table(0, 0, 0.05, 0.3)};
+  Solid occluder{Shape::kBox, {0.05, 0.05, 0.06}, plain({90, 90, 90}), on_table(0.12, 0, 0.03)};
+  World world{.solids = {solid, occluder}};
+  std::vector<PreparedView> views = render_all(world, circle_of_cameras(3));
+  std::vector<VerificationView> refs = references(views);
+  VerifyOptions options;
+  PreparedModel model = prepare_model(make_model("box", solid), options);
+  PreparedScene scene = prepare_scene(merge(views), options);
+  std::vector<DepthView> depth_views = prepare_depth_views(refs, 1);
+  std::vector<std::uint8_t> everywhere = std::vector<std::uint8_t>(3, 1);
+
+  std::vector<Eigen::Vector3f> points_at(const Rigid3& pose) const {
+    std::vector<Eigen::Vector3f> points;
+    for (const Eigen::Vector3f& p : model.points) points.push_back(Rigid3f(pose) * p);
+    return points;
+  }
+  std::vector<Eigen::Vector3f> normals_at(const Rigid3& pose) const {
+    std::vector<Eigen::Vector3f> normals;
+    for (const Eigen::Vector3f& n : model.normals) normals.push_back(Rigid3f(pose).rotation * n);
+    return normals;
+  }
+};
+
+// What a view must see of a point of the box, by casting the ray to it.
+Sight expected_sight(const SmallCase& c, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const PreparedView& view) {
+  const Rigid3& world_from_camera = view.frame.world_from_camera;
+  const Eigen::Vector3d in_camera = world_from_camera.inverse() * p;
+  if ((world_from_camera.translation - p).normalized().dot(n) < c.options.min_facing) return Sight::kHidden;
+  const Eigen::Vector2d pixel = view.frame.camera.project(in_camera);
+  if (!view.frame.camera.contains(pixel)) return Sight::kHidden;
+  const float depth = view.cloud.z(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  if (std::isnan(depth) || in_camera.z() - depth > c.options.occlusion_margin_m) return Sight::kHidden;
+  return depth - in_camera.z() > c.options.occlusion_margin_m ? Sight::kSeenThrough : Sight::kConsistent;
+}
+
+TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
+  const SmallCase c;
+  // A convex model hides itself by its back faces alone; so its z-buffer must not take anything away.
+  for (const Rigid3& pose : {c.solid.world_from_object, on_table(0.04, 0.05, 0.06, 0.5), on_table(0.1, 0, 0.05, 0.1)}) {
+    const auto points = c.points_at(pose);
+    const auto normals = c.normals_at(pose);
+    const ModelVisibility found = find_visible_points(points, normals, c.depth_views, c.everywhere, c.options);
+    int wrong = 0;
+    std::array<int, 3> count{};
+    std::vector<std::uint8_t> visible(points.size(), 0);
+    for (std::size_t v = 0; v < 3; ++v)
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Sight expected = expected_sight(c, points[i].cast<double>(), normals[i].cast<double>(), c.views[v]);
+        if (found.sight[v][i] != expected) ++wrong;
+        ++count[static_cast<std::size_t>(expected)];
+        if (found.sight[v][i] != Sight::kHidden) visible[i] = 1;
+      }
+    EXPECT_GT(count[0], 500);
+    EXPECT_GT(count[1], 150);
+    EXPECT_LT(wrong, 0.005 * static_cast<double>(3 * points.size()));  // Rounding at pixel borders, corner normals.
+    EXPECT_EQ(static_cast<long>(found.visible.size()), std::count(visible.begin(), visible.end(), 1));
+  }
+}
+
+TEST(FindVisiblePoints, AModelHidesItself) {
+  // Two parallel boards, the rear one 10 cm behind, and nothing else in the world but a wall far behind.
+  const Camera camera = test_camera();
+  DepthView view{camera, Rigid3::identity(), Image<float>(camera.width, camera.height, 3.0F)};
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (int i = -10; i <= 10; ++i)
+    for (int j = -10; j <= 10; ++j)
+      for (const float z : {0.8F, 0.9F}) {
+        points.emplace_back(0.005F * static_cast<float>(i) + (z > 0.85F ? 0.05F : 0.0F), 0.005F * static_cast<float>(j),
+                            z);
+        normals.emplace_back(0, 0, -1);
+      }
+  const std::vector<DepthView> views = {view};
+  const std::vector<std::uint8_t> allowed = {1};
+  const ModelVisibility found = find_visible_points(points, normals, views, allowed, {});
+  int rear_seen = 0;
+  int rear_hidden = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f& p = points[i];
+    if (p.z() < 0.85F) {
+      EXPECT_EQ(found.sight[0][i], Sight::kSeenThrough);
+      continue;
+    }
+    const float x_on_front = p.x() * 0.8F / 0.9F;  // Where its ray meets the front board, whose edge is at 5 cm.
+    if (std::abs(x_on_front - 0.05F) < 0.01F) continue;
+    (found.sight[0][i] == Sight::kHidden ? rear_hidden : rear_seen) += 1;
+    EXPECT_EQ(found.sight[0][i] == Sight::kHidden, x_on_front < 0.05F);
+  }
+  EXPECT_GT(rear_seen, 100);
+  EXPECT_GT(rear_hidden, 100);
+}
+
+// The formulas of compute_cues() over all pairs, in double precision.
+struct BruteForce {
+  std::map<int, double> explained;
+  int num_inliers = 0;
+};
+
+BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibility& visibility,
+                       const ExposureMap& exposure) {
+  const auto points = c.points_at(pose);
+  const auto normals = c.normals_at(pose);
+  const VerifyOptions& o = c.options;
+  BruteForce result;
+  for (std::size_t v = 0; v < visibility.visible.size(); ++v) {
+    const int i = visibility.visible[v];
+    double best_fit = 0;
+    for (std::size_t q = 0; q < c.scene.points.size(); ++q) {
+      const double d = (points[i] - c.scene.points[q]).cast<double>().norm();
+      if (d > o.inlier_distance_m) continue;
+      const double angle = std::acos(std::clamp<double>(normals[i].dot(c.scene.normals[q]), -1, 1));
+      const double dl = exposure(c.model.lab[i].l) - c.scene.lab[q].l;
+      const double da = c.model.lab[i].a - c.scene.lab[q].a;
+      const double db = c.model.lab[i].b - c.scene.lab[q].b;
+      const double color = std::exp(-0.5 * (dl * dl / (2 * o.color_sigma_l * o.color_sigma_l) +
+                                            (da * da + db * db) / (2 * o.color_sigma_ab * o.color_sigma_ab)));
+      const double w = std::exp(-d * d / (2 * o.inlier_distance_m * o.inlier_distance_m)) * color *
+                       std::max(0.0, 1 - angle / (std::numbers::pi / 2));
+      if (w > 0) result.explained[static_cast<int>(q)] = std::max(result.explained[static_cast<int>(q)], w);
+      const double wide = o.inlier_distance_m + o.resolution_m;
+      if (angle < o.max_inlier_angle_rad) best_fit = std::max(best_fit, std::exp(-d * d / (2 * wide * wide)) * color);
+    }
+    if (best_fit > o.min_inlier_weight && visibility.seen_through[v] == 0) ++result.num_inliers;
+  }
+  return result;
+}
+
+TEST(ComputeCues, AgreesWithTheFormulasOverAllPairs) {
+  SmallCase c;
+  c.options.use_planes = false;
+  c.options.max_l_shift = 0;  // Then the exposure is a matter of the gain, which is switched off too.
+  c.options.max_l_gain = 1;
+  c.scene = prepare_scene(merge(c.views), c.options);
+  for (const Rigid3& pose :
+       {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {
+    const ModelVisibility visibility =
+        find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options);
+    const HypothesisCues cues = compute_cues(c.model, pose, c.scene, c.depth_views, c.everywhere, c.options);
+    const BruteForce expected = brute_force(c, pose, visibility, {});
+    EXPECT_EQ(cues.evidence.num_visible, static_cast<int>(visibility.visible.size()));
+    EXPECT_NEAR(cues.evidence.num_explained, expected.num_inliers, 2);
+    EXPECT_GT(expected.num_inliers, 300);
+    std::size_t num_expected = 0;
+    for (const auto& [q, w] : expected.explained)
+      if (w >= 0.051) ++num_expected;
+    EXPECT_GT(num_expected, 400U);
+    EXPECT_GE(cues.explained.size(), num_expected);
+    for (const WeightedPoint& w : cues.explained) {
+      ASSERT_TRUE(expected.explained.contains(w.point));
+      EXPECT_NEAR(w.weight, expected.explained.at(w.point), 1e-3);
+    }
+  }
+}
+
+TEST(ComputeCues, ClutterIsTheUnexplainedRestOfASegmentNearby) {
+  // The lower half of the box alone is the model: the upper half of its sides is left over.
+  SmallCase c;
+  c.options.use_planes = false;
+  const Solid half{Shape::kBox, {0.08, 0.06, 0.05}, c.solid.paint, on_table(0, 0, 0.025, 0.3)};
+  const PreparedModel model = prepare_model(make_model("half", half), c.options);
+  const HypothesisCues cues =
+      compute_cues(model, half.world_from_object, c.scene, c.depth_views, c.everywhere, c.options);
+  std::map<int, float> explained;
+  for (const WeightedPoint& w : cues.explained) explained[w.point] = w.weight;
+  int same_segment = 0;
+  for (const WeightedPoint& q : cues.clutter) {
+    EXPECT_FALSE(explained.contains(q.point));
+    float nearest = 1;
+    for (const auto& [p, w] : explained)
+      if (c.scene.segment[p] == c.scene.segment[q.point] && c.scene.segment[p] >= 0)
+        nearest = std::min(nearest, (c.scene.points[p] - c.scene.points[q.point]).norm());
+    EXPECT_EQ(q.weight == 1.0F, nearest <= 0.03F) << q.weight << " " << nearest;
+    if (q.weight == 1.0F && c.scene.points[q.point].z() > 0.05F) ++same_segment;
+  }
+  EXPECT_GT(same_segment, 150);
+  EXPECT_GT(cues.evidence.clutter_cost, 150);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/local_scene.hpp"
+
+namespace resight {
+namespace {
+
+constexpr float kMaxCellsPerAxis = 128;  // A huge model gets coarser cells, never a huge grid.
+
+}  // namespace
+
+LocalScene::LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& blocks,
+                       std::span<const Eigen::Vector3f> around, float margin_m, float cell_m) {
+  begin_.assign(2, 0);
+  if (around.empty()) return;
+  min_ = around.front();
+  Eigen::Vector3f max = around.front();
+  for (const Eigen::Vector3f& p : around) {
+    min_ = min_.cwiseMin(p);
+    max = max.cwiseMax(p);
+  }
+  min_.array() -= margin_m;
+  max.array() += margin_m;
+  const Eigen::Vector3f size = max - min_;
+  inverse_cell_ = 1 / std::max(cell_m, size.maxCoeff() / kMaxCellsPerAxis);
+  dims_ = (size * inverse_cell_).cast<int>() + Eigen::Vector3i::Ones();
+
+  std::vector<int> found;
+  blocks.find_in_box(scene, min_, max, found);
+  const auto flat_cell = [&](int i) {
+    const Eigen::Vector3i c = cell_of(scene[i]);
+    return (static_cast<std::size_t>(c.x()) * dims_.y() + c.y()) * dims_.z() + c.z();
+  };
+  begin_.assign(static_cast<std::size_t>(dims_.x()) * dims_.y() * dims_.z() + 1, 0);
+  for (const int i : found) ++begin_[flat_cell(i) + 1];
+  for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
+  std::vector<int> next(begin_.begin(), begin_.end() - 1);
+  points_.resize(found.size());
+  indices_.resize(found.size());
+  for (const int i : found) {
+    const int slot = next[flat_cell(i)]++;
+    points_[slot] = scene[i];
+    indices_[slot] = i;
+  }
+}
+
+}  // namespace resight

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "resight/verification/block_grid.hpp"
+
+namespace resight {
+
+/// The scene points around one hypothesis on a dense grid: neighbours by a few contiguous runs instead of hash
+/// look-ups.
+class LocalScene {
+ public:
+  /// The points in the box around `around` widened by `margin_m`. Queries must lie in that box.
+  LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& blocks, std::span<const Eigen::Vector3f> around,
+             float margin_m, float cell_m);
+
+  [[nodiscard]] std::size_t size() const { return points_.size(); }
+  [[nodiscard]] const Eigen::Vector3f& point(std::size_t local) const { return points_[local]; }
+  /// Index in the whole scene.
+  [[nodiscard]] int scene_index(std::size_t local) const { return indices_[local]; }
+
+  /// Calls visit(local, distance_sq) for each point within the radius (boundary included), until it returns false.
+  template <typename Visit>
+  void visit_within(const Eigen::Vector3f& query, float radius_m, Visit&& visit) const {
+    const Eigen::Vector3i low = cell_of(query.array() - radius_m);
+    const Eigen::Vector3i high = cell_of(query.array() + radius_m);
+    for (int ix = low.x(); ix <= high.x(); ++ix)
+      for (int iy = low.y(); iy <= high.y(); ++iy) {
+        const std::size_t row = (static_cast<std::size_t>(ix) * dims_.y() + iy) * dims_.z();
+        for (int i = begin_[row + low.z()]; i < begin_[row + high.z() + 1]; ++i) {
+          const float distance_sq = (points_[i] - query).squaredNorm();
+          if (distance_sq <= radius_m * radius_m && !visit(static_cast<std::size_t>(i), distance_sq)) return;
+        }
+      }
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3f& p) const {
+    const Eigen::Vector3f c = (p - min_) * inverse_cell_;
+    return Eigen::Vector3i(static_cast<int>(std::floor(c.x())), static_cast<int>(std::floor(c.y())),
+                           static_cast<int>(std::floor(c.z())))
+        .cwiseMax(0)
+        .cwiseMin(dims_ - Eigen::Vector3i::Ones());
+  }
+
+  Eigen::Vector3f min_ = Eigen::Vector3f::Zero();
+  float inverse_cell_ = 1;
+  Eigen::Vector3i dims_ = Eigen::Vector3i::Ones();
+  std::vector<int> begin_;
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<int> indices_;
+};
+
+}  // namespace resight

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "resight/verification/smooth_segments.hpp"
+#include "resight/verification/verification.hpp"
+
+namespace resight {
+
+/// A dominant plane of the scene (table, wall, shelf), world frame: normal . p = offset. The normal faces the cameras.
+/// Bounded: a plane says nothing beyond the edge of what was seen of it.
+struct ScenePlane {
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
+  float offset = 0;
+  float extent_m = 0;  ///< Diagonal of the rectangle along its principal axes that holds its points.
+  int num_points = 0;
+
+  [[nodiscard]] float signed_distance(const Eigen::Vector3f& p) const { return normal.dot(p) - offset; }
+  /// Whether the foot of `p` lies within the plane's outline: in a cell between points of its row and of its column,
+  /// holes (under objects) included.
+  [[nodiscard]] bool covers(const Eigen::Vector3f& p) const;
+
+  Eigen::Vector3f axis_u = Eigen::Vector3f::UnitX();
+  Eigen::Vector3f axis_v = Eigen::Vector3f::UnitY();
+  Eigen::Vector2f origin_uv = Eigen::Vector2f::Zero();
+  struct Range {
+    int first = 1;
+    int last = 0;  ///< Inclusive; last < first: empty.
+  };
+  std::vector<Range> rows;     ///< Per cell in v: covered cells in u.
+  std::vector<Range> columns;  ///< Per cell in u: covered cells in v.
+};
+
+struct ScenePlanes {
+  std::vector<ScenePlane> planes;
+  std::vector<int> plane_of_point;  ///< -1 = in none.
+};
+
+/// Fits planes to the large smooth segments and collects all points within plane_distance_m and plane_angle_rad of them
+/// (coplanar pieces of one table are one plane). V4R grows regions and wants 5,000 pixels; a reconstruction has fewer
+/// points for the same area, so the count is scaled from the spacing of a full view (1/525 m at 1 m) to the resolution.
+[[nodiscard]] ScenePlanes find_scene_planes(std::span<const Eigen::Vector3f> points,
+                                            std::span<const Eigen::Vector3f> normals, const SmoothSegments& segments,
+                                            const VerifyOptions& options);
+
+}  // namespace resight

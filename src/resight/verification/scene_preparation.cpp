@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/scene_preparation.hpp"
+
+#include <algorithm>
+
+#include "resight/geometry/triangle_mesh.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kBlock_m = 0.06;
+
+PointCloud keep_finite(const PointCloud& cloud) {
+  std::vector<int> finite;
+  finite.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.points[i].allFinite()) finite.push_back(static_cast<int>(i));
+  PointCloud result = select(cloud, finite);
+  for (Eigen::Vector3f& n : result.normals)
+    if (!n.allFinite()) n.setZero();
+  return result;
+}
+
+}  // namespace
+
+PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
+  PointCloud thinned = voxel_downsample(keep_finite(scene_in_world), options.resolution_m);
+  PreparedScene scene;
+  if (options.use_color && thinned.has_colors()) scene.lab = to_lab(thinned.colors);
+  scene.points = std::move(thinned.points);
+  scene.normals = std::move(thinned.normals);
+  scene.segment.assign(scene.points.size(), -1);
+  scene.plane.assign(scene.points.size(), -1);
+  scene.blocks = BlockGrid(scene.points, kBlock_m);
+  if (scene.normals.empty()) return scene;
+  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
+  scene.num_segments = segments.num_segments;
+  if (options.use_planes) {
+    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options);
+    scene.planes = std::move(planes.planes);
+    scene.plane = std::move(planes.plane_of_point);
+  }
+  scene.segment = std::move(segments.segment);
+  return scene;
+}
+
+PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
+  PointCloud thinned = voxel_downsample(model.surface, options.resolution_m);
+  PreparedModel prepared;
+  if (options.use_color && thinned.has_colors()) prepared.lab = to_lab(thinned.colors);
+  prepared.points = std::move(thinned.points);
+  prepared.normals = std::move(thinned.normals);
+  prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);
+  return prepared;
+}
+
+}  // namespace resight

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "resight/geometry/point_cloud.hpp"
+#include "resight/verification/block_grid.hpp"
+#include "resight/verification/lab_color.hpp"
+#include "resight/verification/scene_planes.hpp"
+#include "resight/verification/verification.hpp"
+
+namespace resight {
+
+/// The scene as all hypotheses need it, computed once. World frame.
+struct PreparedScene {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
+  std::vector<LabColor> lab;             ///< Empty or as long as points.
+  std::vector<int> segment;              ///< Smooth segment of each point, -1 = none.
+  std::vector<int> plane;                ///< Dominant plane of each point, -1 = none.
+  std::vector<ScenePlane> planes;
+  int num_segments = 0;
+  BlockGrid blocks;  ///< Of a few centimetres: finds the surroundings of a hypothesis.
+};
+
+/// Thins the scene to resolution_m and finds its segments and planes (both need normals). Non-finite points are
+/// dropped; a non-finite normal becomes zero.
+[[nodiscard]] PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options);
+
+/// A model as all of its hypotheses need it. Object frame.
+struct PreparedModel {
+  std::vector<Eigen::Vector3f> points;   ///< Thinned to resolution_m.
+  std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
+  std::vector<LabColor> lab;             ///< Empty or as long as points.
+  float diameter_m = 0;
+};
+
+[[nodiscard]] PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options);
+
+}  // namespace resight

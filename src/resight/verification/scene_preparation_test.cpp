@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/scene_preparation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "resight/core/random.hpp"
+#include "resight/verification/analytic_scene_test_util.hpp"
+#include "resight/verification/local_scene.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+PointCloud box_and_ball_scene() {
+  World world;
+  world.solids.push_back({Shape::kBox, {0.1, 0.08, 0.12}, plain({200, 0, 0}), on_table(0, 0, 0.06)});
+  world.solids.push_back({Shape::kSphere, {0.12, 0.12, 0.12}, plain({0, 200, 0}), on_table(0.2, 0.1, 0.06)});
+  return merge(render_all(world, circle_of_cameras(5)));
+}
+
+bool on_box_side(const Eigen::Vector3f& p, int axis, float at) {
+  return std::abs(p[axis] - at) < 1e-3F && std::abs(p.x()) < 0.0505F && std::abs(p.y()) < 0.0405F && p.z() > 0.02F &&
+         p.z() < 0.11F;
+}
+
+TEST(PrepareScene, SegmentsAreTheSmoothFaces) {
+  const PreparedScene scene = prepare_scene(box_and_ball_scene(), {});
+  std::set<int> faces;
+  for (const auto& [axis, at] :
+       {std::pair(0, 0.05F), std::pair(0, -0.05F), std::pair(1, 0.04F), std::pair(1, -0.04F)}) {
+    std::map<int, int> votes;
+    for (std::size_t i = 0; i < scene.points.size(); ++i)
+      if (on_box_side(scene.points[i], axis, at) && std::abs(scene.normals[i][axis]) > 0.99F &&
+          scene.points[i].head<2>().cwiseAbs().minCoeff() < 0.03F)
+        ++votes[scene.segment[i]];
+    ASSERT_FALSE(votes.empty());
+    const auto best =
+        std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    EXPECT_GE(best->first, 0);
+    EXPECT_GT(best->second, 150);
+    faces.insert(best->first);
+  }
+  EXPECT_EQ(faces.size(), 4U);
+  // The ball is one segment of its own.
+  std::map<int, int> votes;
+  int on_ball = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i)
+    if ((scene.points[i] - Eigen::Vector3f(0.2F, 0.1F, 0.06F)).norm() < 0.065F && scene.points[i].z() > 0.02F) {
+      ++votes[scene.segment[i]];
+      ++on_ball;
+    }
+  const auto best =
+      std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  EXPECT_GE(best->first, 0);
+  EXPECT_FALSE(faces.contains(best->first));
+  EXPECT_GT(best->second, 0.95 * on_ball);
+}
+
+TEST(PrepareScene, FindsTheTableAndNothingElse) {
+  const PreparedScene scene = prepare_scene(box_and_ball_scene(), {});
+  ASSERT_EQ(scene.planes.size(), 1U);
+  const ScenePlane& table = scene.planes[0];
+  EXPECT_GT(table.normal.z(), 0.9999F);
+  EXPECT_NEAR(table.offset, 0, 1e-3);
+  EXPECT_NEAR(table.extent_m, 1.2 * std::sqrt(2), 0.3);
+  int on_table = 0;
+  int found = 0;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    if (std::abs(scene.points[i].z()) < 1e-4F) {
+      ++on_table;
+      if (scene.plane[i] == 0) ++found;
+    }
+    if (scene.points[i].z() > 0.0105F) {
+      EXPECT_EQ(scene.plane[i], -1);
+    }
+  }
+  EXPECT_GT(on_table, 10000);
+  EXPECT_GT(found, 0.98 * on_table);
+  EXPECT_TRUE(table.covers({0, 0, 0}));  // Under the box, where nothing was seen.
+  EXPECT_TRUE(table.covers({0.3F, -0.3F, 0.1F}));
+  EXPECT_FALSE(table.covers({0.8F, 0, 0}));
+  EXPECT_TRUE(prepare_scene(box_and_ball_scene(), {.use_planes = false}).planes.empty());
+}
+
+TEST(PrepareScene, PlanesFollowATiltedWorldAndNoise) {
+  PointCloud cloud = box_and_ball_scene();
+  Rng rng(5);
+  for (Eigen::Vector3f& p : cloud.points)
+    p += 0.002F * Eigen::Vector3f(static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
+                                  static_cast<float>(rng.normal()));
+  for (Eigen::Vector3f& n : cloud.normals)
+    n = (n + 0.05F * Eigen::Vector3f(static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
+                                     static_cast<float>(rng.normal())))
+            .normalized();
+  const Rigid3 tilt = Rigid3::from_translation({1, 2, 3}) * Rigid3::from_axis_angle({1, 2, 0.5}, 0.8);
+  const PreparedScene scene = prepare_scene(transform(tilt, cloud), {});
+  ASSERT_EQ(scene.planes.size(), 1U);
+  EXPECT_GT(scene.planes[0].normal.dot((tilt.rotation * Eigen::Vector3d::UnitZ()).cast<float>()), 0.9995F);
+  EXPECT_NEAR(scene.planes[0].signed_distance(tilt.translation.cast<float>()), 0, 2e-3);
+}
+
+TEST(PrepareScene, DoesNotDependOnTheNumberOfThreads) {
+  const PreparedScene a = prepare_scene(box_and_ball_scene(), {});
+  const PreparedScene b = prepare_scene(box_and_ball_scene(), {.num_threads = 4});
+  EXPECT_GT(a.num_segments, 5);
+  EXPECT_EQ(a.segment, b.segment);
+  EXPECT_EQ(a.plane, b.plane);
+}
+
+TEST(FindSmoothSegments, AgreesWithASlowTwin) {
+  // Two sheets that meet at 90 degrees, a third apart. The twin floods from every point over all pairs.
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      const float a = 0.005F * static_cast<float>(i);
+      const float b = 0.005F * static_cast<float>(j);
+      points.insert(points.end(), {{a, b, 0}, {0, b, a + 0.005F}, {a + 0.3F, b, 0}});
+      normals.insert(normals.end(), {Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitZ()});
+    }
+  const VerifyOptions options;
+  const SmoothSegments found = find_smooth_segments(points, normals, options);
+  EXPECT_EQ(found.num_segments, 3);
+  std::vector<float> curvature(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int count = 0;
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if ((points[i] - points[j]).norm() <= options.smooth_distance_m) {
+        sum += normals[j];
+        ++count;
+      }
+    curvature[i] = 1 - sum.norm() / static_cast<float>(count);
+  }
+  int joined = 0;
+  int edges = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (curvature[i] > options.max_smooth_curvature) ++edges;
+    EXPECT_GE(found.segment[i], 0);
+    for (std::size_t j = 0; j < i; ++j) {
+      if ((points[i] - points[j]).norm() > options.smooth_distance_m) continue;
+      if (curvature[i] > options.max_smooth_curvature || curvature[j] > options.max_smooth_curvature) continue;
+      if (normals[i].dot(normals[j]) < 0.9F)
+        EXPECT_NE(found.segment[i], found.segment[j]);
+      else
+        EXPECT_EQ(found.segment[i], found.segment[j]);
+      ++joined;
+    }
+  }
+  EXPECT_GT(joined, 1000);
+  EXPECT_GT(edges, 20);
+}
+
+TEST(LocalScene, VisitsExactlyThePointsWithinTheRadius) {
+  Rng rng(2);
+  std::vector<Eigen::Vector3f> scene;
+  for (int i = 0; i < 4000; ++i)
+    scene.emplace_back(static_cast<float>(rng.uniform(-0.3, 0.3)), static_cast<float>(rng.uniform(-0.3, 0.3)),
+                       static_cast<float>(rng.uniform(-0.3, 0.3)));
+  const BlockGrid blocks(scene, 0.06);
+  const std::vector<Eigen::Vector3f> around = {{-0.1F, 0, 0.05F}, {0.1F, 0.12F, -0.07F}};
+  const LocalScene local(scene, blocks, around, 0.04F, 0.015F);
+  long checked = 0;
+  for (int k = 0; k < 300; ++k) {
+    Eigen::Vector3f query;
+    for (int axis = 0; axis < 3; ++axis)
+      query[axis] = static_cast<float>(
+          rng.uniform(std::min(around[0][axis], around[1][axis]), std::max(around[0][axis], around[1][axis])));
+    const float radius = k % 2 == 0 ? 0.015F : 0.04F;
+    std::vector<int> found;
+    local.visit_within(query, radius, [&](std::size_t i, float) {
+      found.push_back(local.scene_index(i));
+      return true;
+    });
+    std::sort(found.begin(), found.end());
+    std::vector<int> expected;
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      if ((scene[i] - query).squaredNorm() <= radius * radius) expected.push_back(static_cast<int>(i));
+    EXPECT_EQ(found, expected);
+    checked += static_cast<long>(expected.size());
+  }
+  EXPECT_GT(checked, 500);
+  EXPECT_EQ(LocalScene({}, BlockGrid(), {}, 0.04F, 0.015F).size(), 0U);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/verification.hpp"
+
+#include <numbers>
+#include <string>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/verification/cues.hpp"
+#include "resight/verification/selection_search.hpp"
+
+namespace resight {
+namespace {
+
+void check_input(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                 std::span<const VerificationView> views, std::span<const std::uint8_t> present) {
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const int object = hypotheses[i].object;
+    require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
+            "verify_hypotheses: hypothesis " + std::to_string(i) + " has object = " + std::to_string(object) +
+                " (must be an index of the library)");
+    require(hypotheses[i].world_from_object.is_rigid(),
+            "verify_hypotheses: the pose of hypothesis " + std::to_string(i) + " is not rigid");
+  }
+  for (const VerificationView& view : views) {
+    require(view.view != nullptr, "verify_hypotheses: a view is null");
+    const Camera& camera = view.view->frame.camera;
+    require(camera.is_valid() && view.view->cloud.width() == camera.width && view.view->cloud.height() == camera.height,
+            "verify_hypotheses: a view's cloud does not have the size of its camera's image");
+  }
+  require(present.empty() || present.size() == views.size() * hypotheses.size(),
+          "verify_hypotheses: present has " + std::to_string(present.size()) +
+              " entries (must be views x hypotheses, or none)");
+}
+
+// The models that the hypotheses need; others stay empty.
+std::vector<PreparedModel> prepare_models(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                                          const VerifyOptions& options) {
+  std::vector<std::uint8_t> needed(library.objects.size(), 0);
+  for (const Hypothesis& h : hypotheses) needed[h.object] = 1;
+  std::vector<PreparedModel> models(library.objects.size());
+  parallel_for(models.size(), options.num_threads, [&](std::size_t i) {
+    if (needed[i] != 0) models[i] = prepare_model(library.objects[i], options);
+  });
+  return models;
+}
+
+std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, std::size_t num_views,
+                                        std::size_t num_hypotheses, std::size_t h) {
+  std::vector<std::uint8_t> allowed(num_views, 1);
+  if (!present.empty())
+    for (std::size_t v = 0; v < num_views; ++v) allowed[v] = present[v * num_hypotheses + h];
+  return allowed;
+}
+
+// Whether there is evidence enough to enter the choice; else the verdict says why not.
+bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
+  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share) {
+    evidence.verdict = Verdict::kTooFewVisible;
+    return false;
+  }
+  evidence.verdict = Verdict::kNoSupport;
+  return evidence.num_explained > 0 && evidence.explained_share >= options.min_explained_share;
+}
+
+// The active candidate that keeps `rejected` out: without it, switching `rejected` on would be cheapest.
+int find_rival(Selection& selection, const SelectionProblem& problem, int rejected) {
+  int rival = -1;
+  FixedCost best_change = selection.change_if_switched(rejected);
+  for (int c = 0; c < problem.num_candidates(); ++c) {
+    if (!selection.is_active(c)) continue;
+    selection.switch_candidate(c);
+    const FixedCost change = selection.change_if_switched(rejected);
+    selection.switch_candidate(c);
+    if (change >= best_change) continue;
+    best_change = change;
+    rival = c;
+  }
+  return rival;
+}
+
+void explain_choice(const SelectionProblem& problem, const SearchSelectionResult& found,
+                    const std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
+  Selection none(problem);
+  Selection chosen(problem);
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    if (found.active[c] != 0) chosen.switch_candidate(static_cast<int>(c));
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    HypothesisEvidence& e = evidence[candidates[c]];
+    const FixedCost cost_alone = none.change_if_switched(static_cast<int>(c));
+    e.cost_alone = from_fixed(cost_alone);
+    e.accepted = found.active[c] != 0;
+    e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
+    if (e.accepted || cost_alone >= 0) continue;
+    const int rival = find_rival(chosen, problem, static_cast<int>(c));
+    if (rival < 0) continue;
+    e.verdict = Verdict::kOutvoted;
+    e.outvoted_by = candidates[rival];
+  }
+}
+
+void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+            const std::vector<HypothesisCues>& cues, const std::vector<int>& candidates, const VerifyOptions& options,
+            VerifyResult& result) {
+  std::vector<const HypothesisCues*> candidate_cues;
+  std::vector<PlacedModel> placed;
+  for (const int h : candidates) {
+    candidate_cues.push_back(&cues[h]);
+    placed.push_back({&library.objects[hypotheses[h].object].surface, hypotheses[h].world_from_object});
+  }
+  const std::vector<SharedVoxels> shared = count_shared_voxels(placed, options.occupancy_voxel_m, options.num_threads);
+  const SelectionProblem problem = make_selection_problem(candidate_cues, shared, options);
+  const SearchSelectionResult found = search_selection(problem, {.max_moves = options.max_moves,
+                                                                 .max_exact_candidates = options.max_exact_hypotheses,
+                                                                 .min_shared_points = options.min_shared_points,
+                                                                 .seed = options.seed});
+  explain_choice(problem, found, candidates, result.evidence);
+  result.cost = from_fixed(found.cost);
+  result.num_moves = found.num_moves;
+  result.num_components = found.num_components;
+  result.is_optimal = found.is_optimal;
+}
+
+}  // namespace
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return "accepted";
+    case Verdict::kTooFewVisible:
+      return "too few visible";
+    case Verdict::kNoSupport:
+      return "no support";
+    case Verdict::kOutvoted:
+      return "outvoted";
+    case Verdict::kCost:
+      return "cost";
+  }
+  return "unknown";
+}
+
+void VerifyOptions::check() const {
+  const auto name = [](const char* field) { return std::string("VerifyOptions.") + field; };
+  check_positive(name("resolution_m"), resolution_m);
+  check_positive(name("inlier_distance_m"), inlier_distance_m);
+  check_not_negative(name("occlusion_margin_m"), occlusion_margin_m);
+  check_not_negative(name("outlier_weight"), outlier_weight);
+  check_in_range(name("duplicity_weight"), duplicity_weight, 0, 1000);
+  check_positive(name("clutter_radius_m"), clutter_radius_m);
+  check_in_range(name("clutter_weight"), clutter_weight, 0, 1000);
+  check_in_range(name("near_clutter_weight"), near_clutter_weight, 0, 1000);
+  check_in_range(name("occupancy_weight"), occupancy_weight, 0, 1e6);
+  check_positive(name("occupancy_voxel_m"), occupancy_voxel_m);
+  check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
+  check_positive(name("color_sigma_l"), color_sigma_l);
+  check_positive(name("color_sigma_ab"), color_sigma_ab);
+  check_not_negative(name("max_l_shift"), max_l_shift);
+  check_in_range(name("max_l_gain"), max_l_gain, 1, 1e6);
+  check_positive(name("min_plane_points"), min_plane_points);
+  check_positive(name("plane_distance_m"), plane_distance_m);
+  check_in_range(name("plane_angle_rad"), plane_angle_rad, 0, std::numbers::pi / 2);
+  check_in_range(name("plane_weight"), plane_weight, 0, 1);
+  check_in_range(name("smooth_angle_rad"), smooth_angle_rad, 0, std::numbers::pi / 2);
+  check_positive(name("smooth_distance_m"), smooth_distance_m);
+  check_positive(name("min_smooth_points"), min_smooth_points);
+  check_in_range(name("max_smooth_curvature"), max_smooth_curvature, 0, 1);
+  check_in_range(name("min_facing"), min_facing, -1, 1);
+  check_in_range(name("steep_angle_rad"), steep_angle_rad, 0, std::numbers::pi / 2);
+  check_in_range(name("steep_weight"), steep_weight, 0, 1);
+  check_in_range(name("min_inlier_weight"), min_inlier_weight, 0, 1);
+  check_in_range(name("max_inlier_angle_rad"), max_inlier_angle_rad, 0, std::numbers::pi / 2);
+  check_in_range(name("max_seen_through_share"), max_seen_through_share, 0, 1);
+  check_not_negative(name("max_moves"), max_moves);
+  check_in_range(name("max_exact_hypotheses"), max_exact_hypotheses, 0, 20);
+  check_not_negative(name("min_shared_points"), min_shared_points);
+  check_not_negative(name("min_visible_points"), min_visible_points);
+  check_in_range(name("min_visible_share"), min_visible_share, 0, 1);
+  check_in_range(name("min_explained_share"), min_explained_share, 0, 1);
+  check_positive(name("num_threads"), num_threads);
+}
+
+VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                               const PointCloud& scene_in_world, std::span<const VerificationView> views,
+                               std::span<const std::uint8_t> present, const VerifyOptions& options) {
+  options.check();
+  check_input(hypotheses, library, views, present);
+  const PreparedScene scene = prepare_scene(scene_in_world, options);
+  VerifyResult result;
+  result.evidence.resize(hypotheses.size());
+  result.num_planes = static_cast<int>(scene.planes.size());
+  result.num_segments = scene.num_segments;
+  if (hypotheses.empty()) return result;
+  const std::vector<DepthView> depth_views = prepare_depth_views(views, options.num_threads);
+  const std::vector<PreparedModel> models = prepare_models(hypotheses, library, options);
+  std::vector<HypothesisCues> cues(hypotheses.size());
+  parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
+    const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);
+    cues[h] = compute_cues(models[hypotheses[h].object], hypotheses[h].world_from_object, scene, depth_views, allowed,
+                           options);
+  });
+  std::vector<int> candidates;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    result.evidence[h] = std::move(cues[h].evidence);
+    if (passes_gates(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
+    cues[h].evidence = result.evidence[h];
+  }
+  choose(hypotheses, library, cues, candidates, options, result);
+  return result;
+}
+
+}  // namespace resight

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/verification.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <limits>
+
+#include "resight/core/random.hpp"
+#include "resight/verification/analytic_scene_test_util.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
+
+Solid make_box() { return {Shape::kBox, {0.10, 0.07, 0.14}, checks({200, 40, 40}, {230, 220, 200}, 0.03), {}}; }
+Solid make_cylinder() {
+  return {Shape::kCylinder, {0.08, 0.08, 0.12}, checks({40, 60, 190}, {220, 220, 60}, 0.025), {}};
+}
+Solid make_sphere() { return {Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 170, 70}), {}}; }
+
+enum Object { kBox, kCylinder, kSphere };
+
+ModelLibrary make_library() {
+  ModelLibrary library;
+  library.objects = {make_model("box", make_box()), make_model("cylinder", make_cylinder()),
+                     make_model("sphere", make_sphere())};
+  return library;
+}
+
+Solid placed(Solid solid, const Rigid3& pose) {
+  solid.world_from_object = pose;
+  return solid;
+}
+
+// A scene with its views and reconstruction.
+struct Fixture {
+  Fixture(const World& world, const std::vector<Rigid3>& cameras)
+      : views(render_all(world, cameras)), scene(merge(views)) {}
+  VerifyResult verify(const std::vector<Hypothesis>& hypotheses, const ModelLibrary& library,
+                      const VerifyOptions& options = {}, const std::vector<std::uint8_t>& present = {}) const {
+    const std::vector<VerificationView> refs = references(views);
+    return verify_hypotheses(hypotheses, library, scene, refs, present, options);
+  }
+  std::vector<PreparedView> views;
+  PointCloud scene;
+};
+
+std::vector<int> accepted(const VerifyResult& result) {
+  std::vector<int> indices;
+  for (std::size_t i = 0; i < result.evidence.size(); ++i)
+    if (result.evidence[i].accepted) indices.push_back(static_cast<int>(i));
+  return indices;
+}
+
+World one_box() { return {.solids = {placed(make_box(), on_table(0, 0, 0.07, 0.4))}}; }
+
+TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
+  const Fixture f(one_box(), circle_of_cameras(3, 0.8, 0.6, 2.0));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  std::vector<Hypothesis> hypotheses;
+  Rng rng(3);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d shift(rng.uniform(0.02, 0.06), rng.uniform(-0.06, 0.06), 0);
+    hypotheses.push_back(make_hypothesis(kBox, disturb(truth, shift, kZ, rng.uniform(0.3, 2.0))));
+  }
+  hypotheses.push_back(make_hypothesis(kCylinder, on_table(0, 0, 0.06)));
+  hypotheses.push_back(make_hypothesis(kSphere, on_table(0.02, 0, 0.045)));
+  hypotheses.insert(hypotheses.begin() + 4,
+                    make_hypothesis(kBox, disturb(truth, {0.002, -0.001, 0.001}, Eigen::Vector3d(1, 2, 3), 0.03)));
+  const VerifyResult result = f.verify(hypotheses, make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(4));
+  EXPECT_GT(result.evidence[4].score, 0.85);
+  EXPECT_GE(result.num_planes, 1);
+  EXPECT_LT(result.cost, 0);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
+    EXPECT_GE(result.evidence[i].score, 0);
+    EXPECT_LE(result.evidence[i].score, 1);
+    if (result.evidence[i].verdict == Verdict::kOutvoted) {
+      EXPECT_EQ(result.evidence[i].outvoted_by, 4);
+    }
+  }
+}
+
+TEST(VerifyHypotheses, RejectsAnAbsentObject) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const VerifyResult result = f.verify(
+      {make_hypothesis(kCylinder, on_table(0.25, 0.1, 0.06)), make_hypothesis(kSphere, on_table(-0.2, 0, 0.3))},
+      make_library());
+  EXPECT_THAT(accepted(result), testing::IsEmpty());
+  EXPECT_EQ(result.cost, 0);
+  for (const HypothesisEvidence& e : result.evidence) {
+    EXPECT_EQ(e.verdict, Verdict::kNoSupport);
+    EXPECT_GT(e.num_visible, 100);
+    EXPECT_LT(e.explained_share, 0.2);
+  }
+}
+
+TEST(VerifyHypotheses, AcceptsTwoInstancesSideBySide) {
+  // A gap of 5 mm: each one's explained points reach over to the other.
+  const Rigid3 left = on_table(0, -0.0375, 0.07);
+  const Rigid3 right = on_table(0, 0.0375, 0.07);
+  const Fixture f({.solids = {placed(make_box(), left), placed(make_box(), right)}}, circle_of_cameras(4));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, left), make_hypothesis(kBox, on_table(0, 0, 0.07)), make_hypothesis(kBox, right)},
+               make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0, 2));
+}
+
+TEST(VerifyHypotheses, AcceptsTouchingAndStackedObjects) {
+  const Rigid3 box = on_table(0, 0, 0.07);
+  const Rigid3 on_top = on_table(0, 0, 0.20);              // Stands on the box.
+  const Rigid3 beside = on_table(0.05 + 0.045, 0, 0.045);  // Touches its side.
+  const Fixture f({.solids = {placed(make_box(), box), placed(make_cylinder(), on_top), placed(make_sphere(), beside)}},
+                  circle_of_cameras(5));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, box), make_hypothesis(kCylinder, on_top), make_hypothesis(kSphere, beside)},
+               make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0, 1, 2));
+}
+
+TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  for (const DuplicityRule rule : {DuplicityRule::kBeyondBest, DuplicityRule::kAllWeights}) {
+    const VerifyResult result =
+        f.verify({make_hypothesis(kBox, disturb(truth, {0.002, 0, 0}, kZ, 0)), make_hypothesis(kBox, truth),
+                  make_hypothesis(kBox, disturb(truth, {0, 0.002, 0}, kZ, 0.02))},
+                 make_library(), {.duplicity_rule = rule});
+    ASSERT_EQ(accepted(result).size(), 1U);
+    const int winner = accepted(result)[0];
+    for (int i = 0; i < 3; ++i) {
+      if (i == winner) continue;
+      EXPECT_EQ(result.evidence[i].verdict, Verdict::kOutvoted);
+      EXPECT_EQ(result.evidence[i].outvoted_by, winner);
+      EXPECT_LT(result.evidence[i].cost_alone, 0);
+    }
+  }
+}
+
+TEST(VerifyHypotheses, TellsLookAlikesByColor) {
+  ModelLibrary library = make_library();
+  Solid wrong = make_box();
+  wrong.paint = checks({40, 160, 60}, {60, 60, 180}, 0.03);
+  library.objects.push_back(make_model("green box", wrong));
+  for (const double brightness : {1.0, 0.7}) {
+    World world = one_box();
+    world.brightness = brightness;
+    const Fixture f(world, circle_of_cameras(4));
+    const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+    const std::vector<Hypothesis> both = {make_hypothesis(3, truth), make_hypothesis(kBox, truth)};
+    const VerifyResult result = f.verify(both, library);
+    EXPECT_THAT(accepted(result), testing::ElementsAre(1)) << "brightness " << brightness;
+    EXPECT_GT(result.evidence[1].score, result.evidence[0].score + 0.2);
+    // Even without a rival, and accepted when colour is not looked at.
+    EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
+    EXPECT_THAT(accepted(f.verify({both[0]}, library, {.use_color = false})), testing::ElementsAre(0));
+  }
+}
+
+TEST(VerifyHypotheses, AcceptsAHalfOccludedObject) {
+  // One camera from the front, low; a wide board in front hides the lower half of the box.
+  const Rigid3 truth = on_table(0, 0, 0.07);
+  const Rigid3 camera = look_at({0, -0.9, 0.12}, {0, 0, 0.07});
+  const Solid board{Shape::kBox, {0.4, 0.02, 0.075}, plain({90, 90, 90}), on_table(0, -0.12, 0.0375)};
+  World world{.solids = {placed(make_box(), truth)}};
+  const Fixture open(world, {camera});
+  world.solids.push_back(board);
+  const Fixture hidden(world, {camera});
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  const VerifyResult before = open.verify(hypotheses, make_library());
+  const VerifyResult after = hidden.verify(hypotheses, make_library());
+  EXPECT_THAT(accepted(before), testing::ElementsAre(0));
+  EXPECT_THAT(accepted(after), testing::ElementsAre(0));
+  // Front face 10 x 14 cm of a surface of 616 cm^2 = 0.227; the top face is seen at a cosine of about 0.13 or less.
+  EXPECT_NEAR(before.evidence[0].visible_share, 0.227, 0.03);
+  // The ray over the board's rear edge (0, -0.11, 0.075) meets the front face y = -0.035 at z = 0.071 (less 2 cm margin
+  // behind the board: none).
+  EXPECT_NEAR(after.evidence[0].visible_share, 0.227 * (0.14 - 0.0707) / 0.14, 0.03);
+  EXPECT_GT(after.evidence[0].score, 0.8);
+}
+
+TEST(VerifyHypotheses, ThePresenceMaskTakesTheEvidenceAway) {
+  const Fixture f(one_box(), circle_of_cameras(3));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth), make_hypothesis(kBox, truth)};
+  // View-major: hypothesis 0 nowhere, hypothesis 1 in view 1 only.
+  const VerifyResult result = f.verify(hypotheses, make_library(), {}, {0, 0, 0, 1, 0, 0});
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kTooFewVisible);
+  EXPECT_EQ(result.evidence[0].num_visible, 0);
+  EXPECT_THAT(result.evidence[0].visible_share_per_view, testing::Each(0.0F));
+  EXPECT_EQ(result.evidence[1].visible_share_per_view[0], 0);
+  EXPECT_GT(result.evidence[1].visible_share_per_view[1], 0.2);
+  EXPECT_GT(result.evidence[1].explained_share_per_view[1], 0.85);
+  EXPECT_EQ(result.evidence[1].visible_share_per_view[2], 0);
+  EXPECT_NEAR(result.evidence[1].visible_share, result.evidence[1].visible_share_per_view[1], 1e-6);
+}
+
+TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
+  // Its top face lies in the table's surface and has the table's colour: all that is visible of it is explained by the
+  // plane.
+  ModelLibrary library = make_library();
+  library.objects.push_back(make_model("slab", {Shape::kBox, {0.15, 0.12, 0.05}, plain({140, 120, 100}), {}}));
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, on_table(0.25, 0.1, -0.025)),
+                                              make_hypothesis(3, on_table(-0.25, 0.1, -0.02))};
+  const VerifyResult result = f.verify(hypotheses, library);
+  EXPECT_THAT(accepted(result), testing::IsEmpty());
+  EXPECT_GT(result.evidence[0].score, 0.7);  // Its sides count as visible down to the margin.
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
+  EXPECT_GT(result.evidence[0].plane_cost, 100);
+  // The planes are what rejects it.
+  EXPECT_FALSE(
+      accepted(f.verify(hypotheses, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false}))
+          .empty());
+}
+
+TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
+               make_library());
+  EXPECT_LT(result.evidence[0].plane_cost, 60);
+  EXPECT_GT(result.evidence[1].plane_cost, 300);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, FollowsAMovedObject) {
+  // Views 0 and 1 saw the box at its old place and were cleared there (no depth); views 2 and 3 see it at the new one.
+  const Rigid3 old_place = on_table(-0.12, 0, 0.07, 0.4);
+  const Rigid3 new_place = on_table(0.15, 0.05, 0.07, 1.2);
+  const std::vector<Rigid3> cameras = circle_of_cameras(4, 0.8, 0.6, 1.5);
+  const World before{.solids = {placed(make_box(), old_place)}};
+  const World after{.solids = {placed(make_box(), new_place)}};
+  std::vector<PreparedView> views = {render(before, cameras[0]), render(before, cameras[1]), render(after, cameras[2]),
+                                     render(after, cameras[3])};
+  for (int v = 0; v < 2; ++v)
+    for (std::size_t i = 0; i < views[v].cloud.z.size(); ++i) {
+      if (!views[v].cloud.has_point(i)) continue;
+      const Eigen::Vector3d p = views[v].frame.world_from_camera * views[v].cloud.point(i).cast<double>();
+      if ((p - old_place.translation).norm() > 0.11) continue;
+      for (Image<float>* image : {&views[v].cloud.x, &views[v].cloud.y, &views[v].cloud.z, &views[v].cloud.nx,
+                                  &views[v].cloud.ny, &views[v].cloud.nz, &views[v].frame.depth_m})
+        (*image)[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+  const std::vector<VerificationView> refs = references(views);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, old_place), make_hypothesis(kBox, new_place)};
+  const std::vector<std::uint8_t> new_only_later = {1, 0, 1, 0, 1, 1, 1, 1};
+  const VerifyResult result = verify_hypotheses(hypotheses, make_library(), merge(views), refs, new_only_later);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kNoSupport);
+  EXPECT_LT(result.evidence[0].explained_share_per_view[3], 0.3);
+}
+
+TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
+  // The scene still holds the box's points (the change was missed), but two of three views look through it.
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
+  const std::vector<PreparedView> views = {render(one_box(), cameras[0]), render({}, cameras[1]),
+                                           render({}, cameras[2])};
+  const std::vector<VerificationView> refs = references(views);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  EXPECT_THAT(accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {})), testing::IsEmpty());
+  EXPECT_THAT(
+      accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {}, {.max_seen_through_share = 1})),
+      testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
+  // A small box claims a part of a large box's side and top.
+  ModelLibrary library = make_library();
+  const Solid large{Shape::kBox, {0.3, 0.2, 0.2}, plain({180, 170, 60}), on_table(0, 0, 0.1)};
+  library.objects.push_back(make_model("crate", large));
+  library.objects.push_back(make_model("small", {Shape::kBox, {0.06, 0.06, 0.06}, plain({180, 170, 60}), {}}));
+  const Fixture f({.solids = {large}}, circle_of_cameras(4));
+  const Rigid3 corner = Rigid3::from_translation({0.12, 0.07, 0.17});
+  const std::vector<Hypothesis> both = {make_hypothesis(3, large.world_from_object), make_hypothesis(4, corner)};
+  // The crate's faces are planes, larger than the small box.
+  const VerifyResult with_planes = f.verify(both, library);
+  EXPECT_THAT(accepted(with_planes), testing::ElementsAre(0));
+  EXPECT_GT(with_planes.evidence[1].plane_cost, 50);
+  const VerifyResult segments_only = f.verify(both, library, {.use_planes = false});
+  EXPECT_THAT(accepted(segments_only), testing::ElementsAre(0));
+  EXPECT_GT(segments_only.evidence[1].clutter_cost, 200);
+  EXPECT_LT(segments_only.evidence[0].clutter_cost, 50);
+  // Also without the rival, and it is the clutter cue that does it.
+  const std::vector<Hypothesis> small = {both[1]};
+  EXPECT_THAT(accepted(f.verify(small, library, {.use_planes = false})), testing::IsEmpty());
+  EXPECT_THAT(accepted(f.verify(small, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false})),
+              testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, WorksWithoutNormalsOrColors) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  ModelLibrary library = make_library();
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)),
+                                              make_hypothesis(kBox, on_table(0.3, 0, 0.07))};
+  Fixture bare = f;
+  bare.scene.colors.clear();
+  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
+  bare.scene.normals.clear();
+  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
+  for (ObjectModel& object : library.objects) object.surface.normals.clear();
+  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, CopesWithNothing) {
+  const Fixture f(one_box(), circle_of_cameras(2));
+  const ModelLibrary library = make_library();
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
+  const std::vector<VerificationView> refs = references(f.views);
+  EXPECT_TRUE(f.verify({}, library).evidence.empty());
+  const VerifyResult no_scene = verify_hypotheses(hypotheses, library, {}, refs, {});
+  EXPECT_EQ(no_scene.evidence[0].verdict, Verdict::kNoSupport);
+  EXPECT_EQ(no_scene.evidence[0].score, 0);
+  const VerifyResult no_views = verify_hypotheses(hypotheses, library, f.scene, {}, {});
+  EXPECT_EQ(no_views.evidence[0].verdict, Verdict::kTooFewVisible);
+  ModelLibrary hollow;
+  hollow.objects.resize(1);
+  EXPECT_EQ(f.verify(hypotheses, hollow).evidence[0].verdict, Verdict::kTooFewVisible);
+  // Outside of all images, and behind the cameras.
+  const VerifyResult outside =
+      f.verify({make_hypothesis(kBox, on_table(30, 0, 0)), make_hypothesis(kBox, on_table(0, 0, 5))}, library);
+  for (const HypothesisEvidence& e : outside.evidence) EXPECT_EQ(e.verdict, Verdict::kTooFewVisible);
+}
+
+TEST(VerifyHypotheses, IgnoresNonFinitePoints) {
+  const Fixture f(one_box(), circle_of_cameras(2));
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
+  Fixture spoilt = f;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Eigen::Vector3f& p :
+       {Eigen::Vector3f(nan, 0, 0), Eigen::Vector3f(0, std::numeric_limits<float>::infinity(), 0)}) {
+    spoilt.scene.points.push_back(p);
+    spoilt.scene.normals.push_back({nan, nan, nan});
+    spoilt.scene.colors.push_back({});
+  }
+  const VerifyResult clean = f.verify(hypotheses, make_library());
+  const VerifyResult result = spoilt.verify(hypotheses, make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0));
+  EXPECT_EQ(result.cost, clean.cost);
+}
+
+TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
+  const Fixture f(
+      {.solids = {placed(make_box(), on_table(0, 0, 0.07)), placed(make_cylinder(), on_table(0.2, 0.1, 0.06))}},
+      circle_of_cameras(4));
+  std::vector<Hypothesis> hypotheses;
+  Rng rng(11);
+  for (int i = 0; i < 16; ++i)
+    hypotheses.push_back(make_hypothesis(
+        i % 3, disturb(on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065),
+                       {rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0}, kZ, rng.uniform(-0.3, 0.3))));
+  const VerifyResult serial = f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2});
+  ASSERT_GT(accepted(serial).size(), 0U);
+  for (const int threads : {2, 5}) {
+    const VerifyResult parallel =
+        f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2, .num_threads = threads});
+    EXPECT_EQ(parallel.cost, serial.cost);
+    EXPECT_EQ(parallel.num_moves, serial.num_moves);
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+      const HypothesisEvidence& a = serial.evidence[i];
+      const HypothesisEvidence& b = parallel.evidence[i];
+      EXPECT_EQ(a.verdict, b.verdict);
+      EXPECT_EQ(a.outvoted_by, b.outvoted_by);
+      for (const auto field :
+           {&HypothesisEvidence::score, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
+            &HypothesisEvidence::outlier_cost, &HypothesisEvidence::clutter_cost, &HypothesisEvidence::plane_cost,
+            &HypothesisEvidence::cost_alone})
+        EXPECT_EQ(std::memcmp(&(a.*field), &(b.*field), sizeof(double)), 0);
+      EXPECT_EQ(a.explained_share_per_view, b.explained_share_per_view);
+    }
+  }
+}
+
+TEST(VerifyHypotheses, RefusesTheCallersMistakes) {
+  const Fixture f(one_box(), circle_of_cameras(2));
+  const ModelLibrary library = make_library();
+  const std::vector<Hypothesis> good = {make_hypothesis(kBox, on_table(0, 0, 0.07))};
+  EXPECT_THROW(f.verify({make_hypothesis(3, {})}, library), std::invalid_argument);
+  EXPECT_THROW(f.verify({make_hypothesis(-1, {})}, library), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {}, {1}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.resolution_m = 0}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.min_visible_share = 2}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.color_sigma_l = std::numeric_limits<double>::quiet_NaN()}),
+               std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.num_threads = 0}), std::invalid_argument);
+  Hypothesis broken = good[0];
+  broken.world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(f.verify({broken}, library), std::invalid_argument);
+  const std::vector<VerificationView> null_view(1);
+  EXPECT_THROW((void)verify_hypotheses(good, library, f.scene, null_view, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "resight/verification/verification.hpp"
+
+namespace resight {
+
+/// What the visibility test needs of a view.
+struct DepthView {
+  Camera camera;
+  Rigid3 world_from_camera;
+  Image<float> depth_m;  ///< Of the view's cloud; single missing pixels filled, see fill_small_holes().
+};
+
+/// The depth with each missing pixel that has at least five of its eight neighbours replaced by their median. Larger
+/// holes stay: where nothing was measured, or was cleared as removed, there is no evidence.
+[[nodiscard]] Image<float> fill_small_holes(const Image<float>& depth_m);
+
+[[nodiscard]] std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads);
+
+/// How one view sees one model point.
+enum class Sight : std::uint8_t {
+  kHidden,  ///< Turned away, behind itself, outside the image, no depth there, or farther than the depth by more than
+            ///< the margin.
+  kConsistent,   ///< At the measured depth, give or take the margin.
+  kSeenThrough,  ///< The view looks through it: in front of the measured depth by more than the margin.
+};
+
+struct ModelVisibility {
+  std::vector<std::vector<Sight>> sight;  ///< Per view (empty where not allowed) and model point.
+  std::vector<int> visible;               ///< Points not hidden in at least one view, ascending.
+  std::vector<float>
+      facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
+  std::vector<std::uint8_t>
+      seen_through;  ///< Per entry of `visible`: more than max_seen_through_share of those views look through it.
+};
+
+/// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). `allowed`:
+/// one per view. V4R's GO3D without its gaps: intrinsics of the view instead of f = 525, and the model hides its own
+/// far parts (back faces by their normals, the rest by a z-buffer of the model, whose cells are as wide as the spacing
+/// of its points).
+[[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
+                                                  std::span<const Eigen::Vector3f> normals_in_world,
+                                                  std::span<const DepthView> views,
+                                                  std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+
+}  // namespace resight
