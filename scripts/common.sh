@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+# Shared by the scripts; sourced from the root of the source tree.
+
+command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+num_jobs=$(nproc)
+log_dir=build/logs
+mkdir -p "$log_dir"
+
+# step NAME COMMAND...: runs quietly; one line with the time when it went well, the end of its output when it did not.
+step() {
+  local name=$1 start=$SECONDS
+  shift
+  local log="$log_dir/${name//[^a-zA-Z0-9]/_}.log"
+  if "$@" >"$log" 2>&1 </dev/null; then
+    printf '%-44s ok   %4d s\n' "$name" $((SECONDS - start))
+  else
+    printf '%-44s FAILED after %d s; all of it in %s\n' "$name" $((SECONDS - start)) "$log"
+    grep -nE 'error|FAILED|Error' "$log" | head -n 20 || true
+    tail -n 40 "$log"
+    return 1
+  fi
+}

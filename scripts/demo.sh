@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# From a clean clone to a report: packages, build, then `resight demo` into out/demo (made anew each time). Arguments go to
+# `resight demo`, e.g. --seed 2.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+scripts/setup.sh
+source scripts/common.sh
+
+step "configure" cmake --preset release -B build/demo -DRESIGHT_BUILD_TESTS=OFF -DRESIGHT_BUILD_EXAMPLES=OFF
+step "build the program" cmake --build build/demo --target resight_app -j "$num_jobs"
+rm -rf out/demo
+build/demo/apps/resight/resight demo --out out/demo "$@"
+echo "open out/demo/report.html in a browser"
