@@ -101,7 +101,7 @@ ProceduralObject make_speaker() {
 }
 
 ProceduralObject make_globe() {
-  TextureAtlas atlas(1024, 2.0);
+  TextureAtlas atlas(1024, 1.8);
   const PixelRect sea = blob_region(atlas, 2 * kPi * 85, kPi * 85, {70, 130, 190}, 90, 55, 40, 40);
   const PixelRect foot = atlas.solid({90, 60, 35});
   ProceduralObject object{

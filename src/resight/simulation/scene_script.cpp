@@ -2,6 +2,7 @@
 #include "resight/simulation/scene_script.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -34,6 +35,11 @@ class ScriptChecker {
   using Problem = std::optional<Error>;
 
   Problem check_cameras() {
+    const auto is_plain = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    };
+    if (script_.name.empty() || !std::ranges::all_of(script_.name, is_plain))
+      return Error{"name: '" + script_.name + "' (must be letters, digits, _ or -: it names a folder)"};
     if (!script_.camera.is_valid())
       return Error{"camera: invalid intrinsics (size and focal lengths must be positive)"};
     if (script_.world_from_camera.empty()) return Error{"camera: there is no view (give orbit or pose)"};

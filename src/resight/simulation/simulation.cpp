@@ -16,9 +16,10 @@ namespace {
 
 using Role = SimulatedInstance::Role;
 
+// One of the two patterns that V4R's tools understand, and the one that sorts right beyond 100 views.
 std::string view_name(int view) {
   char name[32];
-  std::snprintf(name, sizeof name, "cloud_%04d", view);
+  std::snprintf(name, sizeof name, "%05d", view);
   return name;
 }
 

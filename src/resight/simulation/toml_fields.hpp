@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <toml++/toml.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "resight/core/result.hpp"
+
+namespace resight {
+
+/// Reads the fields of one TOML table. The first mistake is kept, with the place and the rule; later reads then leave
+/// their targets alone. Keys that nobody asked for are a mistake too (finish()).
+class TomlFields {
+ public:
+  /// `where` names the table in messages ("object[2]"); `error` receives the first mistake.
+  TomlFields(const toml::table& table, std::string where, std::optional<Error>& error)
+      : table_(table), where_(std::move(where)), error_(error) {}
+
+  [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+  void fail(const std::string& key, const std::string& what) {
+    if (!error_) error_ = Error{(where_.empty() ? "" : where_ + ".") + key + ": " + what};
+  }
+
+  void read(const std::string& key, double& target);
+  void read(const std::string& key, int& target);
+  void read(const std::string& key, bool& target);
+  void read(const std::string& key, std::string& target);
+  void read(const std::string& key, std::optional<double>& target);
+  /// Exactly N numbers.
+  template <std::size_t N>
+  [[nodiscard]] std::optional<std::array<double, N>> read_numbers(const std::string& key);
+  void require_key(const std::string& key) {
+    if (!has(key)) fail(key, "is missing");
+  }
+
+  /// Calls body(fields) for the sub-table, if there is one.
+  void table(const std::string& key, const std::function<void(TomlFields&)>& body);
+  /// Calls body(fields) for each table of the array [[key]], if there is one.
+  void tables(const std::string& key, const std::function<void(TomlFields&)>& body);
+  /// To be called after all reads.
+  void finish();
+
+ private:
+  const toml::node* find(const std::string& key);
+  const toml::table& table_;
+  std::string where_;
+  std::optional<Error>& error_;
+  std::set<std::string, std::less<>> known_;
+};
+
+template <std::size_t N>
+std::optional<std::array<double, N>> TomlFields::read_numbers(const std::string& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* list = node->as_array();
+  std::array<double, N> numbers{};
+  bool good = list != nullptr && list->size() == N;
+  for (std::size_t i = 0; good && i < N; ++i) {
+    const auto number = list->get(i)->value<double>();
+    good = number && std::isfinite(*number);
+    if (good) numbers[i] = *number;
+  }
+  if (good) return numbers;
+  fail(key, "must be a list of " + std::to_string(N) + " numbers");
+  return std::nullopt;
+}
+
+}  // namespace resight

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/simulation/write_simulation.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "resight/io/bop_models.hpp"
+#include "resight/io/tuw_models.hpp"
+#include "resight/simulation/surface_sampling.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+// A directory beside the wanted one; it is renamed at the end, or goes away.
+class Workspace {
+ public:
+  explicit Workspace(fs::path final_path) : final_(std::move(final_path)), path_(final_) { path_ += ".partial"; }
+  ~Workspace() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  Result<void> open() {
+    std::error_code error;
+    if (fs::exists(final_, error) && !fs::is_empty(final_, error))
+      return Error{final_.string() + ": exists already; expected a new or empty directory"};
+    fs::remove_all(path_, error);
+    fs::create_directories(path_, error);
+    if (error) return Error{path_.string() + ": cannot be created (" + error.message() + ")"};
+    return {};
+  }
+  Result<void> commit() {
+    std::error_code error;
+    fs::remove(final_, error);  // an empty directory may stand there
+    fs::rename(path_, final_, error);
+    if (error) return Error{final_.string() + ": cannot be created (" + error.message() + ")"};
+    path_.clear();
+    return {};
+  }
+
+ private:
+  fs::path final_;
+  fs::path path_;
+};
+
+ordered_json pose_json(const std::optional<Rigid3>& pose) {
+  if (!pose) return nullptr;
+  ordered_json rows = ordered_json::array();
+  const Eigen::Matrix4d m = pose->matrix();
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) rows.push_back(m(r, c));
+  return rows;
+}
+
+Result<void> write_events(const Simulation& simulation, const fs::path& file) {
+  ordered_json events = ordered_json::array();
+  for (const ScriptedEvent& e : simulation.events())
+    events.push_back({{"view", e.view},
+                      {"kind", to_string(e.kind)},
+                      {"object", e.object},
+                      {"instance", e.instance},
+                      {"known", e.known},
+                      {"world_from_object_before", pose_json(e.world_from_object_before)},
+                      {"world_from_object_after", pose_json(e.world_from_object_after)}});
+  ordered_json objects = ordered_json::object();
+  for (std::size_t i = 0; i < simulation.library().size(); ++i) objects[simulation.library()[i].name] = i + 1;
+  std::ofstream stream(file);
+  stream << ordered_json{{"scene", simulation.script().name},
+                         {"num_views", simulation.num_views()},
+                         {"obj_ids", objects},
+                         {"events", events}}
+                .dump(1)
+         << '\n';
+  stream.close();
+  if (!stream) return Error{file.string() + ": cannot be written"};
+  return {};
+}
+
+void report(const WriteSimulationOptions& options, const std::string& what) {
+  if (options.progress) options.progress(what);
+}
+
+Result<void> write_tuw_models(const Simulation& simulation, const fs::path& directory,
+                              const WriteSimulationOptions& options) {
+  int id = 0;
+  for (const ProceduralObject& object : simulation.library()) {
+    const std::vector<TrainingView> views = render_turntable(object.mesh, options.turntable);
+    const PointCloud surface = sample_visible_surface(object.mesh, options.surface_spacing_m);
+    if (auto done = write_tuw_model(directory, object.name, views, &surface, object.symmetries, ++id); !done)
+      return done;
+    report(options, "model " + object.name);
+  }
+  return {};
+}
+
+Result<void> write_bop_meshes(const Simulation& simulation, const fs::path& dataset,
+                              const WriteSimulationOptions& options) {
+  auto writer = BopModelsWriter::create(dataset);
+  if (!writer) return writer.error();
+  int id = 0;
+  for (const ProceduralObject& object : simulation.library()) {
+    ModelSource source;
+    source.name = object.name;
+    source.bop_id = ++id;
+    source.mesh = object.mesh;
+    source.symmetries = object.symmetries;
+    if (auto done = (*writer)->write_model(source, id); !done) return done;
+    report(options, "model " + object.name);
+  }
+  return (*writer)->finish();
+}
+
+std::string scene_folder(const Simulation& simulation, DatasetFormat format, int bop_scene_id) {
+  if (format == DatasetFormat::kTuw) return simulation.script().name;
+  char name[16];
+  std::snprintf(name, sizeof name, "%06d", bop_scene_id);
+  return name;
+}
+
+}  // namespace
+
+void ChangeChainCollector::add(const Simulation& simulation, int view, const SimulatedView& rendered) {
+  for (std::size_t i = 0; i < rendered.ground_truth.size(); ++i) {
+    const int instance = rendered.ground_truth_instances[i];
+    const int placement = simulation.placement_number(instance, view);
+    auto chain = std::ranges::find_if(
+        open_, [&](const OpenChain& c) { return c.instance == instance && c.placement == placement; });
+    if (chain == open_.end()) chain = open_.insert(open_.end(), OpenChain{instance, placement, {}});
+    const GroundTruthObject& truth = rendered.ground_truth[i];
+    chain->chain.entries.push_back({rendered.frame.name, view, truth.object, truth.instance});
+  }
+}
+
+std::vector<ChangeChain> ChangeChainCollector::chains() const {
+  std::vector<ChangeChain> chains;
+  for (const OpenChain& c : open_) chains.push_back(c.chain);
+  return chains;
+}
+
+Result<void> write_simulation(Simulation& simulation, const fs::path& directory, DatasetFormat format,
+                              const WriteSimulationOptions& options) {
+  Workspace work(fs::absolute(directory / "").parent_path());
+  if (auto opened = work.open(); !opened) return opened;
+  if (options.models) {
+    auto done = format == DatasetFormat::kTuw ? write_tuw_models(simulation, work.path() / "models", options)
+                                              : write_bop_meshes(simulation, work.path(), options);
+    if (!done) return done;
+  }
+  const std::string scene = scene_folder(simulation, format, options.bop_scene_id);
+  auto writer = create_sequence(work.path() / "test" / scene, format);
+  if (!writer) return writer.error();
+  ChangeChainCollector chains;
+  for (int view = 0; view < simulation.num_views(); ++view) {
+    const SimulatedView rendered = simulation.render_view(view);
+    chains.add(simulation, view, rendered);
+    if (auto done = (*writer)->write_view(rendered.frame, rendered.ground_truth); !done) return done;
+    report(options, "view " + std::to_string(view + 1) + "/" + std::to_string(simulation.num_views()));
+  }
+  if (auto done = (*writer)->finish(); !done) return done;
+  if (auto done = write_changes(work.path() / "test" / (scene + ".changes"), chains.chains()); !done) return done;
+  if (auto done = write_events(simulation, work.path() / "events.json"); !done) return done;
+  return work.commit();
+}
+
+}  // namespace resight

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "resight/io/sequence.hpp"
+#include "resight/io/tuw_changes.hpp"
+#include "resight/simulation/simulation.hpp"
+#include "resight/simulation/turntable.hpp"
+
+namespace resight {
+
+/// Gathers the `.changes` chains of a run: one chain per instance and placement, over the views in which it is
+/// annotated.
+class ChangeChainCollector {
+ public:
+  /// Views must be added in order.
+  void add(const Simulation& simulation, int view, const SimulatedView& rendered);
+  [[nodiscard]] std::vector<ChangeChain> chains() const;
+
+ private:
+  struct OpenChain {
+    int instance = 0;
+    int placement = 0;
+    ChangeChain chain;
+  };
+  std::vector<OpenChain> open_;
+};
+
+struct WriteSimulationOptions {
+  bool models = true;          ///< Also write the models of the known objects.
+  TurntableOptions turntable;  ///< Of the training views (TUW only).
+  double surface_spacing_m = 0.002;
+  int bop_scene_id = 1;
+  /// Called after each model and view with what was done, e.g. for a progress line.
+  std::function<void(const std::string&)> progress;
+};
+
+/// Renders all views of a simulation and writes a data set into `directory`, which must not exist yet or be empty; it
+/// appears when it is complete.
+///
+/// TUW: models/<name>/ (training views of a turntable, 3D_model.pcd), test/<scene>/ (views and ground truth). BOP:
+/// models/obj_%06d.ply with models_info.json, test/%06d/. Both: test/<scene>.changes (chains of placements, TUW),
+/// events.json (all changes with poses, 4x4 row by row, metres, world frame).
+[[nodiscard]] Result<void> write_simulation(Simulation& simulation, const std::filesystem::path& directory,
+                                            DatasetFormat format, const WriteSimulationOptions& options = {});
+
+}  // namespace resight
