@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The documents name what exists: tests and files of docs/paper-to-code.md, links between documents, and the C++ of the README,
+# each line of which must stand in examples/. Usage: docs_test.sh SOURCE_DIR
+set -uo pipefail
+cd "$1"
+failures=0
+checked=0
+missing() {
+  echo "$1"
+  failures=$((failures + 1))
+}
+
+while read -r name; do  # `Suite.Case` or `Suite.*`
+  suite=${name%%.*} case=${name#*.}
+  [[ $case == '*' ]] && case='[A-Za-z0-9_]+'
+  checked=$((checked + 1))
+  grep -rqE "TEST(_F|_P)?\($suite, $case\)" src tests || missing "docs/paper-to-code.md names a test that is not there: $name"
+done < <(grep -v 'named as' docs/paper-to-code.md | grep -oE '`[A-Z][A-Za-z]+\.([A-Z][A-Za-z0-9]+|\*)`' | tr -d '`' | sort -u)
+
+while read -r path; do  # `module/file` or `module/file_test.cpp`, below src/resight
+  checked=$((checked + 1))
+  compgen -G "src/resight/$path" >/dev/null || compgen -G "src/resight/$path.?pp" >/dev/null || compgen -G "$path" >/dev/null ||
+    missing "docs/paper-to-code.md names a file that is not there: $path"
+done < <(grep -oE '`[a-z_]+/[a-z0-9_./*]+`' docs/paper-to-code.md | tr -d '`' | grep -v '^src/resight/$' | sort -u)
+
+for document in README.md CONTRIBUTING.md docs/*.md; do
+  while read -r link; do
+    checked=$((checked + 1))
+    [[ -e $(dirname "$document")/$link ]] || missing "$document links to a file that is not there: $link"
+  done < <(tr '\n' ' ' <"$document" | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
+done
+
+while read -r line; do
+  [[ -z $line ]] && continue
+  checked=$((checked + 1))
+  grep -rqF -- "$line" examples || missing "README.md: no example holds this line: $line"
+done < <(awk '/^```cpp/ { on = 1; next } /^```/ { on = 0 } on' README.md | sed 's/^ *//')
+
+((checked > 40)) || missing "only $checked names were checked"
+((failures == 0)) && echo "docs: all $checked names exist"
+exit $((failures > 0))
