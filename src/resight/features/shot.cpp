@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/features/shot.hpp"
+
+#include <algorithm>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/features/shot_frame.hpp"
+#include "resight/features/shot_histogram.hpp"
+#include "resight/features/support_grid.hpp"
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kKeypointsPerTask = 64;
+
+/// Descriptors of a run of keypoints.
+struct Described {
+  std::vector<int> keypoints;
+  std::vector<float> descriptors;
+};
+
+/// Buffers for one keypoint after the other.
+class Describer {
+ public:
+  Describer(const SupportGrid& grid, const ShotOptions& options) : grid_(grid), options_(options) {}
+
+  /// Appends the descriptor of `keypoint`, if it has one.
+  bool describe(const Eigen::Vector3f& keypoint, std::vector<float>& descriptors) {
+    if (!keypoint.allFinite()) return false;
+    grid_.gather(keypoint, neighborhood_);
+    if (neighborhood_.count < options_.min_neighbors) return false;
+    if (options_.min_surface_variation > 0 && surface_variation(neighborhood_) < options_.min_surface_variation)
+      return false;
+    const std::optional<Eigen::Matrix3f> frame = local_reference_frame(neighborhood_, options_.support_radius_m);
+    if (!frame) return false;
+    const std::size_t begin = descriptors.size();
+    descriptors.resize(begin + kShotDimension);
+    histogram_.compute(neighborhood_, *frame, options_.support_radius_m, std::span(descriptors).subspan(begin));
+    return true;
+  }
+
+ private:
+  const SupportGrid& grid_;
+  const ShotOptions& options_;
+  Neighborhood neighborhood_;
+  ShotHistogram histogram_;
+};
+
+std::vector<Described> describe_in_blocks(const PointCloud& support, const PointCloud& keypoints,
+                                          const ShotOptions& options) {
+  const SupportGrid grid(support, options.support_radius_m);
+  std::vector<Described> blocks((keypoints.size() + kKeypointsPerTask - 1) / kKeypointsPerTask);
+  parallel_for_blocks(keypoints.size(), kKeypointsPerTask, options.num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        Describer describer(grid, options);
+                        Described& block = blocks[begin / kKeypointsPerTask];
+                        for (std::size_t i = begin; i < end; ++i)
+                          if (describer.describe(keypoints.points[i], block.descriptors))
+                            block.keypoints.push_back(static_cast<int>(i));
+                      });
+  return blocks;
+}
+
+/// Of the points in each cube of side `spacing_m` the one nearest to its centre (ties: the first), in order of the
+/// cubes' first points.
+std::vector<int> sample_uniformly(const PointCloud& cloud, double spacing_m) {
+  const auto inverse_size = static_cast<float>(1.0 / spacing_m);
+  VoxelMap cubes(cloud.size() / 4);
+  std::vector<int> nearest;
+  std::vector<float> nearest_sq;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& p = cloud.points[i];
+    const Eigen::Vector3i index = voxel_index(p, inverse_size);
+    const Eigen::Vector3f center = (index.cast<float>().array() + 0.5F) * static_cast<float>(spacing_m);
+    const float distance_sq = (p - center).squaredNorm();
+    const auto cube = static_cast<std::size_t>(cubes.insert(voxel_key(index.x(), index.y(), index.z())));
+    if (cube == nearest.size()) {
+      nearest.push_back(static_cast<int>(i));
+      nearest_sq.push_back(distance_sq);
+    } else if (distance_sq < nearest_sq[cube]) {
+      nearest[cube] = static_cast<int>(i);
+      nearest_sq[cube] = distance_sq;
+    }
+  }
+  return nearest;
+}
+
+/// The points with normals (within the mask), thinned.
+PointCloud support_of_view(const PreparedView& view, const ShotOptions& options, const Image<std::uint8_t>* mask) {
+  std::vector<int> pixels;
+  PointCloud surface = to_point_cloud(view.cloud, nullptr, true, &pixels);
+  if (mask != nullptr) {
+    std::vector<int> inside;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      if ((*mask)[pixels[i]] != 0) inside.push_back(static_cast<int>(i));
+    surface = select(surface, inside);
+  }
+  return options.support_voxel_m > 0 ? voxel_downsample(surface, options.support_voxel_m) : surface;
+}
+
+}  // namespace
+
+void ShotOptions::check() const {
+  check_positive("ShotOptions.keypoint_spacing_m", keypoint_spacing_m);
+  check_positive("ShotOptions.support_radius_m", support_radius_m);
+  check_not_negative("ShotOptions.support_voxel_m", support_voxel_m);
+  check_in_range("ShotOptions.min_surface_variation", min_surface_variation, 0, 1.0 / 3);
+  check_in_range("ShotOptions.min_neighbors", min_neighbors, 3, 1e9);
+  check_positive("ShotOptions.num_threads", num_threads);
+}
+
+FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints, const ShotOptions& options,
+                         std::vector<int>* kept) {
+  options.check();
+  require(support.empty() || support.has_normals(), "describe_shot: the support has no normals");
+  require(keypoints.empty() || keypoints.has_normals(), "describe_shot: the keypoints have no normals");
+  FeatureSet features;
+  features.type = FeatureType::kShot;
+  features.dimension = kShotDimension;
+  if (kept != nullptr) kept->clear();
+  for (const Described& block : describe_in_blocks(support, keypoints, options)) {
+    for (const int i : block.keypoints) {
+      features.points.push_back(keypoints.points[i]);
+      features.normals.push_back(keypoints.normals[i]);
+    }
+    features.descriptors.insert(features.descriptors.end(), block.descriptors.begin(), block.descriptors.end());
+    if (kept != nullptr) kept->insert(kept->end(), block.keypoints.begin(), block.keypoints.end());
+  }
+  return features;
+}
+
+FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, const Image<std::uint8_t>* mask) {
+  options.check();
+  require(!view.cloud.nx.empty(), "extract_shot: the view has no normals");
+  require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
+          "extract_shot: the mask has not the camera's size");
+  const PointCloud support = support_of_view(view, options, mask);
+  return describe_shot(support, select(support, sample_uniformly(support, options.keypoint_spacing_m)), options);
+}
+
+}  // namespace resight

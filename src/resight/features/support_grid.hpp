@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "resight/geometry/point_cloud.hpp"
+#include "resight/geometry/voxel_map.hpp"
+
+namespace resight {
+
+/// The support points around a keypoint as structure of arrays, relative to it: buffers that are used again for the
+/// next keypoint. Rows beyond `count`, up to the next multiple of kLanes, are zero (so that sums may run over whole
+/// vectors).
+struct Neighborhood {
+  static constexpr int kLanes = 8;
+  int count = 0;
+  std::vector<float> dx, dy, dz;  ///< Support point minus keypoint, metres.
+  std::vector<float> distance;    ///< Metres, in (0, radius].
+  std::vector<float> nx, ny, nz;  ///< Normals of the support points.
+
+  /// Makes room for `capacity` neighbours; never shrinks.
+  void reserve(std::size_t capacity);
+};
+
+/// Support points sorted into cubes of the size of the support radius, cube after cube in one array.
+class SupportGrid {
+ public:
+  /// Points with a coordinate or normal that is not finite are left out.
+  SupportGrid(const PointCloud& support, double radius_m);
+
+  /// Number of points in the cubes around `center`: room enough for gather().
+  [[nodiscard]] std::size_t max_neighbors(const Eigen::Vector3f& center) const;
+  /// All points within the radius of `center`, except those that coincide with it. Order: by cube, then as in the
+  /// cloud.
+  void gather(const Eigen::Vector3f& center, Neighborhood& neighborhood) const;
+
+ private:
+  template <typename Visit>
+  void visit_cells(const Eigen::Vector3f& center, Visit&& visit) const;
+
+  float radius_m_;
+  float inverse_size_;
+  VoxelMap cells_;
+  std::vector<int> cell_begin_;  ///< First point of each cube, and the end.
+  std::vector<float> x_, y_, z_, nx_, ny_, nz_;
+};
+
+}  // namespace resight
