@@ -14,19 +14,34 @@ struct GroupCorrespondencesOptions {
   double min_distance_m = 0.005;             ///< Pairs nearer than this say nothing on the pose.
   int min_group_size = 5;                    ///< V4R: 5.
   int max_correspondences = 1000;            ///< Per object; the best by descriptor distance are kept.
-  int max_cliques = 20000;                   ///< Budget of the clique search in steps, never in milliseconds; then greedy.
-  int max_uses = 3;                          ///< A correspondence may serve in this many groups (V4R: 3).
-  EstimatePoseOptions pose;
+  int max_cliques = 20000;          ///< Budget of the clique search in steps, never in milliseconds; then greedy.
+  int max_uses = 3;                 ///< A correspondence may serve in this many groups (V4R: 3).
+  bool expand_groups = true;        ///< Also take the correspondences outside a clique that agree with its pose (ours).
+  double merge_distance_m = 0.015;  ///< Of two groups nearer than this (at the middle of their points) and
+  double merge_rotation_rad = 0.174533;  ///< nearer than this, only the larger is kept; 0 keeps both (V4R).
+  EstimatePoseOptions pose{};
   void check() const;
 };
 
 struct CorrespondenceGroup {
-  std::vector<int> members;   ///< Inliers of the pose, ascending indices.
+  std::vector<int> members;  ///< Inliers of the pose, ascending indices.
   Rigid3 scene_from_object;
 };
 
-/// Consistency graph over the correspondences of ONE object (edge: distances and normals agree, and neither keypoint is shared),
-/// its cliques, and a pose for each (paper Sec. III-A; [11]). Several instances side by side give several groups.
-[[nodiscard]] std::vector<CorrespondenceGroup> group_correspondences(std::span<const Correspondence> correspondences, const GroupCorrespondencesOptions& options = {});
+/// Consistency graph over the correspondences of ONE object (edge: distances and normals agree, and neither keypoint is
+/// shared), its cliques, and a pose for each (paper Sec. III-A; [11]). Several instances side by side give several
+/// groups, largest first. Correspondences with a NaN point are left out.
+///
+/// A group has at least min_group_size and pose.min_inliers members, and no two of them share a keypoint. Deviations
+/// from V4R: the budget of the clique search counts steps, not milliseconds; cliques are taken largest first, not in
+/// the reverse order of their discovery; poses are checked by distance AND normals of each inlier (V4R: one inlier's
+/// normal); expand_groups; merge_*.
+[[nodiscard]] std::vector<CorrespondenceGroup> group_correspondences(std::span<const Correspondence> correspondences,
+                                                                     const GroupCorrespondencesOptions& options = {});
+
+/// Indices, ascending, of at most `max_count` correspondences with finite points: the best by descriptor distance, in
+/// turns of the feature types, because the distances of two descriptor spaces do not compare.
+[[nodiscard]] std::vector<int> select_best_correspondences(std::span<const Correspondence> correspondences,
+                                                           int max_count);
 
 }  // namespace resight

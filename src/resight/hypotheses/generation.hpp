@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,11 +12,11 @@
 namespace resight {
 
 struct MatchFeaturesOptions {
-  int sift_neighbors = 3;       ///< k of the kNN search (V4R P branch: 3).
+  int sift_neighbors = 3;  ///< k of the kNN search (V4R P branch: 3).
   int shot_neighbors = 1;
-  double max_sift_distance = 0; ///< L2 between unit descriptors; 0 = no limit (paper).
+  double max_sift_distance = 0;  ///< L2 between unit descriptors; 0 = no limit (paper).
   double max_shot_distance = 0;
-  DescriptorIndexOptions index;
+  DescriptorIndexOptions index{};
   void check() const;
 };
 
@@ -26,7 +27,10 @@ class ModelFeatureIndex {
   ~ModelFeatureIndex();
   ModelFeatureIndex(ModelFeatureIndex&&) noexcept;
   ModelFeatureIndex& operator=(ModelFeatureIndex&&) noexcept;
-  /// Correspondences of each object (library order), SIFT and SHOT pooled; scene side in the frame of the features given.
+  /// Correspondences of each object (library order), SIFT and SHOT pooled; scene side in the frame of the features
+  /// given. In the order of the scene features, nearest match first; scene features without a match or with a NaN point
+  /// are left out. The nearest k are searched among all objects together (paper, V4R), so a scene feature speaks for
+  /// few of them.
   [[nodiscard]] std::vector<std::vector<Correspondence>> match(const FeatureSet& sift, const FeatureSet& shot) const;
 
  private:
@@ -35,14 +39,15 @@ class ModelFeatureIndex {
 };
 
 struct GenerateHypothesesOptions {
-  GroupCorrespondencesOptions grouping;
+  GroupCorrespondencesOptions grouping{};
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
 };
 
 /// Hypotheses of one view from its correspondences per object (scene side in the camera frame). Results and their
-/// correspondences are in the WORLD frame; ids start at `first_id`.
-[[nodiscard]] std::vector<Hypothesis> generate_hypotheses(std::span<const std::vector<Correspondence>> correspondences_per_object, const Rigid3& world_from_camera,
-                                                          int view, std::uint64_t first_id, const GenerateHypothesesOptions& options = {});
+/// correspondences are in the WORLD frame; ids start at `first_id`, by object, then largest group first.
+[[nodiscard]] std::vector<Hypothesis> generate_hypotheses(
+    std::span<const std::vector<Correspondence>> correspondences_per_object, const Rigid3& world_from_camera, int view,
+    std::uint64_t first_id, const GenerateHypothesesOptions& options = {});
 
 }  // namespace resight

@@ -25,9 +25,9 @@ struct Hypothesis {
   std::uint64_t id = 0;  ///< Unique in a run; smaller = earlier.
   int object = -1;       ///< Index into ModelLibrary::objects.
   Rigid3 world_from_object;
-  int origin_view = -1;  ///< View that it was generated from (of a cluster: the newest).
+  int origin_view = -1;                         ///< View that it was generated from (of a cluster: the newest).
   std::vector<Correspondence> correspondences;  ///< Scene side in the world frame.
-  std::vector<int> origin_views;                ///< Of a cluster: all views that contributed, ascending; else {origin_view}.
+  std::vector<int> origin_views;  ///< Of a cluster: all views that contributed, ascending; else {origin_view}.
 };
 
 }  // namespace resight
