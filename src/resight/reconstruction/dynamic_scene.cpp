@@ -4,8 +4,21 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
 
 namespace resight {
+namespace {
+
+/// Takes what was removed out of an earlier view. Most views of a large scene do not see the place at all.
+void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& options, DynamicScene::View& view) {
+  const std::size_t num_before = count_valid(view.cleared.frame.depth_m);
+  view.cleared =
+      clear_removed_points(std::move(view.cleared), removed_in_world, options.clear_tolerance_m, options.prepare);
+  if (count_valid(view.cleared.frame.depth_m) != num_before)
+    view.voxels = reduce_to_voxels(view.cleared, options.integrate);
+}
+
+}  // namespace
 
 void DynamicSceneOptions::check() const {
   check_not_negative("DynamicSceneOptions.num_previous_views", num_previous_views);
@@ -27,15 +40,16 @@ ChangeResult DynamicScene::add_view(PreparedView view) {
   }
   while (static_cast<int>(window_.size()) > options_.num_previous_views) window_.pop_front();
   if (!changes.removed_in_world.empty())
-    for (View& earlier : window_)
-      earlier.cleared = clear_removed_points(std::move(earlier.cleared), changes.removed_in_world,
-                                             options_.clear_tolerance_m, options_.prepare);
+    parallel_for(window_.size(), options_.integrate.num_threads,
+                 [&](std::size_t v) { clear(changes.removed_in_world, options_, window_[v]); });
   RgbdFrame raw = view.frame;
-  window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world});
+  ViewVoxels voxels = reduce_to_voxels(view, options_.integrate);
+  window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
+                     std::move(voxels)});
 
-  std::vector<const PreparedView*> views;
-  for (const View& v : window_) views.push_back(&v.cleared);
-  reconstruction_ = integrate_views(views, options_.integrate);
+  std::vector<const ViewVoxels*> views;
+  for (const View& v : window_) views.push_back(&v.voxels);
+  reconstruction_ = merge_voxels(views, options_.integrate);
   return changes;
 }
 

@@ -28,6 +28,7 @@ class DynamicScene {
     PreparedView cleared;         ///< Without what later views saw removed.
     PointCloud removed_in_world;  ///< What this view saw removed, and what it brought; world frame.
     PointCloud novel_in_world;
+    ViewVoxels voxels;  ///< Of `cleared`: only a view that a removal reaches is reduced again.
   };
 
   /// Throws std::invalid_argument for options that fail check().

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/reconstruction/dynamic_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "resight/changes/analytic_scene_test_util.hpp"
+
+namespace resight {
+namespace {
+
+using namespace testing_scene;
+const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
+const Box kOther{{0.3, 0.1, 0.06}, {0.05, 0.05, 0.06}};
+
+Scene with(const std::vector<Box>& boxes) {
+  Scene scene = table();
+  scene.boxes = boxes;
+  return scene;
+}
+
+struct Step {
+  Scene scene;
+  Rigid3 pose;
+};
+
+/// The box goes at view 2, is back at view 4; the other one comes at view 3. View 1 looks away, so that nothing reaches
+/// it.
+std::vector<Step> story() {
+  const Rigid3 left = look_at({-0.3, -0.9, 0.8}, {0, 0, 0.05});
+  const Rigid3 right = look_at({0.3, -0.9, 0.8}, {0, 0, 0.05});
+  const Rigid3 away = look_at({1.6, -0.9, 0.8}, {1.6, 0, 0.05});
+  return {{with({kBox}), left},    {with({kBox}), away},         {with({}), usual_pose()},
+          {with({kOther}), right}, {with({kBox, kOther}), left}, {with({kBox}), usual_pose()}};
+}
+
+/// Alg. 1 from the raw views every time, with the removals in a history.
+class FromScratch {
+ public:
+  explicit FromScratch(int num_previous_views) : num_previous_views_(num_previous_views) {}
+
+  ChangeResult add(const PreparedView& view) {
+    const int number = static_cast<int>(views_.size());
+    ChangeResult changes;
+    if (number > 0) changes = detect_changes(psi_.cloud_in_world, view, {}, pointers(cleared_));
+    history_.add(number, changes.removed_in_world);
+    views_.push_back(view);
+    cleared_.clear();
+    for (int v = std::max(0, number - num_previous_views_); v <= number; ++v)
+      cleared_.push_back(clear_removed_points(views_[static_cast<std::size_t>(v)], history_.removed_after(v), 0.02));
+    psi_ = integrate_views(pointers(cleared_));
+    return changes;
+  }
+  [[nodiscard]] const PointCloud& reconstruction() const { return psi_.cloud_in_world; }
+
+ private:
+  static std::vector<const PreparedView*> pointers(const std::vector<PreparedView>& views) {
+    std::vector<const PreparedView*> result;
+    for (const PreparedView& view : views) result.push_back(&view);
+    return result;
+  }
+
+  int num_previous_views_;
+  std::vector<PreparedView> views_;
+  std::vector<PreparedView> cleared_;
+  RemovalHistory history_;
+  Reconstruction psi_;
+};
+
+TEST(DynamicScene, AgreesWithStartingFromScratch) {
+  for (const int num_previous_views : {1, 2, 5}) {
+    DynamicSceneOptions options;
+    options.num_previous_views = num_previous_views;
+    DynamicScene scene(options);
+    FromScratch twin(num_previous_views);
+    std::size_t num_removed = 0;
+    std::size_t num_novel = 0;
+    for (const Step& step : story()) {
+      const PreparedView view = see(step.scene, step.pose);
+      const ChangeResult expected = twin.add(view);
+      const ChangeResult changes = scene.add_view(view);
+      EXPECT_EQ(changes.removed_in_world.points, expected.removed_in_world.points);
+      EXPECT_EQ(changes.novel_in_world.points, expected.novel_in_world.points);
+      ASSERT_EQ(scene.reconstruction().points, twin.reconstruction().points);
+      EXPECT_EQ(scene.reconstruction().normals, twin.reconstruction().normals);
+      num_removed += changes.removed_in_world.size();
+      num_novel += changes.novel_in_world.size();
+    }
+    EXPECT_EQ(static_cast<int>(scene.window().size()), num_previous_views + 1);
+    if (num_previous_views >= 2) {
+      EXPECT_GT(num_removed, 500U);
+      EXPECT_GT(num_novel, 500U);
+    }
+  }
+}
+
+TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
+  for (const bool detect : {false, true}) {
+    DynamicSceneOptions options;
+    options.detect_changes = detect;
+    DynamicScene scene(options);
+    (void)scene.add_view(see(with({kBox})));
+    const int before = count_at(kBox, scene.reconstruction(), 0.002);
+    const ChangeResult changes = scene.add_view(see(with({})));
+    const int after = count_at(kBox, scene.reconstruction(), 0.002);
+    ASSERT_GT(before, 500);
+    if (detect) {
+      EXPECT_LT(after, before / 2);  // the table beneath is in the box as well
+      EXPECT_FALSE(changes.removed_in_world.empty());
+    } else {
+      EXPECT_GE(after, before);
+      EXPECT_TRUE(changes.removed_in_world.empty());
+    }
+  }
+}
+
+TEST(DynamicScene, SerialIsParallel) {
+  DynamicSceneOptions options;
+  DynamicScene serial(options);
+  options.changes.num_threads = options.integrate.num_threads = options.prepare.num_threads = 3;
+  DynamicScene parallel(options);
+  for (const Step& step : story()) {
+    const PreparedView view = see(step.scene, step.pose);
+    (void)serial.add_view(view);
+    (void)parallel.add_view(view);
+    ASSERT_GT(serial.reconstruction().size(), 1000U);
+    EXPECT_EQ(parallel.reconstruction().points, serial.reconstruction().points);
+    EXPECT_EQ(parallel.reconstruction().colors, serial.reconstruction().colors);
+  }
+}
+
+TEST(DynamicScene, RefusesNonsense) {
+  DynamicSceneOptions options;
+  options.num_previous_views = -1;
+  EXPECT_THROW(DynamicScene{options}, std::invalid_argument);
+  options = {};
+  options.clear_tolerance_m = 0;
+  EXPECT_THROW(DynamicScene{options}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight
