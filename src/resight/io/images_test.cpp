@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/images.hpp"
+
+#include <gmock/gmock.h>
+
+#include "resight/io/internal/test_data.hpp"
+
+namespace resight {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Images, PngColourAndDepthAreExact) {
+  io::TestDirectory directory;
+  const RgbdFrame frame = io::random_frame("a", 1);
+  ASSERT_TRUE(write_color(directory / "c.png", frame.color).ok());
+  ASSERT_TRUE(write_depth(directory / "d.png", frame.depth_m, 1e-4).ok());
+  EXPECT_EQ(*read_color(directory / "c.png"), frame.color);
+  EXPECT_EQ(io::depth_difference_m(*read_depth(directory / "d.png", 1e-4), frame.depth_m), 0);
+  // In whole millimetres half of one is lost at most.
+  ASSERT_TRUE(write_depth(directory / "mm.png", frame.depth_m, 1e-3).ok());
+  const double lost = io::depth_difference_m(*read_depth(directory / "mm.png", 1e-3), frame.depth_m);
+  EXPECT_GT(lost, 1e-4);
+  EXPECT_LT(lost, 5.01e-4);
+}
+
+TEST(Images, JpegIsNear) {
+  io::TestDirectory directory;
+  const Image<Rgb8> color(32, 24, Rgb8{200, 100, 50});
+  ASSERT_TRUE(write_color(directory / "c.jpg", color).ok());
+  const auto read = read_color(directory / "c.jpg");
+  ASSERT_TRUE(read.ok());
+  EXPECT_NEAR((*read)(5, 5).r, 200, 4);
+  EXPECT_NEAR((*read)(5, 5).b, 50, 4);
+}
+
+TEST(Images, MasksAreZeroOr255) {
+  io::TestDirectory directory;
+  Image<std::uint8_t> mask(9, 7, 0);
+  mask(3, 2) = 1;
+  ASSERT_TRUE(write_mask(directory / "m.png", mask).ok());
+  const auto read = read_mask(directory / "m.png");
+  EXPECT_EQ((*read)(3, 2), 255);
+  EXPECT_EQ(std::ranges::count(read->data(), 255), 1);
+}
+
+TEST(Images, DepthThatDoesNotFitIsAnError) {
+  io::TestDirectory directory;
+  EXPECT_THAT(write_depth(directory / "d.png", Image<float>(2, 2, 7.0F), 1e-4).error().message,
+              HasSubstr("does not fit"));
+  EXPECT_THAT(write_depth(directory / "d.png", Image<float>(2, 2, 0.0001F), 1e-3).error().message,
+              HasSubstr("does not fit"));
+  EXPECT_FALSE(std::filesystem::exists(directory / "d.png"));
+}
+
+TEST(Images, BadFiles) {
+  io::TestDirectory directory;
+  EXPECT_THAT(read_color(directory / "none.png").error().message, HasSubstr("no such file"));
+  io::write_text(directory / "text.png", "hello");
+  EXPECT_THAT(read_color(directory / "text.png").error().message, HasSubstr("expected PNG or JPEG"));
+  ASSERT_TRUE(write_color(directory / "c.png", io::random_frame("a", 1).color).ok());
+  const std::string bytes = io::read_text(directory / "c.png");
+  io::write_text(directory / "cut.png", bytes.substr(0, bytes.size() / 2));
+  EXPECT_THAT(read_color(directory / "cut.png").error().message, HasSubstr("cut off"));
+  std::string huge = bytes;
+  huge.replace(16, 8, std::string("\0\1\0\0\0\1\0\0", 8));  // 65536 x 65536
+  io::write_text(directory / "huge.png", huge);
+  EXPECT_THAT(read_color(directory / "huge.png").error().message, HasSubstr("out of range"));
+  EXPECT_THAT(read_depth(directory / "c.png", 1e-3).error().message, HasSubstr("one channel of 16 bits"));
+}
+
+TEST(Images, NumpyDepth) {
+  io::TestDirectory directory;
+  std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
+  dictionary.resize(118, ' ');
+  std::string bytes = std::string("\x93NUMPY\x01\0", 8) + std::string("\x76\0", 2) + dictionary;
+  for (const float z : {1.5F, 0.0F, -1.0F, std::numeric_limits<float>::infinity(), std::nanf(""), 2.25F})
+    bytes.append(reinterpret_cast<const char*>(&z), 4);
+  io::write_text(directory / "d.npy", bytes);
+  const auto depth = read_depth_npy(directory / "d.npy");
+  ASSERT_TRUE(depth.ok()) << depth.error().message;
+  EXPECT_EQ(depth->width(), 3);
+  EXPECT_EQ((*depth)(0, 0), 1.5F);
+  EXPECT_EQ((*depth)(2, 1), 2.25F);
+  EXPECT_EQ(std::ranges::count_if(depth->data(), [](float z) { return std::isnan(z); }), 4);
+  io::write_text(directory / "cut.npy", bytes.substr(0, bytes.size() - 1));
+  EXPECT_THAT(read_depth_npy(directory / "cut.npy").error().message, HasSubstr("cut off"));
+  bytes.replace(bytes.find("<f4"), 3, "<f8");
+  io::write_text(directory / "double.npy", bytes);
+  EXPECT_THAT(read_depth_npy(directory / "double.npy").error().message, HasSubstr("'<f4'"));
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/mesh.hpp"
+
+#include <gmock/gmock.h>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/mesh_parts.hpp"
+#include "resight/io/internal/test_data.hpp"
+
+namespace resight {
+namespace {
+
+using testing::HasSubstr;
+
+/// A square in the plane z = 0 with a texture: left half red, right half blue, top row of the picture green.
+void write_square_obj(const io::TestDirectory& directory, double scale) {
+  const std::string s = std::to_string(scale);
+  io::write_text(directory / "square.obj", "mtllib square.mtl\nv 0 0 0\nv " + s + " 0 0\nv " + s + " " + s +
+                                               " 0\nv 0 " + s +
+                                               " 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n");
+  io::write_text(directory / "square.mtl", "newmtl m\nKd 1 1 1\nmap_Kd square.png \n");
+  Image<Rgb8> texture(8, 8, Rgb8{255, 0, 0});
+  for (int v = 0; v < 8; ++v)
+    for (int u = 4; u < 8; ++u) texture(u, v) = {0, 0, 255};
+  for (int u = 0; u < 8; ++u) texture(u, 0) = {0, 255, 0};
+  ASSERT_TRUE(write_color(directory / "square.png", texture).ok());
+}
+
+TEST(Mesh, ObjTextureStandsUpright) {
+  io::TestDirectory directory;
+  write_square_obj(directory, 0.2);
+  const auto read = read_mesh(directory / "square.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_TRUE(read->mesh.has_texture());
+  ASSERT_EQ(read->mesh.faces.size(), 2U);
+  int num_green = 0;
+  for (std::size_t i = 0; i < read->mesh.vertices.size(); ++i) {
+    const bool at_top = read->mesh.vertices[i].y() > 0.1F;  // y up = v up = first row of the picture
+    EXPECT_EQ(read->mesh.uvs[i].y() < 0.5F, at_top);
+    num_green += at_top ? 1 : 0;
+    EXPECT_NEAR(read->mesh.normals[i].z(), 1, 1e-6);
+  }
+  EXPECT_EQ(num_green, 2);
+}
+
+TEST(Mesh, MissingTextureIsAWarning) {
+  io::TestDirectory directory;
+  write_square_obj(directory, 0.2);
+  std::filesystem::remove(directory / "square.png");
+  const auto read = read_mesh(directory / "square.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_FALSE(read->mesh.has_texture());
+  ASSERT_EQ(read->warnings.size(), 1U);
+  EXPECT_THAT(read->warnings[0], HasSubstr("square.png"));
+}
+
+TEST(Mesh, WrongUnitsAreRefused) {
+  io::TestDirectory directory;
+  write_square_obj(directory, 200);
+  EXPECT_THAT(read_mesh(directory / "square.obj").error().message, HasSubstr("looks like millimetres"));
+  EXPECT_TRUE(read_mesh(directory / "square.obj", {.metres_per_unit = 0.001}).ok());
+  write_square_obj(directory, 0.2);
+  EXPECT_THAT(read_mesh(directory / "square.obj", {.metres_per_unit = 0.001}).error().message,
+              HasSubstr("looks like metres"));
+  write_square_obj(directory, 0.001);
+  EXPECT_THAT(read_mesh(directory / "square.obj").error().message, HasSubstr("check its unit"));
+  EXPECT_TRUE(read_mesh(directory / "square.obj", {.min_size_m = 0}).ok());
+  EXPECT_THROW((void)read_mesh(directory / "square.obj", {.metres_per_unit = -1}), std::invalid_argument);
+}
+
+TEST(Mesh, SameFileSameBytes) {
+  io::TestDirectory directory;
+  write_square_obj(directory, 0.2);
+  const auto a = read_mesh(directory / "square.obj");
+  const auto b = read_mesh(directory / "square.obj");
+  EXPECT_EQ(a->mesh.vertices, b->mesh.vertices);
+  EXPECT_EQ(a->mesh.faces, b->mesh.faces);
+  EXPECT_EQ(a->mesh.uvs, b->mesh.uvs);
+}
+
+TEST(Mesh, StlWithoutColours) {
+  io::TestDirectory directory;
+  io::write_text(directory / "t.stl",
+                 "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex .1 0 0\nvertex 0 .1 "
+                 "0\nendloop\nendfacet\nendsolid t\n");
+  const auto read = read_mesh(directory / "t.stl");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->mesh.faces.size(), 1U);
+  EXPECT_TRUE(read->mesh.colors.empty());
+}
+
+TEST(Mesh, GltfNodesTexturesAndColours) {
+  // Two triangles under a node that moves them by 0.5 along x; uv (0, 0) is top left in glTF.
+  io::TestDirectory directory;
+  std::string buffer;
+  const auto add = [&](float x) { buffer.append(reinterpret_cast<const char*>(&x), 4); };
+  for (const float x : {0.F, 0.F, 0.F, .1F, 0.F, 0.F, 0.F, .1F, 0.F}) add(x);
+  for (const float x : {0.F, 0.F, 1.F, 0.F, 0.F, 1.F}) add(x);
+  io::write_text(directory / "b.bin", buffer);
+  Image<Rgb8> texture(4, 4, Rgb8{10, 20, 30});
+  texture(0, 0) = {200, 0, 0};
+  ASSERT_TRUE(write_color(directory / "t.png", texture).ok());
+  io::write_text(directory / "m.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"mesh":0,"translation":[0.5,0,0]}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[{"uri":"t.png"}],
+    "buffers":[{"uri":"b.bin","byteLength":60}],
+    "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0.1,0.1,0]},
+                 {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}]})");
+  const auto read = read_mesh(directory / "m.gltf");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_TRUE(read->mesh.has_texture()) << (read->warnings.empty() ? "" : read->warnings[0]);
+  ASSERT_EQ(read->mesh.vertices.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GE(read->mesh.vertices[i].x(), 0.5F);
+    const bool is_origin = read->mesh.vertices[i].head<2>().isApprox(Eigen::Vector2f(0.5F, 0));
+    EXPECT_EQ(read->mesh.uvs[i].norm() < 1e-6F, is_origin);
+  }
+}
+
+TEST(Mesh, BadFiles) {
+  io::TestDirectory directory;
+  EXPECT_THAT(read_mesh(directory / "none.obj").error().message, HasSubstr("no such file"));
+  EXPECT_THAT(read_mesh(directory / "none.doc").error().message, HasSubstr("expected ply, obj"));
+  io::write_text(directory / "empty.obj", "");
+  EXPECT_FALSE(read_mesh(directory / "empty.obj").ok());
+  io::write_text(directory / "points.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+  EXPECT_FALSE(read_mesh(directory / "points.obj").ok());
+  io::write_text(directory / "noise.glb", "glTF\x02\x01\x03");
+  EXPECT_FALSE(read_mesh(directory / "noise.glb").ok());
+}
+
+TriangleMesh triangle(const Eigen::Vector2f& shift) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.uvs = {shift, shift + Eigen::Vector2f(1, 0), shift + Eigen::Vector2f(0, 1)};
+  mesh.faces = {{0, 1, 2}};
+  return mesh;
+}
+
+TEST(JoinParts, StackedTexturesKeepTheirColours) {
+  std::vector<io::MeshPart> parts(3);
+  parts[0].mesh = triangle({0, 0});
+  parts[0].mesh.texture = Image<Rgb8>(16, 8, Rgb8{255, 0, 0});
+  parts[1].mesh = triangle({0, 0});
+  parts[1].mesh.texture = Image<Rgb8>(4, 32, Rgb8{0, 255, 0});
+  parts[2].mesh = triangle({0, 0});
+  parts[2].mesh.uvs.clear();
+  parts[2].color = {0, 0, 255};
+  const TriangleMesh mesh = io::join_parts(parts);
+  ASSERT_EQ(mesh.faces.size(), 3U);
+  ASSERT_TRUE(mesh.has_texture());
+  for (const float b : {0.01F, 0.4F, 0.98F}) {
+    EXPECT_EQ(surface_color(mesh, 0, b, (1 - b) / 2), (Rgb8{255, 0, 0}));
+    EXPECT_EQ(surface_color(mesh, 1, b, (1 - b) / 2), (Rgb8{0, 255, 0}));
+    EXPECT_EQ(surface_color(mesh, 2, b, (1 - b) / 2), (Rgb8{0, 0, 255}));
+  }
+}
+
+TEST(JoinParts, RepeatingTexturesBecomeVertexColours) {
+  std::vector<io::MeshPart> parts(2);
+  parts[0].mesh = triangle({3, 0});
+  parts[0].mesh.texture = Image<Rgb8>(16, 8, Rgb8{255, 0, 0});
+  parts[1].mesh = triangle({0, 0});
+  parts[1].mesh.texture = Image<Rgb8>(4, 32, Rgb8{0, 255, 0});
+  const TriangleMesh mesh = io::join_parts(parts);
+  EXPECT_FALSE(mesh.has_texture());
+  EXPECT_EQ(surface_color(mesh, 0, 0.3F, 0.3F), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(surface_color(mesh, 1, 0.3F, 0.3F), (Rgb8{0, 255, 0}));
+}
+
+}  // namespace
+}  // namespace resight
