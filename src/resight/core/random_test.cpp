@@ -23,6 +23,12 @@ TEST(Rng, GoldenValues) {
             (std::array<std::uint32_t, 4>{0x1d7ad6ef, 0x437dba91, 0x99fa02b0, 0x2ae07876}));
 }
 
+TEST(Rng, UniformUsesAll53Bits) {
+  Rng rng(1);
+  EXPECT_EQ(rng.uniform(), 0x1.a883df15bbb96p-2);
+  EXPECT_EQ(rng.uniform(), 0x1.068e8892884f8p-4);
+}
+
 TEST(Rng, StreamZeroIsTheSeedItself) {
   Rng a(9);
   Rng b = Rng::stream(9, 0);

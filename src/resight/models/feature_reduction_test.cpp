@@ -109,6 +109,17 @@ TEST(MergeSimilarFeatures, TheOneWithMostNeighboursStandsForAChain) {
   EXPECT_NEAR(merged.points[0].x(), 0.004, 1e-6);
 }
 
+TEST(MergeSimilarFeatures, WhatIsTakenStaysTaken) {
+  Rng rng(4);
+  const Eigen::VectorXf d = random_descriptor(rng);
+  FeatureSet set;
+  for (const float x : {0.0F, 0.004F, 0.008F, 0.012F, 0.016F}) add_feature(set, {x, 0, 0}, d);
+  const FeatureSet merged = merge_similar_features(set, kMerging);
+  ASSERT_EQ(merged.size(), 2U);
+  EXPECT_NEAR(merged.points[0].x(), 0.004, 1e-6);  // of 0, 4 and 8 mm
+  EXPECT_NEAR(merged.points[1].x(), 0.014, 1e-6);  // of what is left: 12 and 16 mm
+}
+
 TEST(MergeSimilarFeatures, SameBytesForAnyNumberOfThreads) {
   const FeatureSet set = make_repeated(200, 8, 5);
   const FeatureSet serial = merge_similar_features(set, kMerging, 1);

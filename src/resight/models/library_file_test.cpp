@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -264,6 +266,22 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
     ASSERT_FALSE(loaded.ok()) << c.expected;
     EXPECT_THAT(loaded.error().message, HasSubstr(c.expected));
   }
+}
+
+TEST_F(LibraryFile, RefusesADescriptorOfZeros) {
+  ModelLibrary library = make_library();
+  std::ranges::fill(library.objects[0].sift.descriptors, 1.0F / std::sqrt(128.0F));
+  ASSERT_TRUE(save_library(library, path_).ok());
+  Bytes bytes = read();
+  const Bytes row(128, 255);  // how it is coded
+  const auto found = std::search(bytes.begin(), bytes.end(), row.begin(), row.end());
+  ASSERT_NE(found, bytes.end());
+  std::fill(found, found + 128, std::uint8_t{0});
+  fix_checksum(bytes);
+  write(bytes);
+  const Result<ModelLibrary> loaded = load_library(path_);
+  ASSERT_FALSE(loaded.ok());
+  EXPECT_THAT(loaded.error().message, HasSubstr("SIFT features of object 'mug'"));
 }
 
 TEST_F(LibraryFile, NoticesEveryBitFlip) {
