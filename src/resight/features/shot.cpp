@@ -119,7 +119,13 @@ FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints,
   features.type = FeatureType::kShot;
   features.dimension = kShotDimension;
   if (kept != nullptr) kept->clear();
-  for (const Described& block : describe_in_blocks(support, keypoints, options)) {
+  const std::vector<Described> blocks = describe_in_blocks(support, keypoints, options);
+  std::size_t num_described = 0;
+  for (const Described& block : blocks) num_described += block.keypoints.size();
+  features.points.reserve(num_described);
+  features.normals.reserve(num_described);
+  features.descriptors.reserve(num_described * kShotDimension);
+  for (const Described& block : blocks) {
     for (const int i : block.keypoints) {
       features.points.push_back(keypoints.points[i]);
       features.normals.push_back(keypoints.normals[i]);

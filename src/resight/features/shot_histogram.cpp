@@ -34,17 +34,45 @@ inline float fast_atan2(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
-/// A coordinate's own bin, the one next to it (own, where there is none), and how far it lies towards that one.
-struct Vote {
-  int bin;
-  int next;
-  float fraction;
+struct Frame {
+  float xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
-inline Vote vote(float coordinate, int num_bins) {
-  const int bin = std::clamp(static_cast<int>(coordinate + 0.5F), 0, num_bins - 1);  // coordinates are >= -0.5
-  const float offset = coordinate - static_cast<float>(bin);
-  return {bin, bin + (offset > 0 ? 1 : -1), std::abs(offset)};
+// Loops of their own with their arrays as parameters: only there compilers trust __restrict, without which they stay
+// scalar.
+void find_angles(const float* __restrict dx, const float* __restrict dy, const float* __restrict dz, Frame f, int count,
+                 float* __restrict azimuth, float* __restrict elevation) {
+  for (int i = 0; i < count; ++i) {
+    const float x = dx[i] * f.xx + dy[i] * f.xy + dz[i] * f.xz;
+    const float y = dx[i] * f.yx + dy[i] * f.yy + dz[i] * f.yz;
+    const float z = dx[i] * f.zx + dy[i] * f.zy + dz[i] * f.zz;
+    azimuth[i] = (fast_atan2(y, x) + kPi) * (4 / kPi) - 0.5F;                   // bins of 45 deg from -pi on
+    elevation[i] = 1.5F - fast_atan2(std::sqrt(x * x + y * y), z) * (2 / kPi);  // 0: below, 1: above the tangent plane
+  }
+}
+
+void find_cosines(const float* __restrict nx, const float* __restrict ny, const float* __restrict nz, Frame f,
+                  int count, float* __restrict cosine) {
+  for (int i = 0; i < count; ++i) {
+    const float c = nx[i] * f.zx + ny[i] * f.zy + nz[i] * f.zz;
+    const float low = c < -1 ? -1.0F : c;
+    cosine[i] = (1 + (low > 1 ? 1.0F : low)) * (0.5F * (kShotCosineBins - 1));
+  }
+}
+
+void find_husks(const float* __restrict distance, float radius_m, int count, float* __restrict radial) {
+  const float scale = 2 / radius_m;
+  for (int i = 0; i < count; ++i) radial[i] = scale * distance[i] - 0.5F;
+}
+
+/// Splits coordinates >= -0.5 into the bin whose centre is nearest and the offset from that.
+void split(float* __restrict coordinate, int* __restrict bin, int num_bins, int count) {
+  for (int i = 0; i < count; ++i) {
+    const int nearest = static_cast<int>(coordinate[i] + 0.5F);
+    const int own = nearest < num_bins ? nearest : num_bins - 1;
+    bin[i] = own;
+    coordinate[i] -= static_cast<float>(own);
+  }
 }
 
 }  // namespace
@@ -53,6 +81,8 @@ void ShotHistogram::compute(const Neighborhood& n, const Eigen::Matrix3f& frame,
                             std::span<float> descriptor) {
   const auto count = static_cast<std::size_t>(n.count);
   for (std::vector<float>* values : {&azimuth_, &radial_, &elevation_, &cosine_})
+    if (values->size() < count) values->resize(2 * count);
+  for (std::vector<int>* values : {&azimuth_bin_, &radial_bin_, &elevation_bin_, &cosine_bin_})
     if (values->size() < count) values->resize(2 * count);
   locate(n, frame, static_cast<float>(radius_m));
   std::ranges::fill(descriptor, 0.0F);
@@ -63,48 +93,38 @@ void ShotHistogram::compute(const Neighborhood& n, const Eigen::Matrix3f& frame,
   for (float& x : descriptor) x *= scale;
 }
 
-void ShotHistogram::locate(const Neighborhood& n, const Eigen::Matrix3f& frame, float radius_m) {
-  const float xx = frame(0, 0), xy = frame(0, 1), xz = frame(0, 2);
-  const float yx = frame(1, 0), yy = frame(1, 1), yz = frame(1, 2);
-  const float zx = frame(2, 0), zy = frame(2, 1), zz = frame(2, 2);
-  const float* __restrict dx = n.dx.data();
-  const float* __restrict dy = n.dy.data();
-  const float* __restrict dz = n.dz.data();
-  const float* __restrict distance = n.distance.data();
-  const float* __restrict nx = n.nx.data();
-  const float* __restrict ny = n.ny.data();
-  const float* __restrict nz = n.nz.data();
-  float* __restrict azimuth = azimuth_.data();
-  float* __restrict radial = radial_.data();
-  float* __restrict elevation = elevation_.data();
-  float* __restrict cosine = cosine_.data();
-  for (int i = 0; i < n.count; ++i) {
-    const float x = dx[i] * xx + dy[i] * xy + dz[i] * xz;
-    const float y = dx[i] * yx + dy[i] * yy + dz[i] * yz;
-    const float z = dx[i] * zx + dy[i] * zy + dz[i] * zz;
-    const float inclination = fast_atan2(std::sqrt(x * x + y * y), z);
-    const float c = nx[i] * zx + ny[i] * zy + nz[i] * zz;
-    azimuth[i] = (fast_atan2(y, x) + kPi) * (4 / kPi) - 0.5F;  // bins of 45 deg from -pi on
-    radial[i] = 2 * distance[i] / radius_m - 0.5F;             // two husks
-    elevation[i] = 1.5F - inclination * (2 / kPi);             // 0: below, 1: above the tangent plane
-    cosine[i] = (1 + std::min(1.0F, std::max(-1.0F, c))) * (0.5F * (kShotCosineBins - 1));
-  }
+void ShotHistogram::locate(const Neighborhood& n, const Eigen::Matrix3f& axes, float radius_m) {
+  const Frame frame{axes(0, 0), axes(0, 1), axes(0, 2), axes(1, 0), axes(1, 1),
+                    axes(1, 2), axes(2, 0), axes(2, 1), axes(2, 2)};
+  find_angles(n.dx.data(), n.dy.data(), n.dz.data(), frame, n.count, azimuth_.data(), elevation_.data());
+  find_cosines(n.nx.data(), n.ny.data(), n.nz.data(), frame, n.count, cosine_.data());
+  find_husks(n.distance.data(), radius_m, n.count, radial_.data());
+  split(azimuth_.data(), azimuth_bin_.data(), kAzimuthBins, n.count);
+  split(radial_.data(), radial_bin_.data(), 2, n.count);
+  split(elevation_.data(), elevation_bin_.data(), 2, n.count);
+  split(cosine_.data(), cosine_bin_.data(), kShotCosineBins, n.count);
 }
 
 void ShotHistogram::add_votes(std::size_t i, float* descriptor) const {
-  const Vote a = vote(azimuth_[i], kAzimuthBins);
-  const Vote r = vote(radial_[i], 2);
-  const Vote e = vote(elevation_[i], 2);
-  const Vote c = vote(cosine_[i], kShotCosineBins);
-  const auto volume = [](int azimuth, int radial, int elevation) {
-    return (4 * azimuth + 2 * radial + elevation) * kShotCosineBins;
-  };
-  float* own = descriptor + volume(a.bin, r.bin, e.bin);
-  own[c.bin] += 4 - a.fraction - r.fraction - e.fraction - c.fraction;
-  if (c.next >= 0 && c.next < kShotCosineBins) own[c.next] += c.fraction;
-  if (r.next == 0 || r.next == 1) descriptor[volume(a.bin, r.next, e.bin) + c.bin] += r.fraction;
-  if (e.next == 0 || e.next == 1) descriptor[volume(a.bin, r.bin, e.next) + c.bin] += e.fraction;
-  descriptor[volume((a.next + kAzimuthBins) % kAzimuthBins, r.bin, e.bin) + c.bin] += a.fraction;
+  constexpr int kAzimuthStep = 4 * kShotCosineBins;
+  constexpr int kRadialStep = 2 * kShotCosineBins;
+  const int azimuth = azimuth_bin_[i];
+  const int radial = radial_bin_[i];
+  const int above = elevation_bin_[i];
+  const int bin = cosine_bin_[i];
+  const float a = azimuth_[i];
+  const float r = radial_[i];
+  const float e = elevation_[i];
+  const float c = cosine_[i];
+  float* own = descriptor + azimuth * kAzimuthStep + radial * kRadialStep + above * kShotCosineBins + bin;
+  *own += 4 - (std::abs(a) + std::abs(r) + std::abs(e) + std::abs(c));
+  // Of two bins the other one is nearer when the offset points to it; else the second vote has weight 0: no branch.
+  own[radial == 0 ? kRadialStep : -kRadialStep] += std::max(0.0F, radial == 0 ? r : -r);
+  own[above == 0 ? kShotCosineBins : -kShotCosineBins] += std::max(0.0F, above == 0 ? e : -e);
+  const int next = bin + (c > 0 ? 1 : -1);
+  if (next >= 0 && next < kShotCosineBins) own[next - bin] += std::abs(c);
+  const int next_azimuth = (azimuth + (a > 0 ? 1 : kAzimuthBins - 1)) % kAzimuthBins;
+  own[(next_azimuth - azimuth) * kAzimuthStep] += std::abs(a);
 }
 
 }  // namespace resight

@@ -28,7 +28,10 @@ class ShotHistogram {
   void locate(const Neighborhood& neighborhood, const Eigen::Matrix3f& frame, float radius_m);
   void add_votes(std::size_t neighbor, float* descriptor) const;
 
-  std::vector<float> azimuth_, radial_, elevation_, cosine_;  ///< Of each neighbour, in bins; bin centres are whole.
+  /// Coordinates of each neighbour in bins (their centres are whole numbers), split into bin and signed offset from its
+  /// centre.
+  std::vector<int> azimuth_bin_, radial_bin_, elevation_bin_, cosine_bin_;
+  std::vector<float> azimuth_, radial_, elevation_, cosine_;
 };
 
 }  // namespace resight

@@ -7,11 +7,37 @@
 #include "resight/core/check.hpp"
 
 namespace resight {
+namespace {
+
+// Loops of their own with their arrays as parameters: only there compilers trust __restrict, without which they stay
+// scalar.
+void find_distances_sq(const float* __restrict x, const float* __restrict y, const float* __restrict z, float cx,
+                       float cy, float cz, int count, float* __restrict distance_sq) {
+  for (int i = 0; i < count; ++i) {
+    const float dx = x[i] - cx;
+    const float dy = y[i] - cy;
+    const float dz = z[i] - cz;
+    distance_sq[i] = dx * dx + dy * dy + dz * dz;
+  }
+}
+
+void pick(const float* __restrict from, float minus, const int* __restrict rows, int count, float* __restrict to) {
+  for (int i = 0; i < count; ++i) to[i] = from[rows[i]] - minus;
+}
+
+void find_distances(const float* __restrict dx, const float* __restrict dy, const float* __restrict dz, int count,
+                    float* __restrict distance) {
+  for (int i = 0; i < count; ++i) distance[i] = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+}
+
+}  // namespace
 
 void Neighborhood::reserve(std::size_t capacity) {
   const std::size_t size = capacity + kLanes;
   if (size <= dx.size()) return;
-  for (std::vector<float>* values : {&dx, &dy, &dz, &distance, &nx, &ny, &nz}) values->resize(size + size / 2);
+  for (std::vector<float>* values : {&dx, &dy, &dz, &distance, &nx, &ny, &nz, &candidate_distance_sq})
+    values->resize(size + size / 2);
+  rows.resize(size + size / 2);
 }
 
 SupportGrid::SupportGrid(const PointCloud& support, double radius_m)
@@ -67,23 +93,24 @@ void SupportGrid::gather(const Eigen::Vector3f& center, Neighborhood& n) const {
   const float radius_sq = radius_m_ * radius_m_;
   int count = 0;
   visit_cells(center, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {  // every point is written, those outside are overwritten by the next: no branch
-      const float dx = x_[i] - center.x();
-      const float dy = y_[i] - center.y();
-      const float dz = z_[i] - center.z();
-      const float distance_sq = dx * dx + dy * dy + dz * dz;
-      n.dx[count] = dx;
-      n.dy[count] = dy;
-      n.dz[count] = dz;
-      n.distance[count] = distance_sq;
-      n.nx[count] = nx_[i];
-      n.ny[count] = ny_[i];
-      n.nz[count] = nz_[i];
-      count += static_cast<int>(distance_sq <= radius_sq) & static_cast<int>(distance_sq > 0);
+    float* distance_sq = n.candidate_distance_sq.data();
+    find_distances_sq(&x_[begin], &y_[begin], &z_[begin], center.x(), center.y(), center.z(), end - begin, distance_sq);
+    int* rows = n.rows.data();
+    for (int i = begin; i < end;
+         ++i) {  // every row is written, one that lies outside is overwritten by the next: no branch
+      const float candidate_sq = distance_sq[i - begin];
+      rows[count] = i;
+      count += static_cast<int>(candidate_sq <= radius_sq) & static_cast<int>(candidate_sq > 0);
     }
   });
   n.count = count;
-  for (int i = 0; i < count; ++i) n.distance[i] = std::sqrt(n.distance[i]);
+  pick(x_.data(), center.x(), n.rows.data(), count, n.dx.data());
+  pick(y_.data(), center.y(), n.rows.data(), count, n.dy.data());
+  pick(z_.data(), center.z(), n.rows.data(), count, n.dz.data());
+  pick(nx_.data(), 0, n.rows.data(), count, n.nx.data());
+  pick(ny_.data(), 0, n.rows.data(), count, n.ny.data());
+  pick(nz_.data(), 0, n.rows.data(), count, n.nz.data());
+  find_distances(n.dx.data(), n.dy.data(), n.dz.data(), count, n.distance.data());
   for (int i = count; i < count + Neighborhood::kLanes; ++i) {
     for (std::vector<float>* values : {&n.dx, &n.dy, &n.dz, &n.distance, &n.nx, &n.ny, &n.nz}) (*values)[i] = 0;
   }

@@ -20,6 +20,9 @@ struct Neighborhood {
 
   /// Makes room for `capacity` neighbours; never shrinks.
   void reserve(std::size_t capacity);
+
+  std::vector<float> candidate_distance_sq;  ///< Scratch of SupportGrid::gather().
+  std::vector<int> rows;                     ///< Likewise: rows of the neighbours in the grid.
 };
 
 /// Support points sorted into cubes of the size of the support radius, cube after cube in one array.

@@ -48,24 +48,17 @@ inline float angle_ratio(float c) {
   return clipped / (kHalfPi - clipped);
 }
 
-void model_row(const OrganizedCloud& cloud, int v, float focal_px, NoiseImages& noise) {
-  const std::size_t first = cloud.z.index(0, v);
-  const bool has_normals = !cloud.nx.empty();
-  const float* __restrict x = &cloud.x[first];
-  const float* __restrict y = &cloud.y[first];
-  const float* __restrict z = &cloud.z[first];
-  const float* __restrict nx = has_normals ? &cloud.nx[first] : z;
-  const float* __restrict ny = has_normals ? &cloud.ny[first] : z;
-  const float* __restrict nz = has_normals ? &cloud.nz[first] : z;
-  float* __restrict lateral = &noise.lateral_m[first];
-  float* __restrict axial = &noise.axial_m[first];
-  const float unknown = has_normals ? 1.0F : std::numeric_limits<float>::quiet_NaN();
-  for (int u = 0; u < cloud.width(); ++u) {
+/// One row. Parameters, since compilers trust __restrict on these alone: without it the loop stays scalar. `trust` is
+/// 1, or NaN where there are no normals.
+void model_row(const float* __restrict x, const float* __restrict y, const float* __restrict z,
+               const float* __restrict nx, const float* __restrict ny, const float* __restrict nz, int width,
+               float trust, float focal_px, float* __restrict lateral_m, float* __restrict axial_m) {
+  for (int u = 0; u < width; ++u) {
     const float along_ray = std::abs(nx[u] * x[u] + ny[u] * y[u] + nz[u] * z[u]);
     const float range = std::sqrt(x[u] * x[u] + y[u] * y[u] + z[u] * z[u]);
-    const float ratio = angle_ratio(unknown * along_ray / range);
-    lateral[u] = lateral_sigma_m(z[u], ratio, focal_px);
-    axial[u] = axial_sigma_m(z[u], ratio);
+    const float ratio = angle_ratio(trust * along_ray / range);
+    lateral_m[u] = lateral_sigma_m(z[u], ratio, focal_px);
+    axial_m[u] = axial_sigma_m(z[u], ratio);
   }
 }
 
@@ -87,11 +80,17 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
   require(width == camera.width && height == camera.height, "model_noise: the cloud has not the camera's size");
   const auto focal_px = static_cast<float>((camera.fx + camera.fy) / 2);
   NoiseImages noise{Image<float>(width, height), Image<float>(width, height)};
-  parallel_for_blocks(static_cast<std::size_t>(height), kRowsPerTask, num_threads,
-                      [&](std::size_t first, std::size_t last) {
-                        for (std::size_t v = first; v < last; ++v)
-                          model_row(cloud_in_camera, static_cast<int>(v), focal_px, noise);
-                      });
+  const OrganizedCloud& c = cloud_in_camera;
+  const bool has_normals = !c.nx.empty();
+  const float trust = has_normals ? 1.0F : std::numeric_limits<float>::quiet_NaN();
+  const auto normals = [&](const Image<float>& image) -> const Image<float>& { return has_normals ? image : c.z; };
+  parallel_for_blocks(
+      static_cast<std::size_t>(height), kRowsPerTask, num_threads, [&](std::size_t first, std::size_t last) {
+        for (int v = static_cast<int>(first); v < static_cast<int>(last); ++v)
+          model_row(c.x.row(v).data(), c.y.row(v).data(), c.z.row(v).data(), normals(c.nx).row(v).data(),
+                    normals(c.ny).row(v).data(), normals(c.nz).row(v).data(), width, trust, focal_px,
+                    noise.lateral_m.row(v).data(), noise.axial_m.row(v).data());
+      });
   return noise;
 }
 

@@ -159,18 +159,13 @@ void solve_eigenvectors(WindowSums& s, int num) {
   }
 }
 
-/// Unit normals towards the camera, NaN for windows that do not span a plane.
-void write_normals(const WindowSums& s, std::size_t first_pixel, int num, float min_neighbors, OrganizedCloud& cloud) {
-  const float* __restrict x = cloud.x.data().data() + first_pixel;
-  const float* __restrict y = cloud.y.data().data() + first_pixel;
-  const float* __restrict z = cloud.z.data().data() + first_pixel;
-  const float* __restrict count = s.count.data();
-  const float* __restrict vx = s.x.data();
-  const float* __restrict vy = s.y.data();
-  const float* __restrict vz = s.z.data();
-  float* __restrict nx = cloud.nx.data().data() + first_pixel;
-  float* __restrict ny = cloud.ny.data().data() + first_pixel;
-  float* __restrict nz = cloud.nz.data().data() + first_pixel;
+/// Unit normals towards the camera, NaN for windows that do not span a plane. (vx, vy, vz): the eigenvectors. Compilers
+/// trust
+/// __restrict on parameters alone, and without it the loop stays scalar.
+void write_normals(const float* __restrict count, const float* __restrict vx, const float* __restrict vy,
+                   const float* __restrict vz, const float* __restrict x, const float* __restrict y,
+                   const float* __restrict z, int num, float min_neighbors, float* __restrict nx, float* __restrict ny,
+                   float* __restrict nz) {
   for (int i = 0; i < num; ++i) {
     const float length_sq = vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i];
     const float towards = vx[i] * x[i] + vy[i] * y[i] + vz[i] * z[i];
@@ -181,6 +176,19 @@ void write_normals(const WindowSums& s, std::size_t first_pixel, int num, float 
     ny[i] = vy[i] * factor;
     nz[i] = vz[i] * factor;
   }
+}
+
+/// Normals of the pixels [begin, end) of row v.
+void compute_block(OrganizedCloud& cloud, int v, int begin, int end, const ComputeNormalsOptions& options,
+                   WindowSums& sums) {
+  const int num = end - begin;
+  const std::size_t at = cloud.z.index(begin, v);
+  sum_windows(cloud, v, begin, end, options, sums);
+  normalize_covariances(sums, num);
+  solve_eigenvectors(sums, num);
+  write_normals(sums.count.data(), sums.x.data(), sums.y.data(), sums.z.data(), &cloud.x[at], &cloud.y[at],
+                &cloud.z[at], num, static_cast<float>(options.min_neighbors), &cloud.nx[at], &cloud.ny[at],
+                &cloud.nz[at]);
 }
 
 }  // namespace
@@ -198,19 +206,12 @@ void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options
   require(cloud.x.size() == cloud.z.size() && cloud.y.size() == cloud.z.size(),
           "compute_normals: x, y and z have different sizes");
   for (Image<float>* normal : {&cloud.nx, &cloud.ny, &cloud.nz}) *normal = Image<float>(width, cloud.height(), kNan);
-  const auto min_neighbors = static_cast<float>(options.min_neighbors);
   parallel_for_blocks(static_cast<std::size_t>(cloud.height()), kRowsPerTask, options.num_threads,
                       [&](std::size_t first_row, std::size_t last_row) {
                         WindowSums sums;
                         for (int v = static_cast<int>(first_row); v < static_cast<int>(last_row); ++v)
-                          for (int begin = 0; begin < width; begin += kBlock) {
-                            const int end = std::min(begin + kBlock, width);
-                            sum_windows(cloud, v, begin, end, options, sums);
-                            const int num = end - begin;
-                            normalize_covariances(sums, num);
-                            solve_eigenvectors(sums, num);
-                            write_normals(sums, cloud.z.index(begin, v), num, min_neighbors, cloud);
-                          }
+                          for (int begin = 0; begin < width; begin += kBlock)
+                            compute_block(cloud, v, begin, std::min(begin + kBlock, width), options, sums);
                       });
 }
 
