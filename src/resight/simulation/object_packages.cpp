@@ -113,6 +113,7 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
   roof_canvas.fill(style.base());
   print_blobs(roof_canvas, style.stream(7), style.hue_deg + 180, 40, 2, 9);
   const PixelRect gable = atlas.allocate(width_m * kMm, roof_height_m * kMm);
+  atlas.canvas(gable).fill(style.light());
   print_blobs(atlas.canvas(gable), style.stream(8), style.hue_deg + 60, 25, 2, 7);
   const std::vector<Vector2d> triangle{{-width_m / 2, 0}, {width_m / 2, 0}, {0, roof_height_m}};
   Rigid3 carton_from_prism;

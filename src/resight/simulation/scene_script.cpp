@@ -18,6 +18,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 // Walks through the script in the order of time and keeps track of what is there.
 class ScriptChecker {
  public:
@@ -53,7 +59,8 @@ class ScriptChecker {
     for (std::size_t i = 0; i < script_.furniture.size(); ++i) {
       const FurnitureScript& f = script_.furniture[i];
       const std::string where = "furniture[" + std::to_string(i) + "]";
-      if (!contains(furniture_kinds(), f.kind)) return Error{where + ".kind: unknown kind '" + f.kind + "'"};
+      if (!contains(furniture_kinds(), f.kind))
+        return Error{where + ".kind: unknown kind '" + f.kind + "' (known: " + join(furniture_kinds()) + ")"};
       if (!(f.size_m.minCoeff() > 0)) return Error{where + ".size_m: must be > 0"};
       if (auto p = add_key(f.key, where)) return p;
       if (auto p = check_placement(f.placement, f.key, where)) return p;
@@ -68,7 +75,8 @@ class ScriptChecker {
       const ObjectScript& o = script_.objects[i];
       const std::string where = "object[" + std::to_string(i) + "]";
       if (o.mesh.empty() && !contains(procedural_object_names(), o.model) && !contains(distractor_names(), o.model))
-        return Error{where + ".model: unknown object '" + o.model + "' (see resight simulate --help, or give mesh)"};
+        return Error{where + ".model: unknown object '" + o.model + "' (known: " + join(procedural_object_names()) +
+                     ", " + join(distractor_names()) + "; or give mesh)"};
       if (auto p = add_key(o.key, where)) return p;
       objects_.insert(o.key);
       if (!o.start) continue;

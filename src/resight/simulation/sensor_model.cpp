@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -49,20 +50,29 @@ class DepthSensor {
         projector_((world_from_camera * Eigen::Vector3d(options.baseline_m, 0, 0)).cast<float>()) {}
 
   void sense_row(int v, Rng rng, std::span<float> depth_m) const {
+    std::vector<int> columns;  // Where there may be a return.
+    std::vector<Ray> rays;
     for (int u = 0; u < camera_.width; ++u) {
-      if (std::isnan(view_.depth_m(u, v))) continue;
-      const double z = sense_pixel(u, v, rng);
-      if (z >= options_.min_depth_m && z <= options_.max_depth_m) depth_m[u] = static_cast<float>(z);  // false for NaN
+      if (std::isnan(view_.depth_m(u, v)) || is_lost_at_edge(u, v, rng)) continue;
+      columns.push_back(u);
+      rays.push_back(perturbed_ray(u, v, rng));
+    }
+    std::vector<RayHit> hits(rays.size());
+    scene_.cast(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double z = measure(rays[i], hits[i], rng);
+      if (z >= options_.min_depth_m && z <= options_.max_depth_m)  // false for NaN
+        depth_m[columns[i]] = static_cast<float>(z);
     }
   }
 
  private:
+  bool is_lost_at_edge(int u, int v, Rng& rng) const {
+    return options_.edge_dropout > 0 && is_beside_edge(view_.depth_m, u, v) && rng.uniform() < options_.edge_dropout;
+  }
+
   // NaN = no return.
-  double sense_pixel(int u, int v, Rng& rng) const {
-    if (options_.edge_dropout > 0 && is_beside_edge(view_.depth_m, u, v) && rng.uniform() < options_.edge_dropout)
-      return kNan;
-    const Ray ray = perturbed_ray(u, v, rng);
-    const RayHit hit = scene_.cast(ray);
+  double measure(const Ray& ray, const RayHit& hit, Rng& rng) const {
     if (!hit.has_hit()) return kNan;
     const Eigen::Vector3f normal = scene_.face_normal(hit);
     const double angle = incidence_rad(normal, ray.direction);

@@ -133,13 +133,11 @@ void TextureCanvas::paint(double x0, double y0, double x1, double y1, Rgb8 color
       const double coverage = std::clamp(0.5 - distance_mm(p) * scale_, 0.0, 1.0);
       if (coverage <= 0) continue;
       Rgb8& pixel = (*image_)(rect_.x + u, rect_.y + v);
-      pixel = blend(pixel, color, coverage);
+      pixel = coverage < 1 ? blend(pixel, color, coverage) : color;
     }
 }
 
-void TextureCanvas::fill(Rgb8 color) {
-  paint(0, 0, width(), height(), color, [](const Vector2d&) { return -1e9; });
-}
+void TextureCanvas::fill(Rgb8 color) { gradient(color, color); }
 
 void TextureCanvas::gradient(Rgb8 top, Rgb8 bottom) {
   for (int v = 0; v < rect_.height; ++v) {
