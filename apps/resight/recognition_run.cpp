@@ -54,7 +54,7 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
   run.preset = config.preset;
   run.version = RESIGHT_VERSION;
   run.num_threads = num_threads;
-  for (const auto& [name, value] : config.to_settings()) run.settings[name] = value;
+  run.settings = config.to_settings();
 
   SceneRecognizer recognizer(library, config);
   Progress progress(config.preset, sequence.num_views());

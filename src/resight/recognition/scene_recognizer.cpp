@@ -114,8 +114,10 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
                                                              SceneUpdate& update) const {
   if (!config.detect_changes) return {};
   const ScopedTimer timer(update.times, "presence");
+  const auto& window = scene.window();
   std::vector<ViewChanges> changes;
-  for (const StoredView& view : window) changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
+  for (const DynamicScene::View& view : window)
+    changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
   const std::vector<std::uint8_t> mask =
       compute_presence_mask(hypotheses, library, changes, config.removal, config.verify.num_threads);
   const std::size_t num_all = hypotheses.size();

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole way, on simulated scenes without sensor noise, where the truth is exact: views in, objects and changes out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "resight/evaluation/match_detections.hpp"
+#include "resight/models/training.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/report/results.hpp"
+#include "resight/report/view_record.hpp"
+#include "resight/simulation/presets.hpp"
+#include "resight/simulation/simulation.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kThreads = 2;
+constexpr double kHalfVisible = 0.5;
+
+// Simulated once, trained once: the tests look at it from different sides.
+struct World {
+  ModelLibrary library;
+  std::vector<SimulatedView> views;
+  std::vector<ScriptedEvent> events;
+};
+
+World make_world() {
+  SceneScript script = make_demo_scene(1);
+  script.sensor.noise_free = true;
+  auto simulation = Simulation::create(script, 1, {.num_threads = kThreads});
+  World world;
+  if (!simulation.ok()) throw std::runtime_error(simulation.error().message);
+  TrainOptions options;
+  options.num_threads = kThreads;
+  for (const ProceduralObject& object : simulation->library()) {
+    auto model = train_object(object.name, object.mesh, options);
+    if (!model.ok()) throw std::runtime_error(model.error().message);
+    model->symmetries = object.symmetries;
+    model->bop_id = static_cast<int>(world.library.objects.size()) + 1;
+    world.library.objects.push_back(std::move(*model));
+  }
+  for (int v = 0; v < simulation->num_views(); ++v) world.views.push_back(simulation->render_view(v));
+  world.events = simulation->events();
+  return world;
+}
+
+const World& world() {
+  static const World instance = make_world();
+  return instance;
+}
+
+std::vector<SceneUpdate> recognize(const std::string& preset, int num_previous_views, int num_threads,
+                                   std::size_t num_views) {
+  RecognizerConfig config = RecognizerConfig::from_preset(preset);
+  config.num_previous_views = num_previous_views;
+  config.set_num_threads(num_threads);
+  SceneRecognizer recognizer(world().library, config);
+  std::vector<SceneUpdate> updates;
+  for (std::size_t v = 0; v < num_views; ++v) updates.push_back(recognizer.add_view(world().views[v].frame));
+  for (ObjectEvent& event : recognizer.finish()) updates.back().events.push_back(std::move(event));
+  return updates;
+}
+
+const std::vector<SceneUpdate>& updates_of(const std::string& preset) {
+  static std::map<std::string, std::vector<SceneUpdate>> runs;
+  auto found = runs.find(preset);
+  if (found == runs.end()) found = runs.emplace(preset, recognize(preset, 5, kThreads, world().views.size())).first;
+  return found->second;
+}
+
+class PipelineTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(PipelineTest, EveryHalfVisibleObjectIsFoundExactly) {
+  MatchDetectionsOptions exact;
+  exact.max_center_distance_m = 0.005;
+  exact.max_rotation_rad = 3.0 * 0.0174533;
+  int num_truth = 0;
+  for (std::size_t v = 0; v < world().views.size(); ++v) {
+    const auto detections = to_detected_objects(updates_of(GetParam())[v], world().library);
+    const auto& truth = world().views[v].ground_truth;
+    const auto result = match_detections(truth, detections, world().library, exact);
+    num_truth += static_cast<int>(truth.size());
+    for (const int t : result.false_negatives) {
+      const GroundTruthObject& missed = truth[static_cast<std::size_t>(t)];
+      EXPECT_LT(missed.visible_share, kHalfVisible) << "view " << v << ": " << missed.object << " was not found";
+    }
+  }
+  EXPECT_GT(num_truth, 60);
+}
+
+TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
+  const std::map<ChangeKind, ObjectEventKind> kinds{{ChangeKind::kAdded, ObjectEventKind::kAdded},
+                                                    {ChangeKind::kMoved, ObjectEventKind::kMoved},
+                                                    {ChangeKind::kRemoved, ObjectEventKind::kRemoved}};
+  std::vector<ObjectEvent> reported;
+  for (const SceneUpdate& update : updates_of(GetParam()))
+    for (const ObjectEvent& event : update.events)
+      if (is_change(event.kind)) reported.push_back(event);
+  int num_scripted = 0;
+  for (const ScriptedEvent& scripted : world().events) {
+    if (!scripted.known) continue;
+    ++num_scripted;
+    const auto same = std::count_if(reported.begin(), reported.end(), [&](const ObjectEvent& e) {
+      return world().library.objects[static_cast<std::size_t>(e.object)].name == scripted.object &&
+             e.kind == kinds.at(scripted.kind) && e.view >= scripted.view && e.view <= scripted.view + 2;
+    });
+    EXPECT_EQ(same, 1) << to_string(scripted.kind) << " " << scripted.object << " at view " << scripted.view;
+  }
+  EXPECT_GE(num_scripted, 4);
+  EXPECT_EQ(static_cast<int>(reported.size()), num_scripted) << "changes were reported that did not happen";
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest, ::testing::Values("mvr-chd", "default"), [](const auto& info) {
+  return info.param == "default" ? std::string("best") : std::string("chd");
+});
+
+TEST(Pipeline, OneAndTwoThreadsGiveTheSameBytes) {
+  constexpr std::size_t kViews = 5;
+  std::vector<std::string> texts;
+  for (const int num_threads : {1, 2}) {
+    ReportRun run;
+    for (SceneUpdate& update : recognize("mvr-chd", 2, num_threads, kViews)) {
+      ViewRecord record;
+      record.update = std::move(update);
+      record.update.times = {};
+      run.views.push_back(std::move(record));
+    }
+    texts.push_back(format_detections_json(run, world().library) + format_changes_json(run, world().library) +
+                    format_detections_csv(run, world().library));
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+  EXPECT_GT(texts[0].size(), 2000U);
+}
+
+TEST(Pipeline, ASingleViewIsRecognizedToo) {
+  const auto updates = recognize("mvr-chd", 0, kThreads, 2);
+  EXPECT_FALSE(updates[0].detections.empty());
+  EXPECT_FALSE(updates[1].detections.empty());
+  EXPECT_TRUE(updates[1].changes.removed_in_world.empty());
+}
+
+TEST(Pipeline, AViewWithoutAnyDepthIsAnHonestNothing) {
+  RecognizerConfig config = RecognizerConfig::from_preset("mvr-chd");
+  SceneRecognizer recognizer(world().library, config);
+  RgbdFrame blind = world().views[0].frame;
+  for (float& z : blind.depth_m.data()) z = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(recognizer.add_view(blind).detections.empty());
+  const SceneUpdate next = recognizer.add_view(world().views[1].frame);
+  EXPECT_FALSE(next.detections.empty());
+  const SceneUpdate after = recognizer.add_view(blind);
+  EXPECT_TRUE(after.changes.removed_in_world.empty());
+  EXPECT_EQ(std::count_if(after.events.begin(), after.events.end(), [](const auto& e) { return is_change(e.kind); }),
+            0);
+}
+
+TEST(Pipeline, WithoutModelsNothingIsRecognizedButChangesAreSeen) {
+  const ModelLibrary empty;
+  SceneRecognizer recognizer(empty, RecognizerConfig::from_preset("mvr-chd"));
+  std::size_t num_removed = 0;
+  for (const SimulatedView& view : world().views) {
+    const SceneUpdate update = recognizer.add_view(view.frame);
+    EXPECT_TRUE(update.detections.empty());
+    num_removed += update.changes.removed_in_world.size();
+  }
+  EXPECT_GT(num_removed, 100U);
+}
+
+TEST(Pipeline, ABadFrameIsRefusedAndNothingIsLost) {
+  SceneRecognizer recognizer(world().library, RecognizerConfig::from_preset("mvr-chd"));
+  RgbdFrame bad = world().views[0].frame;
+  bad.world_from_camera.rotation.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW((void)recognizer.add_view(bad), std::invalid_argument);
+  const SceneUpdate update = recognizer.add_view(world().views[0].frame);
+  EXPECT_EQ(update.view, 0);
+  EXPECT_FALSE(update.detections.empty());
+}
+
+}  // namespace
+}  // namespace resight
