@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "resight/verification/analytic_scene_test_util.hpp"
+#include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "resight/core/random.hpp"
 #include "resight/geometry/voxel_key.hpp"
-#include "resight/verification/analytic_scene_test_util.hpp"
+#include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight {
 namespace {

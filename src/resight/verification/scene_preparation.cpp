@@ -9,6 +9,7 @@ namespace resight {
 namespace {
 
 constexpr double kBlock_m = 0.06;
+constexpr float kCropCube_m = 0.1F;
 
 PointCloud keep_finite(const PointCloud& cloud) {
   std::vector<int> finite;
@@ -22,6 +23,22 @@ PointCloud keep_finite(const PointCloud& cloud) {
 }
 
 }  // namespace
+
+PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
+  VoxelMap cubes;
+  for (const Ball& ball : balls) {
+    const Eigen::Vector3i first = voxel_index(ball.center.array() - ball.radius_m, 1 / kCropCube_m);
+    const Eigen::Vector3i last = voxel_index(ball.center.array() + ball.radius_m, 1 / kCropCube_m);
+    for (int ix = first.x(); ix <= last.x(); ++ix)
+      for (int iy = first.y(); iy <= last.y(); ++iy)
+        for (int iz = first.z(); iz <= last.z(); ++iz) cubes.insert(voxel_key(ix, iy, iz));
+  }
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.points[i].allFinite() && cubes.find(voxel_key(cloud.points[i], 1 / kCropCube_m)) != VoxelMap::kNotFound)
+      kept.push_back(static_cast<int>(i));
+  return select(cloud, kept);
+}
 
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
   PointCloud thinned = voxel_downsample(keep_finite(scene_in_world), options.resolution_m);
@@ -50,6 +67,7 @@ PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& optio
   if (options.use_color && thinned.has_colors()) prepared.lab = to_lab(thinned.colors);
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
+  prepared.center = centroid(prepared.points);
   prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);
   return prepared;
 }

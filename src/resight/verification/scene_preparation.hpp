@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "resight/geometry/point_cloud.hpp"
@@ -23,15 +24,26 @@ struct PreparedScene {
   BlockGrid blocks;  ///< Of a few centimetres: finds the surroundings of a hypothesis.
 };
 
+/// A ball of the world.
+struct Ball {
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  float radius_m = 0;
+};
+
+/// The points that lie in a cube of 10 cm which a ball touches (by its bounding box): a hypothesis asks only about its
+/// surroundings, and most of a room is in none of them. Non-finite points are dropped.
+[[nodiscard]] PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls);
+
 /// Thins the scene to resolution_m and finds its segments and planes (both need normals). Non-finite points are
 /// dropped; a non-finite normal becomes zero.
 [[nodiscard]] PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options);
 
 /// A model as all of its hypotheses need it. Object frame.
 struct PreparedModel {
-  std::vector<Eigen::Vector3f> points;   ///< Thinned to resolution_m.
-  std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
-  std::vector<LabColor> lab;             ///< Empty or as long as points.
+  std::vector<Eigen::Vector3f> points;               ///< Thinned to resolution_m.
+  std::vector<Eigen::Vector3f> normals;              ///< Empty or as long as points.
+  std::vector<LabColor> lab;                         ///< Empty or as long as points.
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };
 

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "resight/core/random.hpp"
-#include "resight/verification/analytic_scene_test_util.hpp"
 #include "resight/verification/local_scene.hpp"
+#include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight {
 namespace {
@@ -110,6 +110,25 @@ TEST(PrepareScene, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_GT(a.num_segments, 5);
   EXPECT_EQ(a.segment, b.segment);
   EXPECT_EQ(a.plane, b.plane);
+}
+
+TEST(CropToBalls, KeepsAllPointsNearAndNoneFar) {
+  const PointCloud cloud = box_and_ball_scene();
+  const std::vector<Ball> balls = {{{0.2F, 0.1F, 0.06F}, 0.15F}, {{-0.3F, -0.3F, 0}, 0.05F}};
+  const PointCloud cropped = crop_to_balls(cloud, balls);
+  const auto distance = [&](const Eigen::Vector3f& p) {
+    float nearest = 10;
+    for (const Ball& ball : balls) nearest = std::min(nearest, (p - ball.center).norm() - ball.radius_m);
+    return nearest;
+  };
+  const auto count_near = [&](const PointCloud& c) {
+    return std::count_if(c.points.begin(), c.points.end(), [&](const auto& p) { return distance(p) <= 0; });
+  };
+  EXPECT_GT(count_near(cropped), 1000);
+  EXPECT_EQ(count_near(cropped), count_near(cloud));
+  for (const Eigen::Vector3f& p : cropped.points) EXPECT_LT(distance(p), 0.35F);
+  EXPECT_LT(cropped.size(), cloud.size() / 2);
+  EXPECT_TRUE(crop_to_balls(cloud, {}).empty());
 }
 
 TEST(FindSmoothSegments, AgreesWithASlowTwin) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/smooth_segments.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -13,71 +14,72 @@ namespace resight {
 namespace {
 
 constexpr std::size_t kCellsPerBlock = 512;
+constexpr int kNumNeighbors = 27;
+constexpr int kOwnCell = 13;  // Opposite neighbours add up to twice this.
 
-struct Pair {
-  int a;
-  int b;
-  float dot;  // Of the normals.
+// The cloud in the order of its cells, one per smooth_distance_m, with the neighbours of each cell: what is near in
+// space is near in memory, and a point's neighbours are found without a look-up.
+struct CellOrder {
+  std::vector<int> source;  // Index in the original cloud.
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<int> cell_begin;  // CSR over cells.
+  std::vector<std::array<int, kNumNeighbors>>
+      neighbors;  // Cell numbers or kNotFound, in (x, y, z) order; the middle one is the cell itself.
+  [[nodiscard]] std::size_t num_cells() const { return neighbors.size(); }
 };
-using PairBlocks = std::vector<std::vector<Pair>>;
 
-// One of each two opposite neighbour cells.
-constexpr std::array<std::array<int, 3>, 13> kForwardCells = {{{0, 0, 1},
-                                                               {0, 1, -1},
-                                                               {0, 1, 0},
-                                                               {0, 1, 1},
-                                                               {1, -1, -1},
-                                                               {1, -1, 0},
-                                                               {1, -1, 1},
-                                                               {1, 0, -1},
-                                                               {1, 0, 0},
-                                                               {1, 0, 1},
-                                                               {1, 1, -1},
-                                                               {1, 1, 0},
-                                                               {1, 1, 1}}};
-
-// Every pair of points within the radius once, in blocks of cells that do not depend on the number of threads.
-PairBlocks find_pairs(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
-                      const VerifyOptions& options) {
+CellOrder sort_into_cells(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
+                          const VerifyOptions& options) {
   const BlockGrid grid(points, options.smooth_distance_m);
-  const float radius_sq = static_cast<float>(options.smooth_distance_m * options.smooth_distance_m);
-  PairBlocks blocks((grid.num_cells() + kCellsPerBlock - 1) / kCellsPerBlock);
-  parallel_for_blocks(grid.num_cells(), kCellsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<Pair>& pairs = blocks[begin / kCellsPerBlock];
-    pairs.reserve((end - begin) * 32);
-    const auto add = [&](int i, int j) {
-      if ((points[i] - points[j]).squaredNorm() <= radius_sq) pairs.push_back({i, j, normals[i].dot(normals[j])});
-    };
-    for (std::size_t c = begin; c < end; ++c) {
-      const std::span<const int> own = grid.points_of(c);
-      for (std::size_t i = 0; i < own.size(); ++i)
-        for (std::size_t j = i + 1; j < own.size(); ++j) add(own[i], own[j]);
-      for (const auto& [dx, dy, dz] : kForwardCells) {
-        const Eigen::Vector3i& at = grid.cell(c);
-        const int other = grid.find(at.x() + dx, at.y() + dy, at.z() + dz);
-        if (other == VoxelMap::kNotFound) continue;
-        for (const int i : own)
-          for (const int j : grid.points_of(other)) add(i, j);
-      }
+  CellOrder order;
+  order.source.reserve(points.size());
+  order.points.reserve(points.size());
+  order.normals.reserve(points.size());
+  order.cell_begin.push_back(0);
+  for (std::size_t c = 0; c < grid.num_cells(); ++c) {
+    for (const int i : grid.points_of(c)) {
+      order.source.push_back(i);
+      order.points.push_back(points[i]);
+      order.normals.push_back(normals[i]);
     }
+    order.cell_begin.push_back(static_cast<int>(order.source.size()));
+  }
+  order.neighbors.resize(grid.num_cells());
+  parallel_for_blocks(grid.num_cells(), kCellsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      for (int k = kOwnCell; k < kNumNeighbors; ++k) {
+        const Eigen::Vector3i at = grid.cell(c) + Eigen::Vector3i(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
+        order.neighbors[c][k] = grid.find(at.x(), at.y(), at.z());
+      }
   });
-  return blocks;
+  for (auto& neighbors : order.neighbors) std::fill_n(neighbors.begin(), kOwnCell, VoxelMap::kNotFound);
+  for (std::size_t c = 0; c < order.num_cells(); ++c)
+    for (int k = kOwnCell + 1; k < kNumNeighbors; ++k)
+      if (const int other = order.neighbors[c][k]; other != VoxelMap::kNotFound)
+        order.neighbors[other][2 * kOwnCell - k] = static_cast<int>(c);
+  return order;
 }
 
 // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a right-angled edge.
-std::vector<float> find_curvatures(std::span<const Eigen::Vector3f> normals, const PairBlocks& blocks) {
-  std::vector<Eigen::Vector3f> sums(normals.begin(), normals.end());
-  std::vector<int> counts(normals.size(), 1);
-  for (const auto& pairs : blocks)
-    for (const Pair& pair : pairs) {
-      sums[pair.a] += normals[pair.b];
-      sums[pair.b] += normals[pair.a];
-      ++counts[pair.a];
-      ++counts[pair.b];
-    }
-  std::vector<float> curvatures(normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    curvatures[i] = 1.0F - sums[i].norm() / static_cast<float>(counts[i]);
+std::vector<float> find_curvatures(const CellOrder& cells, float radius_sq, int num_threads) {
+  std::vector<float> curvatures(cells.points.size());
+  parallel_for_blocks(cells.num_cells(), kCellsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c)
+      for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
+        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+        int count = 0;
+        for (const int other : cells.neighbors[c]) {
+          if (other == VoxelMap::kNotFound) continue;
+          for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) {
+            if ((cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) continue;
+            sum += cells.normals[j];
+            ++count;
+          }
+        }
+        curvatures[i] = 1.0F - sum.norm() / static_cast<float>(count);
+      }
+  });
   return curvatures;
 }
 
@@ -99,25 +101,41 @@ class UnionFind {
   std::vector<int> parent_;
 };
 
-// For each point on an edge the flat neighbour of the most similar normal, or -1.
-std::vector<int> find_hosts(const PairBlocks& blocks, const std::vector<float>& curvatures, float max_curvature,
-                            float min_dot) {
-  std::vector<int> hosts(curvatures.size(), -1);
-  std::vector<float> best(curvatures.size(), min_dot);
-  const auto offer = [&](int edge_point, int host, float dot) {
-    if (dot < best[edge_point] || (dot == best[edge_point] && hosts[edge_point] >= 0 && hosts[edge_point] < host))
-      return;
-    best[edge_point] = dot;
-    hosts[edge_point] = host;
+// Joins flat neighbours of similar normals; each pair of cells is looked at from one side.
+void join_flat_points(const CellOrder& cells, const std::vector<float>& curvatures, float radius_sq,
+                      float max_curvature, float min_dot, UnionFind& sets) {
+  const auto join = [&](int i, int j) {
+    if (curvatures[j] > max_curvature || (cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) return;
+    if (cells.normals[i].dot(cells.normals[j]) >= min_dot) sets.join(i, j);
   };
-  for (const auto& pairs : blocks)
-    for (const Pair& pair : pairs) {
-      const bool flat_a = curvatures[pair.a] <= max_curvature;
-      const bool flat_b = curvatures[pair.b] <= max_curvature;
-      if (flat_a && !flat_b) offer(pair.b, pair.a, pair.dot);
-      if (flat_b && !flat_a) offer(pair.a, pair.b, pair.dot);
+  for (std::size_t c = 0; c < cells.num_cells(); ++c)
+    for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
+      if (curvatures[i] > max_curvature) continue;
+      for (int j = i + 1; j < cells.cell_begin[c + 1]; ++j) join(i, j);
+      for (int k = kOwnCell + 1; k < kNumNeighbors; ++k) {
+        const int other = cells.neighbors[c][k];
+        if (other == VoxelMap::kNotFound) continue;
+        for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) join(i, j);
+      }
     }
-  return hosts;
+}
+
+// The flat neighbour of the most similar normal of a point on an edge, or -1.
+int find_host(const CellOrder& cells, std::size_t cell, int i, const std::vector<float>& curvatures, float radius_sq,
+              float max_curvature, float min_dot) {
+  int host = -1;
+  float best = min_dot;
+  for (const int other : cells.neighbors[cell]) {
+    if (other == VoxelMap::kNotFound) continue;
+    for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) {
+      if (curvatures[j] > max_curvature || (cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) continue;
+      const float dot = cells.normals[i].dot(cells.normals[j]);
+      if (dot < best || (dot == best && host >= 0)) continue;
+      best = dot;
+      host = j;
+    }
+  }
+  return host;
 }
 
 SmoothSegments number_segments(const std::vector<int>& root_of, int min_points) {
@@ -143,21 +161,18 @@ SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points, std
   require(points.size() == normals.size(), "find_smooth_segments: points and normals differ in number");
   const float max_curvature = static_cast<float>(options.max_smooth_curvature);
   const float min_dot = static_cast<float>(std::cos(options.smooth_angle_rad));
-  const PairBlocks blocks = find_pairs(points, normals, options);
-  const std::vector<float> curvatures = find_curvatures(normals, blocks);
+  const float radius_sq = static_cast<float>(options.smooth_distance_m * options.smooth_distance_m);
+  const CellOrder cells = sort_into_cells(points, normals, options);
+  const std::vector<float> curvatures = find_curvatures(cells, radius_sq, options.num_threads);
   UnionFind sets(points.size());
-  for (const auto& pairs : blocks)
-    for (const Pair& pair : pairs)
-      if (pair.dot >= min_dot && curvatures[pair.a] <= max_curvature && curvatures[pair.b] <= max_curvature)
-        sets.join(pair.a, pair.b);
-  const std::vector<int> hosts = find_hosts(blocks, curvatures, max_curvature, min_dot);
-  std::vector<int> root_of(points.size(), -1);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (curvatures[i] <= max_curvature)
-      root_of[i] = sets.find(static_cast<int>(i));
-    else if (hosts[i] >= 0)
-      root_of[i] = sets.find(hosts[i]);
-  }
+  join_flat_points(cells, curvatures, radius_sq, max_curvature, min_dot, sets);
+  std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers of the cell order.
+  for (std::size_t c = 0; c < cells.num_cells(); ++c)
+    for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
+      const bool flat = curvatures[i] <= max_curvature;
+      const int host = flat ? i : find_host(cells, c, i, curvatures, radius_sq, max_curvature, min_dot);
+      if (host >= 0) root_of[cells.source[i]] = sets.find(host);
+    }
   return number_segments(root_of, options.min_smooth_points);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/verification.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <string>
 
@@ -11,6 +12,9 @@
 
 namespace resight {
 namespace {
+
+constexpr float kMinSurroundings_m =
+    0.25F;  // A small object, too, stands on something that should be recognised as a plane.
 
 void check_input(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
                  std::span<const VerificationView> views, std::span<const std::uint8_t> present) {
@@ -43,6 +47,20 @@ std::vector<PreparedModel> prepare_models(std::span<const Hypothesis> hypotheses
     if (needed[i] != 0) models[i] = prepare_model(library.objects[i], options);
   });
   return models;
+}
+
+// Where hypotheses need the scene: as far around each as it is large, so that the planes found there are larger than
+// the object.
+std::vector<Ball> surroundings(std::span<const Hypothesis> hypotheses, const std::vector<PreparedModel>& models,
+                               const VerifyOptions& options) {
+  std::vector<Ball> balls;
+  for (const Hypothesis& h : hypotheses) {
+    const PreparedModel& model = models[h.object];
+    const float reach = std::max(1.5F * model.diameter_m, kMinSurroundings_m) +
+                        static_cast<float>(options.inlier_distance_m + options.clutter_radius_m);
+    balls.push_back({Rigid3f(h.world_from_object) * model.center, reach});
+  }
+  return balls;
 }
 
 std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, std::size_t num_views,
@@ -184,14 +202,15 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
                                std::span<const std::uint8_t> present, const VerifyOptions& options) {
   options.check();
   check_input(hypotheses, library, views, present);
-  const PreparedScene scene = prepare_scene(scene_in_world, options);
   VerifyResult result;
   result.evidence.resize(hypotheses.size());
-  result.num_planes = static_cast<int>(scene.planes.size());
-  result.num_segments = scene.num_segments;
   if (hypotheses.empty()) return result;
   const std::vector<DepthView> depth_views = prepare_depth_views(views, options.num_threads);
   const std::vector<PreparedModel> models = prepare_models(hypotheses, library, options);
+  const PreparedScene scene =
+      prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models, options)), options);
+  result.num_planes = static_cast<int>(scene.planes.size());
+  result.num_segments = scene.num_segments;
   std::vector<HypothesisCues> cues(hypotheses.size());
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
     const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);

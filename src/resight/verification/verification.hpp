@@ -52,13 +52,13 @@ struct VerifyOptions {
   double min_inlier_weight = 0.8;  ///< Distance times colour weight from which a model point is explained (V4R: 0.8).
   double max_inlier_angle_rad = 1.0472;  ///< ...by a scene point whose normal deviates by less.
   double max_seen_through_share = 0.5;   ///< A point that more of the views seeing it look through is an outlier,
-                                        ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
-  int max_moves = 5000;               ///< Accepted moves of the local search, per component: a budget in steps.
-  int max_exact_hypotheses = 12;      ///< Components up to this size (at most 20) are solved exactly.
-  int min_shared_points = 10;         ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
-  int min_visible_points = 20;        ///< Fewer visible model points: no evidence, rejected.
-  double min_visible_share = 0.1;     ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.35;  ///< ...and less of the visible points explained too. 0 turns either off.
+                                         ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
+  int max_moves = 5000;                  ///< Accepted moves of the local search, per component: a budget in steps.
+  int max_exact_hypotheses = 12;         ///< Components up to this size (at most 20) are solved exactly.
+  int min_shared_points = 10;            ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
+  int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
+  double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
+  double min_explained_share = 0.35;     ///< ...and less of the visible points explained too. 0 turns either off.
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
@@ -108,7 +108,7 @@ struct VerifyResult {
   std::vector<HypothesisEvidence> evidence;  ///< One per hypothesis.
   double cost = 0;                           ///< Of the chosen set; the empty set costs 0.
   int num_moves = 0;                         ///< Accepted moves of the local search.
-  int num_planes = 0;
+  int num_planes = 0;  ///< Found around the hypotheses: farther parts of the scene are not looked at.
   int num_segments = 0;
   int num_components = 0;  ///< Sets of hypotheses that share no scene point and no voxel: chosen independently.
   bool is_optimal = true;  ///< Every component was solved exactly.

@@ -3,60 +3,15 @@
 
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <limits>
 
 #include "resight/core/random.hpp"
-#include "resight/verification/analytic_scene_test_util.hpp"
+#include "resight/verification/testing/verify_fixture.hpp"
 
 namespace resight {
 namespace {
 
 using namespace analytic;
-
-const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
-
-Solid make_box() { return {Shape::kBox, {0.10, 0.07, 0.14}, checks({200, 40, 40}, {230, 220, 200}, 0.03), {}}; }
-Solid make_cylinder() {
-  return {Shape::kCylinder, {0.08, 0.08, 0.12}, checks({40, 60, 190}, {220, 220, 60}, 0.025), {}};
-}
-Solid make_sphere() { return {Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 170, 70}), {}}; }
-
-enum Object { kBox, kCylinder, kSphere };
-
-ModelLibrary make_library() {
-  ModelLibrary library;
-  library.objects = {make_model("box", make_box()), make_model("cylinder", make_cylinder()),
-                     make_model("sphere", make_sphere())};
-  return library;
-}
-
-Solid placed(Solid solid, const Rigid3& pose) {
-  solid.world_from_object = pose;
-  return solid;
-}
-
-// A scene with its views and reconstruction.
-struct Fixture {
-  Fixture(const World& world, const std::vector<Rigid3>& cameras)
-      : views(render_all(world, cameras)), scene(merge(views)) {}
-  VerifyResult verify(const std::vector<Hypothesis>& hypotheses, const ModelLibrary& library,
-                      const VerifyOptions& options = {}, const std::vector<std::uint8_t>& present = {}) const {
-    const std::vector<VerificationView> refs = references(views);
-    return verify_hypotheses(hypotheses, library, scene, refs, present, options);
-  }
-  std::vector<PreparedView> views;
-  PointCloud scene;
-};
-
-std::vector<int> accepted(const VerifyResult& result) {
-  std::vector<int> indices;
-  for (std::size_t i = 0; i < result.evidence.size(); ++i)
-    if (result.evidence[i].accepted) indices.push_back(static_cast<int>(i));
-  return indices;
-}
-
-World one_box() { return {.solids = {placed(make_box(), on_table(0, 0, 0.07, 0.4))}}; }
 
 TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
   const Fixture f(one_box(), circle_of_cameras(3, 0.8, 0.6, 2.0));
@@ -293,108 +248,6 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   EXPECT_THAT(accepted(f.verify(small, library, {.use_planes = false})), testing::IsEmpty());
   EXPECT_THAT(accepted(f.verify(small, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false})),
               testing::ElementsAre(0));
-}
-
-TEST(VerifyHypotheses, WorksWithoutNormalsOrColors) {
-  const Fixture f(one_box(), circle_of_cameras(4));
-  ModelLibrary library = make_library();
-  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)),
-                                              make_hypothesis(kBox, on_table(0.3, 0, 0.07))};
-  Fixture bare = f;
-  bare.scene.colors.clear();
-  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
-  bare.scene.normals.clear();
-  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
-  for (ObjectModel& object : library.objects) object.surface.normals.clear();
-  EXPECT_THAT(accepted(bare.verify(hypotheses, library)), testing::ElementsAre(0));
-}
-
-TEST(VerifyHypotheses, CopesWithNothing) {
-  const Fixture f(one_box(), circle_of_cameras(2));
-  const ModelLibrary library = make_library();
-  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
-  const std::vector<VerificationView> refs = references(f.views);
-  EXPECT_TRUE(f.verify({}, library).evidence.empty());
-  const VerifyResult no_scene = verify_hypotheses(hypotheses, library, {}, refs, {});
-  EXPECT_EQ(no_scene.evidence[0].verdict, Verdict::kNoSupport);
-  EXPECT_EQ(no_scene.evidence[0].score, 0);
-  const VerifyResult no_views = verify_hypotheses(hypotheses, library, f.scene, {}, {});
-  EXPECT_EQ(no_views.evidence[0].verdict, Verdict::kTooFewVisible);
-  ModelLibrary hollow;
-  hollow.objects.resize(1);
-  EXPECT_EQ(f.verify(hypotheses, hollow).evidence[0].verdict, Verdict::kTooFewVisible);
-  // Outside of all images, and behind the cameras.
-  const VerifyResult outside =
-      f.verify({make_hypothesis(kBox, on_table(30, 0, 0)), make_hypothesis(kBox, on_table(0, 0, 5))}, library);
-  for (const HypothesisEvidence& e : outside.evidence) EXPECT_EQ(e.verdict, Verdict::kTooFewVisible);
-}
-
-TEST(VerifyHypotheses, IgnoresNonFinitePoints) {
-  const Fixture f(one_box(), circle_of_cameras(2));
-  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
-  Fixture spoilt = f;
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const Eigen::Vector3f& p :
-       {Eigen::Vector3f(nan, 0, 0), Eigen::Vector3f(0, std::numeric_limits<float>::infinity(), 0)}) {
-    spoilt.scene.points.push_back(p);
-    spoilt.scene.normals.push_back({nan, nan, nan});
-    spoilt.scene.colors.push_back({});
-  }
-  const VerifyResult clean = f.verify(hypotheses, make_library());
-  const VerifyResult result = spoilt.verify(hypotheses, make_library());
-  EXPECT_THAT(accepted(result), testing::ElementsAre(0));
-  EXPECT_EQ(result.cost, clean.cost);
-}
-
-TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
-  const Fixture f(
-      {.solids = {placed(make_box(), on_table(0, 0, 0.07)), placed(make_cylinder(), on_table(0.2, 0.1, 0.06))}},
-      circle_of_cameras(4));
-  std::vector<Hypothesis> hypotheses;
-  Rng rng(11);
-  for (int i = 0; i < 16; ++i)
-    hypotheses.push_back(make_hypothesis(
-        i % 3, disturb(on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065),
-                       {rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0}, kZ, rng.uniform(-0.3, 0.3))));
-  const VerifyResult serial = f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2});
-  ASSERT_GT(accepted(serial).size(), 0U);
-  for (const int threads : {2, 5}) {
-    const VerifyResult parallel =
-        f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2, .num_threads = threads});
-    EXPECT_EQ(parallel.cost, serial.cost);
-    EXPECT_EQ(parallel.num_moves, serial.num_moves);
-    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      const HypothesisEvidence& a = serial.evidence[i];
-      const HypothesisEvidence& b = parallel.evidence[i];
-      EXPECT_EQ(a.verdict, b.verdict);
-      EXPECT_EQ(a.outvoted_by, b.outvoted_by);
-      for (const auto field :
-           {&HypothesisEvidence::score, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
-            &HypothesisEvidence::outlier_cost, &HypothesisEvidence::clutter_cost, &HypothesisEvidence::plane_cost,
-            &HypothesisEvidence::cost_alone})
-        EXPECT_EQ(std::memcmp(&(a.*field), &(b.*field), sizeof(double)), 0);
-      EXPECT_EQ(a.explained_share_per_view, b.explained_share_per_view);
-    }
-  }
-}
-
-TEST(VerifyHypotheses, RefusesTheCallersMistakes) {
-  const Fixture f(one_box(), circle_of_cameras(2));
-  const ModelLibrary library = make_library();
-  const std::vector<Hypothesis> good = {make_hypothesis(kBox, on_table(0, 0, 0.07))};
-  EXPECT_THROW(f.verify({make_hypothesis(3, {})}, library), std::invalid_argument);
-  EXPECT_THROW(f.verify({make_hypothesis(-1, {})}, library), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {}, {1}), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.resolution_m = 0}), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.min_visible_share = 2}), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.color_sigma_l = std::numeric_limits<double>::quiet_NaN()}),
-               std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.num_threads = 0}), std::invalid_argument);
-  Hypothesis broken = good[0];
-  broken.world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(f.verify({broken}, library), std::invalid_argument);
-  const std::vector<VerificationView> null_view(1);
-  EXPECT_THROW((void)verify_hypotheses(good, library, f.scene, null_view, {}), std::invalid_argument);
 }
 
 }  // namespace
