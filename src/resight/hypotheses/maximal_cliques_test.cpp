@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "resight/hypotheses/testing/synthetic_correspondences.hpp"
 
@@ -59,6 +60,47 @@ TEST(FindCliques, EqualsTheSearchOverAllSets) {
     num_found += result.cliques.size();
   }
   EXPECT_GT(num_found, 300U);
+}
+
+// Bron and Kerbosch as first published: no pivot, no order, no pruning.
+void bron_kerbosch(const BitGraph& graph, std::vector<int>& clique, std::vector<int> candidates,
+                   std::vector<int> excluded, std::set<std::vector<int>>& cliques) {
+  if (candidates.empty() && excluded.empty()) {
+    std::vector<int> sorted = clique;
+    std::sort(sorted.begin(), sorted.end());
+    cliques.insert(sorted);
+  }
+  const auto neighbors_in = [&](int v, const std::vector<int>& set) {
+    std::vector<int> result;
+    for (const int u : set)
+      if (u != v && graph.has_edge(u, v)) result.push_back(u);
+    return result;
+  };
+  while (!candidates.empty()) {
+    const int v = candidates.back();
+    clique.push_back(v);
+    bron_kerbosch(graph, clique, neighbors_in(v, candidates), neighbors_in(v, excluded), cliques);
+    clique.pop_back();
+    candidates.pop_back();
+    excluded.push_back(v);
+  }
+}
+
+TEST(FindCliques, EqualsThePlainRecursionOnLargerGraphs) {
+  Rng rng(28);
+  for (const double density : {0.3, 0.5, 0.7}) {
+    const BitGraph graph = random_graph(rng, density < 0.6 ? 70 : 35, density);
+    std::vector<int> all;
+    for (int v = 0; v < graph.num_vertices(); ++v) all.push_back(v);
+    std::vector<int> clique;
+    std::set<std::vector<int>> expected;
+    bron_kerbosch(graph, clique, all, {}, expected);
+    ASSERT_GT(expected.size(), 200U);
+    const FindCliquesResult result = find_cliques(graph, {.min_size = 1, .max_steps = 1000000});
+    EXPECT_TRUE(result.complete);
+    EXPECT_EQ(std::set<std::vector<int>>(result.cliques.begin(), result.cliques.end()), expected);
+    EXPECT_EQ(result.cliques.size(), expected.size());
+  }
 }
 
 TEST(FindCliques, FindsPlantedCliquesAcrossWordBoundaries) {

@@ -17,7 +17,8 @@ namespace {
 constexpr float kNotInlier = std::numeric_limits<float>::infinity();
 constexpr double kConfidence = 0.9999;    // That a sample without outliers was drawn.
 constexpr int kSamplesPerIteration = 50;  // Samples drawn at most for one pose that is scored.
-constexpr int kMaxRefinements = 30;
+constexpr int kMaxRefinements = 50;
+constexpr double kStill = 5e-5;  // Metres and radians: a refinement that moves the pose by less has converged.
 // Ratio of the two largest singular values of the cross-covariance below which the pairs count as a line: a spread
 // across the line of 1e-4 of the spread along it, far above the rounding of single-precision coordinates.
 constexpr double kLineRatio = 1e-8;
@@ -313,12 +314,13 @@ std::optional<PoseEstimate> refine_pose(std::span<const Correspondence> correspo
     const auto fit = fit_inliers(correspondences, estimate.inliers, residuals,
                                  options.inlier_distance_m * options.inlier_distance_m);
     if (!fit) return std::nullopt;
+    const bool moved = ((*fit).matrix() - estimate.scene_from_model.matrix()).cwiseAbs().maxCoeff() > kStill;
     estimate.scene_from_model = *fit;
     residuals = inlier_residuals_sq(correspondences, *fit, options);
     std::vector<int> inliers = inlier_indices(residuals);
     const bool stands = inliers == estimate.inliers;
     estimate.inliers = std::move(inliers);
-    if (stands && i > 0) break;  // The first fit still has the weights of the start.
+    if (stands && !moved) break;  // The weights change with the pose even where the set of inliers does not.
   }
   if (static_cast<int>(estimate.inliers.size()) < options.min_inliers) return std::nullopt;
   estimate.rms_m = rms_of(estimate.inliers, residuals);

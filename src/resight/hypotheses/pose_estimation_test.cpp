@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -232,6 +234,27 @@ TEST(RefinePose, ConvergesFromADisturbedStart) {
   EXPECT_GT(refined->inliers.size(), 44U);
   start.translation.x() += 1.0;
   EXPECT_FALSE(refine_pose(problem.correspondences, start).has_value());
+}
+
+TEST(RefinePose, WhatItReturnsStands) {
+  int num_moved = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const Problem problem =
+        make_problem({.num_correspondences = 80, .inliers_per_instance = 50, .noise_m = 0.006, .seed = seed});
+    Rigid3 start = problem.scene_from_object[0] * Rigid3::from_axis_angle(Eigen::Vector3d(1, 1, 0), 0.08);
+    start.translation.x() += 0.008;
+    const auto refined = refine_pose(problem.correspondences, start);
+    ASSERT_TRUE(refined.has_value());
+    const auto again = refine_pose(problem.correspondences, refined->scene_from_model);
+    ASSERT_TRUE(again.has_value());
+    std::vector<int> changed;  // One at the very edge may change sides within the tolerance of the convergence.
+    std::set_symmetric_difference(again->inliers.begin(), again->inliers.end(), refined->inliers.begin(),
+                                  refined->inliers.end(), std::back_inserter(changed));
+    EXPECT_LE(changed.size(), 1U) << seed;
+    EXPECT_LT((again->scene_from_model.translation - refined->scene_from_model.translation).norm(), 5e-4);
+    num_moved += (refined->scene_from_model.translation - start.translation).norm() > 0.004 ? 1 : 0;
+  }
+  EXPECT_GT(num_moved, 20);
 }
 
 TEST(EstimatePoseOptions, RejectsNonsense) {
