@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/pcd.hpp"
@@ -71,6 +73,7 @@ double agreement(const RgbdFrame& frame, const Rigid3& camera_from_object,
 }
 
 void expect_truth_fits(const Sequence& sequence, const std::vector<ModelLocation>& models, int min_objects) {
+  std::map<std::string, ModelSource> loaded;
   int num_checked = 0;
   for (int view = 0; view < sequence.num_views(); view += 6) {
     const auto frame = sequence.read_view(view);
@@ -79,11 +82,14 @@ void expect_truth_fits(const Sequence& sequence, const std::vector<ModelLocation
     for (const GroundTruthObject& object : *truth) {
       const auto location = std::ranges::find(models, object.object, &ModelLocation::name);
       if (location == models.end() || object.visible_share < 0.5) continue;
-      const auto model = read_model(*location);
-      ASSERT_TRUE(model.ok()) << model.error().message;
-      ASSERT_TRUE(model->mesh.has_value());
+      if (!loaded.contains(object.object)) {
+        auto model = read_model(*location);
+        ASSERT_TRUE(model.ok()) << model.error().message;
+        ASSERT_TRUE(model->mesh.has_value());
+        loaded[object.object] = std::move(*model);
+      }
       // About half of the vertices are on the side that is seen.
-      EXPECT_GT(agreement(*frame, object.camera_from_object, model->mesh->vertices), 0.15)
+      EXPECT_GT(agreement(*frame, object.camera_from_object, loaded[object.object].mesh->vertices), 0.15)
           << object.object << " in view " << view;
       ++num_checked;
     }

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/model_source.hpp"
+
+#include <gmock/gmock.h>
+
+#include "resight/io/internal/test_data.hpp"
+#include "resight/io/pcd.hpp"
+#include "resight/io/ply.hpp"
+#include "resight/io/tuw_models.hpp"
+
+namespace resight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> names_of(const Result<std::vector<ModelLocation>>& found) {
+  EXPECT_TRUE(found.ok()) << (found.ok() ? "" : found.error().message);
+  std::vector<std::string> names;
+  if (found.ok())
+    for (const auto& location : *found) names.push_back(location.name + ":" + location.format);
+  return names;
+}
+
+TriangleMesh mesh() {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.2F, 0}};
+  mesh.faces = {{0, 1, 2}};
+  compute_vertex_normals(mesh);
+  return mesh;
+}
+
+TEST(FindModels, EveryKindOfFolder) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory / "tuw", "mug", views, nullptr).ok());
+  ASSERT_TRUE(write_tuw_model(directory / "tuw/kitchen", "pot", views, nullptr).ok());
+  EXPECT_THAT(names_of(find_models({directory / "tuw"})), ElementsAre("mug:tuw", "pot:tuw"));
+  EXPECT_THAT(names_of(find_models({directory / "tuw/mug"})), ElementsAre("mug:tuw"));
+  ASSERT_TRUE(write_ply(directory / "meshes/box.ply", mesh()).ok());
+  io::write_text(directory / "meshes/box.obj", "");
+  ASSERT_TRUE(write_ply(directory / "meshes/apple_2/textured.ply", mesh()).ok());
+  ASSERT_TRUE(write_ply(directory / "meshes/apple_10/anything.ply", mesh()).ok());
+  EXPECT_THAT(names_of(find_models({directory / "meshes"})), ElementsAre("apple_2:mesh", "apple_10:mesh", "box:mesh"));
+  EXPECT_EQ(find_models({directory / "meshes"})->back().path.extension(), ".obj") << "of one stem the richest format";
+  EXPECT_THAT(names_of(find_models({directory / "meshes/box.ply", directory / "tuw/mug"})),
+              ElementsAre("box:mesh", "mug:tuw"));
+  EXPECT_THAT(find_models({directory / "meshes", directory / "meshes/box.ply"}).error().message,
+              HasSubstr("two models are called 'box'"));
+}
+
+TEST(FindModels, NothingThere) {
+  io::TestDirectory directory;
+  EXPECT_THAT(find_models({}).error().message, HasSubstr("no path"));
+  EXPECT_THAT(find_models({directory / "none"}).error().message, HasSubstr("no such file or directory"));
+  EXPECT_THAT(find_models({directory.path()}).error().message, HasSubstr("views/cloud_*.pcd"));
+  io::write_text(directory / "a.txt", "x");
+  EXPECT_THAT(find_models({directory / "a.txt"}).error().message, HasSubstr("no model file"));
+}
+
+TEST(TuwModel, ComesBack) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("cloud_4", 1),
+                                           io::random_training_view("cloud_9", 2)};
+  PointCloud surface;
+  surface.points = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0.05F}};
+  surface.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  surface.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+  ObjectSymmetries symmetries;
+  symmetries.continuous.push_back({});
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, &surface, symmetries, 12).ok());
+  const auto model = read_model(find_models({directory.path()})->front());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_EQ(model->bop_id, 12);
+  EXPECT_EQ(model->symmetries.continuous.size(), 1U);
+  ASSERT_TRUE(model->surface.has_value());
+  EXPECT_EQ(model->surface->points, surface.points);
+  EXPECT_EQ(model->surface->colors, surface.colors);
+  ASSERT_EQ(model->views.size(), 2U);
+  EXPECT_EQ(model->views[1].frame.name, "cloud_00000009");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(model->views[i].mask, views[i].mask);
+    EXPECT_EQ(model->views[i].frame.color, views[i].frame.color);
+    EXPECT_EQ(io::depth_difference_m(model->views[i].frame.depth_m, views[i].frame.depth_m), 0);
+    EXPECT_EQ(io::pose_difference(model->views[i].frame.world_from_camera, views[i].frame.world_from_camera), 0);
+  }
+  EXPECT_THAT(write_tuw_model(directory.path(), "mug", views, nullptr).error().message, HasSubstr("exists already"));
+}
+
+TEST(TuwModel, DamagedCompanions) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr).ok());
+  const ModelLocation location = find_models({directory / "mug"})->front();
+  const auto message = [&] {
+    const auto model = read_model(location);
+    return model.ok() ? std::string("no error") : model.error().message;
+  };
+  io::write_text(directory / "mug/views/object_indices_00000000.txt", "5\n99999\n");
+  EXPECT_THAT(message(), HasSubstr("object_indices_00000000.txt: '99999'"));
+  std::filesystem::remove(directory / "mug/views/object_indices_00000000.txt");
+  EXPECT_THAT(message(), HasSubstr("object_indices_00000000.txt: no such file"));
+  std::filesystem::remove(directory / "mug/views/pose_00000000.txt");
+  EXPECT_THAT(message(), HasSubstr("pose_00000000.txt: no such file"));
+}
+
+TEST(CloudModel, OneViewInFrontOfTheCamera) {
+  io::TestDirectory directory;
+  PcdCloud pcd;
+  for (int v = 0; v < 40; ++v)
+    for (int u = 0; u < 40; ++u) {
+      const Eigen::Vector3d p = make_kinect_camera().unproject(300 + u, 200 + v, 0.8);
+      pcd.points.push_back(p.cast<float>());
+      pcd.colors.push_back({static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 0});
+    }
+  pcd.width = 1600;
+  pcd.height = 1;
+  ASSERT_TRUE(write_pcd(directory / "can.pcd", pcd).ok());
+  const auto found = find_models({directory.path()});
+  EXPECT_THAT(names_of(found), ElementsAre("can:cloud"));
+  const auto model = read_model(found->front());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  ASSERT_EQ(model->views.size(), 1U);
+  const TrainingView& view = model->views[0];
+  EXPECT_EQ(count_valid(view.frame.depth_m), 1600U);
+  EXPECT_EQ(std::ranges::count(view.mask.data(), 255), 1600);
+  EXPECT_EQ(view.frame.color(307, 211), (Rgb8{7, 11, 0}));
+  for (auto& p : pcd.points) p.z() -= 0.8F;  // now around the origin: no camera sees it so
+  for (std::size_t i = 0; i < 1600; i += 2) pcd.points[i].z() = 0.05F;
+  ASSERT_TRUE(write_pcd(directory / "can.pcd", pcd).ok());
+  EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("no 640x480 camera"));
+}
+
+}  // namespace
+}  // namespace resight

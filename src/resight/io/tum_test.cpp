@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/test_data.hpp"
+
+namespace resight {
+namespace {
+
+using testing::HasSubstr;
+
+void write_recording(const std::filesystem::path& directory) {
+  std::string rgb = "# colour\n";
+  std::string depth = "# depth\n";
+  for (int i = 0; i < 4; ++i) {
+    const std::string c = std::to_string(10 + i) + ".500";
+    const std::string d = std::to_string(10 + i) + ".510";
+    ASSERT_TRUE(write_color(directory / "rgb" / (c + ".png"), Image<Rgb8>(4, 3)).ok());
+    ASSERT_TRUE(write_depth(directory / "depth" / (d + ".png"), Image<float>(4, 3, 1.25F), 1.0 / 5000).ok());
+    rgb += c + " rgb/" + c + ".png\n";
+    if (i != 2) depth += d + " depth/" + d + ".png\n";
+  }
+  io::write_text(directory / "rgb.txt", rgb);
+  io::write_text(directory / "depth.txt", depth);
+}
+
+TEST(Tum, AssociatesAndInterpolates) {
+  io::TestDirectory directory;
+  write_recording(directory.path());
+  const auto without = open_sequence(directory.path());
+  ASSERT_TRUE(without.ok()) << without.error().message;
+  EXPECT_EQ((*without)->num_views(), 3) << "the third colour image has no depth";
+  EXPECT_FALSE((*without)->has_poses());
+  // Half way between no turn and a turn of 0.2 rad about z; the view at 13.51 has no pose near it.
+  io::write_text(directory / "groundtruth.txt",
+                 "# t tx ty tz qx qy qz qw\n10.500 0 0 0 0 0 0 1\n10.520 1 2 4 0 0 0.0998334166 0.9950041653\n11.515 5 "
+                 "5 5 0 0 0 1\n");
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 2);
+  const auto frame = (*sequence)->read_view(0);
+  ASSERT_TRUE(frame.ok()) << frame.error().message;
+  EXPECT_EQ(frame->name, "10.500");
+  EXPECT_NEAR(frame->depth_m(0, 0), 1.25, 1e-6);
+  EXPECT_LT((frame->world_from_camera.translation - Eigen::Vector3d(0.5, 1, 2)).norm(), 1e-9);
+  EXPECT_NEAR(rotation_angle_rad(Eigen::Matrix3d::Identity(), frame->world_from_camera.rotation), 0.1, 1e-9);
+  EXPECT_EQ((*sequence)->read_view(1)->world_from_camera.translation, Eigen::Vector3d(5, 5, 5))
+      << "the nearest at the end";
+}
+
+TEST(Tum, Intrinsics) {
+  io::TestDirectory directory;
+  write_recording(directory / "rgbd_dataset_freiburg3_long");
+  EXPECT_EQ((*open_sequence(directory / "rgbd_dataset_freiburg3_long"))->read_view(0)->camera.fx, 535.4);
+  io::write_text(directory / "rgbd_dataset_freiburg3_long/camera.txt", "500 501 2 1\n");
+  EXPECT_EQ((*open_sequence(directory / "rgbd_dataset_freiburg3_long"))->read_view(0)->camera,
+            (Camera{4, 3, 500, 501, 2, 1}));
+  io::write_text(directory / "rgbd_dataset_freiburg3_long/camera.txt", "0 501 2 1\n");
+  EXPECT_THAT(open_sequence(directory / "rgbd_dataset_freiburg3_long").error().message,
+              HasSubstr("camera.txt: the focal"));
+}
+
+TEST(Tum, BadLists) {
+  io::TestDirectory directory;
+  write_recording(directory.path());
+  io::write_text(directory / "groundtruth.txt", "10.5 0 0 0 0 0 0 7\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("not rigid"));
+  io::write_text(directory / "groundtruth.txt", "10.5 0 0 0 0 0 0\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("line 1"));
+  io::write_text(directory / "groundtruth.txt", "99 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("no image has a pose"));
+  io::write_text(directory / "rgb.txt", "x y\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("rgb.txt: line 1"));
+}
+
+TEST(OpenSequence, NothingThere) {
+  io::TestDirectory directory;
+  EXPECT_THAT(open_sequence(directory / "none").error().message, HasSubstr("no such directory"));
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("scene_camera.json"));
+}
+
+}  // namespace
+}  // namespace resight
