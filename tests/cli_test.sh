@@ -33,7 +33,7 @@ expect 0 '^[0-9]+\.[0-9]+\.[0-9]+' --version
 expect 0 'recognize' --help
 expect 0 '--sequence' recognize --help
 expect 2 'subcommand' # none given
-expect 2 'nonsense' nonsense
+expect 2 'subcommand' nonsense
 expect 2 '--out' recognize --models a --sequence b
 expect 2 'nowhere' recognize --models "$work/nowhere.resight" --sequence "$work" --out "$work/out"
 expect_one_line recognize --models "$work/nowhere.resight" --sequence "$work" --out "$work/out"
