@@ -17,7 +17,9 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 using Block = Eigen::Ref<const Matrix, 0, Eigen::OuterStride<>>;
 using Eigen::Index;
 
-constexpr Index kQueriesPerBlock = 256;  // with a block of rows in the second level cache
+constexpr Index kQueriesPerBlock = 128;   // of products with all centroids
+constexpr Index kQueriesPerBatch = 1024;  // looked up together: the more, the more of them share the reading of a cell
+constexpr std::size_t kNumParts = 8;      // of the rows, scanned in parallel; fixed, whatever the number of threads
 constexpr Index kRowsPerBlock = 1024;
 constexpr int kSamplesPerCell = 24;  // of the k-means: more changes recall by less than its noise
 constexpr int kMeansIterations = 5;
@@ -45,20 +47,39 @@ class BestList {
   std::vector<DescriptorMatch> entries_;
 };
 
+// |c|^2 - 2 q.c of each centroid: its squared distance but for |q|^2, which does not change the order.
+using Scores = Eigen::ArrayXf;
+
 // Row of `centroids` nearest to each row of `data`.
 std::vector<int> assign_to_cells(const Block& data, const Matrix& centroids, int num_threads) {
-  const Eigen::VectorXf norms_sq = centroids.rowwise().squaredNorm();
+  const Scores norms_sq = centroids.rowwise().squaredNorm();
   std::vector<int> cell(static_cast<std::size_t>(data.rows()));
   parallel_for_blocks(cell.size(), kQueriesPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
     const auto rows = static_cast<Index>(end - begin);
     const Matrix products = data.middleRows(static_cast<Index>(begin), rows) * centroids.transpose();
-    for (Index r = 0; r < rows; ++r) {
-      Index best = 0;
-      (norms_sq.transpose() - 2.0F * products.row(r)).minCoeff(&best);
-      cell[begin + static_cast<std::size_t>(r)] = static_cast<int>(best);
+    Scores scores(centroids.rows());
+    for (Index r = 0; r < rows; ++r) {  // first the minimum, then its place: vector code, unlike minCoeff(&place)
+      scores = norms_sq - 2.0F * products.row(r).transpose().array();
+      const float lowest = scores.minCoeff();
+      cell[begin + static_cast<std::size_t>(r)] =
+          static_cast<int>(std::find(scores.begin(), scores.end(), lowest) - scores.begin());
     }
   });
   return cell;
+}
+
+// The `count` centroids of lowest score (ties: the lower index), in no order.
+void find_nearest_cells(const Scores& scores, std::size_t count, std::vector<DescriptorMatch>& nearest) {
+  nearest.clear();  // a heap, the farthest on top: nearly all centroids are dismissed by one comparison
+  for (Index c = 0; c < scores.size(); ++c) {
+    if (nearest.size() == count) {
+      if (!(scores[c] < nearest.front().distance_sq)) continue;
+      std::ranges::pop_heap(nearest, BestList::before);
+      nearest.pop_back();
+    }
+    nearest.push_back({static_cast<int>(c), scores[c]});
+    std::ranges::push_heap(nearest, BestList::before);
+  }
 }
 
 // Lloyd's iterations on a seeded sample. A cell that runs empty keeps its centroid.
@@ -98,10 +119,13 @@ void DescriptorIndexOptions::check() const {
 struct DescriptorIndex::Impl {
   Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings);
   void build_cells(const Block& data, int num_cells);
-  void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
-            std::vector<BestList>& best) const;
-  void search_block(const Block& queries, int k, DescriptorMatch* results) const;
-  void probe_cells(const Block& queries, std::vector<BestList>& best) const;
+  void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end, BestList* best) const;
+  void search_batch(const Block& queries, int k, DescriptorMatch* results) const;
+  std::vector<std::vector<int>> probe_cells(const Block& queries) const;
+  void scan_cells(const Block& queries, const std::vector<std::vector<int>>& queries_of_cell, std::size_t part,
+                  BestList* best) const;
+  void scan_rows(const Block& queries, std::size_t part, BestList* best) const;
+  void settle(const Block& queries, Index q, int k, std::vector<BestList>& best, DescriptorMatch* results) const;
 
   DescriptorIndexOptions options;
   Matrix rows;                    // the descriptors, sorted by cell
@@ -143,15 +167,14 @@ void DescriptorIndex::Impl::build_cells(const Block& data, int num_cells) {
   }
 }
 
-// Compares all `queries` with the rows [begin, end). query_of_row: which list each query fills; |q|^2 is left out, as
-// it does not change the order.
+// Compares all `queries` with the rows [begin, end). query_of_row: which list each query fills.
 void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
-                                 std::vector<BestList>& best) const {
+                                 BestList* best) const {
   for (Index first = begin; first < end; first += kRowsPerBlock) {
     const Index count = std::min(kRowsPerBlock, end - first);
     const Matrix products = queries * rows.middleRows(first, count).transpose();
     for (Index q = 0; q < queries.rows(); ++q) {
-      BestList& list = best[static_cast<std::size_t>(query_of_row[static_cast<std::size_t>(q)])];
+      BestList& list = best[query_of_row[static_cast<std::size_t>(q)]];
       for (Index r = 0; r < count; ++r) {
         const float score = norms_sq[first + r] - 2.0F * products(q, r);
         if (list.accepts(score)) list.add(static_cast<int>(first + r), score);
@@ -160,26 +183,35 @@ void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> quer
   }
 }
 
-// The queries of a block, grouped by the cells they look into: each cell is read once a block.
-void DescriptorIndex::Impl::probe_cells(const Block& queries, std::vector<BestList>& best) const {
+// Which queries look into each cell.
+std::vector<std::vector<int>> DescriptorIndex::Impl::probe_cells(const Block& queries) const {
   const auto num_cells = static_cast<std::size_t>(centroids.rows());
   const auto num_probes = std::min<std::size_t>(static_cast<std::size_t>(options.num_probes), num_cells);
-  const Eigen::VectorXf centroid_norms_sq = centroids.rowwise().squaredNorm();
-  const Matrix products = queries * centroids.transpose();
-  std::vector<std::vector<int>> queries_of_cell(num_cells);
-  std::vector<DescriptorMatch> ranked(num_cells);
-  for (Index q = 0; q < queries.rows(); ++q) {
-    for (std::size_t c = 0; c < num_cells; ++c) {
-      const auto column = static_cast<Index>(c);
-      ranked[c] = {static_cast<int>(c), centroid_norms_sq[column] - 2.0F * products(q, column)};
+  const auto num_queries = static_cast<std::size_t>(queries.rows());
+  const Scores centroid_norms_sq = centroids.rowwise().squaredNorm();
+  std::vector<int> probes(num_queries * num_probes);
+  parallel_for_blocks(num_queries, kQueriesPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Index>(begin);
+    const Matrix products = queries.middleRows(first, static_cast<Index>(end) - first) * centroids.transpose();
+    Scores scores(centroids.rows());
+    std::vector<DescriptorMatch> nearest;
+    for (std::size_t q = begin; q < end; ++q) {
+      scores = centroid_norms_sq - 2.0F * products.row(static_cast<Index>(q - begin)).transpose().array();
+      find_nearest_cells(scores, num_probes, nearest);
+      for (std::size_t p = 0; p < num_probes; ++p) probes[q * num_probes + p] = nearest[p].index;
     }
-    std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(num_probes - 1), ranked.end(),
-                     BestList::before);
-    for (std::size_t p = 0; p < num_probes; ++p)
-      queries_of_cell[static_cast<std::size_t>(ranked[p].index)].push_back(static_cast<int>(q));
-  }
+  });
+  std::vector<std::vector<int>> queries_of_cell(num_cells);
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    queries_of_cell[static_cast<std::size_t>(probes[i])].push_back(static_cast<int>(i / num_probes));
+  return queries_of_cell;
+}
+
+// Every kNumParts-th cell: neighbouring cells of the k-means are unrelated, so the parts are about even.
+void DescriptorIndex::Impl::scan_cells(const Block& queries, const std::vector<std::vector<int>>& queries_of_cell,
+                                       std::size_t part, BestList* best) const {
   Matrix gathered;
-  for (std::size_t c = 0; c < num_cells; ++c) {
+  for (std::size_t c = part; c < queries_of_cell.size(); c += kNumParts) {
     const std::vector<int>& members = queries_of_cell[c];
     if (members.empty() || cell_begin[c] == cell_begin[c + 1]) continue;
     gathered.resize(static_cast<Index>(members.size()), queries.cols());
@@ -188,26 +220,47 @@ void DescriptorIndex::Impl::probe_cells(const Block& queries, std::vector<BestLi
   }
 }
 
-void DescriptorIndex::Impl::search_block(const Block& queries, int k, DescriptorMatch* results) const {
-  std::vector<BestList> best(static_cast<std::size_t>(queries.rows()),
-                             BestList(static_cast<std::size_t>(k + kSpareCandidates)));
-  if (centroids.rows() == 0) {
-    std::vector<int> all(best.size());
-    std::iota(all.begin(), all.end(), 0);
-    scan(queries, all, 0, rows.rows(), best);
-  } else {
-    probe_cells(queries, best);
+void DescriptorIndex::Impl::scan_rows(const Block& queries, std::size_t part, BestList* best) const {
+  std::vector<int> all(static_cast<std::size_t>(queries.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  const auto begin_of = [&](std::size_t p) {
+    return rows.rows() * static_cast<Index>(p) / static_cast<Index>(kNumParts);
+  };
+  scan(queries, all, begin_of(part), begin_of(part + 1), best);
+}
+
+// Brings the lists of all parts of a query together, and gives its best few their true distances.
+void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, std::vector<BestList>& best,
+                                   DescriptorMatch* results) const {
+  BestList& merged = best[static_cast<std::size_t>(q)];
+  for (std::size_t part = 1; part < kNumParts; ++part)
+    for (const DescriptorMatch& entry :
+         best[part * static_cast<std::size_t>(queries.rows()) + static_cast<std::size_t>(q)].entries())
+      if (merged.accepts(entry.distance_sq)) merged.add(entry.index, entry.distance_sq);
+  auto& entries = merged.entries();
+  for (DescriptorMatch& entry : entries) {
+    entry.distance_sq = (queries.row(q) - rows.row(entry.index)).squaredNorm();
+    entry.index = original[static_cast<std::size_t>(entry.index)];
   }
-  for (Index q = 0; q < queries.rows(); ++q) {
-    auto& entries = best[static_cast<std::size_t>(q)].entries();
-    for (DescriptorMatch& entry : entries) {
-      entry.distance_sq = (queries.row(q) - rows.row(entry.index)).squaredNorm();
-      entry.index = original[static_cast<std::size_t>(entry.index)];
-    }
-    std::sort(entries.begin(), entries.end(), BestList::before);
-    const auto count = std::min(entries.size(), static_cast<std::size_t>(k));
-    std::copy_n(entries.begin(), count, results + q * k);
-  }
+  std::sort(entries.begin(), entries.end(), BestList::before);
+  std::copy_n(entries.begin(), std::min(entries.size(), static_cast<std::size_t>(k)), results + q * k);
+}
+
+void DescriptorIndex::Impl::search_batch(const Block& queries, int k, DescriptorMatch* results) const {
+  const auto num_queries = static_cast<std::size_t>(queries.rows());
+  std::vector<BestList> best(kNumParts * num_queries, BestList(static_cast<std::size_t>(k + kSpareCandidates)));
+  const bool has_cells = centroids.rows() > 0;
+  const auto queries_of_cell = has_cells ? probe_cells(queries) : std::vector<std::vector<int>>();
+  parallel_for(kNumParts, options.num_threads, [&](std::size_t part) {
+    BestList* lists = best.data() + part * num_queries;
+    if (has_cells)
+      scan_cells(queries, queries_of_cell, part, lists);
+    else
+      scan_rows(queries, part, lists);
+  });
+  parallel_for_blocks(num_queries, kQueriesPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) settle(queries, static_cast<Index>(q), k, best, results);
+  });
 }
 
 DescriptorIndex::DescriptorIndex(std::span<const float> descriptors, int dimension,
@@ -234,11 +287,9 @@ std::vector<DescriptorMatch> DescriptorIndex::search(std::span<const float> quer
   const auto num_queries = static_cast<Index>(queries.size()) / dimension;
   const Eigen::Map<const Matrix> all(queries.data(), num_queries, dimension);
   std::vector<DescriptorMatch> results(static_cast<std::size_t>(num_queries * k));
-  parallel_for_blocks(static_cast<std::size_t>(num_queries), kQueriesPerBlock, impl_->options.num_threads,
-                      [&](std::size_t begin, std::size_t end) {
-                        impl_->search_block(all.middleRows(static_cast<Index>(begin), static_cast<Index>(end - begin)),
-                                            k, results.data() + begin * static_cast<std::size_t>(k));
-                      });
+  for (Index begin = 0; begin < num_queries; begin += kQueriesPerBatch)
+    impl_->search_batch(all.middleRows(begin, std::min(kQueriesPerBatch, num_queries - begin)), k,
+                        results.data() + begin * k);
   return results;
 }
 

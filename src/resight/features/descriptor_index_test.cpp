@@ -93,6 +93,24 @@ TEST(DescriptorIndex, TiesGoToTheLowerIndex) {
   EXPECT_EQ(found[2].index, 2);
 }
 
+TEST(DescriptorIndex, TiesGoToTheLowerIndexWhereverTheCopiesStand) {
+  constexpr std::size_t kCopies = 15;
+  auto data = make_clustered(2000, 128, 100, 0.6, 10);
+  const std::vector<float> once = data;
+  for (std::size_t copy = 1; copy < kCopies; ++copy) data.insert(data.end(), once.begin(), once.end());
+  const auto queries = make_clustered(100, 128, 100, 0.6, 11);
+  for (const int exact_below : {0, 1000000}) {
+    const auto found =
+        DescriptorIndex(data, 128, {.num_cells = 50, .num_probes = 50, .exact_below = exact_below}).search(queries, 3);
+    for (std::size_t q = 0; q < 100; ++q) {
+      const int first = found[3 * q].index;
+      ASSERT_LT(first, 2000);
+      ASSERT_EQ(found[3 * q + 1].index, first + 2000);
+      ASSERT_EQ(found[3 * q + 2].index, first + 4000);
+    }
+  }
+}
+
 TEST(DescriptorIndex, MoreThanThereAreIsFilledUp) {
   const auto found = DescriptorIndex(std::vector<float>{1, 0, 0, 1}, 2).search(std::vector<float>{1, 0}, 4);
   ASSERT_EQ(found.size(), 4U);
