@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "resight/simulation/internal/object_makers.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/object_makers.hpp"
 #include "resight/simulation/print_designs.hpp"
 
 namespace resight {

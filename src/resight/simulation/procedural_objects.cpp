@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "resight/core/parallel.hpp"
-#include "resight/simulation/object_makers.hpp"
+#include "resight/simulation/internal/object_makers.hpp"
 
 namespace resight {
 namespace {

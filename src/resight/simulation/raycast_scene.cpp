@@ -11,7 +11,7 @@
 #include <string>
 
 #include "resight/core/check.hpp"
-#include "resight/simulation/texture_pyramid.hpp"
+#include "resight/simulation/internal/texture_pyramid.hpp"
 
 namespace resight {
 namespace {

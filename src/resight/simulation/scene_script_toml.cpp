@@ -3,8 +3,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "resight/simulation/internal/toml_fields.hpp"
 #include "resight/simulation/scene_script.hpp"
-#include "resight/simulation/toml_fields.hpp"
 
 namespace resight {
 namespace {

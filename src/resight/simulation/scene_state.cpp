@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/simulation/scene_state.hpp"
+#include "resight/simulation/internal/scene_state.hpp"
 
 #include <algorithm>
 #include <limits>

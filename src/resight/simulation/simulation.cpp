@@ -9,7 +9,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
-#include "resight/simulation/scene_state.hpp"
+#include "resight/simulation/internal/scene_state.hpp"
 
 namespace resight {
 namespace {

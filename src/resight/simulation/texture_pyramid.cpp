@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/simulation/texture_pyramid.hpp"
+#include "resight/simulation/internal/texture_pyramid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/simulation/toml_fields.hpp"
+#include "resight/simulation/internal/toml_fields.hpp"
 
 #include <limits>
 
