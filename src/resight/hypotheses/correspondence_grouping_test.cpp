@@ -112,6 +112,23 @@ TEST(GroupCorrespondences, LawsOfTheGroups) {
   EXPECT_GT(num_groups, 30);
 }
 
+TEST(GroupCorrespondences, UsesAreLimited) {
+  int most_free = 0;
+  for (const int max_uses : {1, 2, 100}) {
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      const Problem problem =
+          make_problem({.num_correspondences = 500, .inliers_per_instance = 20, .share_near = 1.0, .seed = seed});
+      std::vector<int> uses(problem.correspondences.size(), 0);
+      for (const auto& group : group_correspondences(problem.correspondences, {.max_uses = max_uses}))
+        for (const int i : group.members) ++uses[static_cast<std::size_t>(i)];
+      const int most = *std::max_element(uses.begin(), uses.end());
+      EXPECT_LE(most, max_uses);
+      most_free = std::max(most_free, most);
+    }
+  }
+  EXPECT_GT(most_free, 2);  // Without the limit there are more.
+}
+
 TEST(GroupCorrespondences, NoGroupUsesAKeypointTwice) {
   Problem problem = make_problem({.num_correspondences = 60, .inliers_per_instance = 40, .seed = 33});
   auto& c = problem.correspondences;
@@ -140,11 +157,13 @@ TEST(GroupCorrespondences, EmptyAndNanInputGiveNoGroups) {
   ASSERT_EQ(before.size(), 1U);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   auto with_nan = problem.correspondences;
-  with_nan.push_back(with_nan[0]);
-  with_nan.back().scene_point.x() = nan;
+  with_nan.insert(with_nan.begin(), with_nan[0]);
+  with_nan.front().scene_point.x() = nan;
   const auto after = group_correspondences(with_nan);
   ASSERT_EQ(after.size(), 1U);
-  EXPECT_EQ(after[0].members, before[0].members);
+  auto shifted = before[0].members;  // Indices are those of the input.
+  for (int& i : shifted) ++i;
+  EXPECT_EQ(after[0].members, shifted);
   for (auto& c : problem.correspondences) c.model_point.setConstant(nan);
   EXPECT_TRUE(group_correspondences(problem.correspondences).empty());
 }

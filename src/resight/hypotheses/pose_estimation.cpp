@@ -217,7 +217,8 @@ std::vector<int> inlier_indices(const std::vector<float>& residuals_sq) {
   return inliers;
 }
 
-// One step of re-weighted least squares with Tukey's biweight, which falls to zero at the inlier distance.
+// One step of re-weighted least squares. The weight 1 - d^2 / max^2 falls to zero at the inlier distance, as Tukey's
+// does, but more slowly: small groups keep more of their few points.
 std::optional<Rigid3> fit_inliers(std::span<const Correspondence> correspondences, const std::vector<int>& inliers,
                                   const std::vector<float>& residuals_sq, double max_distance_sq) {
   std::vector<Eigen::Vector3f> model;
@@ -228,7 +229,7 @@ std::optional<Rigid3> fit_inliers(std::span<const Correspondence> correspondence
     const double u = 1.0 - static_cast<double>(residuals_sq[static_cast<std::size_t>(i)]) / max_distance_sq;
     model.push_back(c.model_point);
     scene.push_back(c.scene_point);
-    weights.push_back(std::max(u * u, 1e-6));  // Not quite zero: an inlier at the very edge still counts as a pair.
+    weights.push_back(std::max(u, 1e-6));  // Not quite zero: an inlier at the very edge still counts as a pair.
   }
   return fit_rigid(model, scene, weights);
 }

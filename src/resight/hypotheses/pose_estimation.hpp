@@ -39,7 +39,7 @@ struct PoseEstimate {
                                                         const EstimatePoseOptions& options = {});
 
 /// The second half of estimate_pose from a given start: least squares with Tukey's weights over the inliers of the
-/// pose, repeated until the set of inliers stands. None when it falls below min_inliers or onto a line.
+/// pose, repeated until neither the inliers nor the pose change. None when it falls below min_inliers or onto a line.
 [[nodiscard]] std::optional<PoseEstimate> refine_pose(std::span<const Correspondence> correspondences,
                                                       const Rigid3& scene_from_model,
                                                       const EstimatePoseOptions& options = {});
