@@ -113,8 +113,8 @@ TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
   EXPECT_EQ(static_cast<int>(reported.size()), num_scripted) << "changes were reported that did not happen";
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest, ::testing::Values("mvr-chd", "default"), [](const auto& info) {
-  return info.param == "default" ? std::string("best") : std::string("chd");
+INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest, ::testing::Values("mvr-chd", "default"), [](const auto& preset) {
+  return preset.param == "default" ? std::string("best") : std::string("chd");
 });
 
 TEST(Pipeline, OneAndTwoThreadsGiveTheSameBytes) {

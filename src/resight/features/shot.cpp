@@ -26,11 +26,12 @@ class Describer {
   Describer(const SupportGrid& grid, const ShotOptions& options) : grid_(grid), options_(options) {}
 
   /// Appends the descriptor of `keypoint`, if it has one.
-  bool describe(const Eigen::Vector3f& keypoint, std::vector<float>& descriptors) {
+  bool describe(const Eigen::Vector3f& keypoint, double noise_variance_sq_m, std::vector<float>& descriptors) {
     if (!keypoint.allFinite()) return false;
     grid_.gather(keypoint, neighborhood_);
     if (neighborhood_.count < options_.min_neighbors) return false;
-    if (options_.min_surface_variation > 0 && surface_variation(neighborhood_) < options_.min_surface_variation)
+    if (options_.min_surface_variation > 0 &&
+        surface_variation(neighborhood_, noise_variance_sq_m) < options_.min_surface_variation)
       return false;
     const std::optional<Eigen::Matrix3f> frame = local_reference_frame(neighborhood_, options_.support_radius_m);
     if (!frame) return false;
@@ -47,18 +48,20 @@ class Describer {
   ShotHistogram histogram_;
 };
 
+// `noise_variance_sq_m`: of the measurement of each keypoint; empty = none.
 std::vector<Described> describe_in_blocks(const PointCloud& support, const PointCloud& keypoints,
-                                          const ShotOptions& options) {
+                                          std::span<const double> noise_variance_sq_m, const ShotOptions& options) {
   const SupportGrid grid(support, options.support_radius_m);
   std::vector<Described> blocks((keypoints.size() + kKeypointsPerTask - 1) / kKeypointsPerTask);
-  parallel_for_blocks(keypoints.size(), kKeypointsPerTask, options.num_threads,
-                      [&](std::size_t begin, std::size_t end) {
-                        Describer describer(grid, options);
-                        Described& block = blocks[begin / kKeypointsPerTask];
-                        for (std::size_t i = begin; i < end; ++i)
-                          if (describer.describe(keypoints.points[i], block.descriptors))
-                            block.keypoints.push_back(static_cast<int>(i));
-                      });
+  parallel_for_blocks(
+      keypoints.size(), kKeypointsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
+        Describer describer(grid, options);
+        Described& block = blocks[begin / kKeypointsPerTask];
+        for (std::size_t i = begin; i < end; ++i)
+          if (describer.describe(keypoints.points[i], noise_variance_sq_m.empty() ? 0.0 : noise_variance_sq_m[i],
+                                 block.descriptors))
+            block.keypoints.push_back(static_cast<int>(i));
+      });
   return blocks;
 }
 
@@ -99,27 +102,13 @@ PointCloud support_of_view(const PreparedView& view, const ShotOptions& options,
   return options.support_voxel_m > 0 ? voxel_downsample(surface, options.support_voxel_m) : surface;
 }
 
-}  // namespace
-
-void ShotOptions::check() const {
-  check_positive("ShotOptions.keypoint_spacing_m", keypoint_spacing_m);
-  check_positive("ShotOptions.support_radius_m", support_radius_m);
-  check_not_negative("ShotOptions.support_voxel_m", support_voxel_m);
-  check_in_range("ShotOptions.min_surface_variation", min_surface_variation, 0, 1.0 / 3);
-  check_in_range("ShotOptions.min_neighbors", min_neighbors, 3, 1e9);
-  check_positive("ShotOptions.num_threads", num_threads);
-}
-
-FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints, const ShotOptions& options,
-                         std::vector<int>* kept) {
-  options.check();
-  require(support.empty() || support.has_normals(), "describe_shot: the support has no normals");
-  require(keypoints.empty() || keypoints.has_normals(), "describe_shot: the keypoints have no normals");
+FeatureSet describe(const PointCloud& support, const PointCloud& keypoints, std::span<const double> noise_variance_sq_m,
+                    const ShotOptions& options, std::vector<int>* kept) {
   FeatureSet features;
   features.type = FeatureType::kShot;
   features.dimension = kShotDimension;
   if (kept != nullptr) kept->clear();
-  const std::vector<Described> blocks = describe_in_blocks(support, keypoints, options);
+  const std::vector<Described> blocks = describe_in_blocks(support, keypoints, noise_variance_sq_m, options);
   std::size_t num_described = 0;
   for (const Described& block : blocks) num_described += block.keypoints.size();
   features.points.reserve(num_described);
@@ -136,13 +125,41 @@ FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints,
   return features;
 }
 
+}  // namespace
+
+void ShotOptions::check() const {
+  check_positive("ShotOptions.keypoint_spacing_m", keypoint_spacing_m);
+  check_positive("ShotOptions.support_radius_m", support_radius_m);
+  check_not_negative("ShotOptions.support_voxel_m", support_voxel_m);
+  check_in_range("ShotOptions.min_surface_variation", min_surface_variation, 0, 1.0 / 3);
+  check_not_negative("ShotOptions.max_keypoint_depth_m", max_keypoint_depth_m);
+  check_in_range("ShotOptions.min_neighbors", min_neighbors, 3, 1e9);
+  check_positive("ShotOptions.num_threads", num_threads);
+}
+
+FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints, const ShotOptions& options,
+                         std::vector<int>* kept) {
+  options.check();
+  require(support.empty() || support.has_normals(), "describe_shot: the support has no normals");
+  require(keypoints.empty() || keypoints.has_normals(), "describe_shot: the keypoints have no normals");
+  return describe(support, keypoints, {}, options, kept);
+}
+
 FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, const Image<std::uint8_t>* mask) {
   options.check();
   require(!view.cloud.nx.empty(), "extract_shot: the view has no normals");
   require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
           "extract_shot: the mask has not the camera's size");
   const PointCloud support = support_of_view(view, options, mask);
-  return describe_shot(support, select(support, sample_uniformly(support, options.keypoint_spacing_m)), options);
+  std::vector<int> indices = sample_uniformly(support, options.keypoint_spacing_m);
+  if (options.max_keypoint_depth_m > 0)
+    std::erase_if(indices, [&](int i) { return support.points[i].z() > options.max_keypoint_depth_m; });
+  std::vector<double> noise_variance_sq_m;
+  for (const int i : indices) {
+    const double sigma_m = nguyen_noise(support.points[i].z(), 0.0, view.frame.camera.fx).axial_m;
+    noise_variance_sq_m.push_back(sigma_m * sigma_m);
+  }
+  return describe(support, select(support, indices), noise_variance_sq_m, options, nullptr);
 }
 
 }  // namespace resight

@@ -10,10 +10,12 @@ struct ShotOptions {
   double keypoint_spacing_m = 0.01;  ///< Uniform sampling (paper; V4R: 1 cm).
   double support_radius_m = 0.04;    ///< V4R: 4 cm.
   double support_voxel_m = 0.005;    ///< The surface is thinned to this before description; 0 keeps every pixel.
-  /// l0 / (l0 + l1 + l2) of the support around its mean: flatter keypoints are dropped; 0 keeps all.
+  /// l0 / (l0 + l1 + l2) of the support around its mean: flatter keypoints are dropped; 0 keeps all. In extract_shot()
+  /// the variance of the sensor's axial noise is taken off l0 first: at 2 m it alone makes a wall look curved.
   double min_surface_variation = 0.01;
-  int min_neighbors = 10;  ///< Fewer support points: no descriptor.
-  int num_threads = 1;     ///< Same bits for any value >= 1.
+  double max_keypoint_depth_m = 0;  ///< Of extract_shot(): no keypoints farther away (later V4R: 1.8 m); 0 = no limit.
+  int min_neighbors = 10;           ///< Fewer support points: no descriptor.
+  int num_threads = 1;              ///< Same bits for any value >= 1.
   void check() const;
 };
 

@@ -79,14 +79,14 @@ float majority_sign(const Neighborhood& n, const Eigen::Vector3f& axis, float ra
 
 }  // namespace
 
-double surface_variation(const Neighborhood& neighborhood) {
+double surface_variation(const Neighborhood& neighborhood, double noise_variance_sq_m) {
   if (neighborhood.count < 3) return 0;
   const Moments m = sum_moments(neighborhood, [](const Lanes&) { return Lanes::Ones(); });
   const Eigen::Vector3d mean = m.first / m.weight;
   const Eigen::Matrix3d covariance = m.second / m.weight - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
-  return covariance.trace() > 0 ? std::max(0.0, solver.eigenvalues()[0]) / covariance.trace() : 0;
+  return covariance.trace() > 0 ? std::max(0.0, solver.eigenvalues()[0] - noise_variance_sq_m) / covariance.trace() : 0;
 }
 
 std::optional<Eigen::Matrix3f> local_reference_frame(const Neighborhood& neighborhood, double radius_m) {

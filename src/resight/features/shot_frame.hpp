@@ -8,7 +8,7 @@
 namespace resight {
 
 /// Smallest share of the variance, l0 / (l0 + l1 + l2), of the neighbours around their mean; 0 for fewer than 3.
-[[nodiscard]] double surface_variation(const Neighborhood& neighborhood);
+[[nodiscard]] double surface_variation(const Neighborhood& neighborhood, double noise_variance_sq_m = 0);
 
 /// The local reference frame of SHOT (Tombari, Salti, Di Stefano 2010, sec. 3): rows are its x, y and z axis.
 ///

@@ -19,8 +19,10 @@ std::string describe(const SiftOptions& options) {
 }
 
 std::string describe(const ShotOptions& options) {
-  [[maybe_unused]] const auto& [spacing_m, radius_m, voxel_m, min_variation, min_neighbors, num_threads] = options;
-  return fmt::format("shot {} {} {} {} {}\n", spacing_m, radius_m, voxel_m, min_variation, min_neighbors);
+  [[maybe_unused]] const auto& [spacing_m, radius_m, voxel_m, min_variation, max_depth_m, min_neighbors, num_threads] =
+      options;
+  return fmt::format("shot {} {} {} {} {} {}\n", spacing_m, radius_m, voxel_m, min_variation, max_depth_m,
+                     min_neighbors);
 }
 
 std::string describe(const TurntableOptions& options) {

@@ -41,6 +41,7 @@ void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shot.support_radius_m", &c.shot.support_radius_m},
                                   {"shot.support_voxel_m", &c.shot.support_voxel_m},
                                   {"shot.min_surface_variation", &c.shot.min_surface_variation},
+                                  {"shot.max_keypoint_depth_m", &c.shot.max_keypoint_depth_m},
                                   {"shot.min_neighbors", &c.shot.min_neighbors},
                                   {"match.sift_neighbors", &c.match.sift_neighbors},
                                   {"match.shot_neighbors", &c.match.shot_neighbors},
@@ -226,7 +227,12 @@ std::string assign(std::vector<Field>& fields, const std::string& name, const to
 RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
-  // The paper's thresholds are the defaults of the stages; here stands only what tells the presets apart.
+  // The paper's thresholds are the defaults of the stages; here stands what tells the presets apart, and what the paper
+  // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m), and V4R's colour sigmas of 77 CIELAB units let a
+  // green can pass for a grey one.
+  config.shot.max_keypoint_depth_m = 2.0;
+  config.verify.color_sigma_l = 0.4;
+  config.verify.color_sigma_ab = 0.15;
   config.changes.occlusion_test = OcclusionTest::kSphericalBins;
   if (name == "mvr-chd") return config;
   if (name == "mvr") {
