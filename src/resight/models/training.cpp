@@ -8,6 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/models/crop_view.hpp"
 #include "resight/models/descriptor_code.hpp"
 #include "resight/models/surface.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kMinDiameter_m = 0.005;
 constexpr double kMaxDiameter_m = 5.0;
+constexpr int kCropMargin_px = 48;            // what keypoints near the silhouette see of their surroundings
 constexpr double kSamplesPerVoxelFace = 6.0;  // of voxel_size^2: a face that fills its voxel is missed once in 400
 
 Error fail(const std::string& name, const std::string& what) { return {fmt::format("model '{}': {}", name, what)}; }
@@ -43,12 +45,14 @@ struct ViewPart {
   SurfaceSamples samples;
 };
 
-ViewPart process_view(const TrainingView& view, const TrainOptions& options, bool with_surface) {
+ViewPart process_view(const TrainingView& whole_view, const TrainOptions& options, bool with_surface) {
+  const TrainingView view = crop_to_object(whole_view, kCropMargin_px);
+  ViewPart part;
+  if (view.mask.empty()) return part;
   const PreparedView prepared = prepare_view(view.frame);
   const Rigid3& object_from_camera = view.frame.world_from_camera;
   ShotOptions shot = options.shot;
   shot.num_threads = 1;  // the views are already spread over the threads
-  ViewPart part;
   part.features.sift = transform(object_from_camera, extract_sift(prepared, options.sift, &view.mask));
   part.features.shot = transform(object_from_camera, extract_shot(prepared, shot, &view.mask));
   if (with_surface) part.samples = collect_surface_samples(prepared, view.mask, options.min_edge_distance_px);

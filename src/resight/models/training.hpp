@@ -28,8 +28,8 @@ struct TrainOptions {
 
 /// The parts of an object that its training can be given by itself.
 struct ObjectFeatures {
-  FeatureSet sift;
-  FeatureSet shot;
+  FeatureSet sift{.type = FeatureType::kSift, .dimension = 128, .points = {}, .normals = {}, .descriptors = {}};
+  FeatureSet shot{.type = FeatureType::kShot, .dimension = 352, .points = {}, .normals = {}, .descriptors = {}};
 };
 
 /// Trains from registered views (frame.world_from_camera is object_from_camera; mask: non-zero = object): SIFT and SHOT

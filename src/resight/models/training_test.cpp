@@ -78,14 +78,18 @@ Eigen::Vector3f box_normal(const Eigen::Vector3f& p) {
 
 TrainOptions make_quick_options() {
   TrainOptions options;
-  options.turntable.step_deg = 60;
+  options.turntable.step_deg = 90;
   return options;
 }
 
-std::vector<TrainingView> make_views(double step_deg = 60) {
-  TurntableOptions turntable = make_quick_options().turntable;
-  turntable.step_deg = step_deg;
-  return render_turntable(make_printed_box(), turntable);
+// Rendered once: 12 views from above (30 deg apart), then 12 from below.
+const std::vector<TrainingView>& printed_box_views() {
+  static const std::vector<TrainingView> views = [] {
+    TurntableOptions turntable;
+    turntable.step_deg = 30;
+    return render_turntable(make_printed_box(), turntable);
+  }();
+  return views;
 }
 
 void expect_surface_on_box(const ObjectModel& model, float tolerance_m) {
@@ -133,8 +137,7 @@ TEST(TrainObjectFromMesh, GivesACompleteSurfaceAndFeaturesOnIt) {
 }
 
 TEST(TrainObjectFromViews, GivesTheSurfaceThatTheViewsSee) {
-  const std::vector<TrainingView> views = make_views(30);
-  const Result<ObjectModel> model = train_object("box", views, make_quick_options());
+  const Result<ObjectModel> model = train_object("box", printed_box_views());
   ASSERT_TRUE(model.ok()) << model.error().message;
   expect_surface_on_box(*model, 0.0015F);  // the views are free of noise
   expect_features_on_box(*model);
@@ -145,8 +148,10 @@ TEST(TrainObjectFromViews, GivesTheSurfaceThatTheViewsSee) {
 
 // A feature of one view must find its own physical point in a neighbouring view: both are in the object frame.
 TEST(TrainFeatures, KeypointsOfTwoViewsLandOnTheSamePoint) {
-  const std::vector<TrainingView> views = make_views(15);
-  ASSERT_GE(views.size(), 2U);
+  TurntableOptions turntable;
+  turntable.both_sides = false;
+  const std::vector<TrainingView> views = render_turntable(make_printed_box(), turntable);
+  ASSERT_EQ(views.size(), 24U);
   const TrainOptions options;
   const Result<ObjectFeatures> a = train_features("a", std::span(views).subspan(0, 1), options);
   const Result<ObjectFeatures> b = train_features("b", std::span(views).subspan(1, 1), options);
@@ -187,20 +192,21 @@ void expect_same_bytes(const ObjectModel& a, const ObjectModel& b) {
 
 TEST(TrainObject, SameBytesAgainAndForAnyNumberOfThreads) {
   TrainOptions options = make_quick_options();
+  options.turntable.both_sides = false;
   options.turntable.sensor_noise = true;
   const Result<ObjectModel> serial = train_object("box", make_printed_box(), options);
   ASSERT_TRUE(serial.ok());
   expect_same_bytes(*train_object("box", make_printed_box(), options), *serial);
   options.num_threads = 2;
   expect_same_bytes(*train_object("box", make_printed_box(), options), *serial);
-  const std::vector<TrainingView> views = make_views();
+  const auto views = std::span(printed_box_views()).first(5);
   const Result<ObjectModel> parallel = train_object("box", views, options);
   options.num_threads = 1;
   expect_same_bytes(*train_object("box", views, options), *parallel);
 }
 
 TEST(TrainObject, DescriptorsAreThoseThatAFileKeeps) {
-  const Result<ObjectModel> model = train_object("box", make_views(), make_quick_options());
+  const Result<ObjectModel> model = train_object("box", std::span(printed_box_views()).first(3));
   ASSERT_TRUE(model.ok());
   for (const FeatureSet* set : {&model->sift, &model->shot})
     EXPECT_EQ(decode_descriptors(encode_descriptors(set->descriptors, set->dimension), set->dimension),
@@ -208,22 +214,24 @@ TEST(TrainObject, DescriptorsAreThoseThatAFileKeeps) {
 }
 
 TEST(TrainObject, MergingLeavesFewerFeatures) {
-  TrainOptions options = make_quick_options();
-  options.turntable.step_deg = 30;
-  const Result<ObjectModel> merged = train_object("box", make_printed_box(), options);
+  const auto views = std::span(printed_box_views()).first(12);
+  TrainOptions options;
+  const Result<ObjectFeatures> merged = train_features("box", views, options);
   options.sift_merging = {};
   options.shot_merging = {};
-  const Result<ObjectModel> all = train_object("box", make_printed_box(), options);
+  const Result<ObjectFeatures> all = train_features("box", views, options);
   ASSERT_TRUE(merged.ok() && all.ok());
   EXPECT_LT(merged->sift.size(), all->sift.size());
-  EXPECT_LT(merged->shot.size(), 0.8 * static_cast<double>(all->shot.size()));
-  EXPECT_EQ(merged->surface.points, all->surface.points);
+  EXPECT_LT(static_cast<double>(merged->shot.size()), 0.9 * static_cast<double>(all->shot.size()));
+  EXPECT_GT(merged->shot.size(), 100U);
 }
 
 TEST(TrainObject, AnObjectWithOneKindOfFeatureIsTrained) {
   TriangleMesh plain = make_printed_box();
   plain.texture = Image<Rgb8>(4, 4, Rgb8{200, 40, 40});
-  const Result<ObjectModel> model = train_object("plain box", plain, make_quick_options());
+  TrainOptions options = make_quick_options();
+  options.turntable.both_sides = false;
+  const Result<ObjectModel> model = train_object("plain box", plain, options);
   ASSERT_TRUE(model.ok()) << model.error().message;
   EXPECT_GT(model->shot.size(), 100U);
 }
@@ -232,6 +240,7 @@ TEST(TrainObject, AnObjectWithoutAnyFeatureIsAnError) {
   TriangleMesh plain = make_printed_box();
   plain.texture = Image<Rgb8>(4, 4, Rgb8{200, 40, 40});
   TrainOptions options = make_quick_options();
+  options.turntable.both_sides = false;
   options.sift.contrast_threshold = 1e6;
   options.shot.min_neighbors = 1000000;
   const Result<ObjectModel> model = train_object("plain box", plain, options);
@@ -244,7 +253,7 @@ TEST(TrainObjectFromViews, EachBadInputHasItsLine) {
     const char* expected;
     std::function<void(std::vector<TrainingView>&)> spoil;
   };
-  const std::vector<TrainingView> good = make_views(120);
+  const std::vector<TrainingView> good(printed_box_views().begin(), printed_box_views().begin() + 2);
   const std::vector<Case> cases{
       {"no training views", [](auto& v) { v.clear(); }},
       {"masks of all training views are empty",
@@ -270,8 +279,11 @@ TEST(TrainObjectFromViews, EachBadInputHasItsLine) {
     EXPECT_THAT(model.error().message, HasSubstr("model 'box'"));
   }
   std::vector<TrainingView> one_empty = good;
-  std::ranges::fill(one_empty[0].mask.data(), std::uint8_t{0});
-  EXPECT_TRUE(train_object("box", one_empty, make_quick_options()).ok());
+  std::ranges::fill(one_empty[0].mask.data(), std::uint8_t{0});  // as when the object leaves the image
+  const Result<ObjectModel> model = train_object("box", one_empty, make_quick_options());
+  ASSERT_TRUE(model.ok());
+  EXPECT_EQ(model->sift.type, FeatureType::kSift);
+  EXPECT_EQ(model->shot.type, FeatureType::kShot);
 }
 
 TEST(TrainObjectFromMesh, EachBadInputHasItsLine) {
