@@ -232,7 +232,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   // green can pass for a grey one.
   config.shot.max_keypoint_depth_m = 2.0;
   config.verify.color_sigma_l = 0.4;
-  config.verify.color_sigma_ab = 0.15;
+  config.verify.color_sigma_ab = 0.2;
   config.changes.occlusion_test = OcclusionTest::kSphericalBins;
   if (name == "mvr-chd") return config;
   if (name == "mvr") {
