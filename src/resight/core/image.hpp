@@ -23,7 +23,9 @@ class Image {
  public:
   Image() = default;
   Image(int width, int height, T value = T{})
-      : width_(width), height_(height), data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
+      : width_(width),
+        height_(height),
+        data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
   /// Takes over `data`, width * height values row by row.
   Image(int width, int height, std::vector<T> data) : width_(width), height_(height), data_(std::move(data)) {
     assert(data_.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -26,7 +26,9 @@ class [[nodiscard]] Result {
   explicit operator bool() const { return ok(); }
 
   /// The value. Throws std::logic_error with the message if there is none: ask ok() first.
-  [[nodiscard]] const T& value() const& { return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_)); }
+  [[nodiscard]] const T& value() const& {
+    return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_));
+  }
   [[nodiscard]] T& value() & { return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_)); }
   [[nodiscard]] T&& value() && {
     if (!ok()) throw_error();

@@ -52,7 +52,9 @@ struct Rigid3f {
       : rotation(a_from_b.rotation.cast<float>()), translation(a_from_b.translation.cast<float>()) {}
   Eigen::Matrix3f rotation;
   Eigen::Vector3f translation;
-  [[nodiscard]] Eigen::Vector3f operator*(const Eigen::Vector3f& p_in_b) const { return rotation * p_in_b + translation; }
+  [[nodiscard]] Eigen::Vector3f operator*(const Eigen::Vector3f& p_in_b) const {
+    return rotation * p_in_b + translation;
+  }
 };
 
 /// Geodesic angle between two rotations, radians in [0, pi].

@@ -6,7 +6,8 @@
 
 namespace resight {
 
-/// Index of the cube of side 1 / inverse_size that holds a point, packed into 64 bits (21 bits an axis: at 5 mm a range of
+/// Index of the cube of side 1 / inverse_size that holds a point, packed into 64 bits (21 bits an axis: at 5 mm a range
+/// of
 /// +-5 km). Equal keys <=> same cube, within that range.
 [[nodiscard]] inline std::uint64_t voxel_key(int ix, int iy, int iz) {
   constexpr std::uint64_t kMask = (1ULL << 21U) - 1U;

@@ -9,8 +9,8 @@
 
 namespace resight {
 
-/// Open-addressing hash table from voxel key to a consecutive number (0, 1, 2, .. in order of first insertion): the index
-/// of the caller's own arrays. Three times faster than std::unordered_map here, and its order is deterministic.
+/// Open-addressing hash table from voxel key to a consecutive number (0, 1, 2, .. in order of first insertion): the
+/// index of the caller's own arrays. Three times faster than std::unordered_map here, and its order is deterministic.
 class VoxelMap {
  public:
   static constexpr int kNotFound = -1;
