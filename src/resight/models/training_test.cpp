@@ -342,6 +342,7 @@ TEST(TrainOptions, HashTellsEveryFieldThatChangesTheResult) {
       [](TrainOptions& o) { o.shot.support_radius_m = 0.03; },
       [](TrainOptions& o) { o.shot.support_voxel_m = 0.004; },
       [](TrainOptions& o) { o.shot.min_surface_variation = 0.02; },
+      [](TrainOptions& o) { o.shot.max_keypoint_depth_m = 1.8; },
       [](TrainOptions& o) { o.shot.min_neighbors = 11; },
       [](TrainOptions& o) { o.surface_voxel_m = 0.004; },
       [](TrainOptions& o) { o.min_edge_distance_px = 3; },

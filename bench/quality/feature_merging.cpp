@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What merging repeated model features costs and gains: `bench_feature_merging [MODELS]` (a path that `resight train`
+// takes; default: procedural objects). Features of held-out views (between the training views, another elevation and
+// distance, with sensor noise) are matched exactly against all objects together. A match is right when its model point
+// is of the same object and within 1 cm of the truth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "resight/core/parallel.hpp"
+#include "resight/io/model_source.hpp"
+#include "resight/models/descriptor_code.hpp"
+#include "resight/models/training.hpp"
+#include "resight/sensor/prepared_view.hpp"
+#include "resight/simulation/procedural_objects.hpp"
+#include "resight/simulation/turntable.hpp"
+
+namespace {
+
+using namespace resight;
+using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr std::size_t kMaxObjects = 12;
+constexpr std::size_t kMaxQueries = 3000;
+constexpr float kRightWithin_m = 0.01F;
+
+struct Object {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+// Features of several objects with the object of each.
+struct LabelledFeatures {
+  FeatureSet features;
+  std::vector<int> objects;
+  void append(const FeatureSet& added, int object) {
+    features.append(added);
+    objects.insert(objects.end(), added.size(), object);
+  }
+};
+
+struct Both {
+  LabelledFeatures sift;
+  LabelledFeatures shot;
+};
+
+std::vector<Object> load_objects(int argc, char** argv) {
+  std::vector<Object> objects;
+  if (argc < 2) {
+    for (const std::string& name : procedural_object_names())
+      objects.push_back({name, make_procedural_object(name).value().mesh});
+  } else {
+    const std::vector<ModelLocation> locations = find_models({argv[1]}).value();
+    for (const ModelLocation& location : locations) {
+      ModelSource source = read_model(location).value();
+      if (source.mesh.has_value()) objects.push_back({source.name, *std::move(source.mesh)});
+    }
+  }
+  objects.resize(std::min(objects.size(), kMaxObjects));
+  return objects;
+}
+
+Both extract_training(const std::vector<Object>& objects, const TrainOptions& options) {
+  Both all;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    TurntableOptions turntable = options.turntable;
+    turntable.num_threads = options.num_threads;
+    const auto features =
+        train_features(objects[i].name, render_turntable(objects[i].mesh, turntable), options).value();
+    all.sift.append(features.sift, static_cast<int>(i));
+    all.shot.append(features.shot, static_cast<int>(i));
+  }
+  return all;
+}
+
+// Truth: the points are in the object frame.
+Both extract_queries(const std::vector<Object>& objects, int num_threads) {
+  const Rigid3 turned_from_object = Rigid3::from_axis_angle({0, 0, 1}, 7.5 * std::numbers::pi / 180);
+  const TurntableOptions turntable{.step_deg = 90,
+                                   .elevation_deg = 22,
+                                   .distance_m = 0.9,
+                                   .sensor_noise = true,
+                                   .seed = 7,
+                                   .num_threads = num_threads};
+  Both all;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    TriangleMesh turned = objects[i].mesh;
+    const Rigid3f motion(turned_from_object);
+    for (auto& v : turned.vertices) v = motion * v;
+    for (auto& n : turned.normals) n = motion.rotation * n;
+    for (const TrainingView& view : render_turntable(turned, turntable)) {
+      const PreparedView prepared = prepare_view(view.frame);
+      const Rigid3 object_from_camera = turned_from_object.inverse() * view.frame.world_from_camera;
+      all.sift.append(transform(object_from_camera, extract_sift(prepared, {}, &view.mask)), static_cast<int>(i));
+      all.shot.append(transform(object_from_camera, extract_shot(prepared, {}, &view.mask)), static_cast<int>(i));
+    }
+  }
+  return all;
+}
+
+Eigen::Map<const Matrix> rows(const FeatureSet& set, std::size_t begin, std::size_t count) {
+  return {set.descriptors.data() + begin * static_cast<std::size_t>(set.dimension), static_cast<Eigen::Index>(count),
+          set.dimension};
+}
+
+// Share of queries with a right match among the k nearest.
+double measure_recall(const LabelledFeatures& model, const LabelledFeatures& queries, int k, int num_threads) {
+  constexpr std::size_t kBlock = 64;
+  const std::size_t count = queries.features.size();
+  std::vector<int> right(count, 0);
+  parallel_for_blocks(count, kBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    const Matrix similarity =
+        rows(queries.features, begin, end - begin) * rows(model.features, 0, model.features.size()).transpose();
+    std::vector<int> order(model.features.size());
+    for (std::size_t q = begin; q < end; ++q) {
+      const auto row = similarity.row(static_cast<Eigen::Index>(q - begin));
+      for (std::size_t j = 0; j < order.size(); ++j) order[j] = static_cast<int>(j);
+      std::partial_sort(order.begin(), order.begin() + k, order.end(), [&](int a, int b) { return row(a) > row(b); });
+      for (int n = 0; n < k; ++n) {
+        const auto j = static_cast<std::size_t>(order[n]);
+        const float distance = (model.features.points[j] - queries.features.points[q]).norm();
+        if (model.objects[j] == queries.objects[q] && distance < kRightWithin_m) right[q] = 1;
+      }
+    }
+  });
+  return static_cast<double>(std::ranges::count(right, 1)) / static_cast<double>(std::max<std::size_t>(1, count));
+}
+
+LabelledFeatures merge(const LabelledFeatures& all, const FeatureMerging& merging, int num_threads) {
+  LabelledFeatures merged;
+  const int num_objects = all.objects.empty() ? 0 : all.objects.back() + 1;
+  for (int object = 0; object < num_objects; ++object) {
+    FeatureSet part{
+        .type = all.features.type, .dimension = all.features.dimension, .points = {}, .normals = {}, .descriptors = {}};
+    for (std::size_t i = 0; i < all.objects.size(); ++i) {
+      if (all.objects[i] != object) continue;
+      part.points.push_back(all.features.points[i]);
+      part.normals.push_back(all.features.normals[i]);
+      const auto descriptor = all.features.descriptor(i);
+      part.descriptors.insert(part.descriptors.end(), descriptor.begin(), descriptor.end());
+    }
+    FeatureSet reduced = merge_similar_features(part, merging, num_threads);
+    quantize_descriptors(reduced);
+    merged.append(reduced, object);
+  }
+  return merged;
+}
+
+// Every n-th, so that no more than kMaxQueries are left.
+LabelledFeatures thin_out(const LabelledFeatures& all) {
+  const std::size_t step = (all.features.size() + kMaxQueries - 1) / kMaxQueries;
+  LabelledFeatures some;
+  some.features.type = all.features.type;
+  some.features.dimension = all.features.dimension;
+  for (std::size_t i = 0; i < all.features.size(); i += step) {
+    const auto descriptor = all.features.descriptor(i);
+    some.features.points.push_back(all.features.points[i]);
+    some.features.normals.push_back(all.features.normals[i]);
+    some.features.descriptors.insert(some.features.descriptors.end(), descriptor.begin(), descriptor.end());
+    some.objects.push_back(all.objects[i]);
+  }
+  return some;
+}
+
+void report(const char* kind, const LabelledFeatures& all, const LabelledFeatures& queries,
+            std::initializer_list<double> radii_m, std::initializer_list<double> thresholds, int num_threads) {
+  const auto print = [&](double radius, double threshold, const LabelledFeatures& model) {
+    fmt::print("{} | {:.1f} | {:.2f} | {} | {:.1f} % | {:.2f} % | {:.2f} %\n", kind, 1e3 * radius, threshold,
+               model.features.size(),
+               100.0 * static_cast<double>(model.features.size()) / static_cast<double>(all.features.size()),
+               100 * measure_recall(model, queries, 1, num_threads),
+               100 * measure_recall(model, queries, 3, num_threads));
+    std::fflush(stdout);
+  };
+  fmt::print("\n{} queries\nkind | radius mm | descriptor distance | features left | share | right@1 | right@3\n",
+             queries.features.size());
+  print(0, 0, all);
+  for (const double radius : radii_m)
+    for (const double threshold : thresholds)
+      print(radius, threshold,
+            merge(all, {.max_distance_m = radius, .max_descriptor_distance = threshold}, num_threads));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  TrainOptions options;
+  options.num_threads = num_hardware_threads();
+  options.sift_merging = {};
+  options.shot_merging = {};
+  const std::vector<Object> objects = load_objects(argc, argv);
+  const Both training = extract_training(objects, options);
+  const Both queries = extract_queries(objects, options.num_threads);
+  fmt::print("{} objects\n", objects.size());
+  report("SIFT", training.sift, thin_out(queries.sift), {0.003, 0.005}, {0.3, 0.4, 0.5, 0.6, 0.7}, options.num_threads);
+  report("SHOT", training.shot, thin_out(queries.shot), {0.007, 0.010}, {0.2, 0.3, 0.4, 0.5}, options.num_threads);
+}
