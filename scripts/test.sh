@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests, every
 # public header alone, installation and a project that uses it, and the tests of four modules under the sanitizers.
-#   scripts/test.sh             everything
-#   scripts/test.sh --fast      without the last three
+#   scripts/test.sh             everything but the sanitizers
+#   scripts/test.sh --sanitize  everything
+#   scripts/test.sh --fast      without public headers, installation and sanitizers
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
+sanitize=0
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
-    *) echo "test.sh: unknown option '$option' (expected --fast)" >&2; exit 2 ;;
+    --sanitize) sanitize=1 ;;
+    *) echo "test.sh: unknown option '$option' (expected --fast or --sanitize)" >&2; exit 2 ;;
   esac
 done
 scripts/setup.sh --tests
@@ -55,6 +58,8 @@ step "tests" run_tests || { count_tests; exit 1; }
 if ((!fast)); then
   step "each public header compiles alone" cmake --build build/ci -j "$num_jobs" --target all_verify_interface_header_sets
   step "install, and a project that uses it" build_consumer
+fi
+if ((sanitize)); then
   step "build with ASan and UBSan" build_sanitized
   step "tests with ASan and UBSan" run_sanitized
 fi
