@@ -202,6 +202,7 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
                             const DetectChangesOptions& options, std::span<const PreparedView* const> earlier_views) {
   options.check();
   check_views(view, earlier_views);
+  if (!options.novel_needs_free_space) earlier_views = {};
   ChangeResult result;
   result.novel_mask = Image<std::uint8_t>(view.cloud.width(), view.cloud.height());
   if (previous_in_world.empty()) return result;

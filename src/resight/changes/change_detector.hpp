@@ -21,7 +21,9 @@ struct DetectChangesOptions {
   double occlusion_sigmas = 3.0;    ///< kDepthImage only: the noise's share of that margin; DepthEvidenceOptions.
   int window_radius_px = 1;         ///< Of the look at the depth image around a point: DepthEvidenceOptions.
   bool require_return = true;       ///< kSphericalBins only: see detect_changes().
-  double min_depth_m = 0.5;         ///< View volume (V4R: Xtion, 0.5 to 3.5 m).
+  bool novel_needs_free_space =
+      true;                  ///< Novel points must be seen through by an earlier view. Paper: false, Eq. (3) alone.
+  double min_depth_m = 0.5;  ///< View volume (V4R: Xtion, 0.5 to 3.5 m).
   double max_depth_m = 3.5;
   double frustum_margin_rad = 0.0872665;  ///< Off each side of the view volume (V4R: 5 deg).
   double max_changed_share = 0.5;  ///< More of the visible surface changed: the camera pose is suspect, and nothing is
@@ -48,16 +50,16 @@ struct ChangeResult {
 /// have none: `require_return` then keeps the point, for a missing return is no evidence of free space.
 ///
 /// Novel: pixels of the view that have no point of Psi within the tolerance. Eq. (3) stops here, and so do we without
-/// `earlier_views`: surfaces that no one could see before then count as novel. With them (the views that Psi was made
-/// of; null entries are not allowed), a point must also be seen through by at least one of them, in its view volume and
-/// by its depth image: the same evidence that a removal needs, mirrored. What lay outside or behind is newly seen, not
-/// new.
+/// `earlier_views` or without novel_needs_free_space: surfaces that no one could see before then count as novel. With
+/// both (the views that Psi was made of; null entries are not allowed), a point must also be seen through by at least
+/// one of them, in its view volume and by its depth image: the same evidence that a removal needs, mirrored. What lay
+/// outside or behind is newly seen, not new.
 ///
 /// Psi is thinned before the comparison and N after it: the side that explains stays as dense as it is, because a
 /// thinned one is up to a voxel farther from a point and would leave more of the other over.
 ///
 /// With a wrong camera pose most of the scene seems to have changed: if changed_share exceeds max_changed_share, or
-/// novel_share does where earlier_views vouch for it, no change is reported at all.
+/// novel_share does where earlier views vouch for it, no change is reported at all.
 [[nodiscard]] ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedView& view,
                                           const DetectChangesOptions& options = {},
                                           std::span<const PreparedView* const> earlier_views = {});

@@ -135,6 +135,10 @@ TEST_P(DetectChanges, RemovedBoxIsSeenThrough) {
   const ChangeResult mirrored = detect_changes(previous, after, options, earlier);
   EXPECT_TRUE(mirrored.novel_in_world.empty());
   EXPECT_EQ(sorted(mirrored.removed_in_world.points), sorted(result.removed_in_world.points));
+  // The paper asks for no such evidence.
+  DetectChangesOptions literal = options;
+  literal.novel_needs_free_space = false;
+  EXPECT_EQ(detect_changes(previous, after, literal, earlier).novel_in_world.points, result.novel_in_world.points);
 }
 
 TEST_P(DetectChanges, AddedBoxIsNovelAndRemovesNothing) {

@@ -13,17 +13,19 @@
 namespace resight {
 namespace {
 
-// The one list of what can be set from a file and what summary.json keeps. Thread counts are left out: results do not
-// depend on them.
+// The one list of what can be set from a file and what summary.json keeps; a test counts the fields of all options
+// against it. Thread counts are left out: results do not depend on them.
 struct Field {
   const char* name;  // "section.key", or "key" at the top
-  std::variant<double*, int*, bool*, std::uint64_t*, RotationTest*, OcclusionTest*> value;
+  std::variant<double*, int*, bool*, std::uint64_t*, RotationTest*, OcclusionTest*, DuplicityRule*> value;
 };
 
 constexpr std::pair<const char*, RotationTest> kRotationTests[] = {{"geodesic", RotationTest::kGeodesic},
                                                                    {"absolute_euler", RotationTest::kAbsoluteEuler}};
 constexpr std::pair<const char*, OcclusionTest> kOcclusionTests[] = {{"spherical_bins", OcclusionTest::kSphericalBins},
                                                                      {"depth_image", OcclusionTest::kDepthImage}};
+constexpr std::pair<const char*, DuplicityRule> kDuplicityRules[] = {{"beyond_best", DuplicityRule::kBeyondBest},
+                                                                     {"all_weights", DuplicityRule::kAllWeights}};
 
 void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
@@ -32,6 +34,7 @@ void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"prepare.normals_max_depth_change", &c.prepare.normals.max_depth_change},
                                   {"prepare.normals_min_neighbors", &c.prepare.normals.min_neighbors},
                                   {"prepare.edge_max_depth_jump", &c.prepare.edges.max_depth_jump},
+                                  {"prepare.edge_max_gap_px", &c.prepare.edges.max_gap_px},
                                   {"prepare.edge_max_distance_px", &c.prepare.edges.max_distance_px},
                                   {"sift.contrast_threshold", &c.sift.contrast_threshold},
                                   {"sift.edge_threshold", &c.sift.edge_threshold},
@@ -64,6 +67,9 @@ void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"grouping.max_correspondences", &g.max_correspondences},
                                   {"grouping.max_cliques", &g.max_cliques},
                                   {"grouping.max_uses", &g.max_uses},
+                                  {"grouping.expand_groups", &g.expand_groups},
+                                  {"grouping.merge_distance_m", &g.merge_distance_m},
+                                  {"grouping.merge_rotation_rad", &g.merge_rotation_rad},
                                   {"grouping.pose_inlier_distance_m", &g.pose.inlier_distance_m},
                                   {"grouping.pose_max_normal_angle_rad", &g.pose.max_normal_angle_rad},
                                   {"grouping.pose_max_iterations", &g.pose.max_iterations},
@@ -91,6 +97,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"changes.occlusion_sigmas", &c.changes.occlusion_sigmas},
                                   {"changes.window_radius_px", &c.changes.window_radius_px},
                                   {"changes.require_return", &c.changes.require_return},
+                                  {"changes.novel_needs_free_space", &c.changes.novel_needs_free_space},
                                   {"changes.min_depth_m", &c.changes.min_depth_m},
                                   {"changes.max_depth_m", &c.changes.max_depth_m},
                                   {"changes.frustum_margin_rad", &c.changes.frustum_margin_rad},
@@ -121,23 +128,39 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.occlusion_margin_m", &v.occlusion_margin_m},
                                   {"verify.outlier_weight", &v.outlier_weight},
                                   {"verify.duplicity_weight", &v.duplicity_weight},
+                                  {"verify.duplicity_rule", &v.duplicity_rule},
                                   {"verify.clutter_radius_m", &v.clutter_radius_m},
                                   {"verify.clutter_weight", &v.clutter_weight},
+                                  {"verify.near_clutter_weight", &v.near_clutter_weight},
                                   {"verify.occupancy_weight", &v.occupancy_weight},
                                   {"verify.occupancy_voxel_m", &v.occupancy_voxel_m},
                                   {"verify.hypothesis_penalty", &v.hypothesis_penalty},
                                   {"verify.use_color", &v.use_color},
                                   {"verify.color_sigma_l", &v.color_sigma_l},
                                   {"verify.color_sigma_ab", &v.color_sigma_ab},
+                                  {"verify.max_l_shift", &v.max_l_shift},
+                                  {"verify.max_l_gain", &v.max_l_gain},
                                   {"verify.use_planes", &v.use_planes},
                                   {"verify.min_plane_points", &v.min_plane_points},
                                   {"verify.plane_distance_m", &v.plane_distance_m},
+                                  {"verify.plane_angle_rad", &v.plane_angle_rad},
+                                  {"verify.plane_weight", &v.plane_weight},
                                   {"verify.smooth_angle_rad", &v.smooth_angle_rad},
                                   {"verify.smooth_distance_m", &v.smooth_distance_m},
                                   {"verify.min_smooth_points", &v.min_smooth_points},
                                   {"verify.max_smooth_curvature", &v.max_smooth_curvature},
+                                  {"verify.min_facing", &v.min_facing},
+                                  {"verify.steep_angle_rad", &v.steep_angle_rad},
+                                  {"verify.steep_weight", &v.steep_weight},
+                                  {"verify.min_inlier_weight", &v.min_inlier_weight},
+                                  {"verify.max_inlier_angle_rad", &v.max_inlier_angle_rad},
+                                  {"verify.max_seen_through_share", &v.max_seen_through_share},
                                   {"verify.max_moves", &v.max_moves},
+                                  {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
+                                  {"verify.min_shared_points", &v.min_shared_points},
                                   {"verify.min_visible_points", &v.min_visible_points},
+                                  {"verify.min_visible_share", &v.min_visible_share},
+                                  {"verify.min_explained_share", &v.min_explained_share},
                                   {"verify.seed", &v.seed},
                               });
 }
@@ -168,6 +191,7 @@ struct ToText {
   std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
   std::string operator()(const RotationTest* v) const { return name_of(*v, kRotationTests); }
   std::string operator()(const OcclusionTest* v) const { return name_of(*v, kOcclusionTests); }
+  std::string operator()(const DuplicityRule* v) const { return name_of(*v, kDuplicityRules); }
 };
 
 // Takes a TOML value over into a field; returns what was expected if it does not fit.
@@ -197,6 +221,7 @@ struct Assign {
   }
   std::string operator()(RotationTest* v) const { return choose(v, kRotationTests); }
   std::string operator()(OcclusionTest* v) const { return choose(v, kOcclusionTests); }
+  std::string operator()(DuplicityRule* v) const { return choose(v, kDuplicityRules); }
 
   template <typename Enum, std::size_t N>
   std::string choose(Enum* v, const std::pair<const char*, Enum> (&names)[N]) const {
