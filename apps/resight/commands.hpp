@@ -59,6 +59,7 @@ struct SimulateArguments {
   std::filesystem::path out;
   std::string format = "tuw";
   std::uint64_t seed = 1;
+  bool noise_free = false;
   int num_threads = 1;
 };
 

@@ -85,6 +85,7 @@ std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   command->add_option("--out", a.out, "Data set folder to write")->required();
   command->add_option("--format", a.format, "tuw or bop")->check(kFormats)->capture_default_str();
   command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->capture_default_str();
+  command->add_flag("--noise-free", a.noise_free, "Exact depth and colour instead of a sensor's");
   add_threads(command, a.num_threads);
   return [&a] { run_simulate(a); };
 }

@@ -14,6 +14,7 @@ void run_simulate(const SimulateArguments& arguments) {
     throw InputError("simulate: neither a scene script nor --preset was given");
   SceneScript script = value_or_throw(arguments.preset.empty() ? read_scene_script(arguments.script)
                                                                : make_preset_scene(arguments.preset, arguments.seed));
+  script.sensor.noise_free = script.sensor.noise_free || arguments.noise_free;
   Simulation simulation =
       value_or_throw(Simulation::create(std::move(script), arguments.seed, {.num_threads = arguments.num_threads}));
   const bool is_bop = arguments.format == "bop";

@@ -28,11 +28,12 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         scene(scene_options(config)) {}
 
-  SceneUpdate add_view(RgbdFrame frame);
-  [[nodiscard]] std::vector<Hypothesis> generate_view_hypotheses(const PreparedView& view, SceneUpdate& update);
-  [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update) const;
+  SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace);
+  [[nodiscard]] std::vector<Hypothesis> generate_view_hypotheses(const PreparedView& view, SceneUpdate& update,
+                                                                 RecognitionTrace* trace);
+  [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
-  void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update) const;
+  void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) const;
 
   const ModelLibrary& library;
   RecognizerConfig config;
@@ -44,7 +45,7 @@ struct SceneRecognizer::Impl {
   std::uint64_t next_hypothesis_id = 0;
 };
 
-SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame) {
+SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* trace) {
   SceneUpdate update;
   update.view = num_views;
   update.view_name = frame.name;
@@ -55,14 +56,14 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame) {
     view = prepare_view(std::move(frame), config.prepare);
   }
   ++num_views;
-  hypotheses_of_view.push_back(generate_view_hypotheses(view, update));
+  hypotheses_of_view.push_back(generate_view_hypotheses(view, update, trace));
   {
     const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
     update.changes = scene.add_view(std::move(view));
   }
   while (hypotheses_of_view.size() > scene.window().size()) hypotheses_of_view.pop_front();
   update.reconstruction_points = scene.reconstruction().size();
-  verify(merge_and_cluster(update), update);
+  verify(merge_and_cluster(update, trace), update, trace);
 
   const ScopedTimer timer(update.times, "history");
   const auto& window = scene.window();
@@ -73,7 +74,8 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame) {
 }
 
 // Paper Sec. III-A: features of both kinds, matched, grouped into hypotheses of this view alone.
-std::vector<Hypothesis> SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, SceneUpdate& update) {
+std::vector<Hypothesis> SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, SceneUpdate& update,
+                                                                        RecognitionTrace* trace) {
   FeatureSet sift;
   FeatureSet shot;
   {
@@ -95,17 +97,24 @@ std::vector<Hypothesis> SceneRecognizer::Impl::generate_view_hypotheses(const Pr
                                                            next_hypothesis_id, config.generate);
   next_hypothesis_id += hypotheses.size();
   update.counts.generated = static_cast<int>(hypotheses.size());
+  if (trace != nullptr) {
+    trace->sift = std::move(sift);
+    trace->shot = std::move(shot);
+    trace->correspondences = std::move(correspondences);
+  }
   return hypotheses;
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
-std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update) const {
+std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const {
   const ScopedTimer timer(update.times, "cluster");
   std::vector<Hypothesis> merged;
   for (const auto& of_view : hypotheses_of_view) merged.insert(merged.end(), of_view.begin(), of_view.end());
   update.counts.merged = static_cast<int>(merged.size());
+  if (trace != nullptr) trace->merged = merged;
   if (config.cluster_hypotheses) merged = cluster_hypotheses(merged, library, config.cluster).hypotheses;
   update.counts.clustered = static_cast<int>(merged.size());
+  if (trace != nullptr) trace->clustered = merged;
   return merged;
 }
 
@@ -133,14 +142,14 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
   return kept_mask;
 }
 
-void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update) const {
+void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update,
+                                   RecognitionTrace* trace) const {
   const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
   const ScopedTimer timer(update.times, "verification");
   const auto& window = scene.window();
   std::vector<VerificationView> views;
   for (const DynamicScene::View& view : window) views.push_back({&view.cleared});
-  const VerifyResult result =
-      verify_hypotheses(hypotheses, library, scene.reconstruction(), views, present, config.verify);
+  VerifyResult result = verify_hypotheses(hypotheses, library, scene.reconstruction(), views, present, config.verify);
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const HypothesisEvidence& evidence = result.evidence[h];
     if (!evidence.accepted) continue;
@@ -156,6 +165,9 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     update.detections.push_back(std::move(detection));
   }
   update.counts.accepted = static_cast<int>(update.detections.size());
+  if (trace == nullptr) return;
+  trace->verified = std::move(hypotheses);
+  trace->evidence = std::move(result.evidence);
 }
 
 SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig config)
@@ -163,7 +175,9 @@ SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig c
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 
-SceneUpdate SceneRecognizer::add_view(RgbdFrame frame) { return impl_->add_view(std::move(frame)); }
+SceneUpdate SceneRecognizer::add_view(RgbdFrame frame, RecognitionTrace* trace) {
+  return impl_->add_view(std::move(frame), trace);
+}
 std::vector<ObjectEvent> SceneRecognizer::finish() { return impl_->history.finish(); }
 const RecognizerConfig& SceneRecognizer::config() const { return impl_->config; }
 const PointCloud& SceneRecognizer::reconstruction() const { return impl_->scene.reconstruction(); }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "resight/models/object_model.hpp"
+#include "resight/recognition/recognition_trace.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/recognition/scene_update.hpp"
 
@@ -25,8 +26,9 @@ class SceneRecognizer {
   SceneRecognizer(SceneRecognizer&&) noexcept;
 
   /// Recognises the scene as it stands at this view. Views in time order; poses in one world frame. Throws
-  /// std::invalid_argument for a frame that fails check_frame(); the recogniser is then as before.
-  SceneUpdate add_view(RgbdFrame frame);
+  /// std::invalid_argument for a frame that fails check_frame(); the recogniser is then as before. `trace`: filled with
+  /// what the stages handed on, unless null.
+  SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace = nullptr);
   /// Events that were waiting for a further view; call once after the last view.
   std::vector<ObjectEvent> finish();
 

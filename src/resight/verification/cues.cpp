@@ -12,6 +12,7 @@ namespace resight {
 namespace {
 
 constexpr float kMinWeight = 0.05F;
+const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
 // 0.
@@ -36,7 +37,7 @@ class CueComputer {
         scene_(scene),
         options_(options),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
-        use_color_(!model.lab.empty() && !scene.lab.empty()) {
+        use_color_(!model.linear_light.empty() && !scene.linear_light.empty()) {
     const Rigid3f motion(world_from_object);
     points_.reserve(model.points.size());
     normals_.reserve(model.normals.size());
@@ -55,7 +56,7 @@ class CueComputer {
       const LocalScene local(scene_.points, scene_.blocks, visible_points,
                              inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
       find_matches(local);
-      fit_exposure_of_matches(local);
+      adapt_colors(local);
       weigh_matches(local);
       classify_model_points();
       claim_scene_points(local);
@@ -83,12 +84,14 @@ class CueComputer {
                         : 1.0F;
   }
 
-  // From each visible point and its nearest scene point of similar normal.
-  void fit_exposure_of_matches(const LocalScene& local) {
+  // Fits the light from each visible point and its nearest scene point of similar normal, and puts the model's colours
+  // into it.
+  void adapt_colors(const LocalScene& local) {
     if (!use_color_) return;
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
-    std::vector<float> model_l;
-    std::vector<float> scene_l;
+    std::vector<Eigen::Vector3f> model_light;
+    std::vector<Eigen::Vector3f> scene_light;
+    std::vector<Eigen::Vector3f> normals;
     for (std::size_t i = 0; i < matches_.size();) {
       const Match* nearest = nullptr;
       const int v = matches_[i].visible;
@@ -97,19 +100,23 @@ class CueComputer {
             (nearest == nullptr || matches_[i].distance_sq < nearest->distance_sq))
           nearest = &matches_[i];
       if (nearest == nullptr) continue;
-      model_l.push_back(model_.lab[visibility_.visible[v]].l);
-      scene_l.push_back(scene_.lab[local.scene_index(nearest->local)].l);
+      const int point = visibility_.visible[v];
+      model_light.push_back(model_.linear_light[point]);
+      scene_light.push_back(scene_.linear_light[local.scene_index(nearest->local)]);
+      if (!normals_.empty()) normals.push_back(normals_[point]);
     }
-    exposure_ = fit_exposure(model_l, scene_l, static_cast<float>(options_.max_l_shift),
-                             static_cast<float>(options_.max_l_gain));
+    const LightFit light = fit_light(model_light, scene_light, normals, options_.light);
+    lab_.reserve(visibility_.visible.size());
+    for (const int i : visibility_.visible)
+      lab_.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
   }
 
   // -log of the colour similarity.
   float color_exponent(const Match& m, const LocalScene& local) const {
     if (!use_color_) return 0;
-    const LabColor& p = model_.lab[visibility_.visible[m.visible]];
+    const LabColor& p = lab_[m.visible];
     const LabColor& q = scene_.lab[local.scene_index(m.local)];
-    const float dl = exposure_(p.l) - q.l;
+    const float dl = p.l - q.l;
     const float da = p.a - q.a;
     const float db = p.b - q.b;
     return dl * dl * inverse_color_l_ + (da * da + db * db) * inverse_color_ab_;
@@ -268,7 +275,7 @@ class CueComputer {
   std::vector<Eigen::Vector3f> normals_;
   ModelVisibility visibility_;
   std::vector<Match> matches_;  // Those of one visible point stand side by side.
-  ExposureMap exposure_;
+  std::vector<LabColor> lab_;   // Per visible point, under the scene's light.
   float inverse_color_l_ = 0;
   float inverse_color_ab_ = 0;
   std::vector<float> scene_weight_;  // Per local scene point.

@@ -30,30 +30,5 @@ TEST(ToLab, AgreesWithPublishedValues) {
   }
 }
 
-TEST(FitExposure, RecoversGainAndShiftWithinItsLimits) {
-  std::vector<float> model;
-  std::vector<float> scene;
-  for (int i = 0; i < 100; ++i) {
-    model.push_back(0.005F * static_cast<float>(i) - 0.2F);
-    scene.push_back(1.2F * model.back() - 0.15F);
-  }
-  const ExposureMap map = fit_exposure(model, scene, 0.3F, 1.5F);
-  EXPECT_NEAR(map.gain, 1.2, 1e-4);
-  EXPECT_NEAR(map.offset, -0.15, 1e-4);
-  const std::vector<float> black(100, -0.9F);
-  const std::vector<float> white(100, 0.9F);
-  EXPECT_NEAR(fit_exposure(black, white, 0.3F, 1.5F)(-0.9F), -0.6, 1e-5);
-  for (float& l : scene) l *= 10;
-  EXPECT_NEAR(fit_exposure(model, scene, 0.3F, 1.5F).gain, 1.5, 1e-6);
-}
-
-TEST(FitExposure, LeavesFewSamplesAlone) {
-  const std::vector<float> few(9, 0.5F);
-  const std::vector<float> many(100, 0.1F);
-  const ExposureMap map = fit_exposure(few, many, 0.3F, 1.5F);
-  EXPECT_EQ(map.gain, 1);
-  EXPECT_EQ(map.offset, 0);
-}
-
 }  // namespace
 }  // namespace resight

@@ -43,7 +43,10 @@ PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
   PointCloud thinned = voxel_downsample(keep_finite(scene_in_world), options.resolution_m);
   PreparedScene scene;
-  if (options.use_color && thinned.has_colors()) scene.lab = to_lab(thinned.colors);
+  if (options.use_color && thinned.has_colors()) {
+    scene.linear_light = to_linear_light(thinned.colors);
+    scene.lab = to_lab(thinned.colors);
+  }
   scene.points = std::move(thinned.points);
   scene.normals = std::move(thinned.normals);
   scene.segment.assign(scene.points.size(), -1);
@@ -64,7 +67,7 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
 PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
   PointCloud thinned = voxel_downsample(model.surface, options.resolution_m);
   PreparedModel prepared;
-  if (options.use_color && thinned.has_colors()) prepared.lab = to_lab(thinned.colors);
+  if (options.use_color && thinned.has_colors()) prepared.linear_light = to_linear_light(thinned.colors);
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
   prepared.center = centroid(prepared.points);

@@ -15,10 +15,11 @@ namespace resight {
 /// The scene as all hypotheses need it, computed once. World frame.
 struct PreparedScene {
   std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
-  std::vector<LabColor> lab;             ///< Empty or as long as points.
-  std::vector<int> segment;              ///< Smooth segment of each point, -1 = none.
-  std::vector<int> plane;                ///< Dominant plane of each point, -1 = none.
+  std::vector<Eigen::Vector3f> normals;       ///< Empty or as long as points.
+  std::vector<Eigen::Vector3f> linear_light;  ///< Empty or as long as points.
+  std::vector<LabColor> lab;                  ///< Of the same colours.
+  std::vector<int> segment;                   ///< Smooth segment of each point, -1 = none.
+  std::vector<int> plane;                     ///< Dominant plane of each point, -1 = none.
   std::vector<ScenePlane> planes;
   int num_segments = 0;
   BlockGrid blocks;  ///< Of a few centimetres: finds the surroundings of a hypothesis.
@@ -42,7 +43,7 @@ struct Ball {
 struct PreparedModel {
   std::vector<Eigen::Vector3f> points;               ///< Thinned to resolution_m.
   std::vector<Eigen::Vector3f> normals;              ///< Empty or as long as points.
-  std::vector<LabColor> lab;                         ///< Empty or as long as points.
+  std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };

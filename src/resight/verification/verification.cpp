@@ -172,8 +172,9 @@ void VerifyOptions::check() const {
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
   check_positive(name("color_sigma_l"), color_sigma_l);
   check_positive(name("color_sigma_ab"), color_sigma_ab);
-  check_not_negative(name("max_l_shift"), max_l_shift);
-  check_in_range(name("max_l_gain"), max_l_gain, 1, 1e6);
+  check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
+  check_not_negative(name("light.max_log_chroma"), light.max_log_chroma);
+  check_not_negative(name("light.max_log_shading"), light.max_log_shading);
   check_positive(name("min_plane_points"), min_plane_points);
   check_positive(name("plane_distance_m"), plane_distance_m);
   check_in_range(name("plane_angle_rad"), plane_angle_rad, 0, std::numbers::pi / 2);

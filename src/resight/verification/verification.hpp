@@ -8,6 +8,7 @@
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/verification/light_fit.hpp"
 
 namespace resight {
 
@@ -33,10 +34,9 @@ struct VerifyOptions {
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
-  double color_sigma_l = 0.6;   ///< Of (L - 50)/50, after the exposure is adapted.
-  double color_sigma_ab = 0.6;  ///< Of a/128, b/128.
-  double max_l_shift = 0.3;     ///< Exposure: the model's mean L is shifted by at most this (scaled L)...
-  double max_l_gain = 1.5;      ///< ...and its contrast by this factor at most. A black object never turns white.
+  double color_sigma_l = 0.6;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
+  double color_sigma_ab = 0.6;  ///< ...and of a/128, b/128.
+  LightLimits light{};          ///< What the light may do to the colours of the model.
   bool use_planes = true;
   int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
   double plane_distance_m = 0.01;     ///< V4R: 2 cm, which swallows boxes that lie flat.

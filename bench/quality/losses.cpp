@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where objects are lost: per view and missed object the stage, per wrong detection what spoke for it, and their sums.
+//   resight simulate --preset demo --seed 3 --out scene; resight train scene/models --out models.resight
+//   bench_losses scene models.resight [preset] [config.toml] [K] [min_visible_share]
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <map>
+#include <string>
+
+#include "resight/evaluation/loss.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/report/view_record.hpp"
+
+namespace {
+
+using namespace resight;
+
+template <typename T>
+T value_or_exit(Result<T> result) {
+  if (result.ok()) return std::move(*result);
+  fmt::print(stderr, "bench_losses: {}\n", result.error().message);
+  std::exit(2);
+}
+
+void print_evidence(const HypothesisEvidence& e) {
+  fmt::print(
+      "  {} score {:.2f} visible {} explained {:.2f} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane {:.0f} alone "
+      "{:.0f}\n",
+      to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.explained_scene, e.outlier_cost,
+      e.clutter_cost, e.plane_cost, e.cost_alone);
+}
+
+void print_loss(int view, const GroundTruthObject& truth, const Loss& loss) {
+  fmt::print("view {:2} missed {:16} vis {:.2f} {:13} keypoints {} matches {} right {}", view, truth.object,
+             truth.visible_share, to_string(loss.stage), loss.num_keypoints, loss.num_correspondences, loss.num_right);
+  if (loss.best)
+    fmt::print(" best {:.1f} mm {:.1f} deg", 1e3 * loss.best->center_distance_m, 57.2958 * loss.best->rotation_rad);
+  if (loss.evidence)
+    print_evidence(*loss.evidence);
+  else
+    fmt::print("\n");
+}
+
+const HypothesisEvidence& evidence_of(const Detection& detection, const RecognitionTrace& trace) {
+  std::size_t h = 0;
+  while (trace.verified[h].id != detection.hypothesis_id) ++h;
+  return trace.evidence[h];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    fmt::print(stderr,
+               "usage: bench_losses SEQUENCE LIBRARY [preset] [config.toml|-] [K] [min_visible_share] [strict]\n");
+    return 2;
+  }
+  const auto sequence = value_or_exit(open_sequence(argv[1]));
+  const ModelLibrary library = value_or_exit(load_library(argv[2]));
+  RecognizerConfig config = RecognizerConfig::from_preset(argc > 3 ? argv[3] : "default");
+  if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_config(argv[4], config));
+  if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
+  config.set_num_threads(2);
+  FindLossOptions options;
+  if (argc > 7) options.match.max_center_distance_m = 0.005, options.match.max_rotation_rad = 3.0 * 0.0174533;
+  if (argc > 6) options.match.min_visible_share = std::atof(argv[6]);
+
+  SceneRecognizer recognizer(library, config);
+  std::map<LossStage, int> losses;
+  std::vector<PoseDifference> differences;
+  RecognitionScore score;
+  StageTimes times;
+  for (int v = 0; v < sequence->num_views(); ++v) {
+    const RgbdFrame frame = value_or_exit(sequence->read_view(v));
+    const auto truth = value_or_exit(sequence->read_ground_truth(v));
+    RecognitionTrace trace;
+    const SceneUpdate update = recognizer.add_view(frame, &trace);
+    const auto matched = match_detections(truth, to_detected_objects(update, library), library, options.match);
+    score += matched.score;
+    times.add(update.times);
+    for (const DetectionMatch& m : matched.matches) {
+      differences.push_back(m.difference);
+      fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg", v, truth[m.truth].object,
+                 1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad);
+      print_evidence(evidence_of(update.detections[m.detection], trace));
+    }
+    for (const int t : matched.false_negatives) {
+      const Loss loss = find_loss(truth[t], frame.world_from_camera, trace, library, options);
+      ++losses[loss.stage];
+      print_loss(v, truth[t], loss);
+    }
+    for (const int d : matched.false_positives) {
+      const Detection& detection = update.detections[d];
+      fmt::print("view {:2} WRONG  {:16}", v, library.objects[detection.object].name);
+      print_evidence(evidence_of(detection, trace));
+    }
+    for (const ObjectEvent& e : update.events)
+      if (is_change(e.kind)) fmt::print("view {:2} {} {}\n", v, to_string(e.kind), library.objects[e.object].name);
+  }
+  for (const StageTime& t : times.stages())
+    fmt::print("time: {:26} {:.3f} s CPU a view\n", t.stage, t.cpu_s / sequence->num_views());
+  for (const auto& [stage, count] : losses) fmt::print("lost: {:14} {}\n", to_string(stage), count);
+  std::sort(differences.begin(), differences.end(),
+            [](const auto& a, const auto& b) { return a.center_distance_m < b.center_distance_m; });
+  if (!differences.empty())
+    fmt::print("median centre error {:.1f} mm\n", 1e3 * differences[differences.size() / 2].center_distance_m);
+  fmt::print("P {:.3f} R {:.3f} F {:.3f}  TP {} FP {} FN {}\n", score.precision(), score.recall(), score.f_score(),
+             score.true_positives, score.false_positives, score.false_negatives);
+  return 0;
+}

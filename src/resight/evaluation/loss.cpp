@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/loss.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "resight/core/check.hpp"
+#include "resight/geometry/kd_tree.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kNearFactor = 2;  // "At the place": within this many times the allowed distance of the centres.
+
+int count_keypoints(const FeatureSet& features, const KdTree& surface, const Rigid3& object_from_camera,
+                    double max_distance_m) {
+  const Rigid3f motion(object_from_camera);
+  const float max_sq = static_cast<float>(max_distance_m * max_distance_m);
+  int count = 0;
+  for (const Eigen::Vector3f& p : features.points) {
+    const PointNeighbor nearest = surface.nearest(motion * p);
+    count += nearest.index >= 0 && nearest.distance_sq <= max_sq ? 1 : 0;
+  }
+  return count;
+}
+
+int count_right(std::span<const Correspondence> correspondences, const Rigid3& camera_from_object,
+                double max_distance_m) {
+  const Rigid3f motion(camera_from_object);
+  int count = 0;
+  for (const Correspondence& c : correspondences)
+    count += (motion * c.model_point - c.scene_point).norm() <= max_distance_m ? 1 : 0;
+  return count;
+}
+
+// The hypothesis of the object whose pose is best, by centre and rotation as shares of what is allowed.
+struct Nearest {
+  int index = -1;
+  PoseDifference difference;
+  bool is_right = false;
+  bool is_near = false;
+};
+
+Nearest find_nearest(std::span<const Hypothesis> hypotheses, int object, const Rigid3& world_from_object,
+                     const ObjectModel& model, const MatchDetectionsOptions& options) {
+  Nearest nearest;
+  double best = 0;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    if (hypotheses[h].object != object) continue;
+    const PoseDifference d = compare_poses(hypotheses[h].world_from_object, world_from_object, model);
+    const double cost =
+        std::max(d.center_distance_m / options.max_center_distance_m, d.rotation_rad / options.max_rotation_rad);
+    nearest.is_near = nearest.is_near || d.center_distance_m <= kNearFactor * options.max_center_distance_m;
+    if (nearest.index >= 0 && cost >= best) continue;
+    best = cost;
+    nearest.index = static_cast<int>(h);
+    nearest.difference = d;
+    nearest.is_right = is_within(d, options);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+const char* to_string(LossStage stage) {
+  switch (stage) {
+    case LossStage::kNoKeypoints:
+      return "no keypoints";
+    case LossStage::kNoMatches:
+      return "no matches";
+    case LossStage::kNoGroup:
+      return "no group";
+    case LossStage::kWrongPose:
+      return "wrong pose";
+    case LossStage::kClusteredOut:
+      return "clustered out";
+    case LossStage::kCalledAbsent:
+      return "called absent";
+    case LossStage::kRejected:
+      return "rejected";
+  }
+  return "unknown";
+}
+
+Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, const RecognitionTrace& trace,
+               const ModelLibrary& library, const FindLossOptions& options) {
+  const int object = library.find(truth.object);
+  require(object >= 0, "find_loss: object '" + truth.object + "' is not in the library");
+  const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
+  const Rigid3 world_from_object = world_from_camera * truth.camera_from_object;
+  const auto nearest_of = [&](std::span<const Hypothesis> hypotheses) {
+    return find_nearest(hypotheses, object, world_from_object, model, options.match);
+  };
+  Loss loss;
+  const KdTree surface(model.surface.points);
+  for (const FeatureSet* features : {&trace.sift, &trace.shot})
+    loss.num_keypoints +=
+        count_keypoints(*features, surface, truth.camera_from_object.inverse(), options.keypoint_distance_m);
+  if (!trace.correspondences.empty()) {
+    const auto& correspondences = trace.correspondences[static_cast<std::size_t>(object)];
+    loss.num_correspondences = static_cast<int>(correspondences.size());
+    loss.num_right = count_right(correspondences, truth.camera_from_object, options.keypoint_distance_m);
+  }
+
+  const auto lost_at = [&](LossStage stage, const Nearest& nearest) {
+    loss.stage = stage;
+    if (nearest.index >= 0) loss.best = nearest.difference;
+    return loss;
+  };
+  const Nearest verified = nearest_of(trace.verified);
+  if (verified.is_right) {
+    loss.evidence = trace.evidence[static_cast<std::size_t>(verified.index)];
+    return lost_at(LossStage::kRejected, verified);
+  }
+  if (const Nearest clustered = nearest_of(trace.clustered); clustered.is_right)
+    return lost_at(LossStage::kCalledAbsent, clustered);
+  const Nearest merged = nearest_of(trace.merged);
+  if (merged.is_right) return lost_at(LossStage::kClusteredOut, merged);
+  if (merged.is_near) return lost_at(LossStage::kWrongPose, merged);
+  if (loss.num_right >= options.min_group_size) return lost_at(LossStage::kNoGroup, merged);
+  return lost_at(loss.num_keypoints >= options.min_group_size ? LossStage::kNoMatches : LossStage::kNoKeypoints,
+                 merged);
+}
+
+}  // namespace resight

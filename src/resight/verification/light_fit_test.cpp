@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/light_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "resight/core/random.hpp"
+
+namespace resight {
+namespace {
+
+// Printed colours over a ball, and the same under another light.
+struct Pairs {
+  std::vector<Eigen::Vector3f> model, scene, normals;
+};
+
+Pairs make_pairs(const LightFit& light, int count, float wrong_share = 0) {
+  Rng rng(7);
+  const auto draw = [&](double low, double high) { return static_cast<float>(rng.uniform(low, high)); };
+  Pairs pairs;
+  for (int i = 0; i < count; ++i) {
+    pairs.normals.push_back(Eigen::Vector3f(draw(-1, 1), draw(-1, 1), draw(-1, 0.2)).normalized());
+    pairs.model.emplace_back(draw(0.1, 0.5), draw(0.1, 0.5), draw(0.1, 0.5));
+    const bool is_wrong = draw(0, 1) < wrong_share;
+    pairs.scene.push_back(is_wrong ? Eigen::Vector3f(draw(0.05, 0.9), draw(0.05, 0.9), draw(0.05, 0.9))
+                                   : light(pairs.model.back(), pairs.normals.back()));
+  }
+  return pairs;
+}
+
+const LightFit kLamp{{0.35F, 0.25F, 0.15F}, {0.2F, -0.1F, -0.25F}};
+
+double largest_error(const LightFit& fit, const Pairs& pairs) {
+  double worst = 0;
+  for (std::size_t i = 0; i < pairs.model.size(); ++i) {
+    const Eigen::Array3f expected = kLamp(pairs.model[i], pairs.normals[i]).array().log();
+    worst = std::max<double>(worst, (fit(pairs.model[i], pairs.normals[i]).array().log() - expected).abs().maxCoeff());
+  }
+  return worst;
+}
+
+TEST(FitLight, FindsExposureWhiteBalanceAndShading) {
+  const Pairs pairs = make_pairs(kLamp, 300);
+  EXPECT_LT(largest_error(fit_light(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.06);
+}
+
+TEST(FitLight, IsNotLedAstrayByAThirdOfWrongPairs) {
+  const Pairs pairs = make_pairs(kLamp, 1000, 0.33F);
+  EXPECT_LT(largest_error(fit_light(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.2);
+}
+
+TEST(FitLight, StaysWithinWhatLightCanDo) {
+  const std::vector<Eigen::Vector3f> black(100, {0.01F, 0.01F, 0.01F});
+  const std::vector<Eigen::Vector3f> white(100, {0.9F, 0.9F, 0.9F});
+  const LightLimits limits;
+  EXPECT_NEAR(fit_light(black, white, {}, limits).log_gain.mean(), limits.max_log_exposure, 1e-5);
+  const std::vector<Eigen::Vector3f> green(100, {0.1F, 0.5F, 0.1F});
+  const std::vector<Eigen::Vector3f> grey(100, {0.25F, 0.25F, 0.25F});
+  const LightFit fit = fit_light(green, grey, {}, limits);
+  EXPECT_LE((fit.log_gain - fit.log_gain.mean()).abs().maxCoeff(), 2 * limits.max_log_chroma);
+  const Eigen::Vector3f seen = fit(green[0], Eigen::Vector3f::Zero());
+  EXPECT_GT(seen.y(), 1.5F * seen.x());
+}
+
+TEST(FitLight, OneNormalLeavesTheShadingOpen) {
+  Pairs pairs = make_pairs(kLamp, 200);
+  for (std::size_t i = 0; i < pairs.model.size(); ++i) {
+    pairs.normals[i] = Eigen::Vector3f::UnitZ();
+    pairs.scene[i] = kLamp(pairs.model[i], pairs.normals[i]);
+  }
+  const LightFit fit = fit_light(pairs.model, pairs.scene, pairs.normals, {});
+  EXPECT_LT(largest_error(fit, pairs), 0.06);
+  EXPECT_LT(fit.shading.head<2>().norm(), 1e-3);
+}
+
+TEST(FitLight, LeavesFewPairsAlone) {
+  const Pairs pairs = make_pairs(kLamp, 9);
+  const LightFit fit = fit_light(pairs.model, pairs.scene, pairs.normals, {});
+  EXPECT_TRUE((fit.log_gain == 0).all());
+  EXPECT_EQ(fit.shading, Eigen::Vector3f::Zero());
+}
+
+}  // namespace
+}  // namespace resight
