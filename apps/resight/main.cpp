@@ -79,7 +79,9 @@ std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
 std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   CLI::App* command =
       app.add_subcommand("simulate", "Ray-cast a scripted, changing scene into RGB-D views with ground truth");
-  CLI::Option* preset = command->add_option("--preset", a.preset, "Name of a built-in scene");
+  CLI::Option* preset = command->add_option("--preset", a.preset,
+                                            "Built-in scene: demo, tabletop, crowded, twins, plain; or "
+                                            "dynamic-tabletop, the benchmark of 9 sequences");
   CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
   preset->excludes(script);
   command->add_option("--out", a.out, "Data set folder to write")->required();

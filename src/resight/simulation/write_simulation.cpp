@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
+#include "resight/core/random.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/tuw_models.hpp"
+#include "resight/simulation/room.hpp"
 #include "resight/simulation/surface_sampling.hpp"
 
 namespace resight {
@@ -89,10 +92,10 @@ void report(const WriteSimulationOptions& options, const std::string& what) {
   if (options.progress) options.progress(what);
 }
 
-Result<void> write_tuw_models(const Simulation& simulation, const fs::path& directory,
+Result<void> write_tuw_models(const std::vector<ProceduralObject>& library, const fs::path& directory,
                               const WriteSimulationOptions& options) {
   int id = 0;
-  for (const ProceduralObject& object : simulation.library()) {
+  for (const ProceduralObject& object : library) {
     const std::vector<TrainingView> views = render_turntable(object.mesh, options.turntable);
     const PointCloud surface = sample_visible_surface(object.mesh, options.surface_spacing_m);
     if (auto done = write_tuw_model(directory, object.name, views, &surface, object.symmetries, ++id); !done)
@@ -102,12 +105,12 @@ Result<void> write_tuw_models(const Simulation& simulation, const fs::path& dire
   return {};
 }
 
-Result<void> write_bop_meshes(const Simulation& simulation, const fs::path& dataset,
+Result<void> write_bop_meshes(const std::vector<ProceduralObject>& objects, const fs::path& dataset,
                               const WriteSimulationOptions& options) {
   auto writer = BopModelsWriter::create(dataset);
   if (!writer) return writer.error();
   int id = 0;
-  for (const ProceduralObject& object : simulation.library()) {
+  for (const ProceduralObject& object : objects) {
     ModelSource source;
     source.name = object.name;
     source.bop_id = ++id;
@@ -117,6 +120,26 @@ Result<void> write_bop_meshes(const Simulation& simulation, const fs::path& data
     report(options, "model " + object.name);
   }
   return (*writer)->finish();
+}
+
+Result<void> write_models(const std::vector<ProceduralObject>& library, const fs::path& dataset, DatasetFormat format,
+                          const WriteSimulationOptions& options) {
+  return format == DatasetFormat::kTuw ? write_tuw_models(library, dataset / "models", options)
+                                       : write_bop_meshes(library, dataset, options);
+}
+
+// The things of the scripts that are drawn by a program and are in no library.
+std::vector<ProceduralObject> unknown_objects(std::span<const SceneScript> scripts) {
+  std::set<std::string> names;
+  for (const SceneScript& script : scripts)
+    for (const ObjectScript& object : script.objects)
+      if (object.mesh.empty() && (!object.known || make_distractor(object.model).ok())) names.insert(object.model);
+  std::vector<ProceduralObject> objects;
+  for (const std::string& name : names) {
+    auto object = make_distractor(name);
+    objects.push_back(object ? std::move(*object) : std::move(*make_procedural_object(name)));
+  }
+  return objects;
 }
 
 std::string scene_folder(const Simulation& simulation, DatasetFormat format, int bop_scene_id) {
@@ -146,28 +169,67 @@ std::vector<ChangeChain> ChangeChainCollector::chains() const {
   return chains;
 }
 
-Result<void> write_simulation(Simulation& simulation, const fs::path& directory, DatasetFormat format,
-                              const WriteSimulationOptions& options) {
-  Workspace work(fs::absolute(directory / "").parent_path());
-  if (auto opened = work.open(); !opened) return opened;
-  if (options.models) {
-    auto done = format == DatasetFormat::kTuw ? write_tuw_models(simulation, work.path() / "models", options)
-                                              : write_bop_meshes(simulation, work.path(), options);
-    if (!done) return done;
-  }
-  const std::string scene = scene_folder(simulation, format, options.bop_scene_id);
-  auto writer = create_sequence(work.path() / "test" / scene, format);
+namespace {
+
+// test/<scene>/ and test/<scene>.changes.
+Result<void> write_scene(Simulation& simulation, const fs::path& dataset, const std::string& scene,
+                         DatasetFormat format, const WriteSimulationOptions& options) {
+  auto writer = create_sequence(dataset / "test" / scene, format);
   if (!writer) return writer.error();
   ChangeChainCollector chains;
   for (int view = 0; view < simulation.num_views(); ++view) {
     const SimulatedView rendered = simulation.render_view(view);
     chains.add(simulation, view, rendered);
     if (auto done = (*writer)->write_view(rendered.frame, rendered.ground_truth); !done) return done;
-    report(options, "view " + std::to_string(view + 1) + "/" + std::to_string(simulation.num_views()));
+    report(options, scene + " view " + std::to_string(view + 1) + "/" + std::to_string(simulation.num_views()));
   }
   if (auto done = (*writer)->finish(); !done) return done;
-  if (auto done = write_changes(work.path() / "test" / (scene + ".changes"), chains.chains()); !done) return done;
+  return write_changes(dataset / "test" / (scene + ".changes"), chains.chains());
+}
+
+bool have_one_library(const Simulation& a, const std::vector<std::string>& names) {
+  std::vector<std::string> own;
+  for (const ProceduralObject& object : a.library()) own.push_back(object.name);
+  return own == names;
+}
+
+}  // namespace
+
+Result<void> write_simulation(Simulation& simulation, const fs::path& directory, DatasetFormat format,
+                              const WriteSimulationOptions& options) {
+  Workspace work(fs::absolute(directory / "").parent_path());
+  if (auto opened = work.open(); !opened) return opened;
+  if (options.models)
+    if (auto done = write_models(simulation.library(), work.path(), format, options); !done) return done;
+  const std::string scene = scene_folder(simulation, format, options.bop_scene_id);
+  if (auto done = write_scene(simulation, work.path(), scene, format, options); !done) return done;
   if (auto done = write_events(simulation, work.path() / "events.json"); !done) return done;
+  return work.commit();
+}
+
+Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64_t seed, const fs::path& directory,
+                               DatasetFormat format, const SimulationOptions& simulation_options,
+                               const WriteSimulationOptions& options) {
+  require(!scripts.empty(), "write_simulations: there is no scene");
+  Workspace work(fs::absolute(directory / "").parent_path());
+  if (auto opened = work.open(); !opened) return opened;
+  std::vector<std::string> library;
+  for (std::size_t i = 0; i < scripts.size(); ++i) {
+    auto simulation = Simulation::create(scripts[i], Rng::stream(seed, i).next(), simulation_options);
+    if (!simulation) return simulation.error();
+    if (i == 0) {
+      for (const ProceduralObject& object : simulation->library()) library.push_back(object.name);
+      if (options.models)
+        if (auto done = write_models(simulation->library(), work.path(), format, options); !done) return done;
+    }
+    require(have_one_library(*simulation, library),
+            "write_simulations: scene '" + scripts[i].name + "' has other known objects than the first scene");
+    const std::string scene = scene_folder(*simulation, format, static_cast<int>(i) + 1);
+    if (auto done = write_scene(*simulation, work.path(), scene, format, options); !done) return done;
+    if (auto done = write_events(*simulation, work.path() / "test" / (scene + ".events.json")); !done) return done;
+  }
+  if (options.models)
+    if (auto done = write_bop_meshes(unknown_objects(scripts), work.path() / "unknown", {}); !done) return done;
   return work.commit();
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,5 +48,15 @@ struct WriteSimulationOptions {
 /// events.json (all changes with poses, 4x4 row by row, metres, world frame).
 [[nodiscard]] Result<void> write_simulation(Simulation& simulation, const std::filesystem::path& directory,
                                             DatasetFormat format, const WriteSimulationOptions& options = {});
+
+/// The same for several scenes, which must have one library (the same known objects), as one data set: test/000001,
+/// test/000002, .. (BOP) or test/<name of the scene> (TUW), the changes of each in test/<scene>.changes and
+/// test/<scene>.events.json. The meshes of the things that are in no library go to unknown/models/ (BOP, whatever
+/// `format` is), for whoever scores the changes that they take part in. Scene i gets the i-th random stream of `seed`.
+/// `progress` is called after each model and view.
+[[nodiscard]] Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64_t seed,
+                                             const std::filesystem::path& directory, DatasetFormat format,
+                                             const SimulationOptions& simulation,
+                                             const WriteSimulationOptions& options = {});
 
 }  // namespace resight

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/simulation/dynamic_tabletop.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "resight/core/check.hpp"
+#include "resight/core/random.hpp"
+#include "resight/simulation/internal/footprint.hpp"
+#include "resight/simulation/procedural_objects.hpp"
+#include "resight/simulation/room.hpp"
+#include "resight/simulation/view_renderer.hpp"
+
+namespace resight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kAttempts = 400;
+constexpr double kMinMoveM = 0.10;
+constexpr double kNearMoveM = 0.30;
+constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};  // Unknown, and like known ones.
+
+enum class Theme { kDesk, kMeeting, kCorner, kShelf };
+struct SequencePlan {
+  Theme theme;
+  int num_views;
+};
+constexpr std::array<SequencePlan, 9> kPlan{{{Theme::kDesk, 23},
+                                             {Theme::kMeeting, 22},
+                                             {Theme::kCorner, 23},
+                                             {Theme::kDesk, 22},
+                                             {Theme::kShelf, 23},
+                                             {Theme::kMeeting, 23},
+                                             {Theme::kCorner, 22},
+                                             {Theme::kDesk, 23},
+                                             {Theme::kMeeting, 22}}};
+
+double radians(double deg) { return deg * kPi / 180; }
+
+// What a thing covers, upright and laid down, for every model once: drawing a model takes its time.
+class Catalogue {
+ public:
+  Catalogue() {
+    for (const ProceduralObject& object : procedural_objects()) add(object);
+    for (const std::string& name : distractor_names()) add(*make_distractor(name));
+  }
+  [[nodiscard]] const Footprint& footprint(const std::string& model, bool lying) const {
+    return footprints_.at(model)[lying ? 1 : 0];
+  }
+
+ private:
+  void add(const ProceduralObject& object) {
+    footprints_[object.name] = {footprint_of(object.mesh, 0), footprint_of(object.mesh, kPi / 2)};
+  }
+  std::map<std::string, std::array<Footprint, 2>> footprints_;
+};
+
+// A level of a piece of furniture that things stand on.
+struct Surface {
+  std::string support;
+  int level = -1;
+  Vector2d half_area;
+  std::vector<Footprint> obstacles;
+};
+
+// Where a thing stands, in the surface's frame.
+struct Spot {
+  int surface = 0;
+  Footprint covered;
+};
+
+struct Thing {
+  std::string key;
+  std::string model;
+  bool known = true;
+  bool lying = false;
+  std::optional<Spot> spot;       // Absent = not there.
+  std::optional<Spot> last_spot;  // Where it stood before it was taken away.
+};
+
+class SequenceBuilder {
+ public:
+  SequenceBuilder(const Catalogue& catalogue, std::uint64_t seed, int index, const DynamicTabletopOptions& options)
+      : catalogue_(catalogue),
+        rng_(Rng::stream(seed, static_cast<std::uint64_t>(index))),
+        index_(index),
+        options_(options) {}
+
+  SceneScript build() {
+    script_.name = "dynamic_" + std::to_string(index_ + 1);
+    script_.sensor.lateral_noise = options_.depth_noise;
+    script_.sensor.axial_noise = options_.depth_noise;
+    script_.sensor.color_noise = options_.color_noise;
+    furnish();
+    choose_things();
+    for (Thing& thing : things_)
+      if (&thing - things_.data() < num_starting_) thing.spot = find_spot(thing, {});
+    list_objects();
+    add_changes();
+    move_camera();
+    return std::move(script_);
+  }
+
+ private:
+  // ---- furniture ----
+
+  void furnish() {
+    script_.room_size_m = Vector3d(rng_.uniform(4.6, 5.4), rng_.uniform(4.6, 5.4), 2.6);
+    script_.lighting.lamp_in_world_m = Vector3d(rng_.uniform(-1.5, 1.5), rng_.uniform(-1.5, 1.0), 2.5);
+    script_.lighting.ambient = rng_.uniform(0.45, 0.6);
+    switch (kPlan[static_cast<std::size_t>(index_)].theme) {
+      case Theme::kDesk:
+        return furnish_desk();
+      case Theme::kMeeting:
+        return furnish_meeting();
+      case Theme::kCorner:
+        return furnish_corner();
+      case Theme::kShelf:
+        return furnish_shelf();
+    }
+  }
+
+  void add_furniture(const std::string& key, const std::string& kind, const Vector3d& size_m, const std::string& on,
+                     const Vector2d& at_m, double yaw_rad = 0) {
+    Placement p;
+    p.support = on;
+    p.x_m = at_m.x();
+    p.y_m = at_m.y();
+    p.yaw_rad = yaw_rad;
+    script_.furniture.push_back({key, kind, size_m, p});
+  }
+
+  // On the first surface, which then has no room there.
+  void add_obstacle(const std::string& kind, const Vector3d& size_m, const Vector2d& at_m, double yaw_rad) {
+    add_furniture(kind, kind, size_m, surfaces_[0].support, at_m, yaw_rad);
+    surfaces_[0].obstacles.push_back({at_m, 0.5 * size_m.head<2>(), yaw_rad});
+  }
+
+  void add_papers(int count) {
+    for (int i = 0; i < count; ++i) {
+      const Vector2d at(rng_.uniform(-0.5, 0.5), rng_.uniform(-0.25, 0.1));
+      // So thin that things may stand on it.
+      add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, surfaces_[0].support, at,
+                    rng_.uniform(-kPi, kPi));
+    }
+  }
+
+  void furnish_desk() {
+    const Vector3d size(rng_.uniform(1.4, 1.6), 0.85, 0.74);
+    add_furniture("desk", "table", size, "", {0, 0});
+    add_furniture("shelf", "shelf", {1.0, 0.3, 1.7}, "", {rng_.uniform(-1.2, 1.2), 2.0});
+    surfaces_.push_back({"desk", -1, Vector2d(0.5 * size.x() - 0.06, 0.38), {}});
+    add_obstacle("monitor", {0.50, 0.18, 0.38}, {rng_.uniform(-0.35, 0.35), 0.28}, rng_.uniform(-0.25, 0.25));
+    add_obstacle("keyboard", {0.36, 0.13, 0.02}, {rng_.uniform(-0.2, 0.2), -0.28}, rng_.uniform(-0.2, 0.2));
+    add_papers(1);
+    look_at_point_ = {0, -0.02, 0.80};
+    pan_m_ = {0.38, 0};
+    half_arc_rad_ = radians(55);
+  }
+
+  void furnish_meeting() {
+    add_furniture("table", "table", {1.5, 1.0, 0.74}, "", {0, 0});
+    add_furniture("cabinet", "cabinet", {0.8, 0.45, 0.9}, "", {rng_.uniform(-1.2, 1.2), 2.0});
+    surfaces_.push_back({"table", -1, Vector2d(0.69, 0.44), {}});
+    add_papers(3);
+    look_at_point_ = {0, 0, 0.80};
+    pan_m_ = {0.30, 0.10};
+    half_arc_rad_ = radians(80);
+  }
+
+  void furnish_corner() {
+    add_furniture("table", "table", {1.2, 0.8, 0.74}, "", {-0.35, 0});
+    add_furniture("cabinet", "cabinet", {0.8, 0.5, 0.55}, "", {0.72, 0.05});
+    surfaces_.push_back({"table", -1, Vector2d(0.54, 0.35), {}});
+    surfaces_.push_back({"cabinet", -1, Vector2d(0.36, 0.22), {}});
+    add_papers(1);
+    look_at_point_ = {0.1, 0, 0.74};
+    pan_m_ = {0.55, 0};
+    half_arc_rad_ = radians(45);
+  }
+
+  void furnish_shelf() {
+    add_furniture("shelf", "shelf", {1.3, 0.36, 1.5}, "", {0, 0});
+    for (const int level : {1, 2, 3}) surfaces_.push_back({"shelf", level, Vector2d(0.60, 0.165), {}});
+    look_at_point_ = {0, 0, 0.95};
+    pan_m_ = {0.35, 0};
+    half_arc_rad_ = radians(38);
+  }
+
+  // ---- things ----
+
+  void choose_things() {
+    std::vector<std::string> known = dynamic_tabletop_library();
+    rng_.shuffle(known);
+    if (index_ % 2 == 0)  // twins side by side
+      std::ranges::stable_partition(known, [](const std::string& name) { return name.starts_with("soup"); });
+    std::vector<std::string> unknown = distractor_names();
+    unknown.insert(unknown.end(), kLookAlikes.begin(), kLookAlikes.end());
+    rng_.shuffle(unknown);
+    known.insert(known.begin(), {known[0], known[2]});  // these two kinds stand there twice
+    for (int i = 0; i < options_.num_known; ++i) add_thing(known, i, true);
+    for (int i = 0; i < options_.num_unknown; ++i) add_thing(unknown, i, false);
+    num_starting_ = options_.num_known + options_.num_unknown;
+    for (int i = 0; i < options_.num_waiting; ++i) add_thing(known, options_.num_known + i, true);
+  }
+
+  void add_thing(const std::vector<std::string>& models, int i, bool known) {
+    const std::string& model = models[static_cast<std::size_t>(i) % models.size()];
+    const auto copies = std::ranges::count(things_, model, &Thing::model);
+    things_.push_back({copies == 0 ? model : model + "_" + std::to_string(copies + 1), model, known,
+                       rng_.uniform() < options_.lying_share, std::nullopt, std::nullopt});
+  }
+
+  [[nodiscard]] bool is_free(const Thing& thing, const Spot& spot) const {
+    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    const auto collides = [&](const Footprint& other) { return overlaps(spot.covered, other, options_.gap_m); };
+    return lies_within(spot.covered, surface.half_area) && std::ranges::none_of(surface.obstacles, collides) &&
+           std::ranges::none_of(things_, [&](const Thing& other) {
+             return &other != &thing && other.spot && other.spot->surface == spot.surface &&
+                    collides(other.spot->covered);
+           });
+  }
+
+  // Somewhere on a surface; near `wanted` if that is given.
+  Spot draw_spot(const Thing& thing, const std::optional<Spot>& wanted, double max_offset_m) {
+    Spot spot;
+    spot.covered = catalogue_.footprint(thing.model, thing.lying);
+    spot.covered.yaw_rad = rng_.uniform(-kPi, kPi);
+    if (wanted) {
+      const double angle = rng_.uniform(-kPi, kPi);
+      spot.surface = wanted->surface;
+      spot.covered.center = wanted->covered.center +
+                            max_offset_m * std::sqrt(rng_.uniform()) * Vector2d(std::cos(angle), std::sin(angle));
+      return spot;
+    }
+    spot.surface = draw_surface();
+    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    spot.covered.center = {rng_.uniform(-1, 1) * surface.half_area.x(), rng_.uniform(-1, 1) * surface.half_area.y()};
+    return spot;
+  }
+
+  int draw_surface() {
+    double total = 0;
+    for (const Surface& s : surfaces_) total += s.half_area.prod();
+    double left = rng_.uniform() * total;
+    for (std::size_t i = 0; i + 1 < surfaces_.size(); ++i) {
+      left -= surfaces_[i].half_area.prod();
+      if (left < 0) return static_cast<int>(i);
+    }
+    return static_cast<int>(surfaces_.size()) - 1;
+  }
+
+  // A thing that stands there already, to be put next to.
+  std::optional<Spot> draw_neighbor(const Thing& thing, double& max_offset_m) {
+    std::vector<const Thing*> present;
+    for (const Thing& other : things_)
+      if (&other != &thing && other.spot) present.push_back(&other);
+    if (present.empty()) return std::nullopt;
+    const Spot& spot = *present[rng_.below(static_cast<std::uint32_t>(present.size()))]->spot;
+    max_offset_m = spot.covered.radius_m() + catalogue_.footprint(thing.model, thing.lying).radius_m() + 0.02;
+    return spot;
+  }
+
+  struct SpotWish {
+    std::optional<Spot> near;  ///< Within max_offset_m of it.
+    double max_offset_m = 0;
+    std::optional<Spot> away_from;  ///< At least kMinMoveM.
+  };
+
+  std::optional<Spot> find_spot(const Thing& thing, const SpotWish& wish) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      std::optional<Spot> near = wish.near;
+      double max_offset_m = wish.max_offset_m;
+      if (!near && rng_.uniform() < options_.crowding) near = draw_neighbor(thing, max_offset_m);
+      const Spot spot = draw_spot(thing, near, max_offset_m);
+      if (wish.away_from && wish.away_from->surface == spot.surface &&
+          (wish.away_from->covered.center - spot.covered.center).norm() < kMinMoveM)
+        continue;
+      if (is_free(thing, spot)) return spot;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Placement placement_of(const Thing& thing, const Spot& spot) const {
+    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    Placement p;
+    p.support = surface.support;
+    p.level = surface.level;
+    p.yaw_rad = spot.covered.yaw_rad;
+    p.roll_rad = thing.lying ? kPi / 2 : 0;
+    // The footprint's centre is not the origin.
+    const Vector2d own_center = catalogue_.footprint(thing.model, thing.lying).center;
+    const Vector2d origin = spot.covered.center - Eigen::Rotation2Dd(p.yaw_rad) * own_center;
+    p.x_m = origin.x();
+    p.y_m = origin.y();
+    return p;
+  }
+
+  // All known objects are listed, so that every sequence has the same library.
+  void list_objects() {
+    for (const Thing& thing : things_)
+      script_.objects.push_back({thing.key,
+                                 thing.model,
+                                 {},
+                                 thing.known,
+                                 thing.spot ? std::optional(placement_of(thing, *thing.spot)) : std::nullopt});
+    for (const std::string& model : dynamic_tabletop_library())
+      if (std::ranges::none_of(things_, [&](const Thing& thing) { return thing.key == model; }))
+        script_.objects.push_back({model, model, {}, true, std::nullopt});
+  }
+
+  // ---- changes ----
+
+  void add_changes() {
+    const int num_views = kPlan[static_cast<std::size_t>(index_)].num_views;
+    std::vector<int> views;
+    for (int i = 0; i < options_.num_changes; ++i)
+      views.push_back(2 + static_cast<int>(rng_.below(static_cast<std::uint32_t>(num_views - 3))));
+    std::ranges::sort(views);
+    for (const int view : views) {
+      const double kind = rng_.uniform();
+      if (kind < 0.5) {
+        move_thing(view);
+      } else if (kind < 0.78) {
+        remove_thing(view);
+      } else {
+        add_some_thing(view);
+      }
+    }
+  }
+
+  // A thing that is there (or not), and whose last change lies before `view`.
+  Thing* draw_thing(int view, bool present) {
+    const bool known = rng_.uniform() >= options_.unknown_share;
+    std::vector<Thing*> candidates;
+    for (Thing& thing : things_) {
+      const bool changed_now = std::ranges::any_of(
+          script_.changes, [&](const ChangeScript& c) { return c.view == view && c.object == thing.key; });
+      if (thing.spot.has_value() == present && (thing.known == known || !present) && !changed_now)
+        candidates.push_back(&thing);
+    }
+    if (candidates.empty()) return nullptr;
+    return candidates[rng_.below(static_cast<std::uint32_t>(candidates.size()))];
+  }
+
+  void put(int view, ChangeKind kind, Thing& thing, const Spot& spot) {
+    thing.spot = spot;
+    script_.changes.push_back({view, kind, thing.key, placement_of(thing, spot)});
+  }
+
+  void move_thing(int view) {
+    Thing* thing = draw_thing(view, true);
+    if (thing == nullptr) return;
+    const Spot old = *thing->spot;
+    const bool nearby = rng_.uniform() < 0.5;
+    const auto spot = find_spot(*thing, {nearby ? std::optional(old) : std::nullopt, kNearMoveM, old});
+    if (!spot) return;
+    put(view, ChangeKind::kMoved, *thing, *spot);
+    maybe_replace(view, old);
+  }
+
+  void remove_thing(int view) {
+    Thing* thing = draw_thing(view, true);
+    if (thing == nullptr) return;
+    const Spot old = *thing->spot;
+    thing->last_spot = old;
+    thing->spot.reset();
+    script_.changes.push_back({view, ChangeKind::kRemoved, thing->key, {}});
+    maybe_replace(view, old);
+  }
+
+  // Sometimes another thing is put where one has just left.
+  void maybe_replace(int view, const Spot& old) {
+    if (rng_.uniform() >= 0.25) return;
+    Thing* other = draw_thing(view, false);
+    if (other == nullptr) return;
+    if (const auto spot = find_spot(*other, {old, 0.04, {}})) put(view, ChangeKind::kAdded, *other, *spot);
+  }
+
+  void add_some_thing(int view) {
+    Thing* thing = draw_thing(view, false);
+    if (thing == nullptr) return;
+    const bool puts_back = rng_.uniform() < 0.4 && thing->last_spot && is_free(*thing, *thing->last_spot);
+    const auto spot = puts_back ? thing->last_spot : find_spot(*thing, {});
+    if (spot) put(view, ChangeKind::kAdded, *thing, *spot);
+  }
+
+  // ---- camera ----
+
+  // To and fro around the scene, nearer and farther, looking left and right of its middle.
+  void move_camera() {
+    const int num_views = kPlan[static_cast<std::size_t>(index_)].num_views;
+    const double middle_rad = -kPi / 2 + rng_.uniform(-0.15, 0.15);
+    const double phase_distance = rng_.uniform(0, 2 * kPi);
+    const double phase_height = rng_.uniform(0, 2 * kPi);
+    const double phase_pan = rng_.uniform(0, 2 * kPi);
+    const double side = rng_.uniform() < 0.5 ? -1 : 1;
+    for (int view = 0; view < num_views; ++view) {
+      const double t = static_cast<double>(view) / (num_views - 1);
+      const auto wave = [&](double cycles, double phase) { return std::sin(2 * kPi * cycles * t + phase); };
+      const double azimuth = middle_rad + side * half_arc_rad_ * std::cos(2 * kPi * 0.9 * t) + jitter(0.03);
+      const double elevation = radians(32 + 9 * wave(1.3, phase_height)) + jitter(0.02);
+      const double middle_m = 0.5 * (options_.min_distance_m + options_.max_distance_m);
+      const double swing_m = 0.5 * (options_.max_distance_m - options_.min_distance_m);
+      const double distance = middle_m + swing_m * wave(1.1, phase_distance);
+      const double pan = wave(1.7, phase_pan);
+      const Vector3d target =
+          look_at_point_ + Vector3d(pan * pan_m_.x() + jitter(0.02), pan * pan_m_.y() + jitter(0.02), jitter(0.02));
+      const Vector3d eye = target + distance * Vector3d(std::cos(elevation) * std::cos(azimuth),
+                                                        std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      script_.world_from_camera.push_back(look_at(eye, target) *
+                                          Rigid3::from_axis_angle(Vector3d::UnitZ(), jitter(radians(3))));
+    }
+  }
+
+  double jitter(double amplitude) { return rng_.uniform(-amplitude, amplitude); }
+
+  const Catalogue& catalogue_;
+  Rng rng_;
+  int index_;
+  const DynamicTabletopOptions& options_;
+  SceneScript script_;
+  std::vector<Surface> surfaces_;
+  std::vector<Thing> things_;
+  int num_starting_ = 0;
+  Vector3d look_at_point_ = Vector3d::Zero();
+  Vector2d pan_m_ = Vector2d::Zero();
+  double half_arc_rad_ = 0;
+};
+
+}  // namespace
+
+void DynamicTabletopOptions::check() const {
+  check_in_range("DynamicTabletopOptions.num_known", num_known, 1, 100);
+  check_in_range("DynamicTabletopOptions.num_waiting", num_waiting, 0, 100);
+  check_in_range("DynamicTabletopOptions.num_unknown", num_unknown, 0, 100);
+  check_in_range("DynamicTabletopOptions.num_changes", num_changes, 0, 1000);
+  check_in_range("DynamicTabletopOptions.unknown_share", unknown_share, 0, 1);
+  check_in_range("DynamicTabletopOptions.lying_share", lying_share, 0, 1);
+  check_in_range("DynamicTabletopOptions.crowding", crowding, 0, 1);
+  check_not_negative("DynamicTabletopOptions.gap_m", gap_m);
+  check_positive("DynamicTabletopOptions.min_distance_m", min_distance_m);
+  require(max_distance_m >= min_distance_m,
+          "DynamicTabletopOptions.max_distance_m must not be less than min_distance_m");
+  check_not_negative("DynamicTabletopOptions.depth_noise", depth_noise);
+  check_not_negative("DynamicTabletopOptions.color_noise", color_noise);
+}
+
+std::vector<SceneScript> make_dynamic_tabletop(std::uint64_t seed, const DynamicTabletopOptions& options) {
+  options.check();
+  const Catalogue catalogue;
+  std::vector<SceneScript> scripts;
+  for (int i = 0; i < static_cast<int>(kPlan.size()); ++i)
+    scripts.push_back(SequenceBuilder(catalogue, seed, i, options).build());
+  return scripts;
+}
+
+std::vector<std::string> dynamic_tabletop_library() {
+  std::vector<std::string> names = procedural_object_names();
+  std::erase_if(names,
+                [](const std::string& name) { return std::ranges::find(kLookAlikes, name) != kLookAlikes.end(); });
+  return names;
+}
+
+}  // namespace resight
