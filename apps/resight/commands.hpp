@@ -76,12 +76,28 @@ struct DemoArguments {
   int num_threads = 1;
 };
 
+struct EvaluateArguments {
+  std::filesystem::path models;
+  std::filesystem::path dataset;
+  std::filesystem::path out;
+  std::string presets = "mvr,mvr-chd,default";
+  std::string previous_views = "5";
+  std::optional<std::filesystem::path> config;
+  bool without_clustering = false;  ///< Also run without clustering.
+  int shard = 1;
+  int num_shards = 1;
+  bool merge = false;  ///< Compute nothing.
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+};
+
 // Each runs a subcommand to its end. InputError = exit status 2, any other exception = 1.
 void run_train(const TrainArguments& arguments);
 void run_recognize(const RecognizeArguments& arguments);
 void run_changes(const ChangesArguments& arguments);
 void run_simulate(const SimulateArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
+void run_evaluate(const EvaluateArguments& arguments);
 void run_demo(const DemoArguments& arguments);
 
 }  // namespace resight::app

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "commands.hpp"
+#include "evaluation_plan.hpp"
 #include "resight/core/parallel.hpp"
 
 namespace {
@@ -20,6 +21,8 @@ struct Arguments {
   ChangesArguments changes;
   SimulateArguments simulate;
   ConvertArguments convert;
+  EvaluateArguments evaluate;
+  std::string shard;
   DemoArguments demo;
 };
 
@@ -101,6 +104,31 @@ std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
   return [&a] { run_convert(a); };
 }
 
+std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::string& shard) {
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "Score presets on a data set with ground truth: recognition over K, ghosts, changes, losses, times");
+  command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
+  command->add_option("--dataset", a.dataset, "Folder with sequences (in test/ or in itself), or one sequence")
+      ->required();
+  command->add_option("--out", a.out, "Folder for the results; runs that it holds already are not computed again")
+      ->required();
+  command->add_option("--presets", a.presets, "Names, separated by commas")->capture_default_str();
+  command
+      ->add_option("-k,--previous-views", a.previous_views,
+                   "Views before the current one that are used with it: numbers and ranges, e.g. 0-2,5")
+      ->capture_default_str();
+  command->add_option("--config", a.config, "TOML file that overwrites single settings of all presets");
+  command->add_flag("--without-clustering", a.without_clustering, "Also without clustering of hypotheses");
+  command->add_option("--shard", shard, "I/N: only the I-th of N parts of the work; the last to finish merges");
+  command->add_flag("--merge", a.merge, "Compute nothing; fail if a run is missing")->excludes("--shard");
+  command->add_option("--seed", a.seed, "Of all random choices; same seed, same results")->capture_default_str();
+  add_threads(command, a.num_threads);
+  return [&a, &shard] {
+    if (!shard.empty()) parse_shard(shard, a.shard, a.num_shards);
+    run_evaluate(a);
+  };
+}
+
 std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* command =
       app.add_subcommand("demo", "The main job on a built-in scene: simulate, train, recognise, compare, report");
@@ -119,9 +147,13 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
-                                          add_train(app, a.train),     add_recognize(app, a.recognize),
-                                          add_changes(app, a.changes), add_convert(app, a.convert)};
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),
+                                          add_simulate(app, a.simulate),
+                                          add_train(app, a.train),
+                                          add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes),
+                                          add_convert(app, a.convert),
+                                          add_evaluate(app, a.evaluate, a.shard)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);

@@ -21,25 +21,29 @@ DynamicSceneOptions scene_options(const RecognizerConfig& config) {
 }  // namespace
 
 struct SceneRecognizer::Impl {
-  Impl(const ModelLibrary& models, RecognizerConfig settings)
+  Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> shared)
       : library(models),
         config((settings.check(), std::move(settings))),
-        index(models, config.match),
         history(models, config.history),
-        scene(scene_options(config)) {}
+        scene(scene_options(config)),
+        store(std::move(shared)) {
+    if (!store) index.emplace(library, config.match);
+  }
 
   SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace);
-  [[nodiscard]] std::vector<Hypothesis> generate_view_hypotheses(const PreparedView& view, SceneUpdate& update,
-                                                                 RecognitionTrace* trace);
+  [[nodiscard]] std::vector<Hypothesis> view_hypotheses(const PreparedView& view, SceneUpdate& update,
+                                                        RecognitionTrace* trace);
+  [[nodiscard]] ViewHypotheses generate_view_hypotheses(const PreparedView& view, int number);
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) const;
 
   const ModelLibrary& library;
   RecognizerConfig config;
-  ModelFeatureIndex index;
+  std::optional<ModelFeatureIndex> index;  // with a store: made when a view needs it
   ObjectHistory history;
   DynamicScene scene;
+  std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
@@ -56,7 +60,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
     view = prepare_view(std::move(frame), config.prepare);
   }
   ++num_views;
-  hypotheses_of_view.push_back(generate_view_hypotheses(view, update, trace));
+  hypotheses_of_view.push_back(view_hypotheses(view, update, trace));
   {
     const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
     update.changes = scene.add_view(std::move(view));
@@ -73,36 +77,47 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   return update;
 }
 
-// Paper Sec. III-A: features of both kinds, matched, grouped into hypotheses of this view alone.
-std::vector<Hypothesis> SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, SceneUpdate& update,
-                                                                        RecognitionTrace* trace) {
-  FeatureSet sift;
-  FeatureSet shot;
-  {
-    const ScopedTimer timer(update.times, "sift");
-    sift = extract_sift(view, config.sift);
+// Those of the store, or new ones.
+std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedView& view, SceneUpdate& update,
+                                                               RecognitionTrace* trace) {
+  ViewHypotheses made;
+  const ViewHypotheses* found = store ? store->find(update.view) : nullptr;
+  if (found == nullptr) {
+    made = generate_view_hypotheses(view, update.view);
+    found = store ? &store->add(update.view, std::move(made)) : &made;
   }
-  {
-    const ScopedTimer timer(update.times, "shot");
-    shot = extract_shot(view, config.shot);
-  }
-  std::vector<std::vector<Correspondence>> correspondences;
-  {
-    const ScopedTimer timer(update.times, "match");
-    correspondences = index.match(sift, shot);
-  }
-  for (const auto& c : correspondences) update.counts.correspondences += static_cast<int>(c.size());
-  const ScopedTimer timer(update.times, "hypotheses");
-  std::vector<Hypothesis> hypotheses = generate_hypotheses(correspondences, view.frame.world_from_camera, update.view,
-                                                           next_hypothesis_id, config.generate);
-  next_hypothesis_id += hypotheses.size();
-  update.counts.generated = static_cast<int>(hypotheses.size());
+  update.times.add(found->times);
+  for (const auto& c : found->correspondences) update.counts.correspondences += static_cast<int>(c.size());
+  update.counts.generated = static_cast<int>(found->hypotheses.size());
+  next_hypothesis_id += found->hypotheses.size();
   if (trace != nullptr) {
-    trace->sift = std::move(sift);
-    trace->shot = std::move(shot);
-    trace->correspondences = std::move(correspondences);
+    trace->sift = found->sift;
+    trace->shot = found->shot;
+    trace->correspondences = found->correspondences;
   }
-  return hypotheses;
+  return found->hypotheses;
+}
+
+// Paper Sec. III-A: features of both kinds, matched, grouped into hypotheses of this view alone.
+ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, int number) {
+  ViewHypotheses made;
+  {
+    const ScopedTimer timer(made.times, "sift");
+    made.sift = extract_sift(view, config.sift);
+  }
+  {
+    const ScopedTimer timer(made.times, "shot");
+    made.shot = extract_shot(view, config.shot);
+  }
+  if (!index) index.emplace(library, config.match);
+  {
+    const ScopedTimer timer(made.times, "match");
+    made.correspondences = index->match(made.sift, made.shot);
+  }
+  const ScopedTimer timer(made.times, "hypotheses");
+  made.hypotheses = generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, next_hypothesis_id,
+                                        config.generate);
+  return made;
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
@@ -170,8 +185,9 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
   trace->evidence = std::move(result.evidence);
 }
 
-SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig config)
-    : impl_(std::make_unique<Impl>(library, std::move(config))) {}
+SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
+                                 std::shared_ptr<ViewHypothesisStore> store)
+    : impl_(std::make_unique<Impl>(library, std::move(config), std::move(store))) {}
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 

@@ -8,6 +8,7 @@
 #include "resight/recognition/recognition_trace.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/recognition/scene_update.hpp"
+#include "resight/recognition/view_hypotheses.hpp"
 
 namespace resight {
 
@@ -20,8 +21,10 @@ namespace resight {
 /// itself.
 class SceneRecognizer {
  public:
-  /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check().
-  SceneRecognizer(const ModelLibrary& library, RecognizerConfig config);
+  /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check(). `store`:
+  /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own.
+  SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
+                  std::shared_ptr<ViewHypothesisStore> store = nullptr);
   ~SceneRecognizer();
   SceneRecognizer(SceneRecognizer&&) noexcept;
 

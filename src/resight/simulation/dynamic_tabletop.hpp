@@ -24,8 +24,8 @@ struct DynamicTabletopOptions {
   double lying_share = 0.25;    ///< Of the things: laid on a side.
   double crowding = 0.6;        ///< Share of the things that are put close to another one.
   double gap_m = 0.004;         ///< Between neighbours, at least.
-  double min_distance_m = 1.1;  ///< Of the camera from what it looks at.
-  double max_distance_m = 1.7;
+  double min_distance_m = 0.9;  ///< Of the camera from what it looks at.
+  double max_distance_m = 1.45;
   double depth_noise = 1.0;  ///< Factor on Nguyen's lateral and axial sigma.
   double color_noise = 3.0;  ///< Sigma of each pixel's channels, of 255.
   void check() const;        ///< Throws std::invalid_argument: field, value, rule.

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "commands.hpp"
+#include "evaluation_plan.hpp"
+#include "progress.hpp"
+#include "resight/evaluation/evaluate_sequence.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/models/training.hpp"
+#include "resight/report/evaluation_report.hpp"
+#include "resight/report/internal/files.hpp"
+
+namespace resight::app {
+namespace {
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// The stored run of a unit, unless there is none or it is of other settings, models or version.
+std::optional<EvaluatedRun> stored_run(const std::filesystem::path& file, const std::string& fingerprint) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  auto run = parse_run(read_text(file), file.string());
+  if (!run.ok() || run->fingerprint != fingerprint) return std::nullopt;
+  return std::move(run).value();
+}
+
+class Evaluation {
+ public:
+  explicit Evaluation(const EvaluateArguments& arguments)
+      : arguments_(arguments),
+        plan_(make_evaluation_plan(arguments)),
+        library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))) {}
+
+  // Computes what is missing of this shard; a finished run is never computed again.
+  void compute() {
+    std::vector<const EvaluationUnit*> mine;
+    for (const EvaluationUnit& unit : plan_.units)
+      if (unit.shard == arguments_.shard && !stored_run(file_of(unit), unit.fingerprint)) mine.push_back(&unit);
+    if (mine.empty()) return;
+    std::size_t num_views = 0;
+    for (const EvaluationUnit* unit : mine)
+      num_views += static_cast<std::size_t>(value_or_throw(open_sequence(unit->sequence.folder))->num_views());
+    Progress progress("evaluate", static_cast<int>(num_views));
+    int done = 0;
+    for (std::size_t i = 0; i < mine.size();) {
+      // Runs over the same views that need the same hypotheses come one after the other.
+      const std::size_t first = i;
+      while (i < mine.size() && mine[i]->group == mine[first]->group) ++i;
+      compute_group(std::span(mine).subspan(first, i - first), progress, done);
+    }
+  }
+
+  // Writes the results if all runs are there, else names what is missing.
+  void conclude() const {
+    std::vector<EvaluatedRun> runs;
+    std::vector<const EvaluationUnit*> missing;
+    for (const EvaluationUnit& unit : plan_.units) {
+      auto run = stored_run(file_of(unit), unit.fingerprint);
+      if (run) runs.push_back(std::move(*run));
+      if (!run) missing.push_back(&unit);
+    }
+    if (!missing.empty()) return report_missing(missing);
+    value_or_throw(write_evaluation(arguments_.out, {plan_.dataset_name, RESIGHT_VERSION}, runs));
+    print_table(runs);
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path file_of(const EvaluationUnit& unit) const {
+    return arguments_.out / "runs" / (unit.name + ".json");
+  }
+
+  void compute_group(std::span<const EvaluationUnit* const> units, Progress& progress, int& done) {
+    const EvaluationSequence& where = units.front()->sequence;
+    const auto sequence = value_or_throw(open_sequence(where.folder));
+    if (!sequence->has_ground_truth())
+      throw InputError(fmt::format("{}: has no ground truth to evaluate against", where.folder.string()));
+    const SequenceTruth truth =
+        value_or_throw(read_sequence_truth(*sequence, library_, where.events_file, where.unknown_models));
+    EvaluateSequenceOptions options;
+    options.hypotheses = std::make_shared<ViewHypothesisStore>();
+    for (const EvaluationUnit* unit : units) {
+      options.progress = [&](int, const EvaluatedView& view) {
+        progress.report(++done, fmt::format("{} {}: {} right, {} wrong, {} missed, {:.2f} s", unit->name, view.name,
+                                            view.score.true_positives, view.score.false_positives,
+                                            view.score.false_negatives, view.times.total_wall_s()));
+      };
+      EvaluatedRun run = value_or_throw(evaluate_sequence(*sequence, truth, library_, unit->config, options));
+      run.sequence = where.name;
+      run.fingerprint = unit->fingerprint;
+      run.num_threads = arguments_.num_threads;
+      value_or_throw(report::write_whole_file(file_of(*unit), format_run(run)));
+    }
+  }
+
+  void report_missing(const std::vector<const EvaluationUnit*>& missing) const {
+    std::vector<int> shards;
+    for (const EvaluationUnit* unit : missing) shards.push_back(unit->shard);
+    std::ranges::sort(shards);
+    shards.erase(std::unique(shards.begin(), shards.end()), shards.end());
+    std::string again;
+    for (const int shard : shards) again += fmt::format(" {}/{}", shard, arguments_.num_shards);
+    const std::string what = fmt::format("{} of {} runs are missing (the first: {}); run with --shard{}",
+                                         missing.size(), plan_.units.size(), missing.front()->name, again);
+    if (arguments_.merge) throw InputError(fmt::format("{}: {}", arguments_.out.string(), what));
+    fmt::print("{}\n", what);
+  }
+
+  void print_table(const std::vector<EvaluatedRun>& runs) const {
+    fmt::print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
+               "strict F", "ghosts", "/place", "s a view");
+    for (const ConfigurationSummary& c : summarize_runs(runs))
+      fmt::print("{:<10} {:>2} {:>9.3f} {:>7.3f} {:>7.3f} {:>9.3f} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset,
+                 c.num_previous_views, c.score.precision(), c.score.recall(), c.score.f_score(),
+                 c.strict_score.f_score(), c.num_ghosts, c.ghosts_per_change(), c.times.total_wall_s() / c.num_views,
+                 c.is_clustered ? "" : "  without clustering");
+    fmt::print("\ntables: {}\n", (arguments_.out / "tables.md").string());
+  }
+
+  const EvaluateArguments& arguments_;
+  EvaluationPlan plan_;
+  ModelLibrary library_;
+};
+
+}  // namespace
+
+void run_evaluate(const EvaluateArguments& arguments) {
+  Evaluation evaluation(arguments);
+  if (!arguments.merge) evaluation.compute();
+  evaluation.conclude();
+}
+
+}  // namespace resight::app

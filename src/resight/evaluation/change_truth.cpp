@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/change_truth.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "resight/io/model_source.hpp"
+#include "resight/models/surface.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kUnknownSamplesPerSqM = 2.5e5;  // 2 mm apart
+
+std::optional<ObjectEventKind> kind_from(const std::string& text) {
+  for (const ObjectEventKind kind : {ObjectEventKind::kAdded, ObjectEventKind::kMoved, ObjectEventKind::kRemoved})
+    if (to_string(kind) == text) return kind;
+  return std::nullopt;
+}
+
+// 16 numbers row by row, or null.
+std::optional<Rigid3> pose_from(const json& value) {
+  if (value.is_null()) return std::nullopt;
+  if (!value.is_array() || value.size() != 16) throw std::runtime_error("a pose must be 16 numbers or null");
+  Rigid3 pose;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) pose.rotation(r, c) = value.at(static_cast<std::size_t>(4 * r + c)).get<double>();
+    pose.translation[r] = value.at(static_cast<std::size_t>(4 * r + 3)).get<double>();
+  }
+  if (!pose.is_rigid()) throw std::runtime_error("a pose is not a rigid motion");
+  return pose;
+}
+
+TrueChange change_from(const json& value) {
+  TrueChange change;
+  const auto kind = kind_from(value.at("kind").get<std::string>());
+  if (!kind) throw std::runtime_error("kind must be added, moved or removed");
+  change.kind = *kind;
+  change.view = value.at("view").get<int>();
+  change.object = value.at("object").get<std::string>();
+  change.known = value.at("known").get<bool>();
+  change.world_from_object_before = pose_from(value.at("world_from_object_before"));
+  change.world_from_object_after = pose_from(value.at("world_from_object_after"));
+  if (change.world_from_object_before.has_value() != (*kind != ObjectEventKind::kAdded) ||
+      change.world_from_object_after.has_value() != (*kind != ObjectEventKind::kRemoved))
+    throw std::runtime_error("the poses do not fit the kind");
+  return change;
+}
+
+Result<std::map<std::string, PointCloud>> read_unknown_surfaces(const fs::path& folder) {
+  std::map<std::string, PointCloud> surfaces;
+  if (!fs::exists(folder)) return surfaces;
+  const auto locations = find_models({folder});
+  if (!locations) return locations.error();
+  for (const ModelLocation& location : *locations) {
+    const auto source = read_model(location);
+    if (!source) return source.error();
+    if (source->mesh) surfaces[source->name] = sample_surface(*source->mesh, kUnknownSamplesPerSqM);
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
+  try {
+    std::ifstream stream(file);
+    if (!stream) return Error{file.string() + ": cannot be read"};
+    std::vector<TrueChange> changes;
+    const json document = json::parse(stream);
+    for (const json& event : document.at("events")) changes.push_back(change_from(event));
+    return changes;
+  } catch (const std::exception& error) {
+    return Error{file.string() + ": is no list of events as 'resight simulate' writes it: " + error.what()};
+  }
+}
+
+Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
+                                          const fs::path& events_file, const fs::path& unknown_models) {
+  SequenceTruth truth;
+  if (sequence.has_ground_truth()) {
+    for (int v = 0; v < sequence.num_views(); ++v) {
+      const auto frame = sequence.read_view(v);
+      if (!frame) return frame.error();
+      auto objects = sequence.read_ground_truth(v);
+      if (!objects) return objects.error();
+      truth.views.push_back({frame->world_from_camera, std::move(*objects)});
+    }
+    truth.former_places = find_former_places(truth.views, library);
+  }
+  if (!fs::exists(events_file)) return truth;
+  auto changes = read_true_changes(events_file);
+  if (!changes) return changes.error();
+  truth.changes = std::move(*changes);
+  auto surfaces = read_unknown_surfaces(unknown_models);
+  if (!surfaces) return surfaces.error();
+  truth.unknown_surfaces = std::move(*surfaces);
+  return truth;
+}
+
+}  // namespace resight

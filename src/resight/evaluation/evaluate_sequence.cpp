@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/evaluate_sequence.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "resight/core/check.hpp"
+#include "resight/evaluation/loss.hpp"
+#include "resight/evaluation/score_view.hpp"
+
+namespace resight {
+namespace {
+
+std::vector<DetectedObject> detected_objects(const SceneUpdate& update, const ModelLibrary& library) {
+  const Rigid3 camera_from_world = update.world_from_camera.inverse();
+  std::vector<DetectedObject> objects;
+  for (const Detection& d : update.detections)
+    objects.push_back(
+        {library.objects[static_cast<std::size_t>(d.object)].name, camera_from_world * d.world_from_object, d.score});
+  return objects;
+}
+
+class SequenceEvaluator {
+ public:
+  SequenceEvaluator(const SequenceTruth& truth, const ModelLibrary& library, const RecognizerConfig& config,
+                    const EvaluateSequenceOptions& options)
+      : truth_(truth),
+        library_(library),
+        options_(options),
+        recognizer_(library, config, options.hypotheses),
+        has_changes_(config.detect_changes && truth.changes.has_value()) {
+    run_.preset = config.preset;
+    run_.num_previous_views = config.num_previous_views;
+    run_.is_clustered = config.cluster_hypotheses;
+    run_.num_former_places = static_cast<int>(truth.former_places.size());
+    run_.has_changes = has_changes_;
+    if (!has_changes_) return;
+    points_.emplace(library, truth, config.num_previous_views);
+    sights_.emplace(library, truth, options.match);
+  }
+
+  void add_view(const RgbdFrame& frame) {
+    const int number = static_cast<int>(run_.views.size());
+    RecognitionTrace trace;
+    const SceneUpdate update = recognizer_.add_view(frame, options_.find_losses ? &trace : nullptr);
+    const TruthView& truth = truth_.views[static_cast<std::size_t>(number)];
+    EvaluatedView view = score_view(number, truth, detected_objects(update, library_), truth_.former_places,
+                                    frame.camera, library_, options_.match);
+    view.name = frame.name;
+    view.counts = update.counts;
+    view.times = update.times;
+    if (options_.find_losses) find_losses(truth, trace, view);
+    if (points_) view.points = points_->add_view(frame, update.changes.removed_in_world, update.changes.novel_in_world);
+    if (sights_) sights_->add_view(frame);
+    keep_changes(update.events);
+    run_.views.push_back(std::move(view));
+    if (options_.progress) options_.progress(number, run_.views.back());
+  }
+
+  EvaluatedRun finish() {
+    keep_changes(recognizer_.finish());
+    if (sights_) run_.events = score_events(*truth_.changes, sights_->sights(), changes_, library_, options_.match);
+    return std::move(run_);
+  }
+
+ private:
+  void find_losses(const TruthView& truth, const RecognitionTrace& trace, EvaluatedView& view) const {
+    std::size_t entry = 0;  // view.truth leaves out what is not in the library
+    FindLossOptions loss_options;
+    loss_options.match = options_.match;
+    for (const GroundTruthObject& object : truth.objects) {
+      if (library_.find(object.object) < 0) continue;
+      EvaluatedTruth& t = view.truth[entry++];
+      if (t.counts && !t.found)
+        t.lost_at = to_string(find_loss(object, truth.world_from_camera, trace, library_, loss_options).stage);
+    }
+  }
+
+  void keep_changes(const std::vector<ObjectEvent>& events) {
+    for (const ObjectEvent& e : events)
+      if (is_change(e.kind))
+        changes_.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
+                            e.world_from_object_before, e.world_from_object_after});
+  }
+
+  const SequenceTruth& truth_;
+  const ModelLibrary& library_;
+  const EvaluateSequenceOptions& options_;
+  SceneRecognizer recognizer_;
+  bool has_changes_;
+  std::optional<ChangePointScorer> points_;
+  std::optional<ChangeSightFinder> sights_;
+  std::vector<ReportedChange> changes_;
+  EvaluatedRun run_;
+};
+
+}  // namespace
+
+Result<EvaluatedRun> evaluate_sequence(const Sequence& sequence, const SequenceTruth& truth,
+                                       const ModelLibrary& library, const RecognizerConfig& config,
+                                       const EvaluateSequenceOptions& options) {
+  require(static_cast<int>(truth.views.size()) == sequence.num_views(),
+          "evaluate_sequence: the truth must have as many views as the sequence");
+  SequenceEvaluator evaluator(truth, library, config, options);
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const auto frame = sequence.read_view(v);
+    if (!frame) return frame.error();
+    evaluator.add_view(*frame);
+  }
+  return evaluator.finish();
+}
+
+}  // namespace resight

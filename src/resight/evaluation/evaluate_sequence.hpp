@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "resight/core/result.hpp"
+#include "resight/evaluation/change_truth.hpp"
+#include "resight/evaluation/evaluated_run.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
+
+namespace resight {
+
+struct EvaluateSequenceOptions {
+  MatchDetectionsOptions match;
+  bool find_losses = true;  ///< Look for the stage at which each missed object was lost.
+  /// Hypotheses that other runs over the same views have made, or this one makes for them; null = made here.
+  std::shared_ptr<ViewHypothesisStore> hypotheses;
+  /// Called after each view, with its number.
+  std::function<void(int, const EvaluatedView&)> progress;
+};
+
+/// Recognises every view of a sequence in order and scores each against its own ground truth. Everything but
+/// `sequence`, `fingerprint` and `num_threads` of the run is filled in. The sequence must have ground truth
+/// (`truth.views`).
+[[nodiscard]] Result<EvaluatedRun> evaluate_sequence(const Sequence& sequence, const SequenceTruth& truth,
+                                                     const ModelLibrary& library, const RecognizerConfig& config,
+                                                     const EvaluateSequenceOptions& options = {});
+
+}  // namespace resight

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/evaluated_run.hpp"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace resight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::pair<DetectionVerdict, std::string_view>, 4> kVerdicts{
+    {{DetectionVerdict::kCorrect, "correct"},
+     {DetectionVerdict::kFalsePositive, "false positive"},
+     {DetectionVerdict::kGhost, "ghost"},
+     {DetectionVerdict::kIgnored, "ignored"}}};
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double number_from(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+Json score_json(const RecognitionScore& s) { return {s.true_positives, s.false_positives, s.false_negatives}; }
+RecognitionScore score_from(const Json& j) { return {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>()}; }
+
+Json points_json(const ChangePointScore& s) { return {s.reported, s.right, s.expected, s.found}; }
+ChangePointScore points_from(const Json& j) {
+  return {j.at(0).get<long>(), j.at(1).get<long>(), j.at(2).get<long>(), j.at(3).get<long>()};
+}
+
+Json pose_json(const Rigid3& pose) {
+  Json rows = Json::array();
+  const Eigen::Matrix4d m = pose.matrix();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) rows.push_back(m(r, c));
+  return rows;
+}
+Rigid3 pose_from(const Json& j) {
+  Rigid3 pose;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) pose.rotation(r, c) = j.at(static_cast<std::size_t>(4 * r + c)).get<double>();
+    pose.translation[r] = j.at(static_cast<std::size_t>(4 * r + 3)).get<double>();
+  }
+  return pose;
+}
+
+Json truth_json(const EvaluatedTruth& t) {
+  return {{"object", t.object},
+          {"instance", t.instance},
+          {"visible_share", number(t.visible_share)},
+          {"distance_m", t.distance_m},
+          {"counts", t.counts},
+          {"found", t.found},
+          {"found_strictly", t.found_strictly},
+          {"center_error_m", number(t.center_error_m)},
+          {"rotation_error_rad", number(t.rotation_error_rad)},
+          {"lost_at", t.lost_at}};
+}
+EvaluatedTruth truth_from(const Json& j) {
+  EvaluatedTruth t;
+  t.object = j.at("object").get<std::string>();
+  t.instance = j.at("instance").get<int>();
+  t.visible_share = number_from(j.at("visible_share"));
+  t.distance_m = j.at("distance_m").get<double>();
+  t.counts = j.at("counts").get<bool>();
+  t.found = j.at("found").get<bool>();
+  t.found_strictly = j.at("found_strictly").get<bool>();
+  t.center_error_m = number_from(j.at("center_error_m"));
+  t.rotation_error_rad = number_from(j.at("rotation_error_rad"));
+  t.lost_at = j.at("lost_at").get<std::string>();
+  return t;
+}
+
+DetectionVerdict verdict_from(const std::string& text) {
+  for (const auto& [verdict, name] : kVerdicts)
+    if (name == text) return verdict;
+  throw std::runtime_error("unknown verdict '" + text + "'");
+}
+
+Json counts_json(const HypothesisCounts& c) {
+  return {c.correspondences, c.generated, c.merged, c.clustered, c.accepted};
+}
+HypothesisCounts counts_from(const Json& j) {
+  return {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>(), j.at(3).get<int>(), j.at(4).get<int>()};
+}
+
+Json view_json(const EvaluatedView& view) {
+  Json truth = Json::array();
+  for (const EvaluatedTruth& t : view.truth) truth.push_back(truth_json(t));
+  Json detections = Json::array();
+  for (const EvaluatedDetection& d : view.detections)
+    detections.push_back({{"object", d.object},
+                          {"camera_from_object", pose_json(d.camera_from_object)},
+                          {"score", d.score},
+                          {"verdict", to_string(d.verdict)}});
+  Json times = Json::array();
+  for (const StageTime& t : view.times.stages()) times.push_back({t.stage, t.wall_s, t.cpu_s});
+  return {{"name", view.name},
+          {"truth", truth},
+          {"detections", detections},
+          {"score", score_json(view.score)},
+          {"strict_score", score_json(view.strict_score)},
+          {"counts", counts_json(view.counts)},
+          {"removed_points", points_json(view.points.removed)},
+          {"novel_points", points_json(view.points.novel)},
+          {"times", times}};
+}
+
+EvaluatedView view_from(const Json& j) {
+  EvaluatedView view;
+  view.name = j.at("name").get<std::string>();
+  for (const Json& t : j.at("truth")) view.truth.push_back(truth_from(t));
+  for (const Json& d : j.at("detections"))
+    view.detections.push_back({d.at("object").get<std::string>(), pose_from(d.at("camera_from_object")),
+                               d.at("score").get<double>(), verdict_from(d.at("verdict").get<std::string>())});
+  view.score = score_from(j.at("score"));
+  view.strict_score = score_from(j.at("strict_score"));
+  view.counts = counts_from(j.at("counts"));
+  view.points = {points_from(j.at("removed_points")), points_from(j.at("novel_points"))};
+  for (const Json& t : j.at("times"))
+    view.times.add(t.at(0).get<std::string>(), t.at(1).get<double>(), t.at(2).get<double>());
+  return view;
+}
+
+}  // namespace
+
+std::string_view to_string(DetectionVerdict verdict) {
+  for (const auto& [known, name] : kVerdicts)
+    if (known == verdict) return name;
+  return "";
+}
+
+int EvaluatedRun::num_ghosts() const {
+  int count = 0;
+  for (const EvaluatedView& view : views)
+    for (const EvaluatedDetection& d : view.detections) count += d.verdict == DetectionVerdict::kGhost ? 1 : 0;
+  return count;
+}
+
+std::string format_run(const EvaluatedRun& run) {
+  Json views = Json::array();
+  for (const EvaluatedView& view : run.views) views.push_back(view_json(view));
+  return Json{{"sequence", run.sequence},
+              {"preset", run.preset},
+              {"num_previous_views", run.num_previous_views},
+              {"is_clustered", run.is_clustered},
+              {"fingerprint", run.fingerprint},
+              {"num_threads", run.num_threads},
+              {"num_former_places", run.num_former_places},
+              {"has_changes", run.has_changes},
+              {"events", score_json(run.events.events)},
+              {"departures", score_json(run.events.departures)},
+              {"arrivals", score_json(run.events.arrivals)},
+              {"delays_views", run.events.delays},
+              {"views", views}}
+             .dump() +
+         "\n";
+}
+
+Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {
+  try {
+    const Json j = Json::parse(text);
+    EvaluatedRun run;
+    run.sequence = j.at("sequence").get<std::string>();
+    run.preset = j.at("preset").get<std::string>();
+    run.num_previous_views = j.at("num_previous_views").get<int>();
+    run.is_clustered = j.at("is_clustered").get<bool>();
+    run.fingerprint = j.at("fingerprint").get<std::string>();
+    run.num_threads = j.at("num_threads").get<int>();
+    run.num_former_places = j.at("num_former_places").get<int>();
+    run.has_changes = j.at("has_changes").get<bool>();
+    run.events = {score_from(j.at("events")), score_from(j.at("departures")), score_from(j.at("arrivals")),
+                  j.at("delays_views").get<std::vector<int>>()};
+    for (const Json& view : j.at("views")) run.views.push_back(view_from(view));
+    return run;
+  } catch (const std::exception& error) {
+    return Error{name + ": is no result of 'resight evaluate': " + error.what()};
+  }
+}
+
+}  // namespace resight

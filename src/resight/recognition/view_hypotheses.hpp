@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "resight/core/timing.hpp"
+#include "resight/features/feature_set.hpp"
+#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/recognition/recognizer_config.hpp"
+
+namespace resight {
+
+/// What recognition takes from one view alone, before it looks at other views.
+struct ViewHypotheses {
+  std::vector<Hypothesis> hypotheses;                        ///< World frame; ids in the order of the sequence.
+  FeatureSet sift;                                           ///< Camera frame.
+  FeatureSet shot;                                           ///< Camera frame.
+  std::vector<std::vector<Correspondence>> correspondences;  ///< Per object.
+  StageTimes times;                                          ///< What it took to make them.
+};
+
+/// Keeps the hypotheses of each view for several recognisers that are shown the same sequence with the same library and
+/// the same generation_settings(): they do not depend on K, nor on what comes after. The first recogniser makes them,
+/// the others take them, times included. Not thread-safe.
+class ViewHypothesisStore {
+ public:
+  /// Null if there is none yet.
+  [[nodiscard]] const ViewHypotheses* find(int view) const {
+    const auto entry = of_view_.find(view);
+    return entry == of_view_.end() ? nullptr : &entry->second;
+  }
+  const ViewHypotheses& add(int view, ViewHypotheses hypotheses) {
+    return of_view_.insert_or_assign(view, std::move(hypotheses)).first->second;
+  }
+
+ private:
+  std::map<int, ViewHypotheses> of_view_;
+};
+
+/// All settings that the hypotheses of a single view depend on, as one text: equal texts, equal hypotheses.
+[[nodiscard]] std::string generation_settings(const RecognizerConfig& config);
+
+}  // namespace resight

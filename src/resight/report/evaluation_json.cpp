@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "resight/report/evaluation_report.hpp"
+
+namespace resight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json score_json(const RecognitionScore& score) {
+  return {{"true_positives", score.true_positives},   {"false_positives", score.false_positives},
+          {"false_negatives", score.false_negatives}, {"precision", number(score.precision())},
+          {"recall", number(score.recall())},         {"f_score", number(score.f_score())}};
+}
+
+Json points_json(const ChangePointScore& score) {
+  return {{"reported", score.reported},
+          {"right", score.right},
+          {"expected", score.expected},
+          {"found", score.found},
+          {"precision", number(score.precision())},
+          {"recall", number(score.recall())}};
+}
+
+Json found_json(const FoundCount& count) {
+  return {{"found", count.found},
+          {"missed", count.missed},
+          {"false_positives", count.false_positives},
+          {"lost_at", count.lost_at}};
+}
+
+Json changes_json(const ConfigurationSummary& c) {
+  if (!c.has_changes) return nullptr;
+  const auto& delays = c.events.delays;
+  return {{"removed_points", points_json(c.points.removed)},
+          {"novel_points", points_json(c.points.novel)},
+          {"events", score_json(c.events.events)},
+          {"departures", score_json(c.events.departures)},
+          {"arrivals", score_json(c.events.arrivals)},
+          {"mean_delay_views", delays.empty() ? Json(nullptr)
+                                              : Json(std::accumulate(delays.begin(), delays.end(), 0.0) /
+                                                     static_cast<double>(delays.size()))},
+          {"max_delay_views", delays.empty() ? Json(nullptr) : Json(*std::ranges::max_element(delays))}};
+}
+
+Json key_json(const ConfigurationSummary& c) {
+  return {{"preset", c.preset}, {"num_previous_views", c.num_previous_views}, {"is_clustered", c.is_clustered}};
+}
+
+Json configuration_json(const ConfigurationSummary& c) {
+  Json json = key_json(c);
+  json["num_sequences"] = c.num_sequences;
+  json["num_views"] = c.num_views;
+  json["score_5cm_30deg"] = score_json(c.score);
+  json["score_1cm_10deg"] = score_json(c.strict_score);
+  json["center_error_m"] = {{"median", number(c.center_error_m.median)}, {"p95", number(c.center_error_m.p95)}};
+  json["rotation_error_rad"] = {{"median", number(c.rotation_error_rad.median)},
+                                {"p95", number(c.rotation_error_rad.p95)}};
+  json["ghosts"] = {{"detections", c.num_ghosts},
+                    {"places_left", c.num_former_places},
+                    {"per_place_left", number(c.ghosts_per_change())}};
+  json["hypotheses"] = {{"correspondences", c.counts.correspondences},
+                        {"generated", c.counts.generated},
+                        {"merged", c.counts.merged},
+                        {"clustered", c.counts.clustered},
+                        {"accepted", c.counts.accepted}};
+  json["changes"] = changes_json(c);
+  json["lost_at"] = c.lost_at;
+  json["by_object"] = Json::object();
+  for (const auto& [name, count] : c.by_object) json["by_object"][name] = found_json(count);
+  json["by_visible_share"] = Json::array();
+  for (std::size_t i = 0; i < c.by_visible_share.size(); ++i) {
+    Json bin = {{"from", i < visible_share_bins().size() ? Json(visible_share_bins()[i]) : Json(nullptr)}};
+    bin.update(found_json(c.by_visible_share[i]));
+    json["by_visible_share"].push_back(bin);
+  }
+  return json;
+}
+
+Json times_json(const ConfigurationSummary& c) {
+  Json json = key_json(c);
+  json["num_views"] = c.num_views;
+  json["seconds_per_view"] = number(c.times.total_wall_s() / c.num_views);
+  json["stages"] = Json::array();
+  for (const StageTime& stage : c.times.stages())
+    json["stages"].push_back({{"stage", stage.stage},
+                              {"wall_s_per_view", number(stage.wall_s / c.num_views)},
+                              {"cpu_s_per_view", number(stage.cpu_s / c.num_views)}});
+  json["seconds_by_view_number"] = c.mean_view_wall_s;
+  return json;
+}
+
+Json document(const EvaluationHeader& header) {
+  return {{"format", "resight evaluation 1"}, {"dataset", header.dataset}, {"version", header.version}};
+}
+
+}  // namespace
+
+std::string format_evaluation_json(const EvaluationHeader& header,
+                                   std::span<const ConfigurationSummary> configurations) {
+  Json json = document(header);
+  json["configurations"] = Json::array();
+  for (const ConfigurationSummary& c : configurations) json["configurations"].push_back(configuration_json(c));
+  return json.dump(1) + "\n";
+}
+
+std::string format_evaluation_times_json(const EvaluationHeader& header,
+                                         std::span<const ConfigurationSummary> configurations) {
+  Json json = document(header);
+  json["configurations"] = Json::array();
+  for (const ConfigurationSummary& c : configurations) json["configurations"].push_back(times_json(c));
+  return json.dump(1) + "\n";
+}
+
+}  // namespace resight

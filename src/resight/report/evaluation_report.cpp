@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/report/evaluation_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "resight/report/internal/files.hpp"
+#include "resight/report/line_plot.hpp"
+
+namespace resight {
+namespace {
+
+std::string series_name(const ConfigurationSummary& c) { return c.preset + (c.is_clustered ? "" : " (no clustering)"); }
+
+// One line per preset (with and without clustering apart) over K.
+std::string plot_over_k(const std::string& title, const std::string& y_label,
+                        std::span<const ConfigurationSummary> configurations,
+                        const std::function<double(const ConfigurationSummary&)>& value, bool is_share) {
+  LinePlot plot{title, "K (views before the current one)", y_label, {}, {}, {}};
+  if (is_share) {
+    plot.y_min = 0;
+    plot.y_max = 1;
+  }
+  for (const ConfigurationSummary& c : configurations) {
+    if (plot.series.empty() || plot.series.back().name != series_name(c))
+      plot.series.push_back({series_name(c), {}, {}});
+    plot.series.back().x.push_back(c.num_previous_views);
+    plot.series.back().y.push_back(value(c));
+  }
+  return format_svg(plot);
+}
+
+// Fig. 7 for the largest K of each preset: how the time of a view grows with its number until the window is full.
+std::string plot_view_times(std::span<const ConfigurationSummary> configurations) {
+  LinePlot plot{"Time of a view over the sequence", "view", "seconds", {}, {}, {}};
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    const ConfigurationSummary& c = configurations[i];
+    if (i + 1 < configurations.size() && series_name(configurations[i + 1]) == series_name(c)) continue;
+    PlotSeries series{fmt::format("{}, K = {}", series_name(c), c.num_previous_views), {}, c.mean_view_wall_s};
+    for (std::size_t v = 0; v < series.y.size(); ++v) series.x.push_back(static_cast<double>(v));
+    plot.series.push_back(std::move(series));
+  }
+  return format_svg(plot);
+}
+
+struct BadView {
+  const EvaluatedRun* run;
+  const EvaluatedView* view;
+  int num_missed = 0;
+  int num_wrong = 0;
+};
+
+std::vector<BadView> bad_views(std::span<const EvaluatedRun* const> runs) {
+  std::vector<BadView> bad;
+  for (const EvaluatedRun* run : runs)
+    for (const EvaluatedView& view : run->views)
+      if (view.score.false_negatives + view.score.false_positives > 0)
+        bad.push_back({run, &view, view.score.false_negatives, view.score.false_positives});
+  std::ranges::stable_sort(bad, std::greater{}, [](const BadView& b) { return b.num_missed + b.num_wrong; });
+  return bad;
+}
+
+std::string describe(const BadView& bad) {
+  std::string text = fmt::format("\n### {} view {}: {} missed, {} wrong\n\n", bad.run->sequence, bad.view->name,
+                                 bad.num_missed, bad.num_wrong);
+  for (const EvaluatedTruth& t : bad.view->truth)
+    if (t.counts && !t.found)
+      text += fmt::format("- missed {} {} ({:.0f} % visible, at {:.2f} m): {}\n", t.object, t.instance,
+                          100 * t.visible_share, t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
+  for (const EvaluatedDetection& d : bad.view->detections)
+    if (d.verdict == DetectionVerdict::kFalsePositive || d.verdict == DetectionVerdict::kGhost)
+      text += fmt::format("- {} {} (score {:.2f}, at {:.2f} m)\n", to_string(d.verdict), d.object, d.score,
+                          d.camera_from_object.translation.norm());
+  return text;
+}
+
+}  // namespace
+
+std::string format_worst_views(std::span<const EvaluatedRun> runs, int max_views_per_configuration) {
+  std::string text = "# Worst views first\n";
+  std::vector<const EvaluatedRun*> left;
+  for (const EvaluatedRun& run : runs) left.push_back(&run);
+  while (!left.empty()) {
+    const EvaluatedRun& first = *left.front();
+    const auto rest = std::stable_partition(left.begin(), left.end(), [&](const EvaluatedRun* run) {
+      return run->preset == first.preset && run->num_previous_views == first.num_previous_views &&
+             run->is_clustered == first.is_clustered;
+    });
+    const std::vector<const EvaluatedRun*> of_one(left.begin(), rest);
+    left.erase(left.begin(), rest);
+    text += fmt::format("\n## `{}`, K = {}{}\n", first.preset, first.num_previous_views,
+                        first.is_clustered ? "" : ", without clustering");
+    int count = 0;
+    for (const BadView& bad : bad_views(of_one))
+      if (count++ < max_views_per_configuration) text += describe(bad);
+  }
+  return text;
+}
+
+Result<void> write_evaluation(const std::filesystem::path& directory, const EvaluationHeader& header,
+                              std::span<const EvaluatedRun> runs) {
+  const std::vector<ConfigurationSummary> c = summarize_runs(runs);
+  using C = ConfigurationSummary;
+  const std::pair<const char*, std::string> files[] = {
+      {"results.json", format_evaluation_json(header, c)},
+      {"times.json", format_evaluation_times_json(header, c)},
+      {"tables.md", format_evaluation_tables(header, c)},
+      {"times.md", format_evaluation_times(header, c)},
+      {"worst.md", format_worst_views(runs)},
+      {"precision.svg", plot_over_k(
+                            "Precision", "precision", c, [](const C& x) { return x.score.precision(); }, true)},
+      {"recall.svg", plot_over_k(
+                         "Recall", "recall", c, [](const C& x) { return x.score.recall(); }, true)},
+      {"f.svg", plot_over_k(
+                    "F", "F", c, [](const C& x) { return x.score.f_score(); }, true)},
+      {"ghosts.svg", plot_over_k(
+                         "Detections at places left", "views per place left", c,
+                         [](const C& x) { return x.ghosts_per_change(); }, false)},
+      {"view_time.svg", plot_view_times(c)}};
+  for (const auto& [name, text] : files)
+    if (auto written = report::write_whole_file(directory / name, text); !written.ok()) return written;
+  return {};
+}
+
+}  // namespace resight

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "resight/report/evaluation_report.hpp"
+
+namespace resight {
+namespace {
+
+using Configurations = std::span<const ConfigurationSummary>;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+std::string number(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
+// As the paper writes shares: .93
+std::string share(double value) {
+  std::string text = number(value, 3);
+  return text.starts_with("0.") ? text.substr(1) : text;
+}
+std::string prf(const RecognitionScore& s) {
+  return fmt::format("{} | {} | {}", share(s.precision()), share(s.recall()), share(s.f_score()));
+}
+std::string name_of(const ConfigurationSummary& c) {
+  return fmt::format("`{}`{}", c.preset, c.is_clustered ? "" : " without clustering");
+}
+
+std::string recognition_table(Configurations configurations) {
+  std::string text =
+      "## Recognition over K\n\n"
+      "| preset | K | precision | recall | F | strict precision | strict recall | strict F | centre median | centre 95 "
+      "% | "
+      "rotation median | rotation 95 % | ghosts | per place left |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const ConfigurationSummary& c : configurations)
+    text +=
+        fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} |\n", name_of(c),
+                    c.num_previous_views, prf(c.score), prf(c.strict_score), number(1e3 * c.center_error_m.median, 1),
+                    number(1e3 * c.center_error_m.p95, 1), number(kDegrees * c.rotation_error_rad.median, 1),
+                    number(kDegrees * c.rotation_error_rad.p95, 1), c.num_ghosts, number(c.ghosts_per_change(), 2));
+  return text;
+}
+
+std::string clustering_table(Configurations configurations) {
+  std::string rows;
+  for (const ConfigurationSummary& without : configurations) {
+    if (without.is_clustered) continue;
+    for (const ConfigurationSummary& with : configurations) {
+      if (!with.is_clustered || with.preset != without.preset || with.num_previous_views != without.num_previous_views)
+        continue;
+      rows += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} % |\n", with.preset, with.num_previous_views,
+                          prf(without.score), prf(with.score), without.counts.clustered, with.counts.clustered,
+                          number(100.0 * with.counts.clustered / std::max(1, with.counts.merged), 1));
+    }
+  }
+  if (rows.empty()) return {};
+  return "\n## Clustering (Tables II and III)\n\n"
+         "| preset | K | precision without | recall without | F without | precision | recall | F | hypotheses verified "
+         "without | with | kept |\n|---|---|---|---|---|---|---|---|---|---|---|\n" +
+         rows;
+}
+
+std::string points_cells(const ChangePointScore& s) {
+  return fmt::format("{} | {}", share(s.precision()), share(s.recall()));
+}
+
+std::string change_table(Configurations configurations) {
+  std::string rows;
+  for (const ConfigurationSummary& c : configurations) {
+    if (!c.has_changes) continue;
+    const auto& d = c.events.delays;
+    const double mean =
+        d.empty() ? std::nan("") : std::accumulate(d.begin(), d.end(), 0.0) / static_cast<double>(d.size());
+    const double late = d.empty() ? std::nan("")
+                                  : static_cast<double>(std::ranges::count_if(d, [](int x) { return x > 1; })) /
+                                        static_cast<double>(d.size());
+    rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(c),
+                        c.num_previous_views, points_cells(c.points.removed), points_cells(c.points.novel),
+                        share(c.events.events.precision()), share(c.events.events.recall()), number(mean, 2),
+                        share(late), share(c.events.departures.precision()), share(c.events.departures.recall()),
+                        share(c.events.arrivals.precision()), share(c.events.arrivals.recall()));
+  }
+  if (rows.empty()) return {};
+  return "\n## Changes\n\nPoints of what has left (removed) and come (novel), and events: added, moved, removed, with "
+         "their "
+         "places. A departure is the place of what was removed or moved, an arrival that of what was added or "
+         "moved.\n\n"
+         "| preset | K | removed precision | removed recall | novel precision | novel recall | event precision | event "
+         "recall | mean delay (views) | later than one view | departure precision | departure recall | arrival "
+         "precision "
+         "| arrival recall |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" +
+         rows;
+}
+
+std::string lost_cells(const std::map<std::string, int>& lost_at, const std::vector<std::string>& stages) {
+  std::string text;
+  for (const std::string& stage : stages) {
+    const auto entry = lost_at.find(stage);
+    text += fmt::format(" {} |", entry == lost_at.end() ? 0 : entry->second);
+  }
+  return text;
+}
+
+std::string loss_header(const std::string& first, const std::vector<std::string>& stages) {
+  std::string text = first;
+  std::string rule = "|";
+  for (const char c : first) rule += c == '|' ? "---|" : "";
+  for (const std::string& stage : stages) {
+    text += " " + stage + " |";
+    rule += "---|";
+  }
+  // `first` begins with a bar that opens no column.
+  return text + "\n" + rule.substr(0, rule.size() - 4) + "\n";
+}
+
+std::string loss_table(Configurations configurations, const std::vector<std::string>& stages) {
+  std::string text = "\n## Where missed objects were lost\n\n";
+  text += loss_header("| preset | K | missed |", stages);
+  for (const ConfigurationSummary& c : configurations)
+    text += fmt::format("| {} | {} | {} |{}\n", name_of(c), c.num_previous_views, c.score.false_negatives,
+                        lost_cells(c.lost_at, stages));
+  return text;
+}
+
+std::string found_row(const std::string& first, const FoundCount& count, const std::vector<std::string>& stages) {
+  const int all = count.found + count.missed;
+  return fmt::format("| {} | {} | {} | {} |{}\n", first, all,
+                     share(all == 0 ? std::nan("") : static_cast<double>(count.found) / all), count.false_positives,
+                     lost_cells(count.lost_at, stages));
+}
+
+std::string breakdown(const ConfigurationSummary& c, const std::vector<std::string>& stages) {
+  std::string text = fmt::format("\n## {}, K = {}: objects and visibility\n\n", name_of(c), c.num_previous_views);
+  text += loss_header("| object | to find | recall | false |", stages);
+  for (const auto& [name, count] : c.by_object) text += found_row(name, count, stages);
+  text += '\n';
+  text += loss_header("| visible share | to find | recall | false |", stages);
+  const auto bins = visible_share_bins();
+  for (std::size_t i = 0; i < c.by_visible_share.size(); ++i) {
+    if (i == bins.size() && c.by_visible_share[i].found + c.by_visible_share[i].missed == 0) continue;
+    const std::string name = i == bins.size()
+                                 ? "unknown"
+                                 : fmt::format("{:.2f} to {:.2f}", bins[i], i + 1 < bins.size() ? bins[i + 1] : 1.0);
+    text += found_row(name, c.by_visible_share[i], stages);
+  }
+  return text;
+}
+
+// The stages that occur, in the order of their first letters in the way through the recogniser.
+std::vector<std::string> stages_of(Configurations configurations) {
+  std::set<std::string> names;
+  for (const ConfigurationSummary& c : configurations)
+    for (const auto& [name, count] : c.lost_at) names.insert(name);
+  std::vector<std::string> ordered;
+  for (const char* known :
+       {"no keypoints", "no matches", "no group", "wrong pose", "clustered out", "called absent", "rejected"})
+    if (names.erase(known) > 0) ordered.emplace_back(known);
+  ordered.insert(ordered.end(), names.begin(), names.end());
+  return ordered;
+}
+
+std::string title(const char* what, const EvaluationHeader& header, Configurations configurations) {
+  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, header.dataset, header.version,
+                     configurations.empty() ? 0 : configurations.front().num_sequences,
+                     configurations.empty() ? 0 : configurations.front().num_views);
+}
+
+}  // namespace
+
+std::string format_evaluation_tables(const EvaluationHeader& header, Configurations configurations) {
+  const std::vector<std::string> stages = stages_of(configurations);
+  std::string text =
+      title("Evaluation", header, configurations) +
+      " Right: within 5 cm and 30 deg (strict: 1 cm and 10 deg) of an object that is at least 5 % visible. "
+      "Ghost: an object reported at a place that it has left.\n\n";
+  text += recognition_table(configurations) + clustering_table(configurations) + change_table(configurations);
+  text += loss_table(configurations, stages);
+  for (const ConfigurationSummary& c : configurations) text += breakdown(c, stages);
+  return text;
+}
+
+std::string format_evaluation_times(const EvaluationHeader& header, Configurations configurations) {
+  std::string text = title("Times", header, configurations) +
+                     " Wall seconds a view. Features, matching and hypotheses of a view are made once and counted in "
+                     "every configuration that uses them.\n";
+  for (const ConfigurationSummary& c : configurations) {
+    text += fmt::format("\n## {}, K = {}\n\n| stage | wall ms a view | CPU ms a view |\n|---|---|---|\n", name_of(c),
+                        c.num_previous_views);
+    double cpu_s = 0;
+    for (const StageTime& stage : c.times.stages()) {
+      text += fmt::format("| {} | {:.2f} | {:.2f} |\n", stage.stage, 1e3 * stage.wall_s / c.num_views,
+                          1e3 * stage.cpu_s / c.num_views);
+      cpu_s += stage.cpu_s;
+    }
+    text += fmt::format("| all | {:.2f} | {:.2f} |\n", 1e3 * c.times.total_wall_s() / c.num_views,
+                        1e3 * cpu_s / c.num_views);
+  }
+  return text;
+}
+
+}  // namespace resight
