@@ -13,13 +13,13 @@
 
 namespace resight {
 
-/// What an object can be trained from: views or a mesh (at least one of them), metres, object frame.
+/// What an object can be trained from: views, a mesh or a complete cloud (at least one of them), metres, object frame.
 struct ModelSource {
   std::string name;
   int bop_id = 0;                   ///< obj_id; 0 = none given.
   std::vector<TrainingView> views;  ///< TUW training views (or BOP train split).
   std::optional<TriangleMesh> mesh;
-  std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd), if any.
+  std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd, a PLY without faces), if any.
   ObjectSymmetries symmetries;
   std::vector<std::string> warnings;  ///< What the model names but lacks (a texture file), one line each.
 };
@@ -33,7 +33,7 @@ struct ModelLocation {
 };
 
 /// Lists the models under each path: a TUW model folder (or a folder of those), a BOP models folder or data set, a
-/// folder of meshes (each file, or each sub-folder with one), a mesh file, or a PCD of one view of an object. In order
+/// folder of meshes or clouds (each file, or each sub-folder with one), or such a file. In order
 /// of name. The error says what was looked for.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_models(const std::vector<std::filesystem::path>& paths);
 [[nodiscard]] Result<ModelSource> read_model(const ModelLocation& location);

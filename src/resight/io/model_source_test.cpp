@@ -125,10 +125,35 @@ TEST(CloudModel, OneViewInFrontOfTheCamera) {
   EXPECT_EQ(count_valid(view.frame.depth_m), 1600U);
   EXPECT_EQ(std::ranges::count(view.mask.data(), 255), 1600);
   EXPECT_EQ(view.frame.color(307, 211), (Rgb8{7, 11, 0}));
-  for (auto& p : pcd.points) p.z() -= 0.8F;  // now around the origin: no camera sees it so
-  for (std::size_t i = 0; i < 1600; i += 2) pcd.points[i].z() = 0.05F;
+  pcd.colors.clear();
   ASSERT_TRUE(write_pcd(directory / "can.pcd", pcd).ok());
-  EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("no 640x480 camera"));
+  EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("without colours"));
+}
+
+// All sides of a ball, around the origin or before the camera: no single view has points behind one another.
+TEST(CloudModel, AllSidesOfAnObjectAreItsSurface) {
+  for (const float z : {0.0F, 0.8F}) {
+    io::TestDirectory directory;
+    Rng rng(1);
+    PointCloud ball;
+    for (int i = 0; i < 4000; ++i) {
+      const Eigen::Vector3d n = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+      ball.points.emplace_back((0.05 * n).cast<float>() + Eigen::Vector3f(0, 0, z));
+      ball.colors.push_back({200, 100, 50});
+    }
+    ASSERT_TRUE(write_ply(directory / "ball.ply", ball).ok());
+    const auto model = read_model(find_models({directory / "ball.ply"})->front());
+    ASSERT_TRUE(model.ok()) << model.error().message;
+    EXPECT_TRUE(model->views.empty());
+    ASSERT_TRUE(model->surface.has_value()) << z;
+    EXPECT_EQ(model->surface->size(), 4000U);
+    std::erase_if(ball.points, [&](const Eigen::Vector3f& p) { return p.z() > z - 0.01F; });  // the side that is seen
+    ball.colors.resize(ball.points.size());
+    ASSERT_TRUE(write_ply(directory / "ball.ply", ball).ok());
+    const auto half = read_model(find_models({directory / "ball.ply"})->front());
+    ASSERT_TRUE(half.ok()) << half.error().message;
+    EXPECT_EQ(half->views.size(), z > 0 ? 1U : 0U);
+  }
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace resight {
 namespace {
 
 bool is_usable_surface(const std::optional<PointCloud>& surface) {
-  return surface.has_value() && surface->has_normals() && surface->has_colors();
+  return surface.has_value() && surface->has_colors();
 }
 
 void set_surface(ObjectModel& model, PointCloud surface) {
@@ -30,9 +30,18 @@ Result<ObjectModel> train_from_views(const ModelSource& source, const TrainOptio
     return model;
   }
   Result<ObjectModel> model = train_object(source.name, source.views, options);
-  if (model.ok() && is_usable_surface(source.surface))
-    set_surface(*model, voxel_downsample(*source.surface, options.surface_voxel_m));
+  if (!model.ok() || !is_usable_surface(source.surface)) return model;
+  Result<PointCloud> surface = train_surface(source.name, *source.surface, options);
+  if (!surface.ok()) return surface.error();
+  set_surface(*model, *std::move(surface));
   return model;
+}
+
+Result<ObjectModel> train_from_any(const ModelSource& source, const TrainOptions& options) {
+  if (!source.views.empty()) return train_from_views(source, options);
+  if (source.mesh.has_value()) return train_object(source.name, *source.mesh, options);
+  if (source.surface.has_value()) return train_object(source.name, *source.surface, options);
+  return Error{fmt::format("model '{}': neither training views nor a mesh nor a cloud", source.name)};
 }
 
 // Names twice in the list would make detections ambiguous; told before hours of training.
@@ -51,10 +60,7 @@ Result<void> check_names(std::span<const ModelLocation> locations) {
 }  // namespace
 
 Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options) {
-  if (source.views.empty() && !source.mesh.has_value())
-    return Error{fmt::format("model '{}': neither training views nor a mesh", source.name)};
-  Result<ObjectModel> model =
-      source.views.empty() ? train_object(source.name, *source.mesh, options) : train_from_views(source, options);
+  Result<ObjectModel> model = train_from_any(source, options);
   if (!model.ok()) return model;
   model->bop_id = source.bop_id;
   model->symmetries = source.symmetries;

@@ -9,8 +9,9 @@
 
 namespace resight {
 
-/// Trains from what a data set holds of an object. Features: of its views, or of a turntable around its mesh if it has
-/// none. Surface: of its mesh, else its complete cloud (if that has normals and colours), else fused from the views.
+/// Trains from what a data set holds of an object. Features: of its views, or of a turntable around its mesh (else its
+/// complete cloud) if it has none. Surface: of its mesh, else its complete cloud (if that has colours), else fused from
+/// the views.
 /// The name, the symmetries and the bop_id (0 stays 0) are the source's.
 [[nodiscard]] Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options = {});
 

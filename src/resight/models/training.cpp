@@ -8,6 +8,8 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/outward_normals.hpp"
+#include "resight/geometry/splat_mesh.hpp"
 #include "resight/models/crop_view.hpp"
 #include "resight/models/descriptor_code.hpp"
 #include "resight/models/surface.hpp"
@@ -20,6 +22,10 @@ constexpr double kMinDiameter_m = 0.005;
 constexpr double kMaxDiameter_m = 5.0;
 constexpr int kCropMargin_px = 48;            // what keypoints near the silhouette see of their surroundings
 constexpr double kSamplesPerVoxelFace = 6.0;  // of voxel_size^2: a face that fills its voxel is missed once in 400
+
+constexpr double kMinCloudSpacing_m = 0.001;  // a pixel of a training view; more points than that only cost time
+constexpr double kMaxCloudSpacings = 400.0;   // over the diameter, for the same reason
+constexpr std::size_t kMinCloudPoints = 100;
 
 Error fail(const std::string& name, const std::string& what) { return {fmt::format("model '{}': {}", name, what)}; }
 
@@ -102,6 +108,12 @@ ObjectModel make_model(const std::string& name, ObjectFeatures features, PointCl
   return model;
 }
 
+std::vector<TrainingView> render_views(const TriangleMesh& mesh, const TrainOptions& options) {
+  TurntableOptions turntable = options.turntable;
+  turntable.num_threads = options.num_threads;
+  return render_turntable(mesh, turntable);
+}
+
 std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
   std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
   for (const auto& f : mesh.faces)
@@ -110,6 +122,20 @@ std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i] != 0) vertices.push_back(mesh.vertices[i]);
   return vertices;
+}
+
+Result<void> check_diameter(const std::string& name, const char* kind, double size_m) {
+  if (size_m > kMaxDiameter_m) {
+    return fail(name, fmt::format("the {} is {:g} m across (expected {} to {}): it looks as if it were in millimetres",
+                                  kind, size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  if (size_m < kMinDiameter_m) {
+    return fail(name,
+                fmt::format("the {} is only {:g} m across (expected {} to {}): metres are needed, this looks like "
+                            "another unit",
+                            kind, size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  return {};
 }
 
 Result<void> check_mesh(const std::string& name, const TriangleMesh& mesh) {
@@ -122,19 +148,35 @@ Result<void> check_mesh(const std::string& name, const TriangleMesh& mesh) {
       }
       if (!mesh.vertices[v].allFinite()) return fail(name, fmt::format("vertex {} of the mesh is not finite", v));
     }
-  const double size_m = diameter(used_vertices(mesh));
-  if (size_m > kMaxDiameter_m) {
-    return fail(name,
-                fmt::format("the mesh is {:g} m across (expected {} to {}): it looks as if it were in millimetres",
-                            size_m, kMinDiameter_m, kMaxDiameter_m));
-  }
-  if (size_m < kMinDiameter_m) {
-    return fail(name,
-                fmt::format("the mesh is only {:g} m across (expected {} to {}): metres are needed, this looks like "
-                            "another unit",
-                            size_m, kMinDiameter_m, kMaxDiameter_m));
-  }
-  return {};
+  return check_diameter(name, "mesh", diameter(used_vertices(mesh)));
+}
+
+Result<void> check_cloud(const std::string& name, const PointCloud& cloud) {
+  if (!cloud.has_colors()) return fail(name, "the points have no colours");
+  if (cloud.size() < kMinCloudPoints)
+    return fail(name, fmt::format("only {} points (expected {} or more)", cloud.size(), kMinCloudPoints));
+  if (!std::ranges::all_of(cloud.points, [](const Eigen::Vector3f& p) { return p.allFinite(); }))
+    return fail(name, "a point is not finite");
+  return check_diameter(name, "cloud", diameter(cloud.points));
+}
+
+// Evenly thinned, with normals outwards.
+Result<PointCloud> prepare_cloud(const std::string& name, const PointCloud& cloud, int num_threads) {
+  const Result<void> checked = check_cloud(name, cloud);
+  if (!checked.ok()) return checked.error();
+  PointCloud even = voxel_downsample(cloud, std::max(kMinCloudSpacing_m, diameter(cloud.points) / kMaxCloudSpacings));
+  if (even.size() < kMinCloudPoints) return fail(name, "most of the points coincide");
+  if (even.has_normals())
+    turn_outwards(even.points, even.normals);
+  else
+    even.normals = estimate_outward_normals(even.points, {.num_threads = num_threads});
+  return even;
+}
+
+PointCloud fuse_evenly(PointCloud cloud, double voxel_size_m) {
+  SurfaceSamples samples{.cloud = std::move(cloud), .sigma_m = {}};
+  samples.sigma_m.assign(samples.cloud.size(), 1.0F);
+  return fuse_surface(samples, voxel_size_m);
 }
 
 }  // namespace
@@ -152,10 +194,16 @@ Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& me
   const Result<void> checked = check_mesh(name, mesh);
   if (!checked.ok()) return checked.error();
   const double voxel_face = options.surface_voxel_m * options.surface_voxel_m;
-  SurfaceSamples samples{.cloud = sample_surface(mesh, kSamplesPerVoxelFace / voxel_face), .sigma_m = {}};
-  samples.sigma_m.assign(samples.cloud.size(), 1.0F);
-  if (samples.cloud.empty()) return fail(name, "the triangles of the mesh have no area");
-  return fuse_surface(samples, options.surface_voxel_m);
+  PointCloud samples = sample_surface(mesh, kSamplesPerVoxelFace / voxel_face);
+  if (samples.empty()) return fail(name, "the triangles of the mesh have no area");
+  return fuse_evenly(std::move(samples), options.surface_voxel_m);
+}
+
+Result<PointCloud> train_surface(const std::string& name, const PointCloud& cloud, const TrainOptions& options) {
+  options.check();
+  Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
+  if (!even.ok()) return even;
+  return fuse_evenly(*std::move(even), options.surface_voxel_m);
 }
 
 Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
@@ -175,13 +223,21 @@ Result<ObjectModel> train_object(const std::string& name, std::span<const Traini
 Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
   Result<PointCloud> surface = train_surface(name, mesh, options);
   if (!surface.ok()) return surface.error();
-  TurntableOptions turntable = options.turntable;
-  turntable.num_threads = options.num_threads;
-  Result<ObjectFeatures> features = train_features(name, render_turntable(mesh, turntable), options);
+  Result<ObjectFeatures> features = train_features(name, render_views(mesh, options), options);
   if (!features.ok()) return features.error();
   ObjectModel model = make_model(name, *std::move(features), *std::move(surface));
   model.diameter_m = diameter(used_vertices(mesh));
   return model;
+}
+
+Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud, const TrainOptions& options) {
+  options.check();
+  Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
+  if (!even.ok()) return even.error();
+  const TriangleMesh splats = make_splat_mesh(*even, {.num_threads = options.num_threads});
+  Result<ObjectFeatures> features = train_features(name, render_views(splats, options), options);
+  if (!features.ok()) return features.error();
+  return make_model(name, *std::move(features), fuse_evenly(*std::move(even), options.surface_voxel_m));
 }
 
 }  // namespace resight

@@ -47,12 +47,21 @@ struct ObjectFeatures {
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh,
                                                const TrainOptions& options = {});
 
+/// Trains from a coloured cloud of the whole surface, with or without normals (estimate_outward_normals(); given ones
+/// are turned outwards as a whole): its views are ray-cast from a splat of each point (make_splat_mesh()). An error: no
+/// colours, points that are not finite, too few points, or a diameter as above.
+[[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud,
+                                               const TrainOptions& options = {});
+
 /// The features alone, as train_object() extracts and merges them.
 [[nodiscard]] Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
                                                     const TrainOptions& options = {});
 
 /// The surface of a mesh as train_object() samples it, after the same checks.
 [[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh,
+                                               const TrainOptions& options = {});
+/// The same of a coloured cloud of the whole surface.
+[[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 
 }  // namespace resight
