@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What merging repeated model features costs and gains: `bench_feature_merging [MODELS]` (a path that `resight train`
-// takes; default: procedural objects). Features of held-out views (between the training views, another elevation and
-// distance, with sensor noise) are matched exactly against all objects together. A match is right when its model point
-// is of the same object and within 1 cm of the truth.
+// What the training views of a mesh and the merging of repeated features cost and gain: `bench_feature_merging
+// [MODELS]` (a path that `resight train` takes; default: procedural objects). Features of held-out views (between the
+// training views, another elevation, several distances, with sensor noise) are matched exactly against all objects
+// together. A match is right when its model point is of the same object and within 1 cm of the truth.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "resight/core/parallel.hpp"
@@ -23,7 +24,8 @@ using namespace resight;
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::size_t kMaxObjects = 12;
-constexpr std::size_t kMaxQueries = 3000;
+constexpr std::size_t kMaxQueries = 2000;
+constexpr std::array kQueryDistances_m = {0.6, 0.9, 1.3};
 constexpr float kRightWithin_m = 0.01F;
 
 struct Object {
@@ -62,13 +64,43 @@ std::vector<Object> load_objects(int argc, char** argv) {
   return objects;
 }
 
-Both extract_training(const std::vector<Object>& objects, const TrainOptions& options) {
+// Turntables whose views are put together.
+struct Variant {
+  std::string name;
+  std::vector<TurntableOptions> turntables;
+};
+
+std::vector<Variant> list_variants() {
+  const TurntableOptions clean;
+  TurntableOptions noisy;
+  noisy.sensor_noise = true;
+  TurntableOptions near = noisy;
+  near.distance_m = 0.7;
+  TurntableOptions far = noisy;
+  far.distance_m = 0.9;
+  far.seed = 2;
+  TurntableOptions clean_far = clean;
+  clean_far.distance_m = 0.9;
+  TurntableOptions farther = noisy;
+  farther.distance_m = 1.2;
+  farther.seed = 3;
+  return {{"default distance, exact", {clean}},
+          {"0.9 m, exact", {clean_far}},
+          {"default distance, noise", {noisy}},
+          {"0.7 m, noise", {near}},
+          {"0.9 m, noise", {far}},
+          {"0.7 m and 1.2 m, noise", {near, farther}}};
+}
+
+Both extract_training(const std::vector<Object>& objects, const Variant& variant, const TrainOptions& options) {
   Both all;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    TurntableOptions turntable = options.turntable;
-    turntable.num_threads = options.num_threads;
-    const auto features =
-        train_features(objects[i].name, render_turntable(objects[i].mesh, turntable), options).value();
+    std::vector<TrainingView> views;
+    for (TurntableOptions turntable : variant.turntables) {
+      turntable.num_threads = options.num_threads;
+      for (TrainingView& view : render_turntable(objects[i].mesh, turntable)) views.push_back(std::move(view));
+    }
+    const auto features = train_features(objects[i].name, views, options).value();
     all.sift.append(features.sift, static_cast<int>(i));
     all.shot.append(features.shot, static_cast<int>(i));
   }
@@ -76,11 +108,11 @@ Both extract_training(const std::vector<Object>& objects, const TrainOptions& op
 }
 
 // Truth: the points are in the object frame.
-Both extract_queries(const std::vector<Object>& objects, int num_threads) {
+Both extract_queries(const std::vector<Object>& objects, double distance_m, int num_threads) {
   const Rigid3 turned_from_object = Rigid3::from_axis_angle({0, 0, 1}, 7.5 * std::numbers::pi / 180);
   const TurntableOptions turntable{.step_deg = 90,
                                    .elevation_deg = 22,
-                                   .distance_m = 0.9,
+                                   .distance_m = distance_m,
                                    .sensor_noise = true,
                                    .seed = 7,
                                    .num_threads = num_threads};
@@ -164,23 +196,24 @@ LabelledFeatures thin_out(const LabelledFeatures& all) {
   return some;
 }
 
-void report(const char* kind, const LabelledFeatures& all, const LabelledFeatures& queries,
-            std::initializer_list<double> radii_m, std::initializer_list<double> thresholds, int num_threads) {
-  const auto print = [&](double radius, double threshold, const LabelledFeatures& model) {
-    fmt::print("{} | {:.1f} | {:.2f} | {} | {:.1f} % | {:.2f} % | {:.2f} %\n", kind, 1e3 * radius, threshold,
-               model.features.size(),
-               100.0 * static_cast<double>(model.features.size()) / static_cast<double>(all.features.size()),
-               100 * measure_recall(model, queries, 1, num_threads),
-               100 * measure_recall(model, queries, 3, num_threads));
-    std::fflush(stdout);
-  };
-  fmt::print("\n{} queries\nkind | radius mm | descriptor distance | features left | share | right@1 | right@3\n",
-             queries.features.size());
-  print(0, 0, all);
-  for (const double radius : radii_m)
-    for (const double threshold : thresholds)
-      print(radius, threshold,
-            merge(all, {.max_distance_m = radius, .max_descriptor_distance = threshold}, num_threads));
+using Queries = std::vector<LabelledFeatures>;  // of each distance
+
+void print_row(const std::string& variant, const char* kind, const FeatureMerging& merging,
+               const LabelledFeatures& model, const Queries& queries, int num_threads) {
+  fmt::print("{} | {} | {:.0f} mm, {:.1f} | {}", variant, kind, 1e3 * merging.max_distance_m,
+             merging.max_descriptor_distance, model.features.size());
+  for (const LabelledFeatures& q : queries)
+    fmt::print(" | {:.1f} | {:.1f}", 100 * measure_recall(model, q, 1, num_threads),
+               100 * measure_recall(model, q, 3, num_threads));
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+void report(const std::string& variant, const char* kind, const LabelledFeatures& all, const Queries& queries,
+            std::initializer_list<FeatureMerging> mergings, int num_threads) {
+  print_row(variant, kind, {}, all, queries, num_threads);
+  for (const FeatureMerging& merging : mergings)
+    print_row(variant, kind, merging, merge(all, merging, num_threads), queries, num_threads);
 }
 
 }  // namespace
@@ -191,9 +224,26 @@ int main(int argc, char** argv) {
   options.sift_merging = {};
   options.shot_merging = {};
   const std::vector<Object> objects = load_objects(argc, argv);
-  const Both training = extract_training(objects, options);
-  const Both queries = extract_queries(objects, options.num_threads);
-  fmt::print("{} objects\n", objects.size());
-  report("SIFT", training.sift, thin_out(queries.sift), {0.003, 0.005}, {0.3, 0.4, 0.5, 0.6, 0.7}, options.num_threads);
-  report("SHOT", training.shot, thin_out(queries.shot), {0.007, 0.010}, {0.2, 0.3, 0.4, 0.5}, options.num_threads);
+  Queries sift;
+  Queries shot;
+  fmt::print("{} objects; right matches of queries at", objects.size());
+  for (const double distance_m : kQueryDistances_m) {
+    const Both queries = extract_queries(objects, distance_m, options.num_threads);
+    sift.push_back(thin_out(queries.sift));
+    shot.push_back(thin_out(queries.shot));
+    fmt::print(" {} m ({} SIFT, {} SHOT)", distance_m, sift.back().features.size(), shot.back().features.size());
+  }
+  fmt::print("\ntraining views | kind | merging | features | nearest %, among three % (each distance)\n");
+  for (const Variant& variant : list_variants()) {
+    const Both training = extract_training(objects, variant, options);
+    report(variant.name, "SIFT", training.sift, sift,
+           {{.max_distance_m = 0.005, .max_descriptor_distance = 0.3},
+            {.max_distance_m = 0.005, .max_descriptor_distance = 0.4},
+            {.max_distance_m = 0.005, .max_descriptor_distance = 0.5}},
+           options.num_threads);
+    report(variant.name, "SHOT", training.shot, shot,
+           {{.max_distance_m = 0.007, .max_descriptor_distance = 0.3},
+            {.max_distance_m = 0.007, .max_descriptor_distance = 0.4}},
+           options.num_threads);
+  }
 }
