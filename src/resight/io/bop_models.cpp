@@ -163,11 +163,8 @@ Result<ModelSource> read_bop_model(const ModelLocation& location) {
   auto views = find_training_views(folder.parent_path(), location.bop_id);
   if (!views) return views.error();
   model.views = std::move(*views);
-  if (!model.views.empty()) return model;
-  if (!model.surface) return file_error(location.path, "is missing, and there are no training views of it");
-  if (!model.surface->has_colors())
-    return file_error(location.path,
-                      "has points without colours and without faces, and there are no training views of it");
+  if (model.views.empty() && !model.surface)
+    return file_error(location.path, "is missing, and there are no training views of it");
   return model;
 }
 

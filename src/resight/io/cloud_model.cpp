@@ -80,7 +80,7 @@ TrainingView draw(const PointCloud& cloud, const ImagePoints& points, const Came
     float& depth_m = view.frame.depth_m(u, v);
     if (depth_m <= z) continue;  // false for NaN
     depth_m = z;
-    view.frame.color(u, v) = cloud.colors[i];
+    if (cloud.has_colors()) view.frame.color(u, v) = cloud.colors[i];
     view.mask(u, v) = 255;
   }
   return view;
@@ -89,8 +89,6 @@ TrainingView draw(const PointCloud& cloud, const ImagePoints& points, const Came
 /// A single view if it can be one, else the whole surface.
 Result<ModelSource> model_of_points(PointCloud cloud, const fs::path& file) {
   if (cloud.empty()) return file_error(file, "holds no points");
-  if (!cloud.has_colors())
-    return file_error(file, "has points without colours and without faces; expected a mesh, or a coloured cloud");
   if (const auto done = check_size(cloud.points, {}, file); !done) return done.error();
   ModelSource model;
   const Camera camera = make_kinect_camera();

@@ -27,7 +27,10 @@ Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
     else
       result.warnings.push_back(file.string() + ": its texture is left out: " + texture.error().message);
   }
-  if (result.mesh.has_texture()) result.mesh.colors.clear();
+  if (result.mesh.has_texture())
+    result.mesh.colors.clear();
+  else if (!content->texture_file.empty())
+    io::drop_plain_colors(result.mesh.colors);  // what they were to be painted over with is not known
   return result;
 }
 

@@ -22,8 +22,9 @@ struct MeshFile {
 };
 
 /// Reads a triangle mesh: PLY by ourselves (read_ply()), OBJ, GLB/glTF and STL through Assimp. Scene transforms are
-/// applied, polygons become triangles, points and lines are dropped. Several textures are stacked into one. Same file,
-/// same bytes: vertices come in the order of the file (PLY) or of Assimp's importer.
+/// applied, polygons become triangles, points and lines are dropped. Several textures are stacked into one. A mesh
+/// whose texture is missing has no colours, unless its vertices have several. Same file, same bytes: vertices come in
+/// the order of the file (PLY) or of Assimp's importer.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options = {});
 
 /// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).

@@ -90,6 +90,13 @@ TriangleMesh convert_geometry(const aiMesh& source) {
   return mesh;
 }
 
+/// The colour of a part whose picture is missing is not known: a plain one was to be painted over.
+void forget_plain_color(MeshPart& part) {
+  part.has_color = false;
+  part.color = MeshPart{}.color;
+  drop_plain_colors(part.mesh.colors);
+}
+
 MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
   MeshPart part;
   part.mesh = convert_geometry(source);
@@ -105,7 +112,10 @@ MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader&
   if (part.has_color) part.color = to_color(color);
   const std::string texture = texture_name(material);
   if (!texture.empty() && !part.mesh.uvs.empty()) part.mesh.texture = textures.load(texture);
-  if (part.mesh.has_texture()) part.mesh.colors.clear();
+  if (part.mesh.has_texture())
+    part.mesh.colors.clear();
+  else if (!texture.empty())
+    forget_plain_color(part);
   return part;
 }
 

@@ -50,6 +50,7 @@ TEST(Mesh, MissingTextureIsAWarning) {
   const auto read = read_mesh(directory / "square.obj");
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_FALSE(read->mesh.has_texture());
+  EXPECT_TRUE(read->mesh.colors.empty()) << "the plain colour of the material would be taken for the object's";
   ASSERT_EQ(read->warnings.size(), 1U);
   EXPECT_THAT(read->warnings[0], HasSubstr("square.png"));
 }

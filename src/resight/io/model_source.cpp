@@ -87,7 +87,7 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
 constexpr std::string_view kExpected =
     "expected a TUW model (views/cloud_*.pcd) or a folder of those, a BOP models folder or data set, a folder of "
     "meshes "
-    "(ply, obj, glb, stl), a mesh file, or a coloured cloud (ply, pcd)";
+    "(ply, obj, glb, stl), a mesh file, or a cloud (ply, pcd)";
 
 Result<Locations> find_under(const path& where) {
   Locations found;

@@ -33,9 +33,11 @@ bool read(const schema::Surface* surface, PointCloud& cloud) {
   if (surface == nullptr || surface->colors() == nullptr) return false;
   if (!read(surface->points(), cloud.points) || !read(surface->normals(), cloud.normals)) return false;
   const std::size_t n = cloud.points.size();
-  if (cloud.normals.size() != n || surface->colors()->size() != 3 * n || !are_unit(cloud.normals)) return false;
-  cloud.colors.resize(n);
-  if (n > 0) std::memcpy(cloud.colors.data(), surface->colors()->data(), 3 * n);
+  if (cloud.normals.size() != n || !are_unit(cloud.normals)) return false;
+  const std::size_t num_colors = surface->colors()->size() / 3;
+  if (surface->colors()->size() % 3 != 0 || (num_colors != 0 && num_colors != n)) return false;
+  cloud.colors.resize(num_colors);
+  if (num_colors > 0) std::memcpy(cloud.colors.data(), surface->colors()->data(), 3 * n);
   return true;
 }
 

@@ -14,7 +14,8 @@ namespace resight {
 struct ObjectModel {
   std::string name;    ///< Unique in its library; also the name in TUW files.
   int bop_id = 0;      ///< obj_id of BOP files, >= 1, unique in its library.
-  PointCloud surface;  ///< Voxelised complete surface with normals and colours, for verification and drawing.
+  PointCloud surface;  ///< Voxelised complete surface with normals, for verification and drawing; with colours, unless
+                       ///< they are not known: then the object is recognised by its shape alone, and has no SIFT.
   FeatureSet sift;
   FeatureSet shot;
   ObjectSymmetries symmetries;

@@ -99,16 +99,29 @@ TEST(TrainObjectFromCloud, GivenNormalsAreTurnedOutwards) {
     ASSERT_GT(surface->normals[i].cast<double>().dot((surface->points[i].cast<double>() - kCenter).normalized()), 0.99);
 }
 
+// A label painted over a segmented cloud, a default grey: no statement about what a camera will see.
+TEST(TrainObjectFromCloud, WithoutColoursOrWithOneOnlyItsShapeCounts) {
+  PointCloud ball = make_ball(20000);
+  ball.colors.clear();
+  const Result<ObjectModel> bare = train_object("ball", ball, make_quick_options());
+  ASSERT_TRUE(bare.ok()) << bare.error().message;
+  EXPECT_TRUE(bare->surface.colors.empty());
+  EXPECT_EQ(bare->sift.size(), 0U);
+  EXPECT_GT(bare->shot.size(), 100U);
+  ball.colors.assign(ball.size(), Rgb8{0, 0, 255});
+  const Result<ObjectModel> plain = train_object("ball", ball, make_quick_options());
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  EXPECT_TRUE(plain->surface.colors.empty());
+  EXPECT_EQ(plain->shot.points, bare->shot.points);
+}
+
 TEST(TrainObjectFromCloud, RefusesWhatIsNoObject) {
   const auto message = [](const PointCloud& cloud) {
     const Result<ObjectModel> model = train_object("ball", cloud);
     return model.ok() ? std::string("no error") : model.error().message;
   };
+  EXPECT_THAT(message(make_ball(50)), HasSubstr("model 'ball': only 50 points"));
   PointCloud ball = make_ball(1000);
-  ball.colors.clear();
-  EXPECT_THAT(message(ball), HasSubstr("model 'ball': the points have no colours"));
-  EXPECT_THAT(message(make_ball(50)), HasSubstr("only 50 points"));
-  ball = make_ball(1000);
   ball.points[7].x() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(message(ball), HasSubstr("not finite"));
   ball = make_ball(1000);

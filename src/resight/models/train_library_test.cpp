@@ -144,6 +144,50 @@ TEST(TrainObjectFromSource, TakesOverWhatTheSourceKnows) {
   EXPECT_NEAR(from_cloud->diameter_m, from_mesh->diameter_m, 0.01);
 }
 
+TEST(TrainObjectFromMesh, WithoutAnyColourOnlyItsShapeCounts) {
+  ProceduralObject object = make_any_object();
+  object.mesh.texture = {};
+  object.mesh.uvs.clear();
+  object.mesh.colors.clear();
+  const Result<ObjectModel> bare = train_object("thing", object.mesh, make_quick_options());
+  ASSERT_TRUE(bare.ok()) << bare.error().message;
+  EXPECT_TRUE(bare->surface.colors.empty());
+  EXPECT_EQ(bare->sift.size(), 0U);
+  object.mesh.colors.assign(object.mesh.vertices.size(), Rgb8{200, 30, 20});
+  const Result<ObjectModel> red = train_object("thing", object.mesh, make_quick_options());
+  ASSERT_TRUE(red.ok()) << red.error().message;
+  EXPECT_TRUE(red->surface.has_colors()) << "whoever gave the mesh a colour meant it";
+  EXPECT_EQ(red->shot.points, bare->shot.points);
+  ModelLibrary library;
+  library.objects = {*bare, *red};
+  library.objects[1].name = "other";
+  library.objects[0].bop_id = 1;
+  library.objects[1].bop_id = 2;
+  const fs::path file = fs::temp_directory_path() / ("resight_bare_" + std::to_string(getpid()));
+  ASSERT_TRUE(save_library(library, file).ok());
+  const Result<ModelLibrary> loaded = load_library(file);
+  fs::remove(file);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  EXPECT_TRUE(loaded->objects[0].surface.colors.empty());
+  EXPECT_EQ(loaded->objects[0].surface.points, bare->surface.points);
+  EXPECT_EQ(loaded->objects[1].surface.colors, red->surface.colors);
+}
+
+TEST(TrainObjectFromViews, OneColourInAllPixelsIsNone) {
+  std::vector<TrainingView> views = render_turntable(make_any_object().mesh, make_quick_options().turntable);
+  for (TrainingView& view : views) view.frame.color = Image<Rgb8>(640, 480, Rgb8{0, 0, 255});
+  const Result<ObjectModel> model = train_object("thing", views, make_quick_options());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_TRUE(model->surface.colors.empty());
+  EXPECT_GT(model->surface.size(), 1000U);
+  EXPECT_EQ(model->sift.size(), 0U);
+  views[1].frame.color(0, 0) = {1, 2, 3};  // beside the object
+  EXPECT_TRUE(train_object("thing", views, make_quick_options())->surface.colors.empty());
+  for (std::size_t i = 0; i < views[1].mask.size(); ++i)
+    if (views[1].mask[i] != 0) views[1].frame.color[i] = {1, 2, 3};
+  EXPECT_TRUE(train_object("thing", views, make_quick_options())->surface.has_colors());
+}
+
 TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
   const ProceduralObject object = make_any_object();
   const TrainOptions options = make_quick_options();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -26,6 +27,7 @@ constexpr double kSamplesPerVoxelFace = 6.0;  // of voxel_size^2: a face that fi
 constexpr double kMinCloudSpacing_m = 0.001;  // a pixel of a training view; more points than that only cost time
 constexpr double kMaxCloudSpacings = 400.0;   // over the diameter, for the same reason
 constexpr std::size_t kMinCloudPoints = 100;
+constexpr Rgb8 kUnknownColor{128, 128, 128};
 
 Error fail(const std::string& name, const std::string& what) { return {fmt::format("model '{}': {}", name, what)}; }
 
@@ -45,6 +47,26 @@ Result<void> check_views(const std::string& name, std::span<const TrainingView> 
   if (!any_object_pixel) return fail(name, "the masks of all training views are empty");
   return {};
 }
+
+// No sensor measures one and the same colour everywhere: it was put there by hand or by default.
+bool has_measured_color(std::span<const TrainingView> views) {
+  std::optional<Rgb8> first;
+  for (const TrainingView& view : views)
+    for (std::size_t i = 0; i < view.mask.size(); ++i) {
+      if (view.mask[i] == 0) continue;
+      if (first && !(view.frame.color[i] == *first)) return true;
+      first = view.frame.color[i];
+    }
+  return false;
+}
+
+bool has_measured_color(const PointCloud& cloud) {
+  return cloud.has_colors() &&
+         !std::ranges::all_of(cloud.colors, [&](const Rgb8& c) { return c == cloud.colors.front(); });
+}
+
+// A plain colour of a mesh counts: whoever drew it says so.
+bool has_color(const TriangleMesh& mesh) { return mesh.has_texture() || mesh.colors.size() == mesh.vertices.size(); }
 
 struct ViewPart {
   ObjectFeatures features;
@@ -88,10 +110,12 @@ FeatureSet reduce(const FeatureSet& features, const FeatureMerging& merging, int
   return reduced;
 }
 
-Result<ObjectFeatures> reduce_features(const std::string& name, const ObjectFeatures& features,
+Result<ObjectFeatures> reduce_features(const std::string& name, ObjectFeatures features, bool color_is_known,
                                        const TrainOptions& options) {
+  if (!color_is_known) features.sift = ObjectFeatures{}.sift;  // of shading and silhouettes alone
   if (features.sift.size() + features.shot.size() == 0) {
-    return fail(name, "no SIFT and no SHOT feature in any training view; it could never be recognised");
+    return fail(name, fmt::format("no SIFT and no SHOT feature in any training view; it could never be recognised{}",
+                                  color_is_known ? "" : " (its colours are not known)"));
   }
   return ObjectFeatures{reduce(features.sift, options.sift_merging, options.num_threads),
                         reduce(features.shot, options.shot_merging, options.num_threads)};
@@ -112,6 +136,18 @@ std::vector<TrainingView> render_views(const TriangleMesh& mesh, const TrainOpti
   TurntableOptions turntable = options.turntable;
   turntable.num_threads = options.num_threads;
   return render_turntable(mesh, turntable);
+}
+
+// Features of the views of a mesh, which have colours if its surface has.
+Result<ObjectModel> train_from_renderings(const std::string& name, const TriangleMesh& mesh, PointCloud surface,
+                                          const TrainOptions& options) {
+  const std::vector<TrainingView> views = render_views(mesh, options);
+  const Result<void> checked = check_views(name, views);
+  if (!checked.ok()) return checked.error();
+  Result<ObjectFeatures> features =
+      reduce_features(name, process_views(views, options, false).features, surface.has_colors(), options);
+  if (!features.ok()) return features.error();
+  return make_model(name, *std::move(features), std::move(surface));
 }
 
 std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
@@ -152,7 +188,6 @@ Result<void> check_mesh(const std::string& name, const TriangleMesh& mesh) {
 }
 
 Result<void> check_cloud(const std::string& name, const PointCloud& cloud) {
-  if (!cloud.has_colors()) return fail(name, "the points have no colours");
   if (cloud.size() < kMinCloudPoints)
     return fail(name, fmt::format("only {} points (expected {} or more)", cloud.size(), kMinCloudPoints));
   if (!std::ranges::all_of(cloud.points, [](const Eigen::Vector3f& p) { return p.allFinite(); }))
@@ -160,12 +195,13 @@ Result<void> check_cloud(const std::string& name, const PointCloud& cloud) {
   return check_diameter(name, "cloud", diameter(cloud.points));
 }
 
-// Evenly thinned, with normals outwards.
+// Evenly thinned, with normals outwards and with colours, be they grey.
 Result<PointCloud> prepare_cloud(const std::string& name, const PointCloud& cloud, int num_threads) {
   const Result<void> checked = check_cloud(name, cloud);
   if (!checked.ok()) return checked.error();
   PointCloud even = voxel_downsample(cloud, std::max(kMinCloudSpacing_m, diameter(cloud.points) / kMaxCloudSpacings));
   if (even.size() < kMinCloudPoints) return fail(name, "most of the points coincide");
+  if (!even.has_colors()) even.colors.assign(even.size(), kUnknownColor);
   if (even.has_normals())
     turn_outwards(even.points, even.normals);
   else
@@ -179,6 +215,13 @@ PointCloud fuse_evenly(PointCloud cloud, double voxel_size_m) {
   return fuse_surface(samples, voxel_size_m);
 }
 
+// The surface of a prepared cloud, with the colours that the cloud has measured.
+PointCloud fuse_cloud(PointCloud even, const PointCloud& cloud, const TrainOptions& options) {
+  PointCloud surface = fuse_evenly(std::move(even), options.surface_voxel_m);
+  if (!has_measured_color(cloud)) surface.colors.clear();
+  return surface;
+}
+
 }  // namespace
 
 Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
@@ -186,7 +229,7 @@ Result<ObjectFeatures> train_features(const std::string& name, std::span<const T
   options.check();
   const Result<void> checked = check_views(name, views);
   if (!checked.ok()) return checked.error();
-  return reduce_features(name, process_views(views, options, false).features, options);
+  return reduce_features(name, process_views(views, options, false).features, has_measured_color(views), options);
 }
 
 Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
@@ -196,14 +239,16 @@ Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& me
   const double voxel_face = options.surface_voxel_m * options.surface_voxel_m;
   PointCloud samples = sample_surface(mesh, kSamplesPerVoxelFace / voxel_face);
   if (samples.empty()) return fail(name, "the triangles of the mesh have no area");
-  return fuse_evenly(std::move(samples), options.surface_voxel_m);
+  PointCloud surface = fuse_evenly(std::move(samples), options.surface_voxel_m);
+  if (!has_color(mesh)) surface.colors.clear();
+  return surface;
 }
 
 Result<PointCloud> train_surface(const std::string& name, const PointCloud& cloud, const TrainOptions& options) {
   options.check();
   Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
   if (!even.ok()) return even;
-  return fuse_evenly(*std::move(even), options.surface_voxel_m);
+  return fuse_cloud(*std::move(even), cloud, options);
 }
 
 Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
@@ -215,18 +260,19 @@ Result<ObjectModel> train_object(const std::string& name, std::span<const Traini
   if (joined.samples.cloud.empty()) {
     return fail(name, "no object pixel of any training view has depth, a normal and a distance from depth edges");
   }
-  Result<ObjectFeatures> features = reduce_features(name, joined.features, options);
+  const bool color_is_known = has_measured_color(views);
+  Result<ObjectFeatures> features = reduce_features(name, joined.features, color_is_known, options);
   if (!features.ok()) return features.error();
-  return make_model(name, *std::move(features), fuse_surface(joined.samples, options.surface_voxel_m));
+  PointCloud surface = fuse_surface(joined.samples, options.surface_voxel_m);
+  if (!color_is_known) surface.colors.clear();
+  return make_model(name, *std::move(features), std::move(surface));
 }
 
 Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
   Result<PointCloud> surface = train_surface(name, mesh, options);
   if (!surface.ok()) return surface.error();
-  Result<ObjectFeatures> features = train_features(name, render_views(mesh, options), options);
-  if (!features.ok()) return features.error();
-  ObjectModel model = make_model(name, *std::move(features), *std::move(surface));
-  model.diameter_m = diameter(used_vertices(mesh));
+  Result<ObjectModel> model = train_from_renderings(name, mesh, *std::move(surface), options);
+  if (model.ok()) model->diameter_m = diameter(used_vertices(mesh));
   return model;
 }
 
@@ -235,9 +281,7 @@ Result<ObjectModel> train_object(const std::string& name, const PointCloud& clou
   Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
   if (!even.ok()) return even.error();
   const TriangleMesh splats = make_splat_mesh(*even, {.num_threads = options.num_threads});
-  Result<ObjectFeatures> features = train_features(name, render_views(splats, options), options);
-  if (!features.ok()) return features.error();
-  return make_model(name, *std::move(features), fuse_evenly(*std::move(even), options.surface_voxel_m));
+  return train_from_renderings(name, splats, fuse_cloud(*std::move(even), cloud, options), options);
 }
 
 }  // namespace resight

@@ -36,6 +36,9 @@ struct ObjectFeatures {
 /// of each view in the object frame, merged (TrainOptions.*_merging) and at 8 bits a component (descriptor_code.hpp),
 /// and the surface fused by sensor noise. Symmetries and bop_id are the caller's to set.
 ///
+/// Colours that are not known (the same in every pixel of all views, a mesh with neither texture nor vertex colours, a
+/// cloud with none or one) are left out of the model, and so is SIFT: it is then recognised by its shape alone.
+///
 /// An error, which names the object and the view: no views, a bad frame or mask size, no object pixel with depth and
 /// normal in any view, and an object none of whose views has a feature (one kind is enough).
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
@@ -47,9 +50,9 @@ struct ObjectFeatures {
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh,
                                                const TrainOptions& options = {});
 
-/// Trains from a coloured cloud of the whole surface, with or without normals (estimate_outward_normals(); given ones
-/// are turned outwards as a whole): its views are ray-cast from a splat of each point (make_splat_mesh()). An error: no
-/// colours, points that are not finite, too few points, or a diameter as above.
+/// Trains from a cloud of the whole surface, with or without normals (estimate_outward_normals(); given ones are turned
+/// outwards as a whole): its views are ray-cast from a splat of each point (make_splat_mesh()). An error: points that
+/// are not finite, too few points, or a diameter as above.
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 
@@ -60,7 +63,7 @@ struct ObjectFeatures {
 /// The surface of a mesh as train_object() samples it, after the same checks.
 [[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh,
                                                const TrainOptions& options = {});
-/// The same of a coloured cloud of the whole surface.
+/// The same of a cloud of the whole surface.
 [[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 

@@ -20,6 +20,9 @@ struct MeshPart {
 /// coordinates repeat beyond [0, 1] (which a stacked texture cannot do).
 [[nodiscard]] TriangleMesh join_parts(std::vector<MeshPart> parts);
 
+/// Empties the colours if all are the same.
+void drop_plain_colors(std::vector<Rgb8>& colors);
+
 struct ImportedParts {
   std::vector<MeshPart> parts;
   std::vector<std::string> warnings;

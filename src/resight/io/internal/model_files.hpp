@@ -25,7 +25,7 @@ struct ModelExtras {
 [[nodiscard]] Result<std::vector<ModelLocation>> find_bop_models(const std::filesystem::path& directory);
 [[nodiscard]] Result<ModelSource> read_bop_model(const ModelLocation& location);
 
-/// A coloured cloud (PCD, or PLY without faces): of one view of an object, projected into the camera that saw it, if it
+/// A cloud (PCD, or PLY without faces): of one view of an object, projected into the camera that saw it, if it
 /// is organised, or lies before a camera at its origin and (as far as one tells) hides nothing of itself; else of the
 /// whole surface.
 [[nodiscard]] Result<ModelSource> read_cloud_model(const std::filesystem::path& file, const std::string& name);
