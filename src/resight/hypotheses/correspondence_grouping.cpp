@@ -16,7 +16,7 @@
 namespace resight {
 namespace {
 
-// A clique is passed over if all but this many of its members are in one accepted group: what is left holds no pose.
+// A clique is passed over if all but this many of its members agree with one accepted pose: the rest holds no other.
 constexpr int kMaxFreeMembers = 2;
 
 struct Candidate {
@@ -46,6 +46,7 @@ class GroupCollector {
     for (const int i : clique)
       if (num_uses_[static_cast<std::size_t>(i)] < options_.max_uses) members.push_back(i);
     if (static_cast<int>(members.size()) < pose_options_.min_inliers || is_explained(members)) return;
+    if (++num_estimates_ > options_.max_poses) return;
     auto candidate = estimate(members);
     if (!candidate || is_repeated(*candidate)) return;
     accept(std::move(*candidate));
@@ -63,9 +64,9 @@ class GroupCollector {
  private:
   [[nodiscard]] bool is_explained(const std::vector<int>& members) const {
     if (options_.merge_distance_m <= 0 || options_.merge_rotation_rad <= 0) return false;
-    return std::any_of(is_member_.begin(), is_member_.end(), [&](const std::vector<std::uint8_t>& in_group) {
+    return std::any_of(agrees_.begin(), agrees_.end(), [&](const std::vector<std::uint8_t>& agrees) {
       int num_free = 0;
-      for (const int i : members) num_free += in_group[static_cast<std::size_t>(i)] == 0 ? 1 : 0;
+      for (const int i : members) num_free += agrees[static_cast<std::size_t>(i)] == 0 ? 1 : 0;
       return num_free <= kMaxFreeMembers;
     });
   }
@@ -131,12 +132,12 @@ class GroupCollector {
   }
 
   void accept(Candidate candidate) {
-    std::vector<std::uint8_t> in_group(kept_.size(), 0);
-    for (const int i : candidate.estimate.inliers) {
-      in_group[static_cast<std::size_t>(i)] = 1;
-      ++num_uses_[static_cast<std::size_t>(i)];
-    }
-    is_member_.push_back(std::move(in_group));
+    const std::vector<float> residuals = inlier_residuals_sq(kept_, candidate.estimate.scene_from_model, pose_options_);
+    std::vector<std::uint8_t> agrees(kept_.size());
+    std::transform(residuals.begin(), residuals.end(), agrees.begin(),
+                   [](float r) { return std::isfinite(r) ? 1 : 0; });
+    agrees_.push_back(std::move(agrees));
+    for (const int i : candidate.estimate.inliers) ++num_uses_[static_cast<std::size_t>(i)];
     accepted_.push_back(std::move(candidate));
   }
 
@@ -144,8 +145,9 @@ class GroupCollector {
   const GroupCorrespondencesOptions& options_;
   EstimatePoseOptions pose_options_;
   std::vector<int> num_uses_;
+  int num_estimates_ = 0;
   std::vector<Candidate> accepted_;
-  std::vector<std::vector<std::uint8_t>> is_member_;  // Of each accepted group, per kept correspondence.
+  std::vector<std::vector<std::uint8_t>> agrees_;  // With the pose of each accepted group, per kept correspondence.
 };
 
 // The vertices that can be in a clique of the wanted size, and their graph.
@@ -172,6 +174,7 @@ void GroupCorrespondencesOptions::check() const {
   check_in_range("GroupCorrespondencesOptions.min_group_size", min_group_size, 3, 1e9);
   check_positive("GroupCorrespondencesOptions.max_correspondences", max_correspondences);
   check_not_negative("GroupCorrespondencesOptions.max_cliques", max_cliques);
+  check_positive("GroupCorrespondencesOptions.max_poses", max_poses);
   check_positive("GroupCorrespondencesOptions.max_uses", max_uses);
   check_not_negative("GroupCorrespondencesOptions.merge_distance_m", merge_distance_m);
   check_in_range("GroupCorrespondencesOptions.merge_rotation_rad", merge_rotation_rad, 0.0, std::numbers::pi);

@@ -15,6 +15,7 @@ struct GroupCorrespondencesOptions {
   int min_group_size = 5;                    ///< V4R: 5.
   int max_correspondences = 1000;            ///< Per object; the best by descriptor distance are kept.
   int max_cliques = 20000;          ///< Budget of the clique search in steps, never in milliseconds; then greedy.
+  int max_poses = 500;              ///< Estimated from cliques, the largest first: the other part of the budget.
   int max_uses = 3;                 ///< A correspondence may serve in this many groups (V4R: 3).
   bool expand_groups = true;        ///< Also take the correspondences outside a clique that agree with its pose (ours).
   double merge_distance_m = 0.015;  ///< Of two groups nearer than this (at the middle of their points) and

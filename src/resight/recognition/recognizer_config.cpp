@@ -66,6 +66,7 @@ void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"grouping.min_group_size", &g.min_group_size},
                                   {"grouping.max_correspondences", &g.max_correspondences},
                                   {"grouping.max_cliques", &g.max_cliques},
+                                  {"grouping.max_poses", &g.max_poses},
                                   {"grouping.max_uses", &g.max_uses},
                                   {"grouping.expand_groups", &g.expand_groups},
                                   {"grouping.merge_distance_m", &g.merge_distance_m},
@@ -139,7 +140,9 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.color_sigma_l", &v.color_sigma_l},
                                   {"verify.color_sigma_ab", &v.color_sigma_ab},
                                   {"verify.light_max_log_exposure", &v.light.max_log_exposure},
+                                  {"verify.light_max_log_white_balance", &v.light.max_log_white_balance},
                                   {"verify.light_max_log_chroma", &v.light.max_log_chroma},
+                                  {"verify.light_max_veil", &v.light.max_veil},
                                   {"verify.light_max_log_shading", &v.light.max_log_shading},
                                   {"verify.use_planes", &v.use_planes},
                                   {"verify.min_plane_points", &v.min_plane_points},
@@ -254,12 +257,10 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
   // The paper's thresholds are the defaults of the stages; here stands what tells the presets apart, and what the paper
-  // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m), and V4R's colour sigmas of 77 CIELAB units let a
-  // green can pass for a grey one.
+  // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m), and how much of an object must be explained.
   config.shot.max_keypoint_depth_m = 2.0;
-  config.verify.color_sigma_l = 0.4;
-  config.verify.color_sigma_ab = 0.2;
   config.changes.occlusion_test = OcclusionTest::kSphericalBins;
+  config.verify.min_explained_share = 0.35;
   if (name == "mvr-chd") return config;
   if (name == "mvr") {
     config.detect_changes = false;
@@ -267,6 +268,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
+    config.verify.min_explained_share = 0.7;
     return config;
   }
   throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));

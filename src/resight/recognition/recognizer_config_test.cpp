@@ -105,7 +105,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"changes", num_fields<DetectChangesOptions>() - kThreads},
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
-      {"verify", num_fields<VerifyOptions>() - kThreads},
+      {"verify", num_fields<VerifyOptions>() - 1 - kThreads + num_fields<LightLimits>()},
       {"history", num_fields<ObjectHistoryOptions>() - 1 + num_fields<PresenceOptions>()}};
   std::map<std::string, int> found;
   for (const auto& [name, value] : RecognizerConfig{}.to_settings())

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "resight/verification/local_scene.hpp"
 
@@ -28,11 +29,12 @@ struct Match {
   float distance_sq;
 };
 
+}  // namespace
+
 // Works out the cues of one hypothesis step by step. Everything in the world frame.
-class CueComputer {
- public:
-  CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
-              const VerifyOptions& options)
+struct CueComputer::Impl {
+  Impl(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+       const VerifyOptions& options)
       : model_(model),
         scene_(scene),
         options_(options),
@@ -45,29 +47,33 @@ class CueComputer {
     for (const Eigen::Vector3f& n : model.normals) normals_.push_back(motion.rotation * n);
   }
 
-  HypothesisCues run(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
+  void look(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+    if (visibility_.visible.empty()) return;
+    std::vector<Eigen::Vector3f> visible_points;
+    visible_points.reserve(visibility_.visible.size());
+    for (const int i : visibility_.visible) visible_points.push_back(points_[i]);
+    const float inlier_distance = static_cast<float>(options_.inlier_distance_m);
+    local_.emplace(scene_.points, scene_.blocks, visible_points,
+                   inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
+    find_matches(*local_);
+    fit_light_of_matches(*local_);
+  }
+
+  HypothesisCues finish(const Eigen::Array3f& white_balance) {
     cues_.state.assign(points_.size(), ModelPointState::kNotVisible);
-    if (!visibility_.visible.empty()) {
-      std::vector<Eigen::Vector3f> visible_points;
-      visible_points.reserve(visibility_.visible.size());
-      for (const int i : visibility_.visible) visible_points.push_back(points_[i]);
-      const float inlier_distance = static_cast<float>(options_.inlier_distance_m);
-      const LocalScene local(scene_.points, scene_.blocks, visible_points,
-                             inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
-      find_matches(local);
-      adapt_colors(local);
-      weigh_matches(local);
+    if (local_) {
+      adapt_colors(limit_chroma(light_, white_balance, options_.light));
+      weigh_matches(*local_);
       classify_model_points();
-      claim_scene_points(local);
-      find_clutter(local);
+      claim_scene_points(*local_);
+      find_clutter(*local_);
       add_pierced_planes();
     }
-    fill_evidence(views.size());
+    fill_evidence(visibility_.sight.size());
     return std::move(cues_);
   }
 
- private:
   void find_matches(const LocalScene& local) {
     matches_.reserve(visibility_.visible.size() * 24);
     for (std::size_t v = 0; v < visibility_.visible.size(); ++v)
@@ -84,9 +90,8 @@ class CueComputer {
                         : 1.0F;
   }
 
-  // Fits the light from each visible point and its nearest scene point of similar normal, and puts the model's colours
-  // into it.
-  void adapt_colors(const LocalScene& local) {
+  // From each visible point and its nearest scene point of similar normal.
+  void fit_light_of_matches(const LocalScene& local) {
     if (!use_color_) return;
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
     std::vector<Eigen::Vector3f> model_light;
@@ -105,7 +110,12 @@ class CueComputer {
       scene_light.push_back(scene_.linear_light[local.scene_index(nearest->local)]);
       if (!normals_.empty()) normals.push_back(normals_[point]);
     }
-    const LightFit light = fit_light(model_light, scene_light, normals, options_.light);
+    light_ = fit_light(model_light, scene_light, normals, options_.light);
+  }
+
+  // The model's colours under the light of the scene.
+  void adapt_colors(const LightFit& light) {
+    if (!use_color_) return;
     lab_.reserve(visibility_.visible.size());
     for (const int i : visibility_.visible)
       lab_.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
@@ -274,6 +284,8 @@ class CueComputer {
   std::vector<Eigen::Vector3f> points_;
   std::vector<Eigen::Vector3f> normals_;
   ModelVisibility visibility_;
+  std::optional<LocalScene> local_;  // None if nothing is visible.
+  LightFit light_;
   std::vector<Match> matches_;  // Those of one visible point stand side by side.
   std::vector<LabColor> lab_;   // Per visible point, under the scene's light.
   float inverse_color_l_ = 0;
@@ -283,12 +295,16 @@ class CueComputer {
   HypothesisCues cues_;
 };
 
-}  // namespace
-
-HypothesisCues compute_cues(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
-                            std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
-                            const VerifyOptions& options) {
-  return CueComputer(model, world_from_object, scene, options).run(views, allowed);
+CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+                         std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
+                         const VerifyOptions& options)
+    : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
+  impl_->look(views, allowed);
 }
+CueComputer::~CueComputer() = default;
+CueComputer::CueComputer(CueComputer&&) noexcept = default;
+
+const LightFit& CueComputer::light() const { return impl_->light_; }
+HypothesisCues CueComputer::finish(const Eigen::Array3f& white_balance) { return impl_->finish(white_balance); }
 
 }  // namespace resight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,16 +28,34 @@ struct HypothesisCues {
   std::vector<ModelPointState> state;  ///< Per model point.
 };
 
-/// Cues of a model at its pose. `allowed`: per view, non-zero = the object may be present there.
+/// Works out the cues of a model at its pose, in two steps: the light on the scene is found from all hypotheses
+/// together. `allowed`: per view, non-zero = the object may be present there.
 ///
-/// Scene point q is explained with the largest weight over visible model points p within t = inlier_distance_m:
+/// The model's colours are put into the light of the scene (light_fit.hpp). Scene point q is explained with the largest
+/// weight over visible model points p within t = inlier_distance_m:
 ///   exp(-d^2 / 2t^2) * colour(p, q) * max(0, 1 - angle(n_p, n_q) / 90 deg),
 ///   colour = exp(-1/2 (dl^2 / 2 sigma_l^2 + (da^2 + db^2) / 2 sigma_ab^2));
 /// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
 /// exceeds min_inlier_weight for a scene point within t and max_inlier_angle_rad, and most views do not look through
 /// it. Points of a plane larger than the object cost min(weight, plane_weight) instead of being explained.
-[[nodiscard]] HypothesisCues compute_cues(const PreparedModel& model, const Rigid3& world_from_object,
-                                          const PreparedScene& scene, std::span<const DepthView> views,
-                                          std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+class CueComputer {
+ public:
+  /// Finds what is visible, its neighbours in the scene, and the light on it. All arguments but the pose must outlive
+  /// it.
+  CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+              std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+  ~CueComputer();
+  CueComputer(CueComputer&&) noexcept;
+
+  /// As the colours of this hypothesis alone would have it, its chroma not limited.
+  [[nodiscard]] const LightFit& light() const;
+  /// The cues, under the white balance that the hypotheses of the scene agree on (LightFit::chroma()). To be called
+  /// once.
+  [[nodiscard]] HypothesisCues finish(const Eigen::Array3f& white_balance);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace resight

@@ -128,7 +128,7 @@ TEST(FindVisiblePoints, AModelHidesItself) {
   EXPECT_GT(rear_hidden, 100);
 }
 
-// The formulas of compute_cues() over all pairs, in double precision.
+// The formulas of CueComputer over all pairs, in double precision.
 struct BruteForce {
   std::map<int, double> explained;
   int num_inliers = 0;
@@ -163,16 +163,17 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
   return result;
 }
 
-TEST(ComputeCues, AgreesWithTheFormulasOverAllPairs) {
+TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
   c.options.use_planes = false;
-  c.options.light = {0, 0, 0};  // The oracle does not know of the light.
+  c.options.light = {0, 0, 0, 0, 0};  // The oracle does not know of the light.
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
        {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {
     const ModelVisibility visibility =
         find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options);
-    const HypothesisCues cues = compute_cues(c.model, pose, c.scene, c.depth_views, c.everywhere, c.options);
+    const HypothesisCues cues =
+        CueComputer(c.model, pose, c.scene, c.depth_views, c.everywhere, c.options).finish(Eigen::Array3f::Zero());
     const BruteForce expected = brute_force(c, pose, visibility);
     EXPECT_EQ(cues.evidence.num_visible, static_cast<int>(visibility.visible.size()));
     EXPECT_NEAR(cues.evidence.num_explained, expected.num_inliers, 2);
@@ -189,14 +190,15 @@ TEST(ComputeCues, AgreesWithTheFormulasOverAllPairs) {
   }
 }
 
-TEST(ComputeCues, ClutterIsTheUnexplainedRestOfASegmentNearby) {
+TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
   // The lower half of the box alone is the model: the upper half of its sides is left over.
   SmallCase c;
   c.options.use_planes = false;
   const Solid half{Shape::kBox, {0.08, 0.06, 0.05}, c.solid.paint, on_table(0, 0, 0.025, 0.3)};
   const PreparedModel model = prepare_model(make_model("half", half), c.options);
   const HypothesisCues cues =
-      compute_cues(model, half.world_from_object, c.scene, c.depth_views, c.everywhere, c.options);
+      CueComputer(model, half.world_from_object, c.scene, c.depth_views, c.everywhere, c.options)
+          .finish(Eigen::Array3f::Zero());
   std::map<int, float> explained;
   for (const WeightedPoint& w : cues.explained) explained[w.point] = w.weight;
   int same_segment = 0;

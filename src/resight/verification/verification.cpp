@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "resight/core/check.hpp"
@@ -69,6 +70,29 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
   if (!present.empty())
     for (std::size_t v = 0; v < num_views; ++v) allowed[v] = present[v * num_hypotheses + h];
   return allowed;
+}
+
+// First the light on the scene from all hypotheses, then what each of them looks like in it.
+std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypotheses,
+                                             const std::vector<PreparedModel>& models, const PreparedScene& scene,
+                                             std::span<const DepthView> views, std::span<const std::uint8_t> present,
+                                             const VerifyOptions& options) {
+  std::vector<std::optional<CueComputer>> computers(hypotheses.size());
+  parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
+    const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);
+    computers[h].emplace(models[hypotheses[h].object], hypotheses[h].world_from_object, scene, views, allowed, options);
+  });
+  std::vector<LightFit> lights;
+  std::vector<float> votes;  // Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are.
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    lights.push_back(computers[h]->light());
+    votes.push_back(static_cast<float>(hypotheses[h].correspondences.size() * hypotheses[h].correspondences.size()));
+  }
+  const Eigen::Array3f white_balance = find_white_balance(lights, votes, options.light);
+  std::vector<HypothesisCues> cues(hypotheses.size());
+  parallel_for(hypotheses.size(), options.num_threads,
+               [&](std::size_t h) { cues[h] = computers[h]->finish(white_balance); });
+  return cues;
 }
 
 // Whether there is evidence enough to enter the choice; else the verdict says why not.
@@ -173,6 +197,8 @@ void VerifyOptions::check() const {
   check_positive(name("color_sigma_l"), color_sigma_l);
   check_positive(name("color_sigma_ab"), color_sigma_ab);
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
+  check_not_negative(name("light.max_log_white_balance"), light.max_log_white_balance);
+  check_not_negative(name("light.max_veil"), light.max_veil);
   check_not_negative(name("light.max_log_chroma"), light.max_log_chroma);
   check_not_negative(name("light.max_log_shading"), light.max_log_shading);
   check_positive(name("min_plane_points"), min_plane_points);
@@ -212,12 +238,7 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
       prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models, options)), options);
   result.num_planes = static_cast<int>(scene.planes.size());
   result.num_segments = scene.num_segments;
-  std::vector<HypothesisCues> cues(hypotheses.size());
-  parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
-    const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);
-    cues[h] = compute_cues(models[hypotheses[h].object], hypotheses[h].world_from_object, scene, depth_views, allowed,
-                           options);
-  });
+  std::vector<HypothesisCues> cues = compute_all_cues(hypotheses, models, scene, depth_views, present, options);
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);

@@ -34,8 +34,8 @@ struct VerifyOptions {
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
-  double color_sigma_l = 0.6;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
-  double color_sigma_ab = 0.6;  ///< ...and of a/128, b/128.
+  double color_sigma_l = 0.4;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
+  double color_sigma_ab = 0.2;  ///< ...and of a/128, b/128.
   LightLimits light{};          ///< What the light may do to the colours of the model.
   bool use_planes = true;
   int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
@@ -58,7 +58,7 @@ struct VerifyOptions {
   int min_shared_points = 10;            ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.35;     ///< ...and less of the visible points explained too. 0 turns either off.
+  double min_explained_share = 0.7;     ///< ...and less of the visible points explained too. 0 turns either off.
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;

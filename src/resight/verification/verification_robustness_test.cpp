@@ -74,11 +74,12 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
     hypotheses.push_back(make_hypothesis(
         i % 3, disturb(on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065),
                        {rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0}, kZ, rng.uniform(-0.3, 0.3))));
-  const VerifyResult serial = f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2});
+  const VerifyResult serial =
+      f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2, .min_explained_share = 0.35});
   ASSERT_GT(accepted(serial).size(), 0U);
   for (const int threads : {2, 5}) {
-    const VerifyResult parallel =
-        f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2, .num_threads = threads});
+    const VerifyResult parallel = f.verify(
+        hypotheses, make_library(), {.max_exact_hypotheses = 2, .min_explained_share = 0.35, .num_threads = threads});
     EXPECT_EQ(parallel.cost, serial.cost);
     EXPECT_EQ(parallel.num_moves, serial.num_moves);
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
