@@ -144,6 +144,11 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.light_max_log_chroma", &v.light.max_log_chroma},
                                   {"verify.light_max_veil", &v.light.max_veil},
                                   {"verify.light_max_log_shading", &v.light.max_log_shading},
+                                  {"verify.refine_max_iterations", &v.refine.max_iterations},
+                                  {"verify.refine_max_distance_m", &v.refine.max_distance_m},
+                                  {"verify.refine_max_normal_angle_rad", &v.refine.max_normal_angle_rad},
+                                  {"verify.refine_max_step_m", &v.refine.max_step_m},
+                                  {"verify.refine_correspondence_weight", &v.refine.correspondence_weight},
                                   {"verify.use_planes", &v.use_planes},
                                   {"verify.min_plane_points", &v.min_plane_points},
                                   {"verify.plane_distance_m", &v.plane_distance_m},
@@ -261,6 +266,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   config.shot.max_keypoint_depth_m = 2.0;
   config.changes.occlusion_test = OcclusionTest::kSphericalBins;
   config.verify.min_explained_share = 0.35;
+  config.verify.refine.max_iterations = 0;
   if (name == "mvr-chd") return config;
   if (name == "mvr") {
     config.detect_changes = false;
@@ -268,7 +274,8 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.min_explained_share = 0.7;
+    config.verify.min_explained_share = VerifyOptions{}.min_explained_share;
+    config.verify.refine = {};
     return config;
   }
   throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));

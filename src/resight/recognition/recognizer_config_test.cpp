@@ -105,7 +105,8 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"changes", num_fields<DetectChangesOptions>() - kThreads},
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
-      {"verify", num_fields<VerifyOptions>() - 1 - kThreads + num_fields<LightLimits>()},
+      {"verify",
+       num_fields<VerifyOptions>() - 2 - kThreads + num_fields<LightLimits>() + num_fields<RefinePoseOptions>()},
       {"history", num_fields<ObjectHistoryOptions>() - 1 + num_fields<PresenceOptions>()}};
   std::map<std::string, int> found;
   for (const auto& [name, value] : RecognizerConfig{}.to_settings())

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "resight/verification/local_scene.hpp"
+#include "resight/verification/pose_refinement.hpp"
 
 namespace resight {
 namespace {
@@ -40,11 +41,27 @@ struct CueComputer::Impl {
         options_(options),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
         use_color_(!model.linear_light.empty() && !scene.linear_light.empty()) {
+    place(world_from_object);
+  }
+
+  void place(const Rigid3& world_from_object) {
+    cues_.evidence.world_from_object = world_from_object;
     const Rigid3f motion(world_from_object);
-    points_.reserve(model.points.size());
-    normals_.reserve(model.normals.size());
-    for (const Eigen::Vector3f& p : model.points) points_.push_back(motion * p);
-    for (const Eigen::Vector3f& n : model.normals) normals_.push_back(motion.rotation * n);
+    points_.clear();
+    normals_.clear();
+    points_.reserve(model_.points.size());
+    normals_.reserve(model_.normals.size());
+    for (const Eigen::Vector3f& p : model_.points) points_.push_back(motion * p);
+    for (const Eigen::Vector3f& n : model_.normals) normals_.push_back(motion.rotation * n);
+  }
+
+  // Moves the hypothesis onto the scene before it is judged.
+  void refine(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
+              std::span<const std::uint8_t> allowed) {
+    if (options_.refine.max_iterations == 0) return;
+    const ModelVisibility sight = find_visible_points(points_, normals_, views, allowed, options_);
+    place(refine_pose_on_scene(model_, cues_.evidence.world_from_object, sight.visible, correspondences, scene_,
+                               options_.refine));
   }
 
   void look(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
@@ -295,10 +312,12 @@ struct CueComputer::Impl {
   HypothesisCues cues_;
 };
 
-CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_object,
+                         std::span<const Correspondence> correspondences, const PreparedScene& scene,
                          std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                          const VerifyOptions& options)
     : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
+  impl_->refine(correspondences, views, allowed);
   impl_->look(views, allowed);
 }
 CueComputer::~CueComputer() = default;

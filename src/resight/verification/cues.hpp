@@ -40,9 +40,10 @@ struct HypothesisCues {
 /// it. Points of a plane larger than the object cost min(weight, plane_weight) instead of being explained.
 class CueComputer {
  public:
-  /// Finds what is visible, its neighbours in the scene, and the light on it. All arguments but the pose must outlive
-  /// it.
-  CueComputer(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+  /// Refines the pose, then finds what is visible, its neighbours in the scene, and the light on it. All arguments but
+  /// the pose must outlive it.
+  CueComputer(const PreparedModel& model, const Rigid3& world_from_object,
+              std::span<const Correspondence> correspondences, const PreparedScene& scene,
               std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);
   ~CueComputer();
   CueComputer(CueComputer&&) noexcept;

@@ -166,6 +166,7 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
 TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
   c.options.use_planes = false;
+  c.options.refine.max_iterations = 0;
   c.options.light = {0, 0, 0, 0, 0};  // The oracle does not know of the light.
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
@@ -173,7 +174,7 @@ TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
     const ModelVisibility visibility =
         find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options);
     const HypothesisCues cues =
-        CueComputer(c.model, pose, c.scene, c.depth_views, c.everywhere, c.options).finish(Eigen::Array3f::Zero());
+        CueComputer(c.model, pose, {}, c.scene, c.depth_views, c.everywhere, c.options).finish(Eigen::Array3f::Zero());
     const BruteForce expected = brute_force(c, pose, visibility);
     EXPECT_EQ(cues.evidence.num_visible, static_cast<int>(visibility.visible.size()));
     EXPECT_NEAR(cues.evidence.num_explained, expected.num_inliers, 2);
@@ -197,7 +198,7 @@ TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
   const Solid half{Shape::kBox, {0.08, 0.06, 0.05}, c.solid.paint, on_table(0, 0, 0.025, 0.3)};
   const PreparedModel model = prepare_model(make_model("half", half), c.options);
   const HypothesisCues cues =
-      CueComputer(model, half.world_from_object, c.scene, c.depth_views, c.everywhere, c.options)
+      CueComputer(model, half.world_from_object, {}, c.scene, c.depth_views, c.everywhere, c.options)
           .finish(Eigen::Array3f::Zero());
   std::map<int, float> explained;
   for (const WeightedPoint& w : cues.explained) explained[w.point] = w.weight;

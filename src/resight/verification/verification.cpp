@@ -80,7 +80,8 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
   std::vector<std::optional<CueComputer>> computers(hypotheses.size());
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
     const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);
-    computers[h].emplace(models[hypotheses[h].object], hypotheses[h].world_from_object, scene, views, allowed, options);
+    computers[h].emplace(models[hypotheses[h].object], hypotheses[h].world_from_object, hypotheses[h].correspondences,
+                         scene, views, allowed, options);
   });
   std::vector<LightFit> lights;
   std::vector<float> votes;  // Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are.
@@ -148,7 +149,7 @@ void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
   std::vector<PlacedModel> placed;
   for (const int h : candidates) {
     candidate_cues.push_back(&cues[h]);
-    placed.push_back({&library.objects[hypotheses[h].object].surface, hypotheses[h].world_from_object});
+    placed.push_back({&library.objects[hypotheses[h].object].surface, result.evidence[h].world_from_object});
   }
   const std::vector<SharedVoxels> shared = count_shared_voxels(placed, options.occupancy_voxel_m, options.num_threads);
   const SelectionProblem problem = make_selection_problem(candidate_cues, shared, options);
@@ -196,6 +197,7 @@ void VerifyOptions::check() const {
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
   check_positive(name("color_sigma_l"), color_sigma_l);
   check_positive(name("color_sigma_ab"), color_sigma_ab);
+  refine.check();
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
   check_not_negative(name("light.max_log_white_balance"), light.max_log_white_balance);
   check_not_negative(name("light.max_veil"), light.max_veil);

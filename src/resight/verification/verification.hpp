@@ -9,6 +9,7 @@
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/verification/light_fit.hpp"
+#include "resight/verification/pose_refinement.hpp"
 
 namespace resight {
 
@@ -37,6 +38,7 @@ struct VerifyOptions {
   double color_sigma_l = 0.4;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
   double color_sigma_ab = 0.2;  ///< ...and of a/128, b/128.
   LightLimits light{};          ///< What the light may do to the colours of the model.
+  RefinePoseOptions refine{};   ///< Before it is judged, each hypothesis is moved onto the scene.
   bool use_planes = true;
   int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
   double plane_distance_m = 0.01;     ///< V4R: 2 cm, which swallows boxes that lie flat.
@@ -58,7 +60,7 @@ struct VerifyOptions {
   int min_shared_points = 10;            ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.7;     ///< ...and less of the visible points explained too. 0 turns either off.
+  double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
@@ -85,6 +87,7 @@ enum class Verdict : std::uint8_t {
 /// What speaks for and against one hypothesis.
 struct HypothesisEvidence {
   bool accepted = false;
+  Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined.
   double score = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
                      ///< each weighted by how well; steep ones count little.
   double visible_share = 0;    ///< Visible / all model points.

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/pose_refinement.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "resight/core/check.hpp"
+#include "resight/verification/local_scene.hpp"
+#include "resight/verification/scene_preparation.hpp"
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kMaxPoints = 600;
+constexpr int kMinPairs = 20;
+constexpr double kDamping = 1e-3;  // Share of the mean direction that holds those which nothing else does.
+constexpr double kStill = 1e-5;    // Metres and radians.
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// The normal equations of one step: turn about the middle and shift, both in the world frame. Turns are scaled to
+// metres by the radius of the points, so that the damping treats both alike.
+struct StepEquations {
+  Matrix6 matrix = Matrix6::Zero();
+  Vector6 right = Vector6::Zero();
+  int num_pairs = 0;
+
+  void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight, double radius_m) {
+    Vector6 row;
+    row << arm.cross(normal) / radius_m, normal;
+    matrix += weight * row * row.transpose();
+    right += weight * residual * row;
+    ++num_pairs;
+  }
+  // A pair of points that should coincide.
+  void add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight, double radius_m) {
+    for (int axis = 0; axis < 3; ++axis) add(arm, Eigen::Vector3d::Unit(axis), offset[axis], weight, radius_m);
+  }
+  [[nodiscard]] Vector6 solve() const {
+    Matrix6 damped = matrix;
+    damped.diagonal().array() += kDamping * matrix.trace() / 6;
+    return damped.ldlt().solve(right);
+  }
+};
+
+class Refiner {
+ public:
+  Refiner(const PreparedModel& model, std::span<const int> visible, std::span<const Correspondence> correspondences,
+          const PreparedScene& scene, const RefinePoseOptions& options)
+      : correspondences_(correspondences), scene_(scene), options_(options) {
+    const std::size_t step = (visible.size() + kMaxPoints - 1) / kMaxPoints;
+    for (std::size_t i = 0; i < visible.size(); i += step) {
+      points_.push_back(model.points[static_cast<std::size_t>(visible[i])]);
+      normals_.push_back(model.normals[static_cast<std::size_t>(visible[i])]);
+      middle_ += points_.back();
+    }
+    middle_ /= static_cast<float>(points_.size());
+    for (const Eigen::Vector3f& p : points_) radius_m_ = std::max<double>(radius_m_, (p - middle_).norm());
+  }
+
+  [[nodiscard]] Rigid3 run(const Rigid3& start) const {
+    std::vector<Eigen::Vector3f> around;
+    for (const Eigen::Vector3f& p : points_) around.push_back(Rigid3f(start) * p);
+    const LocalScene local(scene_.points, scene_.blocks, around,
+                           static_cast<float>(options_.max_distance_m + options_.max_step_m),
+                           static_cast<float>(options_.max_distance_m));
+    Rigid3 pose = start;
+    const Eigen::Vector3d start_middle = start * middle_.cast<double>().eval();
+    for (int i = 0; i < options_.max_iterations; ++i) {
+      const StepEquations equations = linearize(pose, local);
+      if (equations.num_pairs < kMinPairs) return start;
+      const Vector6 x = equations.solve();
+      const Eigen::Vector3d turn = x.head<3>() / radius_m_;
+      const Eigen::Vector3d middle = pose * middle_.cast<double>().eval();
+      pose.rotation = Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? turn.normalized() : Eigen::Vector3d::UnitX())
+                          .toRotationMatrix() *
+                      pose.rotation;
+      pose.translation = middle + x.tail<3>() - pose.rotation * middle_.cast<double>();
+      if ((pose * middle_.cast<double>().eval() - start_middle).norm() > options_.max_step_m) return start;
+      if (x.norm() < kStill) break;
+    }
+    return pose;
+  }
+
+ private:
+  [[nodiscard]] StepEquations linearize(const Rigid3& pose, const LocalScene& local) const {
+    StepEquations equations;
+    add_surface(pose, local, equations);
+    add_correspondences(pose, equations);
+    return equations;
+  }
+
+  void add_correspondences(const Rigid3& pose, StepEquations& equations) const {
+    const Eigen::Vector3d middle = pose * middle_.cast<double>().eval();
+    for (const Correspondence& c : correspondences_) {
+      const Eigen::Vector3d p = pose * c.model_point.cast<double>().eval();
+      const Eigen::Vector3d offset = c.scene_point.cast<double>() - p;
+      const double u = 1 - offset.squaredNorm() / (options_.max_distance_m * options_.max_distance_m);
+      if (u > 0) equations.add_point(p - middle, offset, options_.correspondence_weight * u * u, radius_m_);
+    }
+  }
+
+  void add_surface(const Rigid3& pose, const LocalScene& local, StepEquations& equations) const {
+    const Rigid3f motion(pose);
+    const Eigen::Vector3f middle = motion * middle_;
+    const float max_distance = static_cast<float>(options_.max_distance_m);
+    const float min_dot = static_cast<float>(std::cos(options_.max_normal_angle_rad));
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Eigen::Vector3f p = motion * points_[i];
+      const Eigen::Vector3f n = motion.rotation * normals_[i];
+      int nearest = -1;
+      float nearest_sq = max_distance * max_distance;
+      local.visit_within(p, max_distance, [&](std::size_t q, float distance_sq) {
+        const int index = local.scene_index(q);
+        if (distance_sq <= nearest_sq && n.dot(scene_.normals[static_cast<std::size_t>(index)]) >= min_dot) {
+          nearest_sq = distance_sq;
+          nearest = index;
+        }
+        return true;
+      });
+      if (nearest < 0) continue;
+      const Eigen::Vector3f& normal = scene_.normals[static_cast<std::size_t>(nearest)];
+      const float residual = normal.dot(scene_.points[static_cast<std::size_t>(nearest)] - p);
+      const float u = 1 - nearest_sq / (max_distance * max_distance);
+      equations.add((p - middle).cast<double>(), normal.cast<double>(), residual, u * u, radius_m_);
+    }
+  }
+
+  std::span<const Correspondence> correspondences_;
+  const PreparedScene& scene_;
+  const RefinePoseOptions& options_;
+  std::vector<Eigen::Vector3f> points_;  // Object frame.
+  std::vector<Eigen::Vector3f> normals_;
+  Eigen::Vector3f middle_ = Eigen::Vector3f::Zero();
+  double radius_m_ = 1e-3;
+};
+
+}  // namespace
+
+void RefinePoseOptions::check() const {
+  check_not_negative("RefinePoseOptions.max_iterations", max_iterations);
+  check_positive("RefinePoseOptions.max_distance_m", max_distance_m);
+  check_in_range("RefinePoseOptions.max_normal_angle_rad", max_normal_angle_rad, 0, std::numbers::pi / 2);
+  check_positive("RefinePoseOptions.max_step_m", max_step_m);
+  check_not_negative("RefinePoseOptions.correspondence_weight", correspondence_weight);
+}
+
+Rigid3 refine_pose_on_scene(const PreparedModel& model, const Rigid3& world_from_object, std::span<const int> visible,
+                            std::span<const Correspondence> correspondences, const PreparedScene& scene,
+                            const RefinePoseOptions& options) {
+  options.check();
+  if (options.max_iterations == 0 || model.normals.empty() || scene.normals.empty() ||
+      static_cast<int>(visible.size()) < kMinPairs)
+    return world_from_object;
+  return Refiner(model, visible, correspondences, scene, options).run(world_from_object);
+}
+
+}  // namespace resight
