@@ -40,11 +40,12 @@ void simulate_scene(const SimulateArguments& arguments) {
 }
 
 void simulate_benchmark(const SimulateArguments& arguments) {
-  const std::vector<SceneScript> scripts = make_dynamic_tabletop(arguments.seed);
+  std::vector<SceneScript> scripts = make_dynamic_tabletop(arguments.seed);
   const std::size_t num_models = dynamic_tabletop_library().size();
   std::size_t num_views = 0;
   std::size_t num_changes = 0;
-  for (const SceneScript& script : scripts) {
+  for (SceneScript& script : scripts) {
+    script.sensor.noise_free = arguments.noise_free;
     num_views += script.world_from_camera.size();
     num_changes += script.changes.size();
   }

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/event_score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace resight {
+namespace {
+
+using Kind = ObjectEventKind;
+
+ModelLibrary make_library() {
+  ModelLibrary library;
+  library.objects.resize(2);
+  library.objects[0].name = "mug";
+  library.objects[0].diameter_m = 0.1F;
+  library.objects[1].name = "soup";
+  return library;
+}
+
+Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+
+const TrueChange kMove{4, Kind::kMoved, "mug", true, at(0), at(0.3)};
+const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, at(-0.3), std::nullopt};
+const ChangeSight kAtOnce{4, 5};
+
+EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeSight>& sights,
+                 const std::vector<ReportedChange>& reported) {
+  return score_events(truth, sights, reported, make_library());
+}
+
+TEST(EventScore, RightKindPlacesAndTime) {
+  const EventScore s = score({kMove, kRemoval}, {kAtOnce, {6, -1}},
+                             {{7, Kind::kMoved, "mug", at(0.01), at(0.29)}, {6, Kind::kRemoved, "soup", at(-0.3), {}}});
+  EXPECT_EQ(s.events, (RecognitionScore{2, 0, 0}));
+  EXPECT_EQ(s.departures, (RecognitionScore{2, 0, 0}));
+  EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(s.delays, (std::vector<int>{0, 2}));  // by view: the removal at once, the move two views after view 5
+}
+
+TEST(EventScore, AMoveToldAsRemovalAndAdditionHasItsPlacesRight) {
+  const EventScore s =
+      score({kMove}, {kAtOnce}, {{4, Kind::kRemoved, "mug", at(0), {}}, {5, Kind::kAdded, "mug", {}, at(0.3)}});
+  EXPECT_EQ(s.events, (RecognitionScore{0, 2, 1}));
+  EXPECT_EQ(s.departures, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
+}
+
+TEST(EventScore, TooEarlyElsewhereOrTwiceIsWrong) {
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{3, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", at(0), at(0.4)}}).events, (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(
+      score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", at(0), at(0.3)}, {8, Kind::kMoved, "mug", at(0), at(0.3)}})
+          .events,
+      (RecognitionScore{1, 1, 0}));
+}
+
+TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
+  const ChangeSight never{-1, 5};
+  EXPECT_EQ(score({kMove}, {never}, {}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {never}, {}).arrivals, (RecognitionScore{0, 0, 1}));
+  EXPECT_EQ(score({kMove}, {never}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+}
+
+TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
+  TrueChange of_stranger = kRemoval;
+  of_stranger.object = "vase";
+  of_stranger.known = false;
+  const EventScore s = score({of_stranger}, {{6, -1}},
+                             {{6, Kind::kFound, "mug", {}, at(0)}, {6, Kind::kStillThere, "mug", at(0), at(0)}});
+  EXPECT_EQ(s.events, (RecognitionScore{0, 0, 0}));
+}
+
+// A camera at the origin that looks along z at a wall.
+RgbdFrame frame_with_wall(float depth_m) {
+  RgbdFrame frame;
+  frame.camera = {64, 48, 50, 50, 31.5, 23.5};
+  frame.depth_m = Image<float>(64, 48, depth_m);
+  return frame;
+}
+
+TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(4);
+  GroundTruthObject arrived;
+  arrived.object = "mug";
+  arrived.camera_from_object = at(0.3);
+  arrived.visible_share = 0.02;  // still behind something
+  truth.views[1].objects = truth.views[2].objects = {arrived};
+  arrived.visible_share = 0.5;
+  truth.views[3].objects = {arrived};
+  ChangeSightFinder finder(library, truth);
+  finder.add_view(frame_with_wall(2.0F));  // before the change: does not count
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  finder.add_view(frame_with_wall(0.7F));  // something stands before the place
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, -1);
+  finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, 3);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/score_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace resight {
+namespace {
+
+ModelLibrary make_library() {
+  ModelLibrary library;
+  library.objects.resize(3);
+  library.objects[0].name = "mug";
+  library.objects[1].name = "soup";
+  library.objects[2].name = "can";
+  library.objects[2].symmetries.continuous.push_back({});  // about z
+  return library;
+}
+
+Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+Rigid3 turned(const Rigid3& pose, double deg) {
+  return pose * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), deg * std::numbers::pi / 180);
+}
+
+GroundTruthObject object(const std::string& name, const Rigid3& pose, double visible_share = 1.0, int instance = 0) {
+  GroundTruthObject o;
+  o.object = name;
+  o.instance = instance;
+  o.camera_from_object = pose;
+  o.visible_share = visible_share;
+  return o;
+}
+
+EvaluatedView score(const std::vector<GroundTruthObject>& truth, const std::vector<DetectedObject>& detections,
+                    const std::vector<FormerPlace>& places = {}) {
+  return score_view(5, {Rigid3::identity(), truth}, detections, places, make_kinect_camera(), make_library());
+}
+
+TEST(ScoreView, PerfectIsAllFoundAtBothTolerances) {
+  const EvaluatedView view = score({object("mug", at(0)), object("soup", at(0.3))},
+                                   {{"mug", at(0), 0.9}, {"soup", turned(at(0.304), 3), 0.8}});
+  EXPECT_EQ(view.score, (RecognitionScore{2, 0, 0}));
+  EXPECT_EQ(view.strict_score, (RecognitionScore{2, 0, 0}));
+  ASSERT_EQ(view.truth.size(), 2U);
+  EXPECT_TRUE(view.truth[1].found && view.truth[1].found_strictly);
+  EXPECT_NEAR(view.truth[1].center_error_m, 0.004, 1e-9);
+  EXPECT_NEAR(view.truth[1].rotation_error_rad, 3 * std::numbers::pi / 180, 1e-9);
+  EXPECT_NEAR(view.truth[1].distance_m, std::hypot(0.3, 1.0), 1e-9);
+  EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kCorrect);
+}
+
+TEST(ScoreView, NothingReportedIsAllMissed) {
+  const EvaluatedView view = score({object("mug", at(0)), object("soup", at(0.3))}, {});
+  EXPECT_EQ(view.score, (RecognitionScore{0, 0, 2}));
+  EXPECT_EQ(view.strict_score, (RecognitionScore{0, 0, 2}));
+  EXPECT_TRUE(std::isnan(view.truth[0].center_error_m));
+}
+
+TEST(ScoreView, BetweenTheTolerances) {
+  const EvaluatedView view = score({object("mug", at(0))}, {{"mug", at(0.02), 1}});
+  EXPECT_EQ(view.score, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(view.strict_score, (RecognitionScore{0, 1, 1}));
+  EXPECT_TRUE(view.truth[0].found);
+  EXPECT_FALSE(view.truth[0].found_strictly);
+}
+
+TEST(ScoreView, SwappedIdentitiesCostTwice) {
+  const EvaluatedView view =
+      score({object("mug", at(0)), object("soup", at(0.3))}, {{"soup", at(0), 1}, {"mug", at(0.3), 1}});
+  EXPECT_EQ(view.score, (RecognitionScore{0, 2, 2}));
+}
+
+TEST(ScoreView, ASecondDetectionOfOneObjectIsWrong) {
+  const EvaluatedView view = score({object("mug", at(0))}, {{"mug", at(0.01), 0.9}, {"mug", at(0), 0.2}});
+  EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
+  EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kCorrect);  // the nearer one
+  EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kFalsePositive);
+}
+
+TEST(ScoreView, TurnsAboutASymmetryAxisAreFree) {
+  EXPECT_EQ(score({object("can", at(0))}, {{"can", turned(at(0), 137), 1}}).strict_score, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(score({object("mug", at(0))}, {{"mug", turned(at(0), 137), 1}}).score, (RecognitionScore{0, 1, 1}));
+}
+
+TEST(ScoreView, HiddenTruthIsNeitherHitNorMiss) {
+  const EvaluatedView view = score({object("mug", at(0), 0.04), object("soup", at(0.3), 0.04)}, {{"mug", at(0), 1}});
+  EXPECT_EQ(view.score, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kIgnored);
+  EXPECT_FALSE(view.truth[0].counts);
+  EXPECT_FALSE(view.truth[1].counts);
+}
+
+TEST(ScoreView, TwoOfAKindAreTwo) {
+  const std::vector<GroundTruthObject> twins{object("mug", at(0)), object("mug", at(0.3), 1, 1)};
+  EXPECT_EQ(score(twins, {{"mug", at(0.3), 1}, {"mug", at(0), 1}}).score, (RecognitionScore{2, 0, 0}));
+  const EvaluatedView one = score(twins, {{"mug", at(0.3), 1}});
+  EXPECT_EQ(one.score, (RecognitionScore{1, 0, 1}));
+  EXPECT_FALSE(one.truth[0].found);
+  EXPECT_TRUE(one.truth[1].found);
+}
+
+TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
+  const EvaluatedView view =
+      score({object("stranger", at(-0.3)), object("mug", at(0)), object("stranger", at(0.1)), object("soup", at(0.3))},
+            {{"soup", at(0.3), 1}});
+  EXPECT_EQ(view.score, (RecognitionScore{1, 0, 1}));
+  ASSERT_EQ(view.truth.size(), 2U);
+  EXPECT_EQ(view.truth[1].object, "soup");
+  EXPECT_TRUE(view.truth[1].found);
+}
+
+TEST(ScoreView, ADetectionAtAPlaceLeftIsAGhost) {
+  const std::vector<FormerPlace> left{{"mug", at(0), 3}};
+  const EvaluatedView view = score({object("soup", at(0.3))}, {{"mug", at(0.01), 1}, {"mug", at(-0.3), 1}}, left);
+  EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kGhost);
+  EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kFalsePositive);
+  EXPECT_EQ(view.score, (RecognitionScore{0, 2, 1}));
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/report/evaluation_report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "resight/report/line_plot.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+
+EvaluatedRun make_run(const std::string& preset, int k, bool clustered = true) {
+  EvaluatedRun run;
+  run.sequence = "000001";
+  run.preset = preset;
+  run.num_previous_views = k;
+  run.is_clustered = clustered;
+  run.num_former_places = 4;
+  run.has_changes = preset != "mvr";
+  EvaluatedView view;
+  view.name = "000000";
+  EvaluatedTruth missed;
+  missed.object = "mug";
+  missed.visible_share = 0.5;
+  missed.lost_at = "no keypoints";
+  view.truth = {missed};
+  view.detections = {{"mug", Rigid3::from_translation({0, 0, 1.5}), 0.5, DetectionVerdict::kGhost}};
+  view.score = {3, 1, 1};
+  view.strict_score = {2, 2, 2};
+  view.counts = {100, 10, 20, clustered ? 5 : 20, 2};
+  view.times.add("sift", 0.125, 0.25);
+  EvaluatedView worse = view;
+  worse.name = "000001";
+  worse.score = {0, 1, 9};
+  run.views = {view, worse};
+  return run;
+}
+
+std::vector<EvaluatedRun> make_runs() {
+  return {make_run("mvr", 0), make_run("mvr", 5), make_run("mvr", 5, false), make_run("mvr-chd", 0),
+          make_run("mvr-chd", 5)};
+}
+
+// Rows of a Markdown table have as many cells as its header.
+void expect_whole_tables(const std::string& text) {
+  std::istringstream lines(text);
+  std::ptrdiff_t bars = 0;
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("|")) {
+      bars = 0;
+      continue;
+    }
+    ++rows;
+    const auto count = std::ranges::count(line, '|');
+    if (bars == 0) bars = count;
+    EXPECT_EQ(count, bars) << line;
+  }
+  EXPECT_GT(rows, 8);
+}
+
+TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
+  const std::vector<EvaluatedRun> runs = make_runs();
+  const std::vector<ConfigurationSummary> summaries = summarize_runs(runs);
+  const std::string text = format_evaluation_tables({"set", "1.2.3"}, summaries);
+  expect_whole_tables(text);
+  expect_whole_tables(format_evaluation_times({"set", "1.2.3"}, summaries));
+  EXPECT_NE(text.find("| `mvr` | 5 | .600 | .231 | .333 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 2 | 0.50 |"), std::string::npos);          // ghosts, per place left
+  EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // clustering keeps 10 of 40
+  EXPECT_NE(text.find("no keypoints"), std::string::npos);
+}
+
+TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {
+  const std::vector<EvaluatedRun> runs = make_runs();
+  const std::string text = format_evaluation_json({"set", "1.2.3"}, summarize_runs(runs));
+  const nlohmann::json json = nlohmann::json::parse(text);
+  ASSERT_EQ(json["configurations"].size(), 5U);
+  EXPECT_EQ(json["configurations"][1]["num_previous_views"], 5);
+  EXPECT_DOUBLE_EQ(json["configurations"][1]["score_5cm_30deg"]["recall"].get<double>(), 3.0 / 13);
+  EXPECT_TRUE(json["configurations"][0]["changes"].is_null());
+  EXPECT_FALSE(json["configurations"][3]["changes"].is_null());
+  EXPECT_EQ(text.find("wall"), std::string::npos);
+}
+
+TEST(EvaluationReport, WorstViewsComeFirst) {
+  const std::vector<EvaluatedRun> runs = make_runs();
+  const std::string text = format_worst_views(runs);
+  const auto worse = text.find("000001 view 000001: 9 missed, 1 wrong");
+  const auto better = text.find("000001 view 000000: 1 missed, 1 wrong");
+  ASSERT_NE(worse, std::string::npos);
+  ASSERT_NE(better, std::string::npos);
+  EXPECT_LT(worse, better);
+  EXPECT_NE(text.find("missed mug 0 (50 % visible, at 0.00 m): no keypoints"), std::string::npos);
+  EXPECT_NE(text.find("ghost mug (score 0.50, at 1.50 m)"), std::string::npos);
+}
+
+TEST(EvaluationReport, WritesAllFiles) {
+  const fs::path directory = fs::temp_directory_path() / ("resight_evaluation_" + std::to_string(::getpid()));
+  fs::remove_all(directory);
+  const auto written = write_evaluation(directory, {"set", "1"}, make_runs());
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  int count = 0;
+  for (const char* name : {"results.json", "times.json", "tables.md", "times.md", "worst.md", "precision.svg",
+                           "recall.svg", "f.svg", "ghosts.svg", "view_time.svg"}) {
+    EXPECT_GT(fs::file_size(directory / name), 100U) << name;
+    ++count;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), count);
+  fs::remove_all(directory);
+}
+
+TEST(LinePlot, DrawsEachPointInsideThePicture) {
+  LinePlot plot{"P & R", "K", "share", {{"mvr", {0, 1, 2}, {0.9, std::nan(""), 0.7}}, {"<chd>", {0, 2}, {0.9, 0.8}}},
+                0.0,     1.0};
+  const std::string svg = format_svg(plot);
+  std::size_t circles = 0;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
+  EXPECT_EQ(circles, 4U);
+  EXPECT_NE(svg.find("P &amp; R"), std::string::npos);
+  EXPECT_NE(svg.find("&lt;chd&gt;"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  plot.series[0].y.pop_back();
+  EXPECT_THROW((void)format_svg(plot), std::invalid_argument);
+}
+
+TEST(LinePlot, CopesWithNothingAndWithOneValue) {
+  EXPECT_EQ(format_svg({"", "", "", {}, {}, {}}).find("nan"), std::string::npos);
+  EXPECT_EQ(format_svg({"", "", "", {{"a", {3}, {0}}}, {}, {}}).find("inf"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace resight
