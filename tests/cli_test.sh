@@ -45,6 +45,12 @@ mkdir "$work/empty"
 expect 2 'empty' changes --sequence "$work/empty" --out "$work/out"
 expect_one_line changes --sequence "$work/empty" --out "$work/out"
 expect 2 'nowhere' convert "$work/nowhere" "$work/out" --to bop
+expect 2 'nowhere' evaluate --models "$work/text.resight" --dataset "$work/nowhere" --out "$work/out"
+expect 2 'text\.resight|sequence' evaluate --models "$work/text.resight" --dataset "$work/empty" --out "$work/out"
+expect 2 'I/N' evaluate --models "$work/text.resight" --dataset "$work/empty" --out "$work/out" --shard 3/2
+expect 2 'ranges' evaluate --models "$work/text.resight" --dataset "$work/empty" --out "$work/out" -k 5-2
+expect 2 'preset' evaluate --models "$work/text.resight" --dataset "$work/empty" --out "$work/out" --presets best
+expect_one_line evaluate --models "$work/text.resight" --dataset "$work/empty" --out "$work/out" --shard x
 if [[ -e $work/out || -e $work/models.resight ]]; then
   echo "failed commands left something behind: $(ls "$work")"
   failures=$((failures + 1))

@@ -87,6 +87,7 @@ struct EvaluateArguments {
   int shard = 1;
   int num_shards = 1;
   bool merge = false;  ///< Compute nothing.
+  bool bop = false;    ///< Also BOP's average recalls.
   std::uint64_t seed = 1;
   int num_threads = 1;
 };

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
 #include "progress.hpp"
+#include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/models/training.hpp"
@@ -70,6 +71,7 @@ class Evaluation {
     if (!missing.empty()) return report_missing(missing);
     value_or_throw(write_evaluation(arguments_.out, {plan_.dataset_name, RESIGHT_VERSION}, runs));
     print_table(runs);
+    if (arguments_.bop) write_bop(runs);
   }
 
  private:
@@ -98,6 +100,18 @@ class Evaluation {
       run.num_threads = arguments_.num_threads;
       value_or_throw(report::write_whole_file(file_of(*unit), format_run(run)));
     }
+  }
+
+  void write_bop(const std::vector<EvaluatedRun>& runs) const {
+    const auto objects = value_or_throw(read_bop_objects(plan_.models));
+    const auto open = [this](const std::string& name) {
+      const auto unit = std::ranges::find(
+          plan_.units, name, [](const EvaluationUnit& u) -> const std::string& { return u.sequence.name; });
+      return open_sequence(unit->sequence.folder);
+    };
+    const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, objects, open)));
+    value_or_throw(report::write_whole_file(arguments_.out / "bop.md", table));
+    fmt::print("\n{}", table);
   }
 
   void report_missing(const std::vector<const EvaluationUnit*>& missing) const {

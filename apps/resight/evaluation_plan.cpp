@@ -140,6 +140,8 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
                             entry->second % arguments.num_shards + 1});
     }
   }
+  const fs::path data = plan.units.front().sequence.folder.parent_path();
+  plan.models = (data.filename() == "test" ? data.parent_path() : data) / "models";
   std::ranges::stable_sort(plan.units, {}, &EvaluationUnit::group);
   return plan;
 }

@@ -28,6 +28,7 @@ struct EvaluationUnit {
 
 struct EvaluationPlan {
   std::string dataset_name;
+  std::filesystem::path models;  ///< Of the data set; may not exist.
   std::vector<EvaluationUnit> units;
 };
 

@@ -119,6 +119,7 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
       ->capture_default_str();
   command->add_option("--config", a.config, "TOML file that overwrites single settings of all presets");
   command->add_flag("--without-clustering", a.without_clustering, "Also without clustering of hypotheses");
+  command->add_flag("--bop", a.bop, "Also the average recalls of the BOP benchmark (needs meshes in the data set)");
   command->add_option("--shard", shard, "I/N: only the I-th of N parts of the work; the last to finish merges");
   command->add_flag("--merge", a.merge, "Compute nothing; fail if a run is missing")->excludes("--shard");
   command->add_option("--seed", a.seed, "Of all random choices; same seed, same results")->capture_default_str();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "resight/evaluation/out_of_image.hpp"
+
 namespace resight {
 namespace {
 
@@ -37,8 +39,10 @@ EvaluatedView score_view(int view_number, const TruthView& truth, std::span<cons
                          const MatchDetectionsOptions& options) {
   MatchDetectionsOptions strict_options = strict_match_options();
   strict_options.min_visible_share = options.min_visible_share;
-  const MatchDetectionsResult loose = match_detections(truth.objects, detections, library, options);
-  const MatchDetectionsResult strict = match_detections(truth.objects, detections, library, strict_options);
+  MatchDetectionsResult loose = match_detections(truth.objects, detections, library, options);
+  MatchDetectionsResult strict = match_detections(truth.objects, detections, library, strict_options);
+  for (MatchDetectionsResult* result : {&loose, &strict})
+    ignore_out_of_image(*result, detections, camera, library, options.min_visible_share);
   EvaluatedView view;
   view.score = loose.score;
   view.strict_score = strict.score;

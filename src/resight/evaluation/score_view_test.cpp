@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "resight/evaluation/out_of_image.hpp"
+
 namespace resight {
 namespace {
 
@@ -109,6 +111,25 @@ TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
   ASSERT_EQ(view.truth.size(), 2U);
   EXPECT_EQ(view.truth[1].object, "soup");
   EXPECT_TRUE(view.truth[1].found);
+}
+
+// The Kinect sees +-0.61 m at 1 m.
+TEST(ScoreView, WhatLiesOutsideOfTheImageIsNotJudged) {
+  const EvaluatedView view =
+      score({object("mug", at(0))}, {{"mug", at(0), 1}, {"soup", at(0.7), 1}, {"can", at(0.5), 1}});
+  EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
+  EXPECT_EQ(view.strict_score, (RecognitionScore{1, 1, 0}));
+  EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kIgnored);
+  EXPECT_EQ(view.detections[2].verdict, DetectionVerdict::kFalsePositive);
+}
+
+TEST(ShareInImage, CountsSurfacePointsWithinTheBorder) {
+  ObjectModel model;
+  for (int i = 0; i < 10; ++i) model.surface.points.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
+  // The right border lies at x = 320 / 525 = 0.6095 m: of 0.56 .. 0.65 m the first five are inside.
+  EXPECT_DOUBLE_EQ(share_in_image(model, at(0.56), make_kinect_camera()), 0.5);
+  EXPECT_EQ(share_in_image(model, at(0), make_kinect_camera()), 1.0);
+  EXPECT_EQ(share_in_image(model, Rigid3::from_translation({0, 0, -1}), make_kinect_camera()), 0.0);
 }
 
 TEST(ScoreView, ADetectionAtAPlaceLeftIsAGhost) {

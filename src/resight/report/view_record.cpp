@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "resight/core/check.hpp"
+#include "resight/evaluation/out_of_image.hpp"
 
 namespace resight {
 namespace {
@@ -57,7 +58,10 @@ ViewEvaluation evaluate_view(const SceneUpdate& update, std::span<const GroundTr
   strict.min_visible_share = options.min_visible_share;
   ViewEvaluation evaluation;
   evaluation.matching = match_detections(truth, detections, library, options);
-  evaluation.strict_score = match_detections(truth, detections, library, strict).score;
+  ignore_out_of_image(evaluation.matching, detections, camera, library, options.min_visible_share);
+  MatchDetectionsResult strict_matching = match_detections(truth, detections, library, strict);
+  ignore_out_of_image(strict_matching, detections, camera, library, options.min_visible_share);
+  evaluation.strict_score = strict_matching.score;
   const TruthView truth_view{update.world_from_camera, {truth.begin(), truth.end()}};
   evaluation.ghosts = find_ghosts(former_places, truth_view, update.view, detections, camera, library, options);
   for (const int missed : evaluation.matching.false_negatives) {

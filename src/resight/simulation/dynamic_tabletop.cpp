@@ -162,7 +162,7 @@ class SequenceBuilder {
     add_obstacle("keyboard", {0.36, 0.13, 0.02}, {rng_.uniform(-0.2, 0.2), -0.28}, rng_.uniform(-0.2, 0.2));
     add_papers(1);
     look_at_point_ = {0, -0.02, 0.80};
-    pan_m_ = {0.38, 0};
+    pan_m_ = {0.25, 0};
     half_arc_rad_ = radians(55);
   }
 
@@ -172,7 +172,7 @@ class SequenceBuilder {
     surfaces_.push_back({"table", -1, Vector2d(0.69, 0.44), {}});
     add_papers(3);
     look_at_point_ = {0, 0, 0.80};
-    pan_m_ = {0.30, 0.10};
+    pan_m_ = {0.20, 0.08};
     half_arc_rad_ = radians(80);
   }
 
@@ -183,7 +183,7 @@ class SequenceBuilder {
     surfaces_.push_back({"cabinet", -1, Vector2d(0.36, 0.22), {}});
     add_papers(1);
     look_at_point_ = {0.1, 0, 0.74};
-    pan_m_ = {0.55, 0};
+    pan_m_ = {0.45, 0};
     half_arc_rad_ = radians(45);
   }
 
@@ -191,7 +191,7 @@ class SequenceBuilder {
     add_furniture("shelf", "shelf", {1.3, 0.36, 1.5}, "", {0, 0});
     for (const int level : {1, 2, 3}) surfaces_.push_back({"shelf", level, Vector2d(0.60, 0.165), {}});
     look_at_point_ = {0, 0, 0.95};
-    pan_m_ = {0.35, 0};
+    pan_m_ = {0.25, 0};
     half_arc_rad_ = radians(38);
   }
 

@@ -19,7 +19,7 @@ struct DynamicTabletopOptions {
   int num_known = 12;           ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;          ///< Further known things, which may come in later.
   int num_unknown = 5;          ///< Things that are in no library.
-  int num_changes = 9;          ///< Of a sequence, at most (what finds no room does not happen).
+  int num_changes = 18;         ///< Of a sequence, at most (what finds no room does not happen).
   double unknown_share = 0.15;  ///< Of the changes: those of unknown things.
   double lying_share = 0.25;    ///< Of the things: laid on a side.
   double crowding = 0.6;        ///< Share of the things that are put close to another one.

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# `resight evaluate` from end to end, on two small sequences: parts of the work merge to the same bytes as all of it, what
+# is finished is not computed again, and a lost part is named. Usage: evaluate_test.sh PATH_OF_RESIGHT
+set -uo pipefail
+resight=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+fail() {
+  echo "$1"
+  failures=$((failures + 1))
+}
+
+cat >"$work/scene.toml" <<'SCENE'
+name = "small"
+[room]
+enabled = false
+[camera]
+width = 320
+height = 240
+fx = 262.5
+fy = 262.5
+cx = 159.5
+cy = 119.5
+[camera.orbit]
+center_m = [0.0, 0.0, 0.80]
+radius_m = 0.6
+height_m = 0.35
+start_deg = -110
+end_deg = -70
+views = 3
+[[furniture]]
+key = "table"
+kind = "table"
+size_m = [1.0, 0.7, 0.74]
+[[object]]
+model = "cereal_blue"
+on = "table"
+x_m = -0.12
+[[object]]
+model = "tea_box"
+on = "table"
+x_m = 0.15
+[[change]]
+view = 1
+kind = "remove"
+object = "tea_box"
+SCENE
+
+"$resight" simulate "$work/scene.toml" --out "$work/data" --format bop --seed 1 >/dev/null 2>&1 || fail "simulate failed"
+"$resight" simulate "$work/scene.toml" --out "$work/more" --format bop --seed 2 >/dev/null 2>&1 || fail "simulate failed"
+cp -r "$work/more/test/000001" "$work/data/test/000002"
+"$resight" train "$work/data/models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
+
+evaluate() { # evaluate OUT ARGUMENT...
+  local out=$1
+  shift
+  "$resight" evaluate --models "$work/models.resight" --dataset "$work/data" --out "$work/$out" \
+    --presets mvr,mvr-chd -k 0,2 "$@" >"$work/$out.log" 2>&1
+}
+
+evaluate whole --without-clustering || fail "evaluate failed: $(cat "$work/whole.log")"
+for name in results.json times.json tables.md times.md worst.md precision.svg recall.svg f.svg ghosts.svg view_time.svg; do
+  [[ -s $work/whole/$name ]] || fail "evaluate wrote no $name"
+done
+[[ $(find "$work/whole/runs" -name '*.json' | wc -l) == 16 ]] || fail "expected 16 runs, there are: $(ls "$work/whole/runs")"
+grep -q '"true_positives": [1-9]' "$work/whole/results.json" || fail "nothing was recognised"
+
+for shard in 1/2 2/2; do
+  [[ -e $work/parts/results.json ]] && fail "results were written before all parts were there"
+  evaluate parts --without-clustering --shard $shard || fail "shard $shard failed: $(cat "$work/parts.log")"
+done
+for name in results.json tables.md worst.md; do
+  cmp -s "$work/whole/$name" "$work/parts/$name" || fail "$name of the parts is not that of the whole"
+done
+
+# Finished runs stay as they are; a lost one is named, and made again alone.
+before=$(stat -c %Y.%i "$work"/whole/runs/*)
+rm "$work/whole/runs/000002.mvr-chd.k2.json"
+evaluate whole --without-clustering --merge
+[[ $? == 2 ]] || fail "merging without all runs did not fail with status 2"
+grep -q '000002.mvr-chd.k2' "$work/whole.log" || fail "the missing run was not named: $(cat "$work/whole.log")"
+evaluate whole --without-clustering || fail "the lost run was not made again"
+after=$(stat -c %Y.%i "$work"/whole/runs/*)
+[[ $(comm -12 <(sort <<<"$before") <(sort <<<"$after") | wc -l) == 15 ]] || fail "finished runs were computed again"
+cmp -s "$work/whole/results.json" "$work/parts/results.json" || fail "a second run gave other results"
+
+evaluate whole --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
+grep -q '^| `mvr` | 0 | 0\.[1-9]' "$work/whole/bop.md" || fail "bop.md holds no recall: $(cat "$work/whole/bop.md")"
+
+((failures == 0)) && echo "evaluate: all as expected"
+exit $((failures > 0))
