@@ -80,6 +80,14 @@ Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
   }
 }
 
+std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes, const ModelLibrary& library) {
+  std::vector<FormerPlace> places;
+  for (const TrueChange& change : changes)
+    if (change.known && change.world_from_object_before && library.find(change.object) >= 0)
+      places.push_back({change.object, *change.world_from_object_before, change.view - 1});
+  return places;
+}
+
 Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
                                           const fs::path& events_file, const fs::path& unknown_models) {
   SequenceTruth truth;
@@ -97,6 +105,7 @@ Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelL
   auto changes = read_true_changes(events_file);
   if (!changes) return changes.error();
   truth.changes = std::move(*changes);
+  truth.former_places = former_places_of(*truth.changes, library);
   auto surfaces = read_unknown_surfaces(unknown_models);
   if (!surfaces) return surfaces.error();
   truth.unknown_surfaces = std::move(*surfaces);

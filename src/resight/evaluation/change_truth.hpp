@@ -27,10 +27,15 @@ struct TrueChange {
 /// Reads the events that `resight simulate` writes (docs/formats.md). The error names the file and the rule.
 [[nodiscard]] Result<std::vector<TrueChange>> read_true_changes(const std::filesystem::path& file);
 
+/// The places that objects of the library left, by what really happened: unlike find_former_places(), an object that
+/// the camera does not look at any more has not left.
+[[nodiscard]] std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes,
+                                                        const ModelLibrary& library);
+
 /// All that is known of a sequence beforehand.
 struct SequenceTruth {
   std::vector<TruthView> views;            ///< Empty without ground truth.
-  std::vector<FormerPlace> former_places;  ///< See find_former_places().
+  std::vector<FormerPlace> former_places;  ///< Of the changes, or else of the truth: find_former_places().
   /// Absent where the sequence comes without its changes: changes are then not scored.
   std::optional<std::vector<TrueChange>> changes;
   /// Surface of each changing object that is in no library, object frame, by name.

@@ -107,7 +107,7 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
   const std::pair<const char*, std::string> files[] = {
       {"results.json", format_evaluation_json(header, c)},
       {"times.json", format_evaluation_times_json(header, c)},
-      {"tables.md", format_evaluation_tables(header, c)},
+      {"tables.md", format_evaluation_tables(header, c, compare_presets(runs))},
       {"times.md", format_evaluation_times(header, c)},
       {"worst.md", format_worst_views(runs)},
       {"precision.svg", plot_over_k(

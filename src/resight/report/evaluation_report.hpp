@@ -6,6 +6,7 @@
 
 #include "resight/core/result.hpp"
 #include "resight/evaluation/evaluation_summary.hpp"
+#include "resight/evaluation/paired_difference.hpp"
 
 namespace resight {
 
@@ -21,10 +22,11 @@ struct EvaluationHeader {
 /// Seconds per stage and per view, of each configuration.
 [[nodiscard]] std::string format_evaluation_times_json(const EvaluationHeader& header,
                                                        std::span<const ConfigurationSummary> configurations);
-/// The scores as Markdown tables: recognition over K, ghosts, clustering, changes, losses, objects, visibility. No
-/// times.
+/// The scores as Markdown tables: recognition over K, ghosts, differences between presets, clustering, changes, losses,
+/// objects, visibility. No times.
 [[nodiscard]] std::string format_evaluation_tables(const EvaluationHeader& header,
-                                                   std::span<const ConfigurationSummary> configurations);
+                                                   std::span<const ConfigurationSummary> configurations,
+                                                   std::span<const PresetComparison> comparisons = {});
 /// The times as Markdown tables.
 [[nodiscard]] std::string format_evaluation_times(const EvaluationHeader& header,
                                                   std::span<const ConfigurationSummary> configurations);

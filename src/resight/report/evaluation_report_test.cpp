@@ -69,13 +69,14 @@ void expect_whole_tables(const std::string& text) {
 TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
   const std::vector<EvaluatedRun> runs = make_runs();
   const std::vector<ConfigurationSummary> summaries = summarize_runs(runs);
-  const std::string text = format_evaluation_tables({"set", "1.2.3"}, summaries);
+  const std::string text = format_evaluation_tables({"set", "1.2.3"}, summaries, compare_presets(runs));
   expect_whole_tables(text);
   expect_whole_tables(format_evaluation_times({"set", "1.2.3"}, summaries));
   EXPECT_NE(text.find("| `mvr` | 5 | .600 | .231 | .333 |"), std::string::npos) << text;
   EXPECT_NE(text.find("| 2 | 0.50 |"), std::string::npos);          // ghosts, per place left
   EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // clustering keeps 10 of 40
   EXPECT_NE(text.find("no keypoints"), std::string::npos);
+  EXPECT_NE(text.find("| `mvr-chd` - `mvr` | 5 | 1 | +0.000 ± - |"), std::string::npos);
 }
 
 TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {

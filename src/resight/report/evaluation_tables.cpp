@@ -45,6 +45,25 @@ std::string recognition_table(Configurations configurations) {
   return text;
 }
 
+std::string difference(const PairedDifference& d, int digits) {
+  if (std::isnan(d.mean)) return "-";
+  return fmt::format("{:+.{}f} ± {}", d.mean, digits, number(d.standard_error, digits));
+}
+
+std::string comparison_table(std::span<const PresetComparison> comparisons) {
+  if (comparisons.empty()) return {};
+  std::string text =
+      "\n## Differences between presets\n\nMean over the sequences of the difference in each, and its standard "
+      "error.\n\n"
+      "| presets | K | sequences | precision | recall | F | strict F | ghosts per place left |\n"
+      "|---|---|---|---|---|---|---|---|\n";
+  for (const PresetComparison& c : comparisons)
+    text += fmt::format("| `{}` - `{}` | {} | {} | {} | {} | {} | {} | {} |\n", c.b, c.a, c.num_previous_views,
+                        c.precision.num_pairs, difference(c.precision, 3), difference(c.recall, 3),
+                        difference(c.f_score, 3), difference(c.strict_f_score, 3), difference(c.ghosts_per_change, 2));
+  return text;
+}
+
 std::string clustering_table(Configurations configurations) {
   std::string rows;
   for (const ConfigurationSummary& without : configurations) {
@@ -171,13 +190,15 @@ std::string title(const char* what, const EvaluationHeader& header, Configuratio
 
 }  // namespace
 
-std::string format_evaluation_tables(const EvaluationHeader& header, Configurations configurations) {
+std::string format_evaluation_tables(const EvaluationHeader& header, Configurations configurations,
+                                     std::span<const PresetComparison> comparisons) {
   const std::vector<std::string> stages = stages_of(configurations);
   std::string text =
       title("Evaluation", header, configurations) +
       " Right: within 5 cm and 30 deg (strict: 1 cm and 10 deg) of an object that is at least 5 % visible. "
       "Ghost: an object reported at a place that it has left.\n\n";
-  text += recognition_table(configurations) + clustering_table(configurations) + change_table(configurations);
+  text += recognition_table(configurations) + comparison_table(comparisons) + clustering_table(configurations) +
+          change_table(configurations);
   text += loss_table(configurations, stages);
   for (const ConfigurationSummary& c : configurations) text += breakdown(c, stages);
   return text;
