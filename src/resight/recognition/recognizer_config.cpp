@@ -170,6 +170,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.min_visible_points", &v.min_visible_points},
                                   {"verify.min_visible_share", &v.min_visible_share},
                                   {"verify.min_explained_share", &v.min_explained_share},
+                                  {"verify.must_pay_alone", &v.must_pay_alone},
                                   {"verify.seed", &v.seed},
                               });
 }
@@ -276,6 +277,10 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
     config.verify.min_explained_share = VerifyOptions{}.min_explained_share;
     config.verify.refine = {};
+    config.verify.inlier_distance_m = 0.01;  // Poses are refined.
+    config.verify.clutter_weight = 3;
+    config.verify.must_pay_alone = true;
+    config.match.shot_neighbors = 3;
     return config;
   }
   throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));

@@ -96,6 +96,12 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
   return cues;
 }
 
+// Cost of the set of this hypothesis alone.
+double alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  return evidence.outlier_cost + evidence.clutter_cost + evidence.plane_cost + options.hypothesis_penalty -
+         evidence.explained_scene;
+}
+
 // Whether there is evidence enough to enter the choice; else the verdict says why not.
 bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share) {
@@ -103,7 +109,9 @@ bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
     return false;
   }
   evidence.verdict = Verdict::kNoSupport;
-  return evidence.num_explained > 0 && evidence.explained_share >= options.min_explained_share;
+  if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return false;
+  evidence.verdict = Verdict::kCost;
+  return !options.must_pay_alone || alone(evidence, options) < 0;
 }
 
 // The active candidate that keeps `rejected` out: without it, switching `rejected` on would be cheapest.

@@ -61,6 +61,8 @@ struct VerifyOptions {
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
   double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
+  bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
+                                ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
