@@ -71,12 +71,20 @@ const std::vector<SceneUpdate>& updates_of(const std::string& preset) {
   return found->second;
 }
 
-class PipelineTest : public ::testing::TestWithParam<std::string> {};
+// What a preset is held to. `default` is exact where the sensor is; the paper's system loses plain objects and takes
+// parts of unknown things for them (docs/paper-to-code.md), and is held to what it reaches.
+struct Goal {
+  std::string preset;
+  double min_recall;
+  double min_precision;
+  int max_false_changes;
+};
+void PrintTo(const Goal& goal, std::ostream* out) { *out << goal.preset; }
 
-// The goal is all of them. What is missed today: the can without print, and cans and mug in the first views, where a
-// pose turned about their axis wins (README, "Limits"). The floor keeps what has been reached.
-TEST_P(PipelineTest, MostHalfVisibleObjectsAreFoundExactly) {
-  constexpr double kMinRecall = 0.8;
+class PipelineTest : public ::testing::TestWithParam<Goal> {};
+
+// Within 5 mm and 3 degrees.
+TEST_P(PipelineTest, HalfVisibleObjectsAreFoundExactly) {
   MatchDetectionsOptions exact;
   exact.max_center_distance_m = 0.005;
   exact.max_rotation_rad = 3.0 * 0.0174533;
@@ -84,16 +92,16 @@ TEST_P(PipelineTest, MostHalfVisibleObjectsAreFoundExactly) {
   RecognitionScore score;
   std::string missed;
   for (std::size_t v = 0; v < world().views.size(); ++v) {
-    const auto detections = to_detected_objects(updates_of(GetParam())[v], world().library);
+    const auto detections = to_detected_objects(updates_of(GetParam().preset)[v], world().library);
     const auto& truth = world().views[v].ground_truth;
     const auto result = match_detections(truth, detections, world().library, exact);
     score += result.score;
     for (const int t : result.false_negatives)
-      missed += " " + std::to_string(v) + ":" + truth[static_cast<std::size_t>(t)].object;
+      missed.append(" ").append(std::to_string(v)).append(":").append(truth[static_cast<std::size_t>(t)].object);
   }
   EXPECT_GT(score.true_positives + score.false_negatives, 60);
-  EXPECT_GE(score.recall(), kMinRecall) << "missed (view:object):" << missed;
-  RecordProperty("recall", std::to_string(score.recall()));
+  EXPECT_GE(score.recall(), GetParam().min_recall) << "missed (view:object):" << missed;
+  EXPECT_GE(score.precision(), GetParam().min_precision);
 }
 
 TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
@@ -101,7 +109,7 @@ TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
                                                     {ChangeKind::kMoved, ObjectEventKind::kMoved},
                                                     {ChangeKind::kRemoved, ObjectEventKind::kRemoved}};
   std::vector<ObjectEvent> reported;
-  for (const SceneUpdate& update : updates_of(GetParam()))
+  for (const SceneUpdate& update : updates_of(GetParam().preset))
     for (const ObjectEvent& event : update.events)
       if (is_change(event.kind)) reported.push_back(event);
   int num_scripted = 0;
@@ -115,13 +123,15 @@ TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
     EXPECT_EQ(same, 1) << to_string(scripted.kind) << " " << scripted.object << " at view " << scripted.view;
   }
   EXPECT_GE(num_scripted, 4);
-  // A detection that is wrong for a view or two is taken for a change; the goal is none of these.
-  EXPECT_LE(static_cast<int>(reported.size()), num_scripted + 5) << "changes were reported that did not happen";
+  EXPECT_LE(static_cast<int>(reported.size()), num_scripted + GetParam().max_false_changes)
+      << "changes were reported that did not happen";
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest, ::testing::Values("mvr-chd", "default"), [](const auto& preset) {
-  return preset.param == "default" ? std::string("best") : std::string("chd");
-});
+INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
+                         ::testing::Values(Goal{"mvr-chd", 0.85, 0.7, 8}, Goal{"default", 1.0, 1.0, 0}),
+                         [](const auto& goal) {
+                           return goal.param.preset == "default" ? std::string("best") : std::string("chd");
+                         });
 
 TEST(Pipeline, OneAndTwoThreadsGiveTheSameBytes) {
   constexpr std::size_t kViews = 5;

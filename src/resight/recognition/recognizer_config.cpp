@@ -149,6 +149,8 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.refine_max_normal_angle_rad", &v.refine.max_normal_angle_rad},
                                   {"verify.refine_max_step_m", &v.refine.max_step_m},
                                   {"verify.refine_correspondence_weight", &v.refine.correspondence_weight},
+                                  {"verify.merge_distance_m", &v.merge_distance_m},
+                                  {"verify.merge_rotation_rad", &v.merge_rotation_rad},
                                   {"verify.use_planes", &v.use_planes},
                                   {"verify.min_plane_points", &v.min_plane_points},
                                   {"verify.plane_distance_m", &v.plane_distance_m},

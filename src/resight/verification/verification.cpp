@@ -8,6 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/symmetry.hpp"
 #include "resight/verification/cues.hpp"
 #include "resight/verification/selection_search.hpp"
 
@@ -114,6 +115,38 @@ bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   return !options.must_pay_alone || alone(evidence, options) < 0;
 }
 
+// Hypotheses of one object that refinement has brought together are one: that with most correspondences stays. Which
+// of them explains a few points more is chance.
+void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
+                   std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
+  if (options.refine.max_iterations == 0) return;
+  std::vector<int> by_support = candidates;
+  std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
+    return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();
+  });
+  std::vector<int> kept;
+  for (const int h : by_support) {
+    const ObjectModel& model = library.objects[hypotheses[h].object];
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](int other) {
+      const Rigid3& reference = evidence[other].world_from_object;
+      if (hypotheses[other].object != hypotheses[h].object) return false;
+      const Rigid3 pose = nearest_symmetric_pose(evidence[h].world_from_object, reference, model.symmetries);
+      const Eigen::Vector3d center = model.center.cast<double>();
+      return (pose * center - reference * center).norm() < options.merge_distance_m &&
+             rotation_angle_rad(pose.rotation, reference.rotation) < options.merge_rotation_rad;
+    });
+    if (same == kept.end()) {
+      kept.push_back(h);
+    } else {
+      evidence[h].verdict = Verdict::kOutvoted;
+      evidence[h].outvoted_by = *same;
+      evidence[h].cost_alone = alone(evidence[h], options);
+    }
+  }
+  std::sort(kept.begin(), kept.end());
+  candidates = std::move(kept);
+}
+
 // The active candidate that keeps `rejected` out: without it, switching `rejected` on would be cheapest.
 int find_rival(Selection& selection, const SelectionProblem& problem, int rejected) {
   int rival = -1;
@@ -206,6 +239,8 @@ void VerifyOptions::check() const {
   check_positive(name("color_sigma_l"), color_sigma_l);
   check_positive(name("color_sigma_ab"), color_sigma_ab);
   refine.check();
+  check_not_negative(name("merge_distance_m"), merge_distance_m);
+  check_in_range(name("merge_rotation_rad"), merge_rotation_rad, 0, std::numbers::pi);
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
   check_not_negative(name("light.max_log_white_balance"), light.max_log_white_balance);
   check_not_negative(name("light.max_veil"), light.max_veil);
@@ -255,6 +290,7 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
     if (passes_gates(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
+  drop_repeated(hypotheses, library, options, candidates, result.evidence);
   choose(hypotheses, library, cues, candidates, options, result);
   return result;
 }

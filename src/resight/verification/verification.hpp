@@ -35,10 +35,12 @@ struct VerifyOptions {
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
-  double color_sigma_l = 0.4;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
-  double color_sigma_ab = 0.2;  ///< ...and of a/128, b/128.
-  LightLimits light{};          ///< What the light may do to the colours of the model.
-  RefinePoseOptions refine{};   ///< Before it is judged, each hypothesis is moved onto the scene.
+  double color_sigma_l = 0.4;            ///< Of (L - 50)/50, after the model's colours are adapted to the light...
+  double color_sigma_ab = 0.2;           ///< ...and of a/128, b/128.
+  LightLimits light{};                   ///< What the light may do to the colours of the model.
+  RefinePoseOptions refine{};            ///< Before it is judged, each hypothesis is moved onto the scene.
+  double merge_distance_m = 0.01;        ///< Refined hypotheses of one object nearer than this (at its centre)...
+  double merge_rotation_rad = 0.174533;  ///< ...and this (over its symmetries) are one.
   bool use_planes = true;
   int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
   double plane_distance_m = 0.01;     ///< V4R: 2 cm, which swallows boxes that lie flat.
