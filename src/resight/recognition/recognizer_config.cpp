@@ -280,6 +280,8 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.min_explained_share = VerifyOptions{}.min_explained_share;
     config.verify.refine = {};
     config.verify.inlier_distance_m = 0.01;  // Poses are refined.
+    config.verify.color_sigma_l = 0.45;      // What lies in a shadow is darker than the light fit has it...
+    config.verify.color_sigma_ab = 0.17;     // ...but not of another hue.
     config.verify.clutter_weight = 3;
     config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;
