@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole way on data that we did not make: real and path-traced views, scanned models. Skipped where the data sets
+// are absent. Floors are what has been reached, not goals.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "resight/io/model_source.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/models/train_library.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/report/view_record.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kThreads = 2;
+
+std::filesystem::path shared_data(const std::string& name) {
+  return std::filesystem::path(RESIGHT_SHARED_DATA_DIR) / name;
+}
+
+#define RESIGHT_NEEDS_DATA(name) \
+  if (!std::filesystem::exists(shared_data(name))) GTEST_SKIP() << "no data set " << (name)
+
+ModelLibrary train(const std::vector<std::string>& paths) {
+  std::vector<std::filesystem::path> inputs;
+  for (const std::string& path : paths) inputs.push_back(shared_data(path));
+  TrainOptions options;
+  options.num_threads = kThreads;
+  const auto locations = find_models(inputs);
+  if (!locations.ok()) throw std::runtime_error(locations.error().message);
+  auto library = train_library(*locations, options);
+  if (!library.ok()) throw std::runtime_error(library.error().message);
+  return *std::move(library);
+}
+
+// A sequence recognised from its first view to its last, and scored (5 cm, 30 deg).
+struct Recognition {
+  std::vector<SceneUpdate> updates;
+  std::vector<ViewEvaluation> evaluations;  // of each view; empty without ground truth
+  [[nodiscard]] RecognitionScore score() const {
+    RecognitionScore sum;
+    for (const ViewEvaluation& evaluation : evaluations) sum += evaluation.matching.score;
+    return sum;
+  }
+};
+
+Recognition recognize(const ModelLibrary& library, const std::string& dataset, const std::string& preset) {
+  const auto sequence = open_sequence(shared_data(dataset));
+  if (!sequence.ok()) throw std::runtime_error(sequence.error().message);
+  RecognizerConfig config = RecognizerConfig::from_preset(preset);
+  config.set_num_threads(kThreads);
+  SceneRecognizer recognizer(library, config);
+  std::vector<TruthView> truth;
+  Recognition run;
+  for (int v = 0; v < (*sequence)->num_views(); ++v) {
+    const RgbdFrame frame = (*sequence)->read_view(v).value();
+    run.updates.push_back(recognizer.add_view(frame));
+    if (!(*sequence)->has_ground_truth()) continue;
+    truth.push_back({frame.world_from_camera, (*sequence)->read_ground_truth(v).value()});
+    run.evaluations.push_back(evaluate_view(run.updates.back(), truth.back().objects,
+                                            find_former_places(truth, library), frame.camera, library));
+  }
+  return run;
+}
+
+// Two real views of one table, between which all objects were exchanged.
+TEST(RealData, BoxesOnATableAndTheirExchange) {
+  RESIGHT_NEEDS_DATA("table-two-states");
+  RESIGHT_NEEDS_DATA("ycb-meshes");
+  const ModelLibrary library = train({"ycb-meshes/003_cracker_box", "ycb-meshes/009_gelatin_box"});
+  const Recognition run = recognize(library, "table-two-states", "default");
+  ASSERT_EQ(run.evaluations.size(), 2U);
+  for (const ViewEvaluation& evaluation : run.evaluations) {
+    EXPECT_EQ(evaluation.matching.score.true_positives, 1);
+    EXPECT_EQ(evaluation.matching.score.false_negatives, 0);
+    EXPECT_EQ(evaluation.matching.score.false_positives, 0);
+    EXPECT_TRUE(evaluation.ghosts.empty());
+  }
+  EXPECT_GT(run.updates[1].changes.removed_in_world.size(), 1000U);
+}
+
+TEST(RealData, ScannedObjectsOnARenderedTable) {
+  RESIGHT_NEEDS_DATA("table-rendered");
+  const ModelLibrary library = train({"table-rendered/models"});
+  const RecognitionScore score = recognize(library, "table-rendered", "default").score();
+  RecordProperty("precision", std::to_string(score.precision()));
+  RecordProperty("recall", std::to_string(score.recall()));
+  EXPECT_GE(score.precision(), 0.9);
+  EXPECT_GE(score.recall(), 0.75);
+}
+
+// Share of the surface facing the camera that lies on what the view measured, of that which is not behind something.
+double agreement(const ObjectModel& model, const Detection& detection, const RgbdFrame& frame) {
+  const Rigid3 camera_from_object = frame.world_from_camera.inverse() * detection.world_from_object;
+  int close = 0;
+  int all = 0;
+  for (std::size_t i = 0; i < model.surface.size(); ++i) {
+    const Eigen::Vector3d p = camera_from_object * model.surface.points[i].cast<double>();
+    const Eigen::Vector3d n = camera_from_object.rotation * model.surface.normals[i].cast<double>();
+    const Eigen::Vector2d pixel = frame.camera.project(p);
+    if (n.dot(p) > 0 || !frame.camera.contains(pixel)) continue;
+    const double z = frame.depth_m(static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
+    if (!(p.z() < z + 0.03)) continue;  // hidden, or no return
+    ++all;
+    close += std::abs(p.z() - z) < 0.01 ? 1 : 0;
+  }
+  return all == 0 ? 0.0 : static_cast<double>(close) / all;
+}
+
+// A carton of which one view without its colours is known, in another place and among other things.
+TEST(RealData, AMilkCartonByItsShapeAlone) {
+  RESIGHT_NEEDS_DATA("pcl-milk");
+  const ModelLibrary library = train({"pcl-milk"});
+  ASSERT_EQ(library.objects.size(), 1U);
+  EXPECT_TRUE(library.objects[0].surface.colors.empty());
+  const Recognition run = recognize(library, "pcl-milk", "default");
+  ASSERT_EQ(run.updates.at(0).detections.size(), 1U);
+  const RgbdFrame frame = open_sequence(shared_data("pcl-milk")).value()->read_view(0).value();
+  EXPECT_GT(agreement(library.objects[0], run.updates[0].detections[0], frame), 0.8);
+}
+
+}  // namespace
+}  // namespace resight
