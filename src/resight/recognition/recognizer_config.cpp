@@ -268,7 +268,6 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m), and how much of an object must be explained.
   config.shot.max_keypoint_depth_m = 2.0;
   config.changes.occlusion_test = OcclusionTest::kSphericalBins;
-  config.verify.min_explained_share = 0.35;
   config.verify.refine.max_iterations = 0;
   if (name == "mvr-chd") return config;
   if (name == "mvr") {
@@ -277,7 +276,6 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.min_explained_share = VerifyOptions{}.min_explained_share;
     config.verify.refine = {};
     config.verify.inlier_distance_m = 0.01;  // Poses are refined.
     config.verify.color_sigma_l = 0.45;      // What lies in a shadow is darker than the light fit has it...
