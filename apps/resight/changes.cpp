@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "recognition_run.hpp"
+#include "resight/core/files.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
@@ -35,19 +36,20 @@ void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));
-  std::filesystem::create_directories(arguments.out);
+  auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   DynamicScene scene(
       {config.num_previous_views, true, config.clear_tolerance_m, config.prepare, config.changes, config.integrate});
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
     const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
-    value_or_throw(write_color(arguments.out / (frame.name + ".png"), draw_changes(frame, changes)));
-    value_or_throw(write_ply(arguments.out / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
+    value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
+    value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
     progress.report(v + 1,
                     fmt::format("{}: {} removed, {} novel points{}", frame.name, changes.removed_in_world.size(),
                                 changes.novel_in_world.size(), changes.pose_suspect ? ", camera pose suspect" : ""));
   }
+  value_or_throw(folder.commit());
   fmt::print("{} views: {}\n", sequence->num_views(), arguments.out.string());
 }
 

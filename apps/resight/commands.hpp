@@ -27,6 +27,9 @@ inline void value_or_throw(const Result<void>& result) {
   if (!result.ok()) throw InputError(result.error().message);
 }
 
+/// One line on standard error.
+void print_warning(const std::string& what);
+
 struct TrainArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path out;

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "resight/core/files.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_models.hpp"
@@ -20,7 +21,10 @@ constexpr double kSamplesPerSquareMetre = 4 / (kSurfaceVoxel_m * kSurfaceVoxel_m
 DatasetFormat to_format(const std::string& name) { return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw; }
 
 // A TUW model is made of views: a mesh is put on a virtual turntable.
-void render_tuw_models(const std::vector<ModelLocation>& models, const ConvertArguments& arguments) {
+std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& models,
+                                           const ConvertArguments& arguments) {
+  auto folder = value_or_throw(PendingDirectory::create(arguments.out));
+  std::vector<std::string> warnings;
   Progress progress("convert", static_cast<int>(models.size()));
   for (std::size_t m = 0; m < models.size(); ++m) {
     const ModelSource source = value_or_throw(read_model(models[m]));
@@ -29,13 +33,17 @@ void render_tuw_models(const std::vector<ModelLocation>& models, const ConvertAr
       options.num_threads = arguments.num_threads;
       const PointCloud surface =
           voxel_downsample(sample_surface(*source.mesh, kSamplesPerSquareMetre), kSurfaceVoxel_m);
-      value_or_throw(write_tuw_model(arguments.out, source.name, render_turntable(*source.mesh, options), &surface,
+      value_or_throw(write_tuw_model(folder.path(), source.name, render_turntable(*source.mesh, options), &surface,
                                      source.symmetries, source.bop_id));
     } else {
-      value_or_throw(convert_models(std::span(&models[m], 1), arguments.out, DatasetFormat::kTuw));
+      value_or_throw(write_tuw_model(folder.path(), source.name, source.views,
+                                     source.surface ? &*source.surface : nullptr, source.symmetries, source.bop_id));
     }
+    warnings.insert(warnings.end(), source.warnings.begin(), source.warnings.end());
     progress.report(static_cast<int>(m) + 1, source.name);
   }
+  value_or_throw(folder.commit());
+  return warnings;
 }
 
 }  // namespace
@@ -44,6 +52,9 @@ void run_convert(const ConvertArguments& arguments) {
   const DatasetFormat format = to_format(arguments.format);
   if (std::filesystem::exists(arguments.out))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.out.string()));
+  if (!std::filesystem::exists(arguments.in))
+    throw InputError(fmt::format("{}: no such file or folder", arguments.in.string()));
+  value_or_throw(check_writable(arguments.out));
   const auto sequence = open_sequence(arguments.in);
   const auto models = find_models({arguments.in});
   if (!sequence.ok() && !models.ok())
@@ -52,10 +63,11 @@ void run_convert(const ConvertArguments& arguments) {
     const ConversionSummary summary = value_or_throw(convert_sequence(**sequence, arguments.out, format));
     fmt::print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
   } else if (format == DatasetFormat::kTuw) {
-    render_tuw_models(*models, arguments);
+    for (const std::string& warning : render_tuw_models(*models, arguments)) print_warning(warning);
     fmt::print("{} models: {}\n", models->size(), arguments.out.string());
   } else {
     const ConversionSummary summary = value_or_throw(convert_models(*models, arguments.out, format));
+    for (const std::string& warning : summary.warnings) print_warning(warning);
     fmt::print("{} models: {}\n", summary.num_objects, arguments.out.string());
   }
 }

@@ -9,12 +9,12 @@
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
 #include "progress.hpp"
+#include "resight/core/files.hpp"
 #include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/models/training.hpp"
 #include "resight/report/evaluation_report.hpp"
-#include "resight/report/internal/files.hpp"
 
 namespace resight::app {
 namespace {
@@ -98,7 +98,7 @@ class Evaluation {
       run.sequence = where.name;
       run.fingerprint = unit->fingerprint;
       run.num_threads = arguments_.num_threads;
-      value_or_throw(report::write_whole_file(file_of(*unit), format_run(run)));
+      value_or_throw(write_file(file_of(*unit), format_run(run)));
     }
   }
 
@@ -110,7 +110,7 @@ class Evaluation {
       return open_sequence(unit->sequence.folder);
     };
     const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, objects, open)));
-    value_or_throw(report::write_whole_file(arguments_.out / "bop.md", table));
+    value_or_throw(write_file(arguments_.out / "bop.md", table));
     fmt::print("\n{}", table);
   }
 

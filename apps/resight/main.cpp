@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -28,6 +30,16 @@ struct Arguments {
 
 const CLI::Validator kFormats = CLI::IsMember({"tuw", "bop"});
 const CLI::Validator kPresets = CLI::IsMember({"mvr", "mvr-chd", "default"});
+
+// CLI11 lets -1 and 99999999999999999999 pass as unsigned numbers.
+const CLI::Validator kSeeds(
+    [](const std::string& text) {
+      std::uint64_t seed = 0;
+      const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seed);
+      const bool is_seed = code == std::errc() && end == text.data() + text.size();
+      return is_seed ? std::string() : text + " is no whole number from 0 to 2^64 - 1";
+    },
+    "NUMBER >= 0");
 
 void add_threads(CLI::App* command, int& num_threads) {
   num_threads = resight::num_hardware_threads();
@@ -65,7 +77,9 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
   command->add_option("--sequence", a.sequence, "Sequence folder (TUW, BOP, TUM and others, detected)")->required();
   command->add_option("--out", a.out, "Folder for the results")->required();
-  command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")->capture_default_str();
+  command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")
+      ->check(kSeeds)
+      ->capture_default_str();
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }
@@ -89,7 +103,7 @@ std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   preset->excludes(script);
   command->add_option("--out", a.out, "Data set folder to write")->required();
   command->add_option("--format", a.format, "tuw or bop")->check(kFormats)->capture_default_str();
-  command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->capture_default_str();
+  command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->check(kSeeds)->capture_default_str();
   command->add_flag("--noise-free", a.noise_free, "Exact depth and colour instead of a sensor's");
   add_threads(command, a.num_threads);
   return [&a] { run_simulate(a); };
@@ -122,7 +136,9 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
   command->add_flag("--bop", a.bop, "Also the average recalls of the BOP benchmark (needs meshes in the data set)");
   command->add_option("--shard", shard, "I/N: only the I-th of N parts of the work; the last to finish merges");
   command->add_flag("--merge", a.merge, "Compute nothing; fail if a run is missing")->excludes("--shard");
-  command->add_option("--seed", a.seed, "Of all random choices; same seed, same results")->capture_default_str();
+  command->add_option("--seed", a.seed, "Of all random choices; same seed, same results")
+      ->check(kSeeds)
+      ->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a, &shard] {
     if (!shard.empty()) parse_shard(shard, a.shard, a.num_shards);
@@ -134,12 +150,38 @@ std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* command =
       app.add_subcommand("demo", "The main job on a built-in scene: simulate, train, recognise, compare, report");
   command->add_option("--out", a.out, "Folder for data, results and report")->capture_default_str();
-  command->add_option("--seed", a.seed, "Of the scene and of all random choices")->capture_default_str();
+  command->add_option("--seed", a.seed, "Of the scene and of all random choices")->check(kSeeds)->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a] { run_demo(a); };
 }
 
+int refuse(const std::string& message) {
+  std::fprintf(stderr, "resight: %s\n", message.c_str());
+  return kExitBadInput;
+}
+
+// One line on what is wrong with the command line, and where to read on.
+std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const std::string& first) {
+  const std::vector<CLI::App*> commands = app.get_subcommands({});
+  const auto named = std::ranges::find(commands, first, &CLI::App::get_name);
+  if (named != commands.end()) {
+    std::string what = error.what();
+    std::ranges::replace(what, '\n', ' ');
+    return first + ": " + what + " (see resight " + first + " --help)";
+  }
+  std::string names;
+  for (const CLI::App* command : commands) names += (names.empty() ? "" : ", ") + command->get_name();
+  const std::string what = first.empty()          ? "no command was given"
+                           : first.front() == '-' ? "unknown option '" + first + "'"
+                                                  : "unknown command '" + first + "'";
+  return what + " (commands: " + names + "; see resight --help)";
+}
+
 }  // namespace
+
+void resight::app::print_warning(const std::string& what) {
+  std::fprintf(stderr, "resight: warning: %s\n", what.c_str());
+}
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -158,15 +200,16 @@ int main(int argc, char** argv) {
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
+    return refuse(describe_mistake(error, app, argc > 1 ? argv[1] : ""));
   }
   try {
     for (std::size_t i = 0; i < commands.size(); ++i)
       if (commands[i]->parsed()) runs[i]();
   } catch (const InputError& error) {
-    std::fprintf(stderr, "resight: %s\n", error.what());
-    return kExitBadInput;
+    return refuse(error.what());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "resight: failed: %s\n", error.what());
     return kExitFailed;

@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "recognition_run.hpp"
+#include "resight/core/files.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/models/training.hpp"
 #include "resight/report/html_report.hpp"
@@ -15,12 +16,18 @@ void run_recognize(const RecognizeArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   config.set_seed(arguments.seed);
   const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
+  for (const ObjectModel& object : library.objects)
+    if (object.sift.size() + object.shot.size() == 0)
+      print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
+                                object.name));
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   ReportRun run = recognize_sequence(library, *sequence, config, arguments.num_threads);
   run.sequence = arguments.sequence.string();
-  value_or_throw(write_results(arguments.out, run, library));
-  value_or_throw(write_report(arguments.out / "report.html", "resight: " + arguments.sequence.filename().string(),
+  value_or_throw(write_results(folder.path(), run, library));
+  value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
+  value_or_throw(folder.commit());
   const RunSummary summary = summarize(run);
   fmt::print("{} views, {} detections, {} changes, {:.2f} s a view (median)\n", summary.num_views,
              summary.num_detections, summary.num_events, summary.median_view_wall_s);

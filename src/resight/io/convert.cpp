@@ -8,6 +8,12 @@
 namespace resight {
 namespace {
 
+void add_model(const ModelSource& model, ConversionSummary& summary) {
+  summary.num_views += static_cast<int>(model.views.size());
+  ++summary.num_objects;
+  summary.warnings.insert(summary.warnings.end(), model.warnings.begin(), model.warnings.end());
+}
+
 Result<ConversionSummary> convert_to_bop(std::span<const ModelLocation> models,
                                          const std::filesystem::path& directory) {
   std::vector<int> wanted;
@@ -21,8 +27,7 @@ Result<ConversionSummary> convert_to_bop(std::span<const ModelLocation> models,
     const auto model = read_model(models[i]);
     if (!model) return model.error();
     if (const auto done = (*writer)->write_model(*model, (*ids)[i]); !done) return done.error();
-    summary.num_views += static_cast<int>(model->views.size());
-    ++summary.num_objects;
+    add_model(*model, summary);
   }
   if (const auto done = (*writer)->finish(); !done) return done.error();
   return summary;
@@ -42,8 +47,7 @@ Result<ConversionSummary> convert_to_tuw(std::span<const ModelLocation> models,
     const auto done = write_tuw_model(pending->path(), model->name, model->views,
                                       model->surface ? &*model->surface : nullptr, model->symmetries, model->bop_id);
     if (!done) return done.error();
-    summary.num_views += static_cast<int>(model->views.size());
-    ++summary.num_objects;
+    add_model(*model, summary);
   }
   if (const auto done = pending->commit(); !done) return done.error();
   return summary;

@@ -10,8 +10,9 @@ namespace resight {
 
 /// What a conversion has written.
 struct ConversionSummary {
-  int num_views = 0;    ///< Of sequences, or training views of models.
-  int num_objects = 0;  ///< Ground truth entries, or models.
+  int num_views = 0;                  ///< Of sequences, or training views of models.
+  int num_objects = 0;                ///< Ground truth entries, or models.
+  std::vector<std::string> warnings;  ///< ModelSource::warnings of all models.
 };
 
 /// Writes every view of `sequence`, with its ground truth, as `directory` in another format. What is lost

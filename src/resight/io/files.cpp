@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/internal/files.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <system_error>
 
@@ -13,20 +9,6 @@
 
 namespace resight::io {
 namespace {
-
-/// A hidden name beside `path` that no other writer uses.
-fs::path temporary_sibling(const fs::path& path) {
-  static std::atomic<unsigned> counter{0};
-  return path.parent_path() / fmt::format(".{}.partial-{}-{}", path.filename().string(), getpid(), counter++);
-}
-
-/// Absolute and without a trailing slash, so that filename() and parent_path() mean what they say.
-fs::path clean_path(const fs::path& path) {
-  std::error_code error;
-  fs::path clean = fs::absolute(path, error).lexically_normal();
-  if (!clean.has_filename()) clean = clean.parent_path();
-  return clean;
-}
 
 std::vector<std::string> list_entries(const fs::path& directory, bool directories) {
   std::vector<std::string> names;
@@ -61,10 +43,6 @@ Result<std::uintmax_t> size_of(const fs::path& file) {
 
 }  // namespace
 
-Error file_error(const fs::path& file, std::string_view what) {
-  return Error{file.string() + ": " + std::string(what)};
-}
-
 Result<std::string> read_file(const fs::path& file, std::uintmax_t max_bytes) {
   const auto size = size_of(file);
   if (!size) return size.error();
@@ -77,28 +55,6 @@ Result<std::string> read_file_start(const fs::path& file, std::size_t max_bytes)
   const auto size = size_of(file);
   if (!size) return size.error();
   return read_bytes(file, std::min<std::uintmax_t>(*size, max_bytes));
-}
-
-Result<void> write_file(const fs::path& file, std::string_view bytes) {
-  const fs::path target = clean_path(file);
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  if (error) return file_error(target.parent_path(), "cannot be created (" + error.message() + ")");
-  const fs::path pending = temporary_sibling(target);
-  {
-    std::ofstream out(pending, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) {
-      fs::remove(pending, error);
-      return file_error(file, "cannot be written (no space, no permission?)");
-    }
-  }
-  fs::rename(pending, target, error);
-  if (!error) return {};
-  const std::string why = error.message();
-  fs::remove(pending, error);
-  return file_error(file, "cannot be written (" + why + ")");
 }
 
 std::vector<std::string> list_files(const fs::path& directory) { return list_entries(directory, false); }
@@ -118,51 +74,6 @@ std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();
   if (!extension.empty()) extension.erase(0, 1);
   return to_lower(extension);
-}
-
-std::string folder_name(const fs::path& directory) { return clean_path(directory).filename().string(); }
-
-Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path) {
-  const fs::path target = clean_path(final_path);
-  std::error_code error;
-  if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error)))
-    return file_error(final_path, "exists already; choose another folder or delete it first");
-  const fs::path pending = temporary_sibling(target);
-  fs::create_directories(pending, error);
-  if (error) return file_error(final_path, "cannot be created (" + error.message() + ")");
-  return PendingDirectory(target, pending);
-}
-
-PendingDirectory::PendingDirectory(PendingDirectory&& other) noexcept
-    : final_(std::move(other.final_)), pending_(std::move(other.pending_)) {
-  other.pending_.clear();
-}
-
-PendingDirectory& PendingDirectory::operator=(PendingDirectory&& other) noexcept {
-  if (this != &other) {
-    discard();
-    final_ = std::move(other.final_);
-    pending_ = std::move(other.pending_);
-    other.pending_.clear();
-  }
-  return *this;
-}
-
-PendingDirectory::~PendingDirectory() { discard(); }
-
-void PendingDirectory::discard() noexcept {
-  std::error_code ignored;
-  if (!pending_.empty()) fs::remove_all(pending_, ignored);
-  pending_.clear();
-}
-
-Result<void> PendingDirectory::commit() {
-  require(!pending_.empty(), "PendingDirectory::commit: called twice");
-  std::error_code error;
-  fs::rename(pending_, final_, error);  // replaces an empty directory
-  if (error) return file_error(final_, "cannot be created (" + error.message() + ")");
-  pending_.clear();
-  return {};
 }
 
 }  // namespace resight::io

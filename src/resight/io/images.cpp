@@ -25,6 +25,7 @@ Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags)
       header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > kMaxImagePixels)
     return fail(fmt::format("the image size {}x{} is out of range", header->width, header->height));
   if (!header->complete) return fail("the image is cut off");
+  if (!header->intact) return fail("the image is damaged (a checksum does not match)");
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
     cv::Mat image = cv::imdecode(encoded, flags);

@@ -69,6 +69,19 @@ TEST(Images, BadFiles) {
   EXPECT_THAT(read_depth(directory / "c.png", 1e-3).error().message, HasSubstr("one channel of 16 bits"));
 }
 
+TEST(Images, AFlippedBitInAPngIsFoundBeforeItIsDecoded) {
+  const std::string name = "c.png";
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / name, io::random_frame("a", 1).color).ok());
+  const std::string bytes = io::read_text(directory / name);
+  for (std::size_t at = 41; at + 16 < bytes.size(); at += 97) {  // within the compressed data
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    EXPECT_THAT(decode_color(damaged, name).error().message, HasSubstr("a checksum does not match")) << at;
+  }
+  EXPECT_TRUE(decode_color(bytes, name).ok());
+}
+
 TEST(Images, NumpyDepth) {
   io::TestDirectory directory;
   std::string dictionary = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";

@@ -67,22 +67,5 @@ TEST(Text, Numbers) {
   EXPECT_FALSE(io::trailing_number("1305031102775472"));
 }
 
-TEST(PendingDirectory, AppearsOnlyWhenComplete) {
-  io::TestDirectory directory;
-  {
-    auto pending = io::PendingDirectory::create(directory / "out");
-    ASSERT_TRUE(pending.ok());
-    io::write_text(pending->path() / "a.txt", "a");
-    EXPECT_FALSE(std::filesystem::exists(directory / "out"));
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(directory.path())) << "given up: nothing remains";
-  auto pending = io::PendingDirectory::create(directory / "out/");
-  ASSERT_TRUE(pending.ok());
-  io::write_text(pending->path() / "a.txt", "a");
-  ASSERT_TRUE(pending->commit().ok());
-  EXPECT_EQ(io::read_text(directory / "out/a.txt"), "a");
-  EXPECT_THAT(io::PendingDirectory::create(directory / "out").error().message, HasSubstr("exists already"));
-}
-
 }  // namespace
 }  // namespace resight

@@ -2,7 +2,6 @@
 #include "resight/models/library_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <bit>
@@ -10,6 +9,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
@@ -42,13 +42,8 @@ Error fail(const std::filesystem::path& path, const std::string& what) {
   return {fmt::format("model library {}: {}", path.string(), what)};
 }
 
-bool write_file(const std::filesystem::path& path, const Header& header, std::span<const std::uint8_t> payload) {
-  std::ofstream file(path, std::ios::binary);
-  const auto bytes = std::bit_cast<HeaderBytes>(header);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.write(reinterpret_cast<const char*>(payload.data()), static_cast<std::streamsize>(payload.size()));
-  file.close();
-  return file.good();
+std::string_view as_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path) {
@@ -97,18 +92,10 @@ Result<void> save_library(const ModelLibrary& library, const std::filesystem::pa
   header.options_hash = library.options_hash;
   header.payload_bytes = payload->size();
   header.checksum = compute_checksum(header, *payload);
-  std::filesystem::path partial = path;
-  partial += fmt::format(".{}.partial", getpid());
-  std::error_code code;
-  if (!write_file(partial, header, *payload)) {
-    std::filesystem::remove(partial, code);
-    return fail(path, "cannot be written (does the folder exist, is the disk full?)");
-  }
-  std::filesystem::rename(partial, path, code);
-  if (!code) return {};
-  const std::string reason = code.message();
-  std::filesystem::remove(partial, code);
-  return fail(path, "cannot be put in place: " + reason);
+  const auto header_bytes = std::bit_cast<HeaderBytes>(header);
+  const Result<void> written = write_file(path, {as_text(header_bytes), as_text(*payload)});
+  if (!written.ok()) return Error{"model library " + written.error().message};
+  return {};
 }
 
 Result<ModelLibrary> load_library(const std::filesystem::path& path,

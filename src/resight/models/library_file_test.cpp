@@ -160,13 +160,15 @@ TEST_F(LibraryFile, SameLibrarySameBytesAndNothingElseInTheFolder) {
 }
 
 TEST_F(LibraryFile, AFailedSaveLeavesTheOldFile) {
-  const Result<void> saved = save_library(make_library(), folder_ / "missing" / "models.bin");
+  ASSERT_TRUE(save_library(make_library(), path_).ok());
+  const Result<void> saved = save_library(make_library(), path_ / "models.bin");
   ASSERT_FALSE(saved.ok());
-  EXPECT_THAT(saved.error().message, HasSubstr("cannot be written"));
+  EXPECT_THAT(saved.error().message, HasSubstr("cannot be created"));
+  fs::remove(path_);
   fs::create_directories(path_ / "occupied");  // a folder under the final name
   const Result<void> onto_folder = save_library(make_library(), path_);
   ASSERT_FALSE(onto_folder.ok());
-  EXPECT_THAT(onto_folder.error().message, HasSubstr("cannot be put in place"));
+  EXPECT_THAT(onto_folder.error().message, HasSubstr("cannot be written"));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 

@@ -68,7 +68,7 @@ Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& 
 }
 
 Result<ModelLibrary> train_library(std::span<const ModelLocation> locations, const TrainOptions& options,
-                                   const TrainProgress& progress) {
+                                   const TrainProgress& progress, const TrainWarning& warning) {
   options.check();
   if (locations.empty()) return Error{"no models to train from"};
   const Result<void> names = check_names(locations);
@@ -84,6 +84,11 @@ Result<ModelLibrary> train_library(std::span<const ModelLocation> locations, con
     if (!source.ok()) return source.error();
     Result<ObjectModel> model = train_object(*source, options);
     if (!model.ok()) return Error{fmt::format("{}: {}", location.path.string(), model.error().message)};
+    if (warning) {
+      for (const std::string& line : source->warnings) warning(line);
+      if (model->sift.size() + model->shot.size() == 0)
+        warning(fmt::format("{}: the object has no features and will not be recognised", location.path.string()));
+    }
     library.objects.push_back(*std::move(model));
   }
   const Result<void> ids = assign_bop_ids(library.objects);

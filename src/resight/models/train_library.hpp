@@ -18,11 +18,16 @@ namespace resight {
 /// Called before each object with its place (0 ..), the number of objects and its name.
 using TrainProgress = std::function<void(int index, int count, const std::string& name)>;
 
+/// Called with one line on what is amiss with a model: those of ModelSource::warnings, or that it has no features and
+/// so can never be recognised.
+using TrainWarning = std::function<void(const std::string& line)>;
+
 /// Reads and trains every location, one after the other (the views of an object are spread over the threads). Names
 /// must be unique, and so must the bop_ids that are given; objects without one get the lowest free numbers from 1 on,
 /// in order. The first failure ends it.
 [[nodiscard]] Result<ModelLibrary> train_library(std::span<const ModelLocation> locations,
-                                                 const TrainOptions& options = {}, const TrainProgress& progress = {});
+                                                 const TrainOptions& options = {}, const TrainProgress& progress = {},
+                                                 const TrainWarning& warning = {});
 
 /// Fills the bop_ids that are 0 as above. An error if two objects have the same name or the same given id, or an id is
 /// negative.

@@ -326,8 +326,9 @@ std::vector<std::pair<std::string, std::string>> RecognizerConfig::to_settings()
 
 Result<RecognizerConfig> read_config(const std::filesystem::path& path, RecognizerConfig config) {
   const auto fail = [&](const std::string& what) { return Error{fmt::format("{}: {}", path.string(), what)}; };
+  std::error_code code;
   std::ifstream file(path);
-  if (!file) return fail("cannot be read (a TOML file was expected)");
+  if (!file || std::filesystem::is_directory(path, code)) return fail("cannot be read (a TOML file was expected)");
   std::stringstream text;
   text << file.rdbuf();
   toml::table table;

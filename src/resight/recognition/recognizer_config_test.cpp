@@ -161,6 +161,7 @@ TEST(RecognizerConfig, BadFilesNameTheKeyAndTheRule) {
     EXPECT_THAT(read.error().message, HasSubstr(".toml"));
   }
   EXPECT_FALSE(read_config("/nonexistent/x.toml", {}).ok());
+  EXPECT_FALSE(read_config(::testing::TempDir(), {}).ok());
 }
 
 }  // namespace

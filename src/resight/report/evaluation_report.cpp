@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "resight/report/internal/files.hpp"
+#include "resight/core/files.hpp"
 #include "resight/report/line_plot.hpp"
 
 namespace resight {
@@ -121,7 +121,7 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
                          [](const C& x) { return x.ghosts_per_change(); }, false)},
       {"view_time.svg", plot_view_times(c)}};
   for (const auto& [name, text] : files)
-    if (auto written = report::write_whole_file(directory / name, text); !written.ok()) return written;
+    if (auto written = write_file(directory / name, text); !written.ok()) return written;
   return {};
 }
 

@@ -2,7 +2,7 @@
 #include "resight/report/html_report.hpp"
 
 #include "resight/core/check.hpp"
-#include "resight/report/internal/files.hpp"
+#include "resight/core/files.hpp"
 #include "resight/report/internal/html.hpp"
 
 namespace resight {
@@ -42,7 +42,7 @@ std::string format_report(const std::string& title, std::span<const ReportRun> r
 
 Result<void> write_report(const std::filesystem::path& path, const std::string& title, std::span<const ReportRun> runs,
                           const ModelLibrary& library) {
-  return report::write_whole_file(path, format_report(title, runs, library));
+  return write_file(path, format_report(title, runs, library));
 }
 
 }  // namespace resight

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "resight/report/internal/files.hpp"
+#include "resight/core/files.hpp"
 
 namespace resight {
 
@@ -14,7 +14,7 @@ Result<void> write_results(const std::filesystem::path& directory, const ReportR
                                                        {"changes.json", format_changes_json(run, library)},
                                                        {"summary.json", format_summary_json(run)}};
   for (const auto& [name, text] : files) {
-    const Result<void> written = report::write_whole_file(directory / name, text);
+    const Result<void> written = write_file(directory / name, text);
     if (!written.ok()) return written;
   }
   return {};

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <system_error>
 
+#include "resight/core/files.hpp"
 #include "resight/core/random.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/tuw_models.hpp"
@@ -19,41 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-// A directory beside the wanted one; it is renamed at the end, or goes away.
-class Workspace {
- public:
-  explicit Workspace(fs::path final_path) : final_(std::move(final_path)), path_(final_) { path_ += ".partial"; }
-  ~Workspace() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  Result<void> open() {
-    std::error_code error;
-    if (fs::exists(final_, error) && !fs::is_empty(final_, error))
-      return Error{final_.string() + ": exists already; expected a new or empty directory"};
-    fs::remove_all(path_, error);
-    fs::create_directories(path_, error);
-    if (error) return Error{path_.string() + ": cannot be created (" + error.message() + ")"};
-    return {};
-  }
-  Result<void> commit() {
-    std::error_code error;
-    fs::remove(final_, error);  // an empty directory may stand there
-    fs::rename(path_, final_, error);
-    if (error) return Error{final_.string() + ": cannot be created (" + error.message() + ")"};
-    path_.clear();
-    return {};
-  }
-
- private:
-  fs::path final_;
-  fs::path path_;
-};
 
 ordered_json pose_json(const std::optional<Rigid3>& pose) {
   if (!pose) return nullptr;
@@ -76,16 +40,11 @@ Result<void> write_events(const Simulation& simulation, const fs::path& file) {
                       {"world_from_object_after", pose_json(e.world_from_object_after)}});
   ordered_json objects = ordered_json::object();
   for (std::size_t i = 0; i < simulation.library().size(); ++i) objects[simulation.library()[i].name] = i + 1;
-  std::ofstream stream(file);
-  stream << ordered_json{{"scene", simulation.script().name},
-                         {"num_views", simulation.num_views()},
-                         {"obj_ids", objects},
-                         {"events", events}}
-                .dump(1)
-         << '\n';
-  stream.close();
-  if (!stream) return Error{file.string() + ": cannot be written"};
-  return {};
+  const ordered_json json{{"scene", simulation.script().name},
+                          {"num_views", simulation.num_views()},
+                          {"obj_ids", objects},
+                          {"events", events}};
+  return write_file(file, json.dump(1) + "\n");
 }
 
 void report(const WriteSimulationOptions& options, const std::string& what) {
@@ -197,22 +156,22 @@ bool have_one_library(const Simulation& a, const std::vector<std::string>& names
 
 Result<void> write_simulation(Simulation& simulation, const fs::path& directory, DatasetFormat format,
                               const WriteSimulationOptions& options) {
-  Workspace work(fs::absolute(directory / "").parent_path());
-  if (auto opened = work.open(); !opened) return opened;
+  auto pending = PendingDirectory::create(directory);
+  if (!pending) return pending.error();
   if (options.models)
-    if (auto done = write_models(simulation.library(), work.path(), format, options); !done) return done;
+    if (auto done = write_models(simulation.library(), pending->path(), format, options); !done) return done;
   const std::string scene = scene_folder(simulation, format, options.bop_scene_id);
-  if (auto done = write_scene(simulation, work.path(), scene, format, options); !done) return done;
-  if (auto done = write_events(simulation, work.path() / "events.json"); !done) return done;
-  return work.commit();
+  if (auto done = write_scene(simulation, pending->path(), scene, format, options); !done) return done;
+  if (auto done = write_events(simulation, pending->path() / "events.json"); !done) return done;
+  return pending->commit();
 }
 
 Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64_t seed, const fs::path& directory,
                                DatasetFormat format, const SimulationOptions& simulation_options,
                                const WriteSimulationOptions& options) {
   require(!scripts.empty(), "write_simulations: there is no scene");
-  Workspace work(fs::absolute(directory / "").parent_path());
-  if (auto opened = work.open(); !opened) return opened;
+  auto pending = PendingDirectory::create(directory);
+  if (!pending) return pending.error();
   std::vector<std::string> library;
   for (std::size_t i = 0; i < scripts.size(); ++i) {
     auto simulation = Simulation::create(scripts[i], Rng::stream(seed, i).next(), simulation_options);
@@ -220,17 +179,17 @@ Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64
     if (i == 0) {
       for (const ProceduralObject& object : simulation->library()) library.push_back(object.name);
       if (options.models)
-        if (auto done = write_models(simulation->library(), work.path(), format, options); !done) return done;
+        if (auto done = write_models(simulation->library(), pending->path(), format, options); !done) return done;
     }
     require(have_one_library(*simulation, library),
             "write_simulations: scene '" + scripts[i].name + "' has other known objects than the first scene");
     const std::string scene = scene_folder(*simulation, format, static_cast<int>(i) + 1);
-    if (auto done = write_scene(*simulation, work.path(), scene, format, options); !done) return done;
-    if (auto done = write_events(*simulation, work.path() / "test" / (scene + ".events.json")); !done) return done;
+    if (auto done = write_scene(*simulation, pending->path(), scene, format, options); !done) return done;
+    if (auto done = write_events(*simulation, pending->path() / "test" / (scene + ".events.json")); !done) return done;
   }
   if (options.models)
-    if (auto done = write_bop_meshes(unknown_objects(scripts), work.path() / "unknown", {}); !done) return done;
-  return work.commit();
+    if (auto done = write_bop_meshes(unknown_objects(scripts), pending->path() / "unknown", {}); !done) return done;
+  return pending->commit();
 }
 
 }  // namespace resight

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/core/files.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A hidden name in `folder` that no other writer uses.
+fs::path temporary_name(const fs::path& folder, const std::string& name) {
+  static std::atomic<unsigned> counter{0};
+  return folder / ("." + name + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
+}
+
+/// Absolute and without a trailing slash, so that filename() and parent_path() mean what they say.
+fs::path clean_path(const fs::path& path) {
+  std::error_code error;
+  fs::path clean = fs::absolute(path, error).lexically_normal();
+  if (!clean.has_filename()) clean = clean.parent_path();
+  return clean;
+}
+
+/// The outermost part of the path that is not there; empty if it exists.
+fs::path first_missing(const fs::path& path) {
+  std::error_code error;
+  fs::path missing;
+  for (fs::path p = path; !p.empty() && !fs::exists(p, error) && p != p.root_path(); p = p.parent_path()) missing = p;
+  return missing;
+}
+
+/// Entry by entry, so that a folder which cannot be exchanged (a mount point, the current one) can be filled.
+std::error_code move_entries(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  std::vector<fs::path> names;
+  for (fs::directory_iterator it(from, error), end; !error && it != end; it.increment(error))
+    names.push_back(it->path().filename());
+  for (const fs::path& name : names)
+    if (!error) fs::rename(from / name, to / name, error);
+  if (!error) fs::remove(from, error);
+  return error;
+}
+
+}  // namespace
+
+Error file_error(const fs::path& file, std::string_view what) {
+  return Error{file.string() + ": " + std::string(what)};
+}
+
+std::string folder_name(const fs::path& directory) { return clean_path(directory).filename().string(); }
+
+Result<void> check_writable(const fs::path& path) {
+  const fs::path target = clean_path(path);
+  const fs::path missing = first_missing(target);
+  const fs::path folder = missing.empty() ? target : missing.parent_path();  // the innermost that is there
+  std::error_code error;
+  if (!missing.empty() && !fs::is_directory(folder, error))
+    return file_error(path, "cannot be written (" + folder.string() + " is not a folder)");
+  if (::access(folder.c_str(), W_OK) != 0) return file_error(path, "cannot be written (no permission)");
+  return {};
+}
+
+Result<void> write_file(const fs::path& file, std::string_view bytes) {
+  return write_file(file, std::initializer_list<std::string_view>{bytes});
+}
+
+Result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
+  const fs::path target = clean_path(file);
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  if (error) return file_error(target.parent_path(), "cannot be created (" + error.message() + ")");
+  const fs::path pending = temporary_name(target.parent_path(), target.filename().string());
+  {
+    std::ofstream out(pending, std::ios::binary);
+    for (const std::string_view bytes : parts) out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) {
+      fs::remove(pending, error);
+      return file_error(file, "cannot be written (no space, no permission?)");
+    }
+  }
+  fs::rename(pending, target, error);
+  if (!error) return {};
+  const std::string why = error.message();
+  fs::remove(pending, error);
+  return file_error(file, "cannot be written (" + why + ")");
+}
+
+Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path, ExistingFolder existing) {
+  const fs::path target = clean_path(final_path);
+  std::error_code error;
+  const bool exists = fs::exists(target, error);
+  if (exists && !fs::is_directory(target, error)) return file_error(final_path, "exists already and is not a folder");
+  if (exists && existing == ExistingFolder::kRefuse && !fs::is_empty(target, error))
+    return file_error(final_path, "exists already; choose another folder or delete it first");
+  fs::path first_made = first_missing(target.parent_path());
+  const fs::path pending = temporary_name(exists ? target : target.parent_path(), target.filename().string());
+  fs::create_directories(pending, error);
+  if (error) return file_error(final_path, "cannot be created (" + error.message() + ")");
+  return PendingDirectory(target, pending, std::move(first_made));
+}
+
+PendingDirectory::PendingDirectory(PendingDirectory&& other) noexcept
+    : final_(std::move(other.final_)),
+      pending_(std::exchange(other.pending_, {})),
+      first_made_(std::move(other.first_made_)) {}
+
+PendingDirectory& PendingDirectory::operator=(PendingDirectory&& other) noexcept {
+  if (this != &other) {
+    discard();
+    final_ = std::move(other.final_);
+    pending_ = std::exchange(other.pending_, {});
+    first_made_ = std::move(other.first_made_);
+  }
+  return *this;
+}
+
+PendingDirectory::~PendingDirectory() { discard(); }
+
+void PendingDirectory::discard() noexcept {
+  if (pending_.empty()) return;
+  std::error_code error;
+  fs::remove_all(pending_, error);
+  pending_.clear();
+  if (first_made_.empty()) return;
+  // From the inside out, as long as nobody else has put something there.
+  for (fs::path folder = final_.parent_path();; folder = folder.parent_path()) {
+    if (!fs::remove(folder, error) || folder == first_made_) return;
+  }
+}
+
+Result<void> PendingDirectory::commit() {
+  require(!pending_.empty(), "PendingDirectory::commit: called twice");
+  std::error_code error;
+  if (fs::exists(final_, error))
+    error = move_entries(pending_, final_);
+  else
+    fs::rename(pending_, final_, error);
+  if (error) return file_error(final_, "cannot be written (" + error.message() + ")");
+  pending_.clear();
+  return {};
+}
+
+}  // namespace resight

@@ -1,0 +1,521 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole command line, given what it should not be given: one row a mistake. Each row runs the program in a folder
+// of its own, with good data of which the row spoils something, and says how the program must end, what its one line on
+// standard error must say, and that nothing is left behind.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <regex>
+
+#include "resight/core/random.hpp"
+#include "resight/io/images.hpp"
+#include "resight/io/ply.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/models/training.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+constexpr int kViews = 3;
+
+// ---- Good data, small: what lies in the folder of each row before it is spoilt.
+
+// A slanted wall in random colours.
+RgbdFrame make_frame(int index) {
+  Rng rng(static_cast<std::uint64_t>(index));
+  RgbdFrame frame{.name = "cloud_0" + std::to_string(index),
+                  .camera = {kWidth, kHeight, 60, 60, 31.5, 23.5},
+                  .color = Image<Rgb8>(kWidth, kHeight),
+                  .depth_m = Image<float>(kWidth, kHeight),
+                  .world_from_camera = {}};
+  for (std::size_t i = 0; i < frame.color.size(); ++i) {
+    frame.color[i] = {static_cast<std::uint8_t>(rng.below(256)), static_cast<std::uint8_t>(rng.below(256)), 90};
+    frame.depth_m[i] = 1.0F + 0.0001F * static_cast<float>(i % 1000);
+  }
+  return frame;
+}
+
+void write_sequence(const fs::path& folder, DatasetFormat format) {
+  const auto writer = create_sequence(folder, format);
+  ASSERT_TRUE(writer.ok()) << writer.error().message;
+  for (int i = 0; i < kViews; ++i) ASSERT_TRUE((*writer)->write_view(make_frame(i), {{"cube", 1, 0, {}, 0.5}}).ok());
+  ASSERT_TRUE((*writer)->finish().ok());
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_tum(const fs::path& folder) {
+  std::string list;
+  std::string poses;
+  for (int i = 0; i < kViews; ++i) {
+    const std::string stamp = std::to_string(i + 1) + ".0";
+    const RgbdFrame frame = make_frame(i);
+    ASSERT_TRUE(write_color(folder / "rgb" / (stamp + ".png"), frame.color).ok());
+    ASSERT_TRUE(write_depth(folder / "depth" / (stamp + ".png"), frame.depth_m, 1.0 / 5000).ok());
+    list += stamp + " rgb/" + stamp + ".png " + stamp + " depth/" + stamp + ".png\n";
+    poses += stamp + " 0 0 0 0 0 0 1\n";
+  }
+  write_text(folder / "associations.txt", list);
+  write_text(folder / "groundtruth.txt", poses);
+  write_text(folder / "camera.txt", "60 60 31.5 23.5\n");
+}
+
+// A cube of 8 cm around the origin; each side on its own, so that edges are sharp.
+TriangleMesh make_cube(float metre) {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-0.04F, 0.04F}) {
+      const int first = static_cast<int>(mesh.vertices.size());
+      for (const auto& [u, v] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+        Eigen::Vector3f p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = 0.04F * static_cast<float>(side > 0 ? u : v);
+        p[(axis + 2) % 3] = 0.04F * static_cast<float>(side > 0 ? v : u);
+        mesh.vertices.push_back(metre * p);
+        mesh.colors.push_back({static_cast<std::uint8_t>(80 * axis + 60), 120, 70});
+      }
+      mesh.faces.push_back({first, first + 1, first + 2});
+      mesh.faces.push_back({first, first + 2, first + 3});
+    }
+  return mesh;
+}
+
+FeatureSet make_features(FeatureType type, int dimension, int count) {
+  Rng rng(3);
+  FeatureSet set{.type = type, .dimension = dimension, .points = {}, .normals = {}, .descriptors = {}};
+  for (int i = 0; i < count; ++i) {
+    set.points.push_back(
+        {static_cast<float>(rng.uniform(-0.04, 0.04)), static_cast<float>(rng.uniform(-0.04, 0.04)), -0.04F});
+    set.normals.push_back(-Eigen::Vector3f::UnitZ());
+    Eigen::VectorXf descriptor(dimension);
+    for (float& value : descriptor) value = static_cast<float>(rng.uniform());
+    descriptor.normalize();
+    set.descriptors.insert(set.descriptors.end(), descriptor.begin(), descriptor.end());
+  }
+  return set;
+}
+
+ModelLibrary make_library(int num_features) {
+  ObjectModel cube{.name = "cube",
+                   .bop_id = 1,
+                   .surface = {},
+                   .sift = make_features(FeatureType::kSift, 128, num_features),
+                   .shot = make_features(FeatureType::kShot, 352, num_features),
+                   .symmetries = {},
+                   .center = Eigen::Vector3f::Zero(),
+                   .diameter_m = 0.14F};
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      cube.surface.points.push_back({0.004F * static_cast<float>(i - 10), 0.004F * static_cast<float>(j - 10), -0.04F});
+      cube.surface.normals.push_back(-Eigen::Vector3f::UnitZ());
+      cube.surface.colors.push_back({120, 120, 120});
+    }
+  ModelLibrary library;
+  library.objects.push_back(std::move(cube));
+  library.options_hash = TrainOptions{}.hash();
+  return library;
+}
+
+void write_good_data(const fs::path& folder) {
+  write_sequence(folder / "views", DatasetFormat::kBop);
+  write_sequence(folder / "tuw", DatasetFormat::kTuw);
+  write_tum(folder / "tum");
+  ASSERT_TRUE(write_ply(folder / "meshes/cube.ply", make_cube(1)).ok());
+  ASSERT_TRUE(save_library(make_library(40), folder / "models.resight").ok());
+  fs::create_directories(folder / "empty");
+  write_text(folder / "full/mine.txt", "mine");
+  write_text(folder / "file", "a file\n");
+}
+
+// ---- Ways to spoil it.
+
+using Spoil = std::function<void(const fs::path& folder)>;
+
+Spoil remove(const char* path) {
+  return [=](const fs::path& folder) { ASSERT_GT(fs::remove_all(folder / path), 0U); };
+}
+Spoil write(const char* path, const char* text) {
+  return [=](const fs::path& folder) { write_text(folder / path, text); };
+}
+Spoil cut(const char* path, double share) {
+  return [=](const fs::path& folder) {
+    const auto size = static_cast<double>(fs::file_size(folder / path));
+    fs::resize_file(folder / path, static_cast<std::uintmax_t>(share * size));
+  };
+}
+// One bit of the byte at this share of the file.
+Spoil flip(const char* path, double share) {
+  return [=](const fs::path& folder) {
+    std::string bytes = read_text(folder / path);
+    ASSERT_FALSE(bytes.empty());
+    char& byte = bytes[static_cast<std::size_t>(share * static_cast<double>(bytes.size()))];
+    byte = static_cast<char>(byte ^ 0x10);
+    write_text(folder / path, bytes);
+  };
+}
+Spoil replace(const char* path, const char* what, const char* by) {
+  return [=](const fs::path& folder) {
+    std::string text = read_text(folder / path);
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    write_text(folder / path, text.replace(at, std::string(what).size(), by));
+  };
+}
+// The entry of the second view in a JSON file of the BOP scene.
+Spoil edit(const char* path, const std::function<void(Json&)>& change) {
+  return [=](const fs::path& folder) {
+    Json json = Json::parse(read_text(folder / path));
+    change(json.at("1"));
+    write_text(folder / path, json.dump());
+  };
+}
+Spoil small_image(const char* path) {
+  return
+      [=](const fs::path& folder) { ASSERT_TRUE(write_color(folder / path, Image<Rgb8>(kWidth / 2, kHeight)).ok()); };
+}
+Spoil no_depth_at_all() {
+  return [](const fs::path& folder) {
+    const Image<float> nothing(kWidth, kHeight, std::numeric_limits<float>::quiet_NaN());
+    for (int i = 0; i < kViews; ++i)
+      ASSERT_TRUE(write_depth(folder / "views/depth" / ("00000" + std::to_string(i) + ".png"), nothing, 1e-4).ok());
+  };
+}
+Spoil library(const std::function<ModelLibrary()>& make) {
+  return [=](const fs::path& folder) { ASSERT_TRUE(save_library(make(), folder / "models.resight").ok()); };
+}
+Spoil mesh(const char* path, const std::function<TriangleMesh()>& make) {
+  return [=](const fs::path& folder) { ASSERT_TRUE(write_ply(folder / path, make()).ok()); };
+}
+
+// ---- The table.
+
+struct Row {
+  const char* name;
+  Spoil spoil;
+  const char* command;  // run in the row's folder
+  int status;
+  const char* line;             // a pattern of the one line on standard error; "" = none is expected
+  const char* makes = nullptr;  // what is there afterwards; null: nothing new
+};
+
+constexpr const char* kRecognize = "recognize --models models.resight --sequence views --out out";
+constexpr const char* kRecognizeTuw = "recognize --models models.resight --sequence tuw --out out";
+constexpr const char* kChanges = "changes --sequence views --out out";
+constexpr const char* kChangesTuw = "changes --sequence tuw --out out";
+constexpr const char* kChangesTum = "changes --sequence tum --out out";
+constexpr const char* kConvert = "convert views out --to tuw";
+constexpr const char* kTrain = "train meshes --out new.resight";
+const Spoil kNothing = [](const fs::path&) {};
+
+TriangleMesh make_cube_with(float x) {
+  TriangleMesh cube = make_cube(1);
+  cube.vertices[5].x() = x;
+  return cube;
+}
+
+ModelLibrary make_stale_library() {
+  ModelLibrary stale = make_library(40);
+  ++stale.options_hash;
+  return stale;
+}
+
+ModelLibrary make_empty_library() {
+  ModelLibrary empty = make_library(0);
+  empty.objects.clear();
+  return empty;
+}
+
+const Row kRows[] = {
+    // The good data are good: what the other rows refuse is what they spoil.
+    {"Version", kNothing, "--version", 0, ""},
+    {"Help", kNothing, "recognize --help", 0, ""},
+    {"Recognize", kNothing, kRecognize, 0, "", "out/report.html"},
+    {"RecognizeTuw", kNothing, kRecognizeTuw, 0, "", "out/detections.csv"},
+    {"Changes", kNothing, kChanges, 0, "", "out/000002.ply"},
+    {"ChangesTuw", kNothing, kChangesTuw, 0, "", "out/cloud_02.png"},
+    {"ChangesTum", kNothing, kChangesTum, 0, "", "out"},
+    {"Convert", kNothing, kConvert, 0, "", "out"},
+    {"Train", kNothing, kTrain, 0, "", "new.resight"},
+
+    // The command line itself.
+    {"NoCommand", kNothing, "", 2, "no command was given .*recognize"},
+    {"UnknownCommand", kNothing, "nonsense", 2, "unknown command 'nonsense' .*recognize"},
+    {"UnknownOptionBeforeTheCommand", kNothing, "--nonsense", 2, "unknown option '--nonsense'"},
+    {"UnknownOption", kNothing, "changes --sequence views --out out --nonsense", 2, "changes: .*--nonsense"},
+    {"MissingOption", kNothing, "changes --sequence views", 2, "changes: --out is required"},
+    {"OptionWithoutValue", kNothing, "changes --sequence views --out", 2, "changes: --out"},
+    {"UnknownPreset", kNothing, "changes --sequence views --out out --preset best", 2, "best .*mvr-chd"},
+    {"NegativeK", kNothing, "changes --sequence views --out out -k -1", 2, "-1 .*0"},
+    {"BrokenK", kNothing, "changes --sequence views --out out -k 1.5", 2, "1\\.5"},
+    {"KThatIsAWord", kNothing, "changes --sequence views --out out -k all", 2, "all"},
+    {"NoThreads", kNothing, "changes --sequence views --out out -j 0", 2, "0 .*1"},
+    {"NegativeSeed", kNothing, "recognize --models models.resight --sequence views --out out --seed -1", 2, "seed"},
+    {"SeedThatIsTooLarge", kNothing, "demo --out out --seed 99999999999999999999", 2, "seed"},
+    {"UnknownFormat", kNothing, "convert views out --to png", 2, "png .*bop"},
+    {"UnknownScene", kNothing, "simulate --preset nonsense --out out", 2, "nonsense"},
+    {"NoScene", kNothing, "simulate --out out", 2, "neither"},
+    {"TwoScenes", kNothing, "simulate scene.toml --preset demo --out out", 2, "simulate: .*excludes"},
+
+    // Settings from a file.
+    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: cannot be read"},
+    {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
+    {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
+     "c\\.toml: line 1"},
+    {"UnknownSetting", write("c.toml", "[changes]\nspeed = 1\n"), "changes --sequence views --out out --config c.toml",
+     2, "c\\.toml: unknown key changes\\.speed"},
+    {"SettingOutOfRange", write("c.toml", "[changes]\nvoxel_m = -0.01\n"),
+     "changes --sequence views --out out --config c.toml", 2, "c\\.toml: .*voxel_m = -0\\.01"},
+
+    // Where results should go.
+    {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
+     "file/out: "},
+    {"RecognizeOntoAFile", kNothing, "recognize --models models.resight --sequence views --out file", 2,
+     "file: exists already and is not a folder"},
+    {"ChangesBelowAFile", kNothing, "changes --sequence views --out file/out", 2, "file/out: "},
+    {"TrainBelowAFile", kNothing, "train meshes --out file/new.resight", 2, "file is not a folder"},
+    {"TrainOntoAFolder", kNothing, "train meshes --out empty", 2, "empty: is a folder"},
+    {"ConvertBelowAFile", kNothing, "convert views file/out --to tuw", 2, "file is not a folder"},
+    {"ConvertOverData", kNothing, "convert views full --to tuw", 2, "full: exists already"},
+    {"SimulateBelowAFile", kNothing, "simulate --preset demo --out file/out", 2, "file/out: "},
+    {"SimulateOverData", kNothing, "simulate --preset demo --out full", 2, "full: exists already"},
+    {"DemoBelowAFile", kNothing, "demo --out file/out", 2, "file"},
+    {"DemoOverData", kNothing, "demo --out full", 2, "full: "},
+    {"DemoOntoAFile", kNothing, "demo --out file", 2, "file"},
+
+    // Model libraries.
+    {"MissingLibrary", remove("models.resight"), kRecognize, 2, "models\\.resight: no such file"},
+    {"FolderAsLibrary", kNothing, "recognize --models empty --sequence views --out out", 2, "empty: not a file"},
+    {"EmptyLibraryFile", write("models.resight", ""), kRecognize, 2, "not a model library"},
+    {"TextAsLibrary", write("models.resight", "hello\n"), kRecognize, 2, "not a model library"},
+    {"TruncatedLibrary", cut("models.resight", 0.7), kRecognize, 2, "models\\.resight: truncated"},
+    {"LibraryOfAFewBytes", cut("models.resight", 0.0001), kRecognize, 2, "models\\.resight: truncated"},
+    {"LibraryWithAFlippedBit", flip("models.resight", 0.5), kRecognize, 2, "models\\.resight: damaged"},
+    {"LibraryOfOtherOptions", library(make_stale_library), kRecognize, 2, "trained with other options"},
+    {"LibraryWithoutModels", library(make_empty_library), kRecognize, 2, "no objects"},
+    {"LibraryWithoutFeatures", library([] { return make_library(0); }), kRecognize, 0, "warning: .*cube.* no features",
+     "out/detections.csv"},
+
+    // What to train from.
+    {"MissingMeshes", kNothing, "train nowhere --out new.resight", 2, "nowhere: no such file"},
+    {"NoMeshes", kNothing, "train empty --out new.resight", 2, "empty: no model found"},
+    {"TextAsMesh", kNothing, "train file --out new.resight", 2, "file: is no model file"},
+    {"EmptyMeshFile", write("meshes/cube.ply", ""), kTrain, 2, "cube\\.ply: "},
+    {"TruncatedMesh", cut("meshes/cube.ply", 0.9), kTrain, 2, "cube\\.ply: "},
+    {"MeshInMillimetres", mesh("meshes/cube.ply", [] { return make_cube(1000); }), kTrain, 2,
+     "cube\\.ply: .*looks like millimetres"},
+    {"BopMeshInMetres", mesh("meshes/obj_000001.ply", [] { return make_cube(1); }), kTrain, 2,
+     "obj_000001\\.ply: .*looks like metres"},
+    {"MeshWithNan", mesh("meshes/cube.ply", [] { return make_cube_with(std::numeric_limits<float>::quiet_NaN()); }),
+     kTrain, 2, "cube\\.ply: .*not finite"},
+    {"MeshFarTooLarge", mesh("meshes/cube.ply", [] { return make_cube_with(1e30F); }), kTrain, 2, "cube\\.ply: "},
+    {"MeshWithoutFaces", mesh("meshes/cube.ply", [] { return TriangleMesh{}; }), kTrain, 2, "cube\\.ply: "},
+    {"TwoMeshesOfOneName", kNothing, "train meshes meshes --out new.resight", 2, "two models are called 'cube'"},
+    {"SceneAsModels", kNothing, "train views --out new.resight", 2, "views: no model found"},
+    {"MissingTexture",
+     write("meshes/cube.ply",
+           "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 4\nproperty float x\nproperty float y\n"
+           "property float z\nproperty float s\nproperty float t\nelement face 4\nproperty list uchar int "
+           "vertex_indices\nend_header\n0 0 0 0 0\n.1 0 0 1 0\n0 .1 0 0 1\n0 0 .1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 "
+           "2 3\n"),
+     kTrain, 0, "warning: .*cube\\.ply: its texture is left out: .*no\\.png", "new.resight"},
+
+    // Sequences.
+    {"MissingSequence", remove("views"), kRecognize, 2, "views: no such directory"},
+    {"EmptyFolder", kNothing, "changes --sequence empty --out out", 2, "empty: no sequence found"},
+    {"FileAsSequence", kNothing, "changes --sequence file --out out", 2, "file: "},
+    {"SequenceWithoutViews", write("views/scene_camera.json", "{}"), kRecognize, 2, "scene_camera\\.json: "},
+    {"TruncatedCameras", cut("views/scene_camera.json", 0.6), kRecognize, 2, "scene_camera\\.json: "},
+    {"CamerasThatAreAList", write("views/scene_camera.json", "[1, 2]"), kRecognize, 2, "scene_camera\\.json: "},
+    {"ZeroFocalLength", edit("views/scene_camera.json", [](Json& v) { v["cam_K"][0] = 0; }), kRecognize, 2,
+     "image 1: cam_K"},
+    {"NegativeFocalLength", edit("views/scene_camera.json", [](Json& v) { v["cam_K"][4] = -60; }), kRecognize, 2,
+     "image 1: cam_K"},
+    {"ShortIntrinsics",
+     edit("views/scene_camera.json",
+          [](Json& v) {
+            v["cam_K"] = {60, 60};
+          }),
+     kRecognize, 2, "image 1: cam_K"},
+    {"NullInIntrinsics", edit("views/scene_camera.json", [](Json& v) { v["cam_K"][0] = nullptr; }), kRecognize, 2,
+     "image 1: cam_K"},
+    {"ScaledPose", edit("views/scene_camera.json", [](Json& v) { v["cam_R_w2c"] = {2, 0, 0, 0, 2, 0, 0, 0, 2}; }),
+     kRecognize, 2, "image 1: cam_R_w2c.*rigid"},
+    {"MirroredPose", edit("views/scene_camera.json", [](Json& v) { v["cam_R_w2c"] = {-1, 0, 0, 0, 1, 0, 0, 0, 1}; }),
+     kRecognize, 2, "image 1: cam_R_w2c.*"},
+    {"PoseOfOneView", edit("views/scene_camera.json", [](Json& v) { v.erase("cam_R_w2c"); }), kRecognize, 2,
+     "cam_R_w2c"},
+    {"ZeroDepthScale", edit("views/scene_camera.json", [](Json& v) { v["depth_scale"] = 0; }), kRecognize, 2,
+     "image 1: depth_scale"},
+    {"TruncatedTruth", cut("views/scene_gt.json", 0.5), kRecognize, 2, "scene_gt\\.json: "},
+    {"TruthWithABrokenPose",
+     edit("views/scene_gt.json", [](Json& v) { v[0]["cam_R_m2c"] = {3, 0, 0, 0, 3, 0, 0, 0, 3}; }), kRecognize, 2,
+     "scene_gt\\.json: image 1: cam_R_m2c"},
+    {"MissingDepth", remove("views/depth/000001.png"), kRecognize, 2, "image 1: its depth image is missing"},
+    {"EmptyDepth", write("views/depth/000001.png", ""), kRecognize, 2, "000001\\.png: "},
+    {"TruncatedDepth", cut("views/depth/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
+    {"TruncatedColor", cut("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
+    {"ColorWithAFlippedBit", flip("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
+    {"DepthWithAFlippedBit", flip("views/depth/000001.png", 0.5), kChanges, 2, "000001\\.png: "},
+    {"TextAsColor", write("views/rgb/000001.png", "hello"), kChanges, 2, "000001\\.png: "},
+    {"ColorAsDepth", small_image("views/depth/000001.png"), kChanges, 2, "000001\\.png: "},
+    {"SmallerColor", small_image("views/rgb/000001.png"), kRecognize, 2,
+     "000001\\.png: is 64x48, but its colour image 32x48"},
+    {"SmallerColorInChanges", small_image("views/rgb/000001.png"), kChanges, 2,
+     "000001\\.png: is 64x48, but its colour image 32x48"},
+    {"SmallerColorInConvert", small_image("views/rgb/000001.png"), kConvert, 2,
+     "000001\\.png: is 64x48, but its colour image 32x48"},
+    {"SmallerColorOfTheLastView", small_image("views/rgb/000002.png"), kRecognize, 2,
+     "000002\\.png: is 64x48, but its colour image 32x48"},
+    {"NoDepthAtAll", no_depth_at_all(), kRecognize, 0, "", "out/changes.json"},
+    {"NoDepthAtAllInChanges", no_depth_at_all(), kChanges, 0, "", "out/000002.ply"},
+    {"TruncatedPcd", cut("tuw/cloud_01.pcd", 0.5), kChangesTuw, 2, "cloud_01\\.pcd: "},
+    {"PcdOfAFewBytes", cut("tuw/cloud_01.pcd", 0.001), kChangesTuw, 2, "cloud_01\\.pcd: "},
+    {"PcdThatLiesOnItsSize", replace("tuw/cloud_01.pcd", "WIDTH 64", "WIDTH 65"), kChangesTuw, 2, "cloud_01\\.pcd: "},
+    {"PcdWithANanPose", replace("tuw/cloud_01.pcd", "VIEWPOINT 0", "VIEWPOINT nan"), kRecognizeTuw, 2,
+     "cloud_01\\.pcd: .*VIEWPOINT"},
+    {"PcdWithAZeroQuaternion", replace("tuw/cloud_01.pcd", "VIEWPOINT 0 0 0 1", "VIEWPOINT 0 0 0 0"), kRecognizeTuw, 2,
+     "cloud_01\\.pcd: .*VIEWPOINT"},
+    // The comment is of no use; the camera is fitted to the points, which show it as well.
+    {"PcdWithZeroIntrinsics", replace("tuw/cloud_01.pcd", "# camera 60", "# camera 0"), kRecognizeTuw, 0, "",
+     "out/detections.csv"},
+    {"TumWithANanPose", replace("tum/groundtruth.txt", "2.0 0 0", "2.0 0 nan"), kChangesTum, 2, "groundtruth\\.txt: "},
+    {"TumWithAZeroQuaternion", replace("tum/groundtruth.txt", "2.0 0 0 0 0 0 0 1", "2.0 0 0 0 0 0 0 0"), kChangesTum, 2,
+     "groundtruth\\.txt: "},
+    {"TumWithZeroIntrinsics", write("tum/camera.txt", "0 60 31.5 23.5\n"), kChangesTum, 2, "camera\\.txt: "},
+    {"TumWithoutImages", remove("tum/rgb"), kChangesTum, 2, "tum"},
+    {"TumWithAMissingImage", remove("tum/depth/2.0.png"), kChangesTum, 2, "2\\.0\\.png: "},
+
+    // Conversion and scenes.
+    {"ConvertMissing", kNothing, "convert nowhere out --to bop", 2, "nowhere: no such file or folder"},
+    {"ConvertNothing", kNothing, "convert empty out --to bop", 2, "empty: "},
+    {"ConvertABrokenView", cut("views/depth/000002.png", 0.5), kConvert, 2, "000002\\.png: "},
+    {"ConvertABrokenMesh", cut("meshes/cube.ply", 0.9), "convert meshes out --to bop", 2, "cube\\.ply: "},
+    {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
+    {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
+    {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
+    {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
+};
+
+std::ostream& operator<<(std::ostream& out, const Row& row) { return out << "resight " << row.command; }
+
+// Everything below a folder with its size.
+std::vector<std::string> list(const fs::path& folder) {
+  std::vector<std::string> entries;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    entries.push_back(fs::relative(entry.path(), folder).string());
+    if (entry.is_regular_file()) entries.back().append(" ").append(std::to_string(entry.file_size()));
+  }
+  std::ranges::sort(entries);
+  return entries;
+}
+
+struct Outcome {
+  int status = -1;
+  std::string output;
+  std::vector<std::string> errors;  // lines on standard error, without those on progress
+};
+
+// What should be refused at once might run for hours instead: it is ended with status 124.
+Outcome run(const fs::path& folder, const std::string& arguments) {
+  const fs::path output = folder.string() + ".stdout";
+  const fs::path errors = folder.string() + ".stderr";
+  const std::string command = "cd " + folder.string() + " && timeout 60 " RESIGHT_PROGRAM " " + arguments + " >" +
+                              output.string() + " 2>" + errors.string() + " </dev/null";
+  const int code = std::system(command.c_str());
+  Outcome outcome{WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), read_text(output), {}};
+  std::istringstream lines(read_text(errors));
+  static const std::regex progress("[a-z-]+ [0-9]+/[0-9]+: .*");
+  for (std::string line; std::getline(lines, line);)
+    if (!std::regex_match(line, progress)) outcome.errors.push_back(line);
+  return outcome;
+}
+
+// A folder for all rows, with the good data in it; gone at the end.
+class CommandLineFolder : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::temp_directory_path() / ("resight_cli_" + std::to_string(::getpid()));
+    fs::create_directories(root_);
+    write_good_data(root_ / "good");
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+  void SetUp() override {
+    folder_ = root_ / "run";
+    fs::copy(root_ / "good", folder_, fs::copy_options::recursive);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static fs::path root_;
+  fs::path folder_;
+};
+fs::path CommandLineFolder::root_;
+class CommandLineResults : public CommandLineFolder {};
+class CommandLine : public CommandLineFolder, public testing::WithParamInterface<Row> {};
+
+TEST_P(CommandLine, TellsWhatIsWrong) {
+  const Row& row = GetParam();
+  row.spoil(folder_);
+  if (HasFatalFailure()) return;
+  const std::vector<std::string> before = list(folder_);
+  const Outcome outcome = run(folder_, row.command);
+  EXPECT_EQ(outcome.status, row.status);
+  if (*row.line == '\0') {
+    EXPECT_EQ(outcome.errors, std::vector<std::string>{});
+  } else {
+    EXPECT_EQ(outcome.errors.size(), 1U);
+    const std::string first = outcome.errors.empty() ? "" : outcome.errors[0];
+    EXPECT_TRUE(std::regex_search(first, std::regex(std::string("^resight: .*") + row.line)))
+        << "expected: /" << row.line << "/";
+  }
+  if (row.makes == nullptr) {
+    EXPECT_EQ(list(folder_), before) << "left behind";
+  } else {
+    EXPECT_TRUE(fs::exists(folder_ / row.makes)) << "is not there: " << row.makes;
+  }
+  if (!HasFailure()) return;
+  std::string told;
+  for (const std::string& line : outcome.errors) told += "\n  stderr: " + line;
+  ADD_FAILURE() << row << "\n  stdout: " << outcome.output << told;
+}
+
+INSTANTIATE_TEST_SUITE_P(Rows, CommandLine, testing::ValuesIn(kRows),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST_F(CommandLineResults, TheReportIsTitledAfterTheSequence) {
+  const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views/ --out out");
+  ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
+  EXPECT_THAT(read_text(folder_ / "out/report.html"), testing::HasSubstr("<title>resight: views</title>"));
+}
+
+TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(run(folder_, "recognize --models models.resight --sequence views --out full").status, 0);
+  EXPECT_EQ(read_text(folder_ / "full/mine.txt"), "mine");
+  EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
+}
+
+}  // namespace
+}  // namespace resight
