@@ -258,6 +258,8 @@ const Row kRows[] = {
     {"ChangesTuw", kNothing, kChangesTuw, 0, "", "out/cloud_02.png"},
     {"ChangesTum", kNothing, kChangesTum, 0, "", "out"},
     {"Convert", kNothing, kConvert, 0, "", "out"},
+    {"Evaluate", kNothing, "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out", 0, "",
+     "out/results.json"},
     {"Train", kNothing, kTrain, 0, "", "new.resight"},
 
     // The command line itself.
@@ -279,6 +281,13 @@ const Row kRows[] = {
     {"NoScene", kNothing, "simulate --out out", 2, "neither"},
     {"TwoScenes", kNothing, "simulate scene.toml --preset demo --out out", 2, "simulate: .*excludes"},
 
+    {"UnknownPresets", kNothing, "evaluate --models models.resight --dataset views --presets mvr,best --out out", 2,
+     "--presets: .*best"},
+    {"BrokenRangeOfK", kNothing, "evaluate --models models.resight --dataset views -k 3-1 --out out", 2,
+     "--previous-views: '3-1'"},
+    {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
+     "--shard: '3/2'"},
+
     // Settings from a file.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: cannot be read"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
@@ -295,6 +304,8 @@ const Row kRows[] = {
     {"RecognizeOntoAFile", kNothing, "recognize --models models.resight --sequence views --out file", 2,
      "file: exists already and is not a folder"},
     {"ChangesBelowAFile", kNothing, "changes --sequence views --out file/out", 2, "file/out: "},
+    {"EvaluateBelowAFile", kNothing, "evaluate --models models.resight --dataset views -k 0 --out file/out", 2,
+     "file is not a folder"},
     {"TrainBelowAFile", kNothing, "train meshes --out file/new.resight", 2, "file is not a folder"},
     {"TrainOntoAFolder", kNothing, "train meshes --out empty", 2, "empty: is a folder"},
     {"ConvertBelowAFile", kNothing, "convert views file/out --to tuw", 2, "file is not a folder"},
@@ -389,6 +400,12 @@ const Row kRows[] = {
      "000001\\.png: is 64x48, but its colour image 32x48"},
     {"SmallerColorOfTheLastView", small_image("views/rgb/000002.png"), kRecognize, 2,
      "000002\\.png: is 64x48, but its colour image 32x48"},
+    {"EvaluateAnEmptyFolder", kNothing, "evaluate --models models.resight --dataset empty --out out", 2,
+     "empty: no sequence found"},
+    {"EvaluateWithoutTruth", remove("views/scene_gt.json"),
+     "evaluate --models models.resight --dataset views -k 0 --out out", 2, "views: has no ground truth"},
+    {"EvaluateABrokenView", cut("views/depth/000001.png", 0.5),
+     "evaluate --models models.resight --dataset views -k 0 --out out", 2, "000001\\.png: "},
     {"NoDepthAtAll", no_depth_at_all(), kRecognize, 0, "", "out/changes.json"},
     {"NoDepthAtAllInChanges", no_depth_at_all(), kChanges, 0, "", "out/000002.ply"},
     {"TruncatedPcd", cut("tuw/cloud_01.pcd", 0.5), kChangesTuw, 2, "cloud_01\\.pcd: "},

@@ -146,6 +146,7 @@ class Evaluation {
 }  // namespace
 
 void run_evaluate(const EvaluateArguments& arguments) {
+  value_or_throw(check_writable(arguments.out));
   Evaluation evaluation(arguments);
   if (!arguments.merge) evaluation.compute();
   evaluation.conclude();
