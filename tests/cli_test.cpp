@@ -325,7 +325,7 @@ const Row kRows[] = {
     {"LibraryOfAFewBytes", cut("models.resight", 0.0001), kRecognize, 2, "models\\.resight: truncated"},
     {"LibraryWithAFlippedBit", flip("models.resight", 0.5), kRecognize, 2, "models\\.resight: damaged"},
     {"LibraryOfOtherOptions", library(make_stale_library), kRecognize, 2, "trained with other options"},
-    {"LibraryWithoutModels", library(make_empty_library), kRecognize, 2, "no objects"},
+    {"LibraryWithoutModels", library(make_empty_library), kRecognize, 2, "models\\.resight: holds no models"},
     {"LibraryWithoutFeatures", library([] { return make_library(0); }), kRecognize, 0, "warning: .*cube.* no features",
      "out/detections.csv"},
 

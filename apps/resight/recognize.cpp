@@ -16,6 +16,7 @@ void run_recognize(const RecognizeArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   config.set_seed(arguments.seed);
   const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
+  if (library.objects.empty()) throw InputError(fmt::format("{}: holds no models", arguments.models.string()));
   for (const ObjectModel& object : library.objects)
     if (object.sift.size() + object.shot.size() == 0)
       print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
