@@ -400,6 +400,8 @@ const Row kRows[] = {
      "000001\\.png: is 64x48, but its colour image 32x48"},
     {"SmallerColorOfTheLastView", small_image("views/rgb/000002.png"), kRecognize, 2,
      "000002\\.png: is 64x48, but its colour image 32x48"},
+    {"EvaluateAMissingFolder", kNothing, "evaluate --models models.resight --dataset nowhere --out out", 2,
+     "nowhere: is no folder"},
     {"EvaluateAnEmptyFolder", kNothing, "evaluate --models models.resight --dataset empty --out out", 2,
      "empty: no sequence found"},
     {"EvaluateWithoutTruth", remove("views/scene_gt.json"),
