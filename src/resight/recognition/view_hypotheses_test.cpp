@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/view_hypotheses.hpp"
+
+#include <gtest/gtest.h>
+
+namespace resight {
+namespace {
+
+TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
+  const RecognizerConfig base = RecognizerConfig::from_preset("mvr");
+  const std::string text = generation_settings(base);
+  EXPECT_GT(text.size(), 100U);
+  EXPECT_EQ(generation_settings(RecognizerConfig::from_preset("mvr-chd")), text);
+
+  RecognizerConfig later = base;
+  later.num_previous_views = 1;
+  later.cluster_hypotheses = false;
+  later.cluster.max_translation_m *= 2;
+  later.changes.tolerance_m *= 2;
+  later.verify.outlier_weight *= 2;
+  later.history.same_place_m *= 2;
+  later.integrate.voxel_m *= 2;
+  EXPECT_EQ(generation_settings(later), text);
+
+  RecognizerConfig normals = base, sift = base, shot = base, match = base, grouping = base;
+  normals.prepare.normals.window_radius_px += 1;
+  sift.sift.contrast_threshold *= 2;
+  shot.shot.support_radius_m *= 2;
+  match.match.sift_neighbors += 1;
+  grouping.generate.grouping.min_group_size += 1;
+  for (const RecognizerConfig* changed : {&normals, &sift, &shot, &match, &grouping})
+    EXPECT_NE(generation_settings(*changed), text);
+}
+
+TEST(ViewHypothesisStore, GivesBackWhatItWasGiven) {
+  ViewHypothesisStore store;
+  EXPECT_EQ(store.find(3), nullptr);
+  ViewHypotheses made;
+  made.hypotheses.resize(2);
+  made.times.add("sift", 0.5, 0.25);
+  EXPECT_EQ(store.add(3, made).hypotheses.size(), 2U);
+  ASSERT_NE(store.find(3), nullptr);
+  EXPECT_EQ(store.find(3)->times.total_wall_s(), 0.5);
+  EXPECT_EQ(store.find(2), nullptr);
+}
+
+}  // namespace
+}  // namespace resight
