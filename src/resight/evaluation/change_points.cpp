@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-double ratio(long part, long whole) { return whole == 0 ? kNan : static_cast<double>(part) / static_cast<double>(whole); }
+double ratio(long part, long whole) {
+  return whole == 0 ? kNan : static_cast<double>(part) / static_cast<double>(whole);
+}
 
 // How far behind the point the view measures, along z; NaN where it measures nothing.
 double depth_behind(const RgbdFrame& frame, const Eigen::Vector3d& p_in_world) {

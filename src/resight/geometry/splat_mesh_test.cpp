@@ -91,8 +91,7 @@ TEST(SplatMesh, ALonePointStaysSmallAndThreadsDoNotMatter) {
   plane.normals.emplace_back(0.0F, 0.0F, 1.0F);
   plane.colors.push_back({0, 0, 0});
   const TriangleMesh mesh = make_splat_mesh(plane, {.num_threads = 1});
-  for (const Eigen::Vector3f& v : mesh.vertices)
-    ASSERT_TRUE(v.z() < 0.5F || v.head<2>().norm() < 5 * kSpacing_m);
+  for (const Eigen::Vector3f& v : mesh.vertices) ASSERT_TRUE(v.z() < 0.5F || v.head<2>().norm() < 5 * kSpacing_m);
   EXPECT_EQ(mesh.colors, make_splat_mesh(plane, {.num_threads = 2}).colors);
 }
 

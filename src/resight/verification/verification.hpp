@@ -62,7 +62,7 @@ struct VerifyOptions {
   int min_shared_points = 10;            ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.67;     ///< ...and less of the visible points explained too. 0 turns either off.
+  double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;
