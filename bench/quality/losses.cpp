@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "arguments.hpp"
 #include "resight/evaluation/loss.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
@@ -17,13 +18,6 @@
 namespace {
 
 using namespace resight;
-
-template <typename T>
-T value_or_exit(Result<T> result) {
-  if (result.ok()) return std::move(*result);
-  fmt::print(stderr, "bench_losses: {}\n", result.error().message);
-  std::exit(2);
-}
 
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
@@ -60,7 +54,7 @@ int main(int argc, char** argv) {
   }
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
-  RecognizerConfig config = RecognizerConfig::from_preset(argc > 3 ? argv[3] : "default");
+  RecognizerConfig config = preset_or_exit(argc > 3 ? argv[3] : "default");
   if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_config(argv[4], config));
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
   config.set_num_threads(2);

@@ -5,11 +5,11 @@
 //   bench_paper_switches scene models.resight
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "arguments.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/evaluation/evaluation_summary.hpp"
 #include "resight/io/sequence.hpp"
@@ -19,13 +19,6 @@
 namespace {
 
 using namespace resight;
-
-template <typename T>
-T value_or_exit(Result<T> result) {
-  if (result.ok()) return std::move(*result);
-  fmt::print(stderr, "bench_paper_switches: {}\n", result.error().message);
-  std::exit(2);
-}
 
 struct Switch {
   const char* name;

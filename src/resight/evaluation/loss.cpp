@@ -41,19 +41,30 @@ struct Nearest {
   bool is_near = false;
 };
 
-Nearest find_nearest(std::span<const Hypothesis> hypotheses, int object, const Rigid3& world_from_object,
-                     const ObjectModel& model, const MatchDetectionsOptions& options) {
+struct Candidate {
+  int index;
+  Rigid3 world_from_object;
+};
+
+std::vector<Candidate> candidates_of(std::span<const Hypothesis> hypotheses, int object) {
+  std::vector<Candidate> candidates;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    if (hypotheses[h].object == object) candidates.push_back({static_cast<int>(h), hypotheses[h].world_from_object});
+  return candidates;
+}
+
+Nearest find_nearest(std::span<const Candidate> candidates, const Rigid3& world_from_object, const ObjectModel& model,
+                     const MatchDetectionsOptions& options) {
   Nearest nearest;
   double best = 0;
-  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    if (hypotheses[h].object != object) continue;
-    const PoseDifference d = compare_poses(hypotheses[h].world_from_object, world_from_object, model);
+  for (const Candidate& candidate : candidates) {
+    const PoseDifference d = compare_poses(candidate.world_from_object, world_from_object, model);
     const double cost =
         std::max(d.center_distance_m / options.max_center_distance_m, d.rotation_rad / options.max_rotation_rad);
     nearest.is_near = nearest.is_near || d.center_distance_m <= kNearFactor * options.max_center_distance_m;
     if (nearest.index >= 0 && cost >= best) continue;
     best = cost;
-    nearest.index = static_cast<int>(h);
+    nearest.index = candidate.index;
     nearest.difference = d;
     nearest.is_right = is_within(d, options);
   }
@@ -76,6 +87,8 @@ const char* to_string(LossStage stage) {
       return "clustered out";
     case LossStage::kCalledAbsent:
       return "called absent";
+    case LossStage::kRefinedAway:
+      return "refined away";
     case LossStage::kRejected:
       return "rejected";
   }
@@ -88,8 +101,8 @@ Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, 
   require(object >= 0, "find_loss: object '" + truth.object + "' is not in the library");
   const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
   const Rigid3 world_from_object = world_from_camera * truth.camera_from_object;
-  const auto nearest_of = [&](std::span<const Hypothesis> hypotheses) {
-    return find_nearest(hypotheses, object, world_from_object, model, options.match);
+  const auto nearest_of = [&](std::span<const Candidate> candidates) {
+    return find_nearest(candidates, world_from_object, model, options.match);
   };
   Loss loss;
   const KdTree surface(model.surface.points);
@@ -107,14 +120,19 @@ Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, 
     if (nearest.index >= 0) loss.best = nearest.difference;
     return loss;
   };
-  const Nearest verified = nearest_of(trace.verified);
-  if (verified.is_right) {
-    loss.evidence = trace.evidence[static_cast<std::size_t>(verified.index)];
-    return lost_at(LossStage::kRejected, verified);
-  }
-  if (const Nearest clustered = nearest_of(trace.clustered); clustered.is_right)
+  // What was accepted is another object's: this one was missed.
+  std::vector<Candidate> verified = candidates_of(trace.verified, object);
+  std::erase_if(verified, [&](const Candidate& c) { return trace.evidence[c.index].accepted; });
+  std::vector<Candidate> refined = verified;
+  for (Candidate& c : refined) c.world_from_object = trace.evidence[c.index].world_from_object;
+  const Nearest judged = nearest_of(refined);
+  if (judged.index >= 0) loss.evidence = trace.evidence[judged.index];
+  if (judged.is_right) return lost_at(LossStage::kRejected, judged);
+  if (nearest_of(verified).is_right) return lost_at(LossStage::kRefinedAway, judged);
+  loss.evidence.reset();
+  if (const Nearest clustered = nearest_of(candidates_of(trace.clustered, object)); clustered.is_right)
     return lost_at(LossStage::kCalledAbsent, clustered);
-  const Nearest merged = nearest_of(trace.merged);
+  const Nearest merged = nearest_of(candidates_of(trace.merged, object));
   if (merged.is_right) return lost_at(LossStage::kClusteredOut, merged);
   if (merged.is_near) return lost_at(LossStage::kWrongPose, merged);
   if (loss.num_right >= options.min_group_size) return lost_at(LossStage::kNoGroup, merged);

@@ -16,6 +16,7 @@ enum class LossStage : std::uint8_t {
   kWrongPose,     ///< A hypothesis at the place, but turned or shifted too much.
   kClusteredOut,  ///< A right hypothesis that clustering merged into a wrong one.
   kCalledAbsent,  ///< A right hypothesis that the changes excluded.
+  kRefinedAway,   ///< A right hypothesis that the verification's refinement moved out of tolerance.
   kRejected,      ///< A right hypothesis that the verification rejected.
 };
 [[nodiscard]] const char* to_string(LossStage stage);

@@ -42,11 +42,12 @@ class GroupCollector {
   }
 
   void add_clique(const std::vector<int>& clique) {
+    if (num_estimates_ == options_.max_poses) return;
     std::vector<int> members;
     for (const int i : clique)
       if (num_uses_[static_cast<std::size_t>(i)] < options_.max_uses) members.push_back(i);
     if (static_cast<int>(members.size()) < pose_options_.min_inliers || is_explained(members)) return;
-    if (++num_estimates_ > options_.max_poses) return;
+    ++num_estimates_;
     auto candidate = estimate(members);
     if (!candidate || is_repeated(*candidate)) return;
     accept(std::move(*candidate));

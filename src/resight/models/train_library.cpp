@@ -33,6 +33,7 @@ Result<ObjectModel> train_from_views(const ModelSource& source, const TrainOptio
   if (!model.ok() || !is_usable_surface(source.surface)) return model;
   Result<PointCloud> surface = train_surface(source.name, *source.surface, options);
   if (!surface.ok()) return surface.error();
+  if (!model->surface.has_colors()) surface->colors.clear();  // The views tell whether they were measured.
   set_surface(*model, *std::move(surface));
   return model;
 }

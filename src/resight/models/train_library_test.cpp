@@ -214,5 +214,24 @@ TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
   EXPECT_GT(with_mesh->diameter_m, 0);
 }
 
+TEST(TrainObjectFromSource, TheViewsTellWhetherAPlainSurfaceHasItsColour) {
+  const ProceduralObject object = make_any_object();
+  const TrainOptions options = make_quick_options();
+  ModelSource source;
+  source.name = "thing";
+  source.views = render_turntable(object.mesh, options.turntable);
+  source.views.resize(1);
+  source.surface = train_surface("thing", object.mesh, options).value();
+  source.surface->colors.assign(source.surface->size(), Rgb8{200, 30, 20});
+  const Result<ObjectModel> plain = train_object(source, options);
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  ASSERT_TRUE(plain->surface.has_colors());
+  EXPECT_EQ(plain->surface.colors.front(), (Rgb8{200, 30, 20}));
+  source.views[0].frame.color = Image<Rgb8>(640, 480, Rgb8{0, 0, 255});
+  const Result<ObjectModel> labelled = train_object(source, options);
+  ASSERT_TRUE(labelled.ok()) << labelled.error().message;
+  EXPECT_FALSE(labelled->surface.has_colors());
+}
+
 }  // namespace
 }  // namespace resight

@@ -215,13 +215,6 @@ PointCloud fuse_evenly(PointCloud cloud, double voxel_size_m) {
   return fuse_surface(samples, voxel_size_m);
 }
 
-// The surface of a prepared cloud, with the colours that the cloud has measured.
-PointCloud fuse_cloud(PointCloud even, const PointCloud& cloud, const TrainOptions& options) {
-  PointCloud surface = fuse_evenly(std::move(even), options.surface_voxel_m);
-  if (!has_measured_color(cloud)) surface.colors.clear();
-  return surface;
-}
-
 }  // namespace
 
 Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
@@ -248,7 +241,9 @@ Result<PointCloud> train_surface(const std::string& name, const PointCloud& clou
   options.check();
   Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
   if (!even.ok()) return even;
-  return fuse_cloud(*std::move(even), cloud, options);
+  PointCloud surface = fuse_evenly(*std::move(even), options.surface_voxel_m);
+  if (!cloud.has_colors()) surface.colors.clear();
+  return surface;
 }
 
 Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
@@ -281,7 +276,9 @@ Result<ObjectModel> train_object(const std::string& name, const PointCloud& clou
   Result<PointCloud> even = prepare_cloud(name, cloud, options.num_threads);
   if (!even.ok()) return even.error();
   const TriangleMesh splats = make_splat_mesh(*even, {.num_threads = options.num_threads});
-  return train_from_renderings(name, splats, fuse_cloud(*std::move(even), cloud, options), options);
+  PointCloud surface = fuse_evenly(*std::move(even), options.surface_voxel_m);
+  if (!has_measured_color(cloud)) surface.colors.clear();
+  return train_from_renderings(name, splats, std::move(surface), options);
 }
 
 }  // namespace resight

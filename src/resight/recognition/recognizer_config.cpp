@@ -265,18 +265,16 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
   // The paper's thresholds are the defaults of the stages; here stands what tells the presets apart, and what the paper
-  // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m), and how much of an object must be explained.
+  // leaves open: keypoints beyond 2 m are noise (later V4R: 1.8 m).
   config.shot.max_keypoint_depth_m = 2.0;
-  config.changes.occlusion_test = OcclusionTest::kSphericalBins;
-  config.verify.refine.max_iterations = 0;
-  if (name == "mvr-chd") return config;
-  if (name == "mvr") {
-    config.detect_changes = false;
+  if (name == "mvr-chd" || name == "mvr") {
+    config.detect_changes = name == "mvr-chd";
+    config.changes.occlusion_test = OcclusionTest::kSphericalBins;
+    config.verify.refine.max_iterations = 0;
     return config;
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.refine = {};
     config.verify.inlier_distance_m = 0.01;  // Poses are refined.
     config.verify.color_sigma_l = 0.45;      // What lies in a shadow is darker than the light fit has it...
     config.verify.color_sigma_ab = 0.17;     // ...but not of another hue.

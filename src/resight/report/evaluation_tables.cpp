@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "resight/evaluation/loss.hpp"
 #include "resight/report/evaluation_report.hpp"
 
 namespace resight {
@@ -169,15 +170,15 @@ std::string breakdown(const ConfigurationSummary& c, const std::vector<std::stri
   return text;
 }
 
-// The stages that occur, in the order of their first letters in the way through the recogniser.
+// The stages that occur, in the order of the way through the recogniser.
 std::vector<std::string> stages_of(Configurations configurations) {
   std::set<std::string> names;
   for (const ConfigurationSummary& c : configurations)
     for (const auto& [name, count] : c.lost_at) names.insert(name);
   std::vector<std::string> ordered;
-  for (const char* known :
-       {"no keypoints", "no matches", "no group", "wrong pose", "clustered out", "called absent", "rejected"})
-    if (names.erase(known) > 0) ordered.emplace_back(known);
+  for (int stage = 0; stage <= static_cast<int>(LossStage::kRejected); ++stage)
+    if (const char* known = to_string(static_cast<LossStage>(stage)); names.erase(known) > 0)
+      ordered.emplace_back(known);
   ordered.insert(ordered.end(), names.begin(), names.end());
   return ordered;
 }

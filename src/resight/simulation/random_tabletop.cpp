@@ -5,6 +5,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
+#include "resight/simulation/internal/footprint.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/room.hpp"
@@ -18,24 +19,18 @@ constexpr double kMinMoveM = 0.12;
 const Eigen::Vector2d kHalfArea(0.56, 0.33);  // Of the table top, where the cameras look.
 
 // A laid-down or upright thing seen from above: the circle around its bounding box's centre.
-struct Footprint {
+struct Disc {
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  // From the origin of the thing, before its yaw.
   double radius_m = 0;
 };
 
-Footprint footprint_of(const TriangleMesh& mesh, double roll_rad) {
+Disc disc_of(const TriangleMesh& mesh, double roll_rad) {
   const Eigen::Matrix3f r = Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), roll_rad).rotation.cast<float>();
-  Eigen::Vector2f low = (r * mesh.vertices.front()).head<2>();
-  Eigen::Vector2f high = low;
-  for (const auto& v : mesh.vertices) {
-    const Eigen::Vector2f p = (r * v).head<2>();
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Eigen::Vector2f center = 0.5F * (low + high);
+  const Eigen::Vector2d center = footprint_of(mesh, roll_rad).center;
   float radius_sq = 0;
-  for (const auto& v : mesh.vertices) radius_sq = std::max(radius_sq, ((r * v).head<2>() - center).squaredNorm());
-  return {center.cast<double>(), std::sqrt(static_cast<double>(radius_sq))};
+  for (const auto& v : mesh.vertices)
+    radius_sq = std::max(radius_sq, ((r * v).head<2>() - center.cast<float>()).squaredNorm());
+  return {center, std::sqrt(static_cast<double>(radius_sq))};
 }
 
 struct Thing {
@@ -43,9 +38,9 @@ struct Thing {
   std::string model;
   bool known = true;
   double roll_rad = 0;
-  Footprint footprint;
+  Disc disc;
   bool present = false;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // Of the footprint's centre, table frame.
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // Of the disc's centre, table frame.
 };
 
 class TabletopBuilder {
@@ -95,7 +90,7 @@ class TabletopBuilder {
       require(object.ok(), "RandomTabletopOptions.models: " + (object.ok() ? "" : object.error().message));
       Thing thing{copy == 0 ? model : model + "_" + std::to_string(copy + 1), model, known, 0, {}, false, {}};
       if (options_.lay_down && known && rng_.uniform() < 1.0 / 3) thing.roll_rad = kPi / 2;
-      thing.footprint = footprint_of(object->mesh, thing.roll_rad);
+      thing.disc = disc_of(object->mesh, thing.roll_rad);
       things_.push_back(std::move(thing));
     }
   }
@@ -141,12 +136,12 @@ class TabletopBuilder {
   // A free place for the thing, which is updated; nullopt if none is found.
   std::optional<Placement> find_place(Thing& thing, bool away_from_old) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      const double r = thing.footprint.radius_m;
+      const double r = thing.disc.radius_m;
       const double x = rng_.uniform(-1, 1) * std::max(0.0, kHalfArea.x() - 0.5 * r);
       const double y = rng_.uniform(-1, 1) * std::max(0.0, kHalfArea.y() - 0.5 * r);
       const Eigen::Vector2d position(x, y);
       const bool free = std::ranges::all_of(things_, [&](const Thing& other) {
-        const double reach = r + other.footprint.radius_m + options_.gap_m;
+        const double reach = r + other.disc.radius_m + options_.gap_m;
         return &other == &thing || other.key == thing.key || !other.present ||
                (other.position - position).norm() >= reach;
       });
@@ -156,7 +151,7 @@ class TabletopBuilder {
       p.support = "table";
       p.yaw_rad = rng_.uniform(-kPi, kPi);
       p.roll_rad = thing.roll_rad;
-      const Eigen::Vector2d origin = position - Eigen::Rotation2Dd(p.yaw_rad) * thing.footprint.center;
+      const Eigen::Vector2d origin = position - Eigen::Rotation2Dd(p.yaw_rad) * thing.disc.center;
       p.x_m = origin.x();
       p.y_m = origin.y();
       return p;

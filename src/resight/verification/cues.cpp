@@ -55,17 +55,20 @@ struct CueComputer::Impl {
     for (const Eigen::Vector3f& n : model_.normals) normals_.push_back(motion.rotation * n);
   }
 
-  // Moves the hypothesis onto the scene before it is judged.
-  void refine(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
-              std::span<const std::uint8_t> allowed) {
+  // Moves the hypothesis onto the scene before it is judged, and finds what is visible of it there.
+  void look(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
+            std::span<const std::uint8_t> allowed) {
+    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
     if (options_.refine.max_iterations == 0) return;
-    const ModelVisibility sight = find_visible_points(points_, normals_, views, allowed, options_);
-    place(refine_pose_on_scene(model_, cues_.evidence.world_from_object, sight.visible, correspondences, scene_,
-                               options_.refine));
+    const Rigid3 pose = cues_.evidence.world_from_object;
+    const Rigid3 refined =
+        refine_pose_on_scene(model_, pose, visibility_.visible, correspondences, scene_, options_.refine);
+    if (refined.rotation == pose.rotation && refined.translation == pose.translation) return;
+    place(refined);
+    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
   }
 
-  void look(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
-    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+  void compare_with_scene() {
     if (visibility_.visible.empty()) return;
     std::vector<Eigen::Vector3f> visible_points;
     visible_points.reserve(visibility_.visible.size());
@@ -317,8 +320,8 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
                          std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                          const VerifyOptions& options)
     : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
-  impl_->refine(correspondences, views, allowed);
-  impl_->look(views, allowed);
+  impl_->look(correspondences, views, allowed);
+  impl_->compare_with_scene();
 }
 CueComputer::~CueComputer() = default;
 CueComputer::CueComputer(CueComputer&&) noexcept = default;

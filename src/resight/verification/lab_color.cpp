@@ -49,10 +49,10 @@ LabColor to_lab(const Eigen::Vector3f& linear_light) {
   return {(116 * fy - 16 - 50) / 50, 500 * (fx - fy) / 128, 200 * (fy - fz) / 128};
 }
 
-std::vector<LabColor> to_lab(std::span<const Rgb8> colors) {
+std::vector<LabColor> to_lab(std::span<const Eigen::Vector3f> linear_light) {
   std::vector<LabColor> result;
-  result.reserve(colors.size());
-  for (const Rgb8 c : colors) result.push_back(to_lab(c));
+  result.reserve(linear_light.size());
+  for (const Eigen::Vector3f& light : linear_light) result.push_back(to_lab(light));
   return result;
 }
 

@@ -17,6 +17,6 @@ struct LabColor {
 
 [[nodiscard]] LabColor to_lab(Rgb8 color);
 [[nodiscard]] LabColor to_lab(const Eigen::Vector3f& linear_light);  ///< Channels in [0, 1].
-[[nodiscard]] std::vector<LabColor> to_lab(std::span<const Rgb8> colors);
+[[nodiscard]] std::vector<LabColor> to_lab(std::span<const Eigen::Vector3f> linear_light);
 
 }  // namespace resight

@@ -45,7 +45,7 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
   PreparedScene scene;
   if (options.use_color && thinned.has_colors()) {
     scene.linear_light = to_linear_light(thinned.colors);
-    scene.lab = to_lab(thinned.colors);
+    scene.lab = to_lab(scene.linear_light);
   }
   scene.points = std::move(thinned.points);
   scene.normals = std::move(thinned.normals);

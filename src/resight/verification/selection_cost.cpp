@@ -26,6 +26,14 @@ std::vector<FixedWeight> merge_weights(const HypothesisCues& cues) {
 
 }  // namespace
 
+double own_cost(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  return evidence.outlier_cost + evidence.plane_cost + options.hypothesis_penalty;
+}
+
+double cost_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  return own_cost(evidence, options) + evidence.clutter_cost - evidence.explained_scene;
+}
+
 FixedCost to_fixed(double cost) { return std::llround(cost * kFixedOne); }
 
 SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> candidates,
@@ -36,8 +44,7 @@ SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> c
   problem.conflicts.resize(candidates.size());
   int num_scene_points = 0;
   for (const HypothesisCues* cues : candidates) {
-    problem.unary.push_back(
-        to_fixed(cues->evidence.outlier_cost + cues->evidence.plane_cost + options.hypothesis_penalty));
+    problem.unary.push_back(to_fixed(own_cost(cues->evidence, options)));
     problem.weights.push_back(merge_weights(*cues));
     if (!problem.weights.back().empty())
       num_scene_points = std::max(num_scene_points, problem.weights.back().back().point + 1);

@@ -97,12 +97,6 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
   return cues;
 }
 
-// Cost of the set of this hypothesis alone.
-double alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  return evidence.outlier_cost + evidence.clutter_cost + evidence.plane_cost + options.hypothesis_penalty -
-         evidence.explained_scene;
-}
-
 // Whether there is evidence enough to enter the choice; else the verdict says why not.
 bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share) {
@@ -112,7 +106,7 @@ bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   evidence.verdict = Verdict::kNoSupport;
   if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return false;
   evidence.verdict = Verdict::kCost;
-  return !options.must_pay_alone || alone(evidence, options) < 0;
+  return !options.must_pay_alone || cost_alone(evidence, options) < 0;
 }
 
 // Hypotheses of one object that refinement has brought together are one: that with most correspondences stays. Which
@@ -140,7 +134,7 @@ void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& l
     } else {
       evidence[h].verdict = Verdict::kOutvoted;
       evidence[h].outvoted_by = *same;
-      evidence[h].cost_alone = alone(evidence[h], options);
+      evidence[h].cost_alone = cost_alone(evidence[h], options);
     }
   }
   std::sort(kept.begin(), kept.end());
@@ -171,11 +165,11 @@ void explain_choice(const SelectionProblem& problem, const SearchSelectionResult
     if (found.active[c] != 0) chosen.switch_candidate(static_cast<int>(c));
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     HypothesisEvidence& e = evidence[candidates[c]];
-    const FixedCost cost_alone = none.change_if_switched(static_cast<int>(c));
-    e.cost_alone = from_fixed(cost_alone);
+    const FixedCost change = none.change_if_switched(static_cast<int>(c));
+    e.cost_alone = from_fixed(change);
     e.accepted = found.active[c] != 0;
     e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
-    if (e.accepted || cost_alone >= 0) continue;
+    if (e.accepted || change >= 0) continue;
     const int rival = find_rival(chosen, problem, static_cast<int>(c));
     if (rival < 0) continue;
     e.verdict = Verdict::kOutvoted;
