@@ -155,7 +155,7 @@ TEST_P(PipelineTest, EveryScriptedChangeIsReportedOnce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
-                         ::testing::Values(Goal{"mvr-chd", 0.85, 0.7, 5}, Goal{"default", 0.99, 1.0, 0}),
+                         ::testing::Values(Goal{"mvr-chd", 0.85, 0.7, 5}, Goal{"default", 1.0, 1.0, 0}),
                          [](const auto& goal) {
                            return goal.param.preset == "default" ? std::string("best") : std::string("chd");
                          });

@@ -21,10 +21,11 @@ using namespace resight;
 
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
-      "  {} score {:.2f} visible {} explained {:.2f} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane {:.0f} alone "
+      "  {} score {:.2f} visible {} explained {:.2f} pattern {:.2f} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane "
+      "{:.0f} alone "
       "{:.0f}\n",
-      to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.explained_scene, e.outlier_cost,
-      e.clutter_cost, e.plane_cost, e.cost_alone);
+      to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.pattern_similarity, e.explained_scene,
+      e.outlier_cost, e.clutter_cost, e.plane_cost, e.cost_alone);
 }
 
 void print_loss(int view, const GroundTruthObject& truth, const Loss& loss) {

@@ -172,6 +172,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.min_visible_points", &v.min_visible_points},
                                   {"verify.min_visible_share", &v.min_visible_share},
                                   {"verify.min_explained_share", &v.min_explained_share},
+                                  {"verify.min_pattern_similarity", &v.min_pattern_similarity},
                                   {"verify.must_pay_alone", &v.must_pay_alone},
                                   {"verify.seed", &v.seed},
                               });
@@ -275,9 +276,11 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.inlier_distance_m = 0.01;  // Poses are refined.
-    config.verify.color_sigma_l = 0.45;      // What lies in a shadow is darker than the light fit has it...
-    config.verify.color_sigma_ab = 0.17;     // ...but not of another hue.
+    config.verify.inlier_distance_m = 0.01;      // Poses are refined.
+    config.verify.color_sigma_l = 0.45;          // What lies in a shadow is darker than the light fit has it...
+    config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
+    config.verify.min_explained_share = 0.6;     // A third of an object may lie in a hard shadow...
+    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own.
     config.verify.clutter_weight = 3;
     config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "resight/verification/local_scene.hpp"
+#include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/pose_refinement.hpp"
 
 namespace resight {
@@ -84,6 +85,7 @@ struct CueComputer::Impl {
     cues_.state.assign(points_.size(), ModelPointState::kNotVisible);
     if (local_) {
       adapt_colors(limit_chroma(light_, white_balance, options_.light));
+      compare_patterns(*local_);
       weigh_matches(*local_);
       classify_model_points();
       claim_scene_points(*local_);
@@ -125,6 +127,7 @@ struct CueComputer::Impl {
             (nearest == nullptr || matches_[i].distance_sq < nearest->distance_sq))
           nearest = &matches_[i];
       if (nearest == nullptr) continue;
+      nearest_.push_back(*nearest);
       const int point = visibility_.visible[v];
       model_light.push_back(model_.linear_light[point]);
       scene_light.push_back(scene_.linear_light[local.scene_index(nearest->local)]);
@@ -139,6 +142,18 @@ struct CueComputer::Impl {
     lab_.reserve(visibility_.visible.size());
     for (const int i : visibility_.visible)
       lab_.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
+  }
+
+  void compare_patterns(const LocalScene& local) {
+    if (!use_color_) return;
+    std::vector<LabColor> model_colors;
+    std::vector<LabColor> scene_colors;
+    for (const Match& m : nearest_) {
+      model_colors.push_back(lab_[m.visible]);
+      scene_colors.push_back(scene_.lab[local.scene_index(m.local)]);
+    }
+    cues_.evidence.pattern_similarity =
+        pattern_similarity(model_colors, scene_colors, options_.color_sigma_l / options_.color_sigma_ab);
   }
 
   // -log of the colour similarity.
@@ -307,6 +322,7 @@ struct CueComputer::Impl {
   std::optional<LocalScene> local_;  // None if nothing is visible.
   LightFit light_;
   std::vector<Match> matches_;  // Those of one visible point stand side by side.
+  std::vector<Match> nearest_;  // Of each visible point that has one of similar normal.
   std::vector<LabColor> lab_;   // Per visible point, under the scene's light.
   float inverse_color_l_ = 0;
   float inverse_color_ab_ = 0;

@@ -105,6 +105,8 @@ bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   }
   evidence.verdict = Verdict::kNoSupport;
   if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return false;
+  evidence.verdict = Verdict::kOtherPattern;
+  if (evidence.pattern_similarity < options.min_pattern_similarity) return false;
   evidence.verdict = Verdict::kCost;
   return !options.must_pay_alone || cost_alone(evidence, options) < 0;
 }
@@ -209,6 +211,8 @@ const char* to_string(Verdict verdict) {
       return "too few visible";
     case Verdict::kNoSupport:
       return "no support";
+    case Verdict::kOtherPattern:
+      return "other pattern";
     case Verdict::kOutvoted:
       return "outvoted";
     case Verdict::kCost:
@@ -260,6 +264,7 @@ void VerifyOptions::check() const {
   check_not_negative(name("min_visible_points"), min_visible_points);
   check_in_range(name("min_visible_share"), min_visible_share, 0, 1);
   check_in_range(name("min_explained_share"), min_explained_share, 0, 1);
+  check_in_range(name("min_pattern_similarity"), min_pattern_similarity, -1, 1);
   check_positive(name("num_threads"), num_threads);
 }
 

@@ -63,6 +63,7 @@ struct VerifyOptions {
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
   double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
+  double min_pattern_similarity = 0;  ///< Prints that differ more are not the same, however well they fit in the mean.
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;
@@ -81,6 +82,7 @@ enum class Verdict : std::uint8_t {
   kTooFewVisible,  ///< min_visible_points or min_visible_share not reached: hidden, outside, or the mask allows no
                    ///< view.
   kNoSupport,      ///< Less than min_explained_share of the visible points is explained.
+  kOtherPattern,   ///< Less than min_pattern_similarity.
   kOutvoted,       ///< Pays off alone, but not beside `outvoted_by`.
   kCost,           ///< Costs more than it explains even alone (outliers, clutter, planes).
 };
@@ -104,9 +106,10 @@ struct HypothesisEvidence {
                                                 ///< looked through by that view.
   double explained_share =
       0;  ///< Inliers / visible points, steep ones counting steep_weight: what min_explained_share tests.
-  double clutter_cost = 0;  ///< Alone: unexplained rest of the segments that it explains in part.
-  double plane_cost = 0;    ///< Points of planes that it claims, and model points on the far side of a plane.
-  double cost_alone = 0;    ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
+  double pattern_similarity = 1;  ///< Of the model's colours and the scene's (pattern_similarity.hpp).
+  double clutter_cost = 0;        ///< Alone: unexplained rest of the segments that it explains in part.
+  double plane_cost = 0;          ///< Points of planes that it claims, and model points on the far side of a plane.
+  double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
   Verdict verdict = Verdict::kTooFewVisible;
   int outvoted_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
 };

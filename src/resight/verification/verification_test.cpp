@@ -250,5 +250,25 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
               testing::ElementsAre(0));
 }
 
+TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
+  // The same can, once striped and once in the stripes' mean colour.
+  const auto striped = [](const Eigen::Vector3d& p) {
+    return std::fmod(std::abs(p.z()), 0.02) < 0.01 ? Rgb8{200, 200, 200} : Rgb8{140, 140, 140};
+  };
+  Solid can{Shape::kCylinder, {0.07, 0.07, 0.12}, striped, on_table(0, 0, 0.06)};
+  ModelLibrary library;
+  library.objects = {make_model("striped", can)};
+  can.paint = plain({172, 172, 172});
+  library.objects.push_back(make_model("plain", can));
+  const Fixture f({.solids = {can}}, circle_of_cameras(4));
+  const std::vector<Hypothesis> either = {make_hypothesis(0, can.world_from_object),
+                                          make_hypothesis(1, can.world_from_object)};
+  const VerifyOptions options{.min_pattern_similarity = 0.8};
+  const VerifyResult result = f.verify(either, library, options);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kOtherPattern);
+  EXPECT_LT(result.evidence[0].pattern_similarity, result.evidence[1].pattern_similarity - 0.2);
+}
+
 }  // namespace
 }  // namespace resight
