@@ -9,7 +9,7 @@
 namespace resight {
 
 /// Grows with each change of the generator or of its defaults: results of different versions do not compare.
-inline constexpr int kDynamicTabletopVersion = 1;
+inline constexpr int kDynamicTabletopVersion = 2;
 /// To tune on, and to report on. Any other seed is as good for whoever doubts.
 inline constexpr std::uint64_t kDynamicTabletopValidationSeed = 1;
 inline constexpr std::uint64_t kDynamicTabletopTestSeed = 2;
@@ -19,7 +19,7 @@ struct DynamicTabletopOptions {
   int num_known = 12;           ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;          ///< Further known things, which may come in later.
   int num_unknown = 5;          ///< Things that are in no library.
-  int num_changes = 18;         ///< Of a sequence, at most (what finds no room does not happen).
+  int num_changes = 32;         ///< Of a sequence, at most (what finds no room does not happen).
   double unknown_share = 0.15;  ///< Of the changes: those of unknown things.
   double lying_share = 0.25;    ///< Of the things: laid on a side.
   double crowding = 0.6;        ///< Share of the things that are put close to another one.

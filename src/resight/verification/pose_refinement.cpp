@@ -14,10 +14,10 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMaxPoints = 600;
+constexpr std::size_t kMaxPoints = 300;
 constexpr int kMinPairs = 20;
 constexpr double kDamping = 1e-3;  // Share of the mean direction that holds those which nothing else does.
-constexpr double kStill = 1e-5;    // Metres and radians.
+constexpr double kStill = 1e-4;    // Metres and radians.
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

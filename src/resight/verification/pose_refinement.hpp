@@ -15,7 +15,7 @@ struct RefinePoseOptions {
   double max_distance_m = 0.015;
   double max_normal_angle_rad = 0.785398;  ///< 45 deg.
   double max_step_m = 0.02;  ///< A pose that moves farther in all (at the middle of the points) is left as it was.
-  double correspondence_weight = 4;  ///< Of a pair of keypoints, beside 1 of a surface point (at most 600 are used).
+  double correspondence_weight = 4;  ///< Of a pair of keypoints, beside 1 of a surface point (at most 300 are used).
   void check() const;
 };
 
