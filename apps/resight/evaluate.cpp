@@ -15,9 +15,12 @@
 #include "resight/models/library_file.hpp"
 #include "resight/models/training.hpp"
 #include "resight/report/evaluation_report.hpp"
+#include "resight/report/worst_views.hpp"
 
 namespace resight::app {
 namespace {
+
+constexpr int kNumPictures = 5;  // Of the worst views of each configuration.
 
 std::string read_text(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -69,7 +72,8 @@ class Evaluation {
       if (!run) missing.push_back(&unit);
     }
     if (!missing.empty()) return report_missing(missing);
-    value_or_throw(write_evaluation(arguments_.out, {plan_.dataset_name, RESIGHT_VERSION}, runs));
+    draw_worst_views(runs);
+    value_or_throw(write_evaluation(arguments_.out, {plan_.dataset_name, RESIGHT_VERSION}, runs, kNumPictures));
     print_table(runs);
     if (arguments_.bop) write_bop(runs);
   }
@@ -102,13 +106,26 @@ class Evaluation {
     }
   }
 
+  [[nodiscard]] Result<std::unique_ptr<Sequence>> open_evaluated(const std::string& name) const {
+    const auto unit = std::ranges::find(plan_.units, name,
+                                        [](const EvaluationUnit& u) -> const std::string& { return u.sequence.name; });
+    return open_sequence(unit->sequence.folder);
+  }
+
+  void draw_worst_views(const std::vector<EvaluatedRun>& runs) const {
+    for (const WorstView& worst : find_worst_views(runs, kNumPictures)) {
+      const auto sequence = value_or_throw(open_evaluated(worst.run->sequence));
+      const RgbdFrame frame = value_or_throw(sequence->read_view(worst.view));
+      const auto truth = value_or_throw(sequence->read_ground_truth(worst.view));
+      const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, truth, worst.evaluated()));
+      value_or_throw(write_file(arguments_.out / worst_view_picture(worst),
+                                std::string_view(reinterpret_cast<const char*>(jpeg.data()), jpeg.size())));
+    }
+  }
+
   void write_bop(const std::vector<EvaluatedRun>& runs) const {
     const auto objects = value_or_throw(read_bop_objects(plan_.models));
-    const auto open = [this](const std::string& name) {
-      const auto unit = std::ranges::find(
-          plan_.units, name, [](const EvaluationUnit& u) -> const std::string& { return u.sequence.name; });
-      return open_sequence(unit->sequence.folder);
-    };
+    const auto open = [this](const std::string& name) { return open_evaluated(name); };
     const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, objects, open)));
     value_or_throw(write_file(arguments_.out / "bop.md", table));
     fmt::print("\n{}", table);

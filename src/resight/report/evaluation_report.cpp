@@ -9,6 +9,7 @@
 
 #include "resight/core/files.hpp"
 #include "resight/report/line_plot.hpp"
+#include "resight/report/worst_views.hpp"
 
 namespace resight {
 namespace {
@@ -46,62 +47,10 @@ std::string plot_view_times(std::span<const ConfigurationSummary> configurations
   return format_svg(plot);
 }
 
-struct BadView {
-  const EvaluatedRun* run;
-  const EvaluatedView* view;
-  int num_missed = 0;
-  int num_wrong = 0;
-};
-
-std::vector<BadView> bad_views(std::span<const EvaluatedRun* const> runs) {
-  std::vector<BadView> bad;
-  for (const EvaluatedRun* run : runs)
-    for (const EvaluatedView& view : run->views)
-      if (view.score.false_negatives + view.score.false_positives > 0)
-        bad.push_back({run, &view, view.score.false_negatives, view.score.false_positives});
-  std::ranges::stable_sort(bad, std::greater{}, [](const BadView& b) { return b.num_missed + b.num_wrong; });
-  return bad;
-}
-
-std::string describe(const BadView& bad) {
-  std::string text = fmt::format("\n### {} view {}: {} missed, {} wrong\n\n", bad.run->sequence, bad.view->name,
-                                 bad.num_missed, bad.num_wrong);
-  for (const EvaluatedTruth& t : bad.view->truth)
-    if (t.counts && !t.found)
-      text += fmt::format("- missed {} {} ({:.0f} % visible, at {:.2f} m): {}\n", t.object, t.instance,
-                          100 * t.visible_share, t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
-  for (const EvaluatedDetection& d : bad.view->detections)
-    if (d.verdict == DetectionVerdict::kFalsePositive || d.verdict == DetectionVerdict::kGhost)
-      text += fmt::format("- {} {} (score {:.2f}, at {:.2f} m)\n", to_string(d.verdict), d.object, d.score,
-                          d.camera_from_object.translation.norm());
-  return text;
-}
-
 }  // namespace
 
-std::string format_worst_views(std::span<const EvaluatedRun> runs, int max_views_per_configuration) {
-  std::string text = "# Worst views first\n";
-  std::vector<const EvaluatedRun*> left;
-  for (const EvaluatedRun& run : runs) left.push_back(&run);
-  while (!left.empty()) {
-    const EvaluatedRun& first = *left.front();
-    const auto rest = std::stable_partition(left.begin(), left.end(), [&](const EvaluatedRun* run) {
-      return run->preset == first.preset && run->num_previous_views == first.num_previous_views &&
-             run->is_clustered == first.is_clustered;
-    });
-    const std::vector<const EvaluatedRun*> of_one(left.begin(), rest);
-    left.erase(left.begin(), rest);
-    text += fmt::format("\n## `{}`, K = {}{}\n", first.preset, first.num_previous_views,
-                        first.is_clustered ? "" : ", without clustering");
-    int count = 0;
-    for (const BadView& bad : bad_views(of_one))
-      if (count++ < max_views_per_configuration) text += describe(bad);
-  }
-  return text;
-}
-
 Result<void> write_evaluation(const std::filesystem::path& directory, const EvaluationHeader& header,
-                              std::span<const EvaluatedRun> runs) {
+                              std::span<const EvaluatedRun> runs, int num_pictures) {
   const std::vector<ConfigurationSummary> c = summarize_runs(runs);
   using C = ConfigurationSummary;
   const std::pair<const char*, std::string> files[] = {
@@ -109,7 +58,7 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
       {"times.json", format_evaluation_times_json(header, c)},
       {"tables.md", format_evaluation_tables(header, c, compare_presets(runs))},
       {"times.md", format_evaluation_times(header, c)},
-      {"worst.md", format_worst_views(runs)},
+      {"worst.md", format_worst_views(find_worst_views(runs), num_pictures)},
       {"precision.svg", plot_over_k(
                             "Precision", "precision", c, [](const C& x) { return x.score.precision(); }, true)},
       {"recall.svg", plot_over_k(

@@ -30,13 +30,10 @@ struct EvaluationHeader {
 /// The times as Markdown tables.
 [[nodiscard]] std::string format_evaluation_times(const EvaluationHeader& header,
                                                   std::span<const ConfigurationSummary> configurations);
-/// The missed and wrong objects of each run, the views with most of them first.
-[[nodiscard]] std::string format_worst_views(std::span<const EvaluatedRun> runs, int max_views_per_configuration = 25);
-
 /// Writes results.json, times.json, tables.md, times.md, worst.md, and the plots precision.svg, recall.svg, f.svg,
 /// ghosts.svg (Fig. 5) and view_time.svg (Fig. 7) into `directory`. Each file appears under its name only when it is
-/// whole.
+/// whole. `num_pictures`: of the worst views of each configuration, which the caller draws (worst_views.hpp).
 [[nodiscard]] Result<void> write_evaluation(const std::filesystem::path& directory, const EvaluationHeader& header,
-                                            std::span<const EvaluatedRun> runs);
+                                            std::span<const EvaluatedRun> runs, int num_pictures = 0);
 
 }  // namespace resight

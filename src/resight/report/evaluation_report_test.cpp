@@ -91,18 +91,6 @@ TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {
   EXPECT_EQ(text.find("wall"), std::string::npos);
 }
 
-TEST(EvaluationReport, WorstViewsComeFirst) {
-  const std::vector<EvaluatedRun> runs = make_runs();
-  const std::string text = format_worst_views(runs);
-  const auto worse = text.find("000001 view 000001: 9 missed, 1 wrong");
-  const auto better = text.find("000001 view 000000: 1 missed, 1 wrong");
-  ASSERT_NE(worse, std::string::npos);
-  ASSERT_NE(better, std::string::npos);
-  EXPECT_LT(worse, better);
-  EXPECT_NE(text.find("missed mug 0 (50 % visible, at 0.00 m): no keypoints"), std::string::npos);
-  EXPECT_NE(text.find("ghost mug (score 0.50, at 1.50 m)"), std::string::npos);
-}
-
 TEST(EvaluationReport, WritesAllFiles) {
   const fs::path directory = fs::temp_directory_path() / ("resight_evaluation_" + std::to_string(::getpid()));
   fs::remove_all(directory);
