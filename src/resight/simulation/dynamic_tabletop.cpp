@@ -12,6 +12,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
 #include "resight/simulation/internal/footprint.hpp"
+#include "resight/simulation/internal/tabletop_stage.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/room.hpp"
 #include "resight/simulation/view_renderer.hpp"
@@ -28,20 +29,19 @@ constexpr double kMinMoveM = 0.10;
 constexpr double kNearMoveM = 0.30;
 constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};  // Unknown, and like known ones.
 
-enum class Theme { kDesk, kMeeting, kCorner, kShelf };
 struct SequencePlan {
-  Theme theme;
+  TabletopTheme theme;
   int num_views;
 };
-constexpr std::array<SequencePlan, 9> kPlan{{{Theme::kDesk, 23},
-                                             {Theme::kMeeting, 22},
-                                             {Theme::kCorner, 23},
-                                             {Theme::kDesk, 22},
-                                             {Theme::kShelf, 23},
-                                             {Theme::kMeeting, 23},
-                                             {Theme::kCorner, 22},
-                                             {Theme::kDesk, 23},
-                                             {Theme::kMeeting, 22}}};
+constexpr std::array<SequencePlan, 9> kPlan{{{TabletopTheme::kDesk, 23},
+                                             {TabletopTheme::kMeeting, 22},
+                                             {TabletopTheme::kCorner, 23},
+                                             {TabletopTheme::kDesk, 22},
+                                             {TabletopTheme::kShelf, 23},
+                                             {TabletopTheme::kMeeting, 23},
+                                             {TabletopTheme::kCorner, 22},
+                                             {TabletopTheme::kDesk, 23},
+                                             {TabletopTheme::kMeeting, 22}}};
 
 double radians(double deg) { return deg * kPi / 180; }
 
@@ -61,14 +61,6 @@ class Catalogue {
     footprints_[object.name] = {footprint_of(object.mesh, 0), footprint_of(object.mesh, kPi / 2)};
   }
   std::map<std::string, std::array<Footprint, 2>> footprints_;
-};
-
-// A level of a piece of furniture that things stand on.
-struct Surface {
-  std::string support;
-  int level = -1;
-  Vector2d half_area;
-  std::vector<Footprint> obstacles;
 };
 
 // Where a thing stands, in the surface's frame.
@@ -99,7 +91,7 @@ class SequenceBuilder {
     script_.sensor.lateral_noise = options_.depth_noise;
     script_.sensor.axial_noise = options_.depth_noise;
     script_.sensor.color_noise = options_.color_noise;
-    furnish();
+    stage_ = furnish_tabletop(kPlan[static_cast<std::size_t>(index_)].theme, rng_, script_);
     choose_things();
     for (Thing& thing : things_)
       if (&thing - things_.data() < num_starting_) thing.spot = find_spot(thing, {});
@@ -110,91 +102,6 @@ class SequenceBuilder {
   }
 
  private:
-  // ---- furniture ----
-
-  void furnish() {
-    script_.room_size_m = Vector3d(rng_.uniform(4.6, 5.4), rng_.uniform(4.6, 5.4), 2.6);
-    script_.lighting.lamp_in_world_m = Vector3d(rng_.uniform(-1.5, 1.5), rng_.uniform(-1.5, 1.0), 2.5);
-    script_.lighting.ambient = rng_.uniform(0.45, 0.6);
-    switch (kPlan[static_cast<std::size_t>(index_)].theme) {
-      case Theme::kDesk:
-        return furnish_desk();
-      case Theme::kMeeting:
-        return furnish_meeting();
-      case Theme::kCorner:
-        return furnish_corner();
-      case Theme::kShelf:
-        return furnish_shelf();
-    }
-  }
-
-  void add_furniture(const std::string& key, const std::string& kind, const Vector3d& size_m, const std::string& on,
-                     const Vector2d& at_m, double yaw_rad = 0) {
-    Placement p;
-    p.support = on;
-    p.x_m = at_m.x();
-    p.y_m = at_m.y();
-    p.yaw_rad = yaw_rad;
-    script_.furniture.push_back({key, kind, size_m, p});
-  }
-
-  // On the first surface, which then has no room there.
-  void add_obstacle(const std::string& kind, const Vector3d& size_m, const Vector2d& at_m, double yaw_rad) {
-    add_furniture(kind, kind, size_m, surfaces_[0].support, at_m, yaw_rad);
-    surfaces_[0].obstacles.push_back({at_m, 0.5 * size_m.head<2>(), yaw_rad});
-  }
-
-  void add_papers(int count) {
-    for (int i = 0; i < count; ++i) {
-      const Vector2d at(rng_.uniform(-0.5, 0.5), rng_.uniform(-0.25, 0.1));
-      // So thin that things may stand on it.
-      add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, surfaces_[0].support, at,
-                    rng_.uniform(-kPi, kPi));
-    }
-  }
-
-  void furnish_desk() {
-    const Vector3d size(rng_.uniform(1.4, 1.6), 0.85, 0.74);
-    add_furniture("desk", "table", size, "", {0, 0});
-    add_furniture("shelf", "shelf", {1.0, 0.3, 1.7}, "", {rng_.uniform(-1.2, 1.2), 2.0});
-    surfaces_.push_back({"desk", -1, Vector2d(0.5 * size.x() - 0.06, 0.38), {}});
-    add_obstacle("monitor", {0.50, 0.18, 0.38}, {rng_.uniform(-0.35, 0.35), 0.28}, rng_.uniform(-0.25, 0.25));
-    add_obstacle("keyboard", {0.36, 0.13, 0.02}, {rng_.uniform(-0.2, 0.2), -0.28}, rng_.uniform(-0.2, 0.2));
-    add_papers(1);
-    look_at_point_ = {0, -0.02, 0.80};
-    pan_m_ = {0.25, 0};
-    half_arc_rad_ = radians(55);
-  }
-
-  void furnish_meeting() {
-    add_furniture("table", "table", {1.5, 1.0, 0.74}, "", {0, 0});
-    add_furniture("cabinet", "cabinet", {0.8, 0.45, 0.9}, "", {rng_.uniform(-1.2, 1.2), 2.0});
-    surfaces_.push_back({"table", -1, Vector2d(0.69, 0.44), {}});
-    add_papers(3);
-    look_at_point_ = {0, 0, 0.80};
-    pan_m_ = {0.20, 0.08};
-    half_arc_rad_ = radians(80);
-  }
-
-  void furnish_corner() {
-    add_furniture("table", "table", {1.2, 0.8, 0.74}, "", {-0.35, 0});
-    add_furniture("cabinet", "cabinet", {0.8, 0.5, 0.55}, "", {0.72, 0.05});
-    surfaces_.push_back({"table", -1, Vector2d(0.54, 0.35), {}});
-    surfaces_.push_back({"cabinet", -1, Vector2d(0.36, 0.22), {}});
-    add_papers(1);
-    look_at_point_ = {0.1, 0, 0.74};
-    pan_m_ = {0.45, 0};
-    half_arc_rad_ = radians(45);
-  }
-
-  void furnish_shelf() {
-    add_furniture("shelf", "shelf", {1.3, 0.36, 1.5}, "", {0, 0});
-    for (const int level : {1, 2, 3}) surfaces_.push_back({"shelf", level, Vector2d(0.60, 0.165), {}});
-    look_at_point_ = {0, 0, 0.95};
-    pan_m_ = {0.25, 0};
-    half_arc_rad_ = radians(38);
-  }
-
   // ---- things ----
 
   void choose_things() {
@@ -220,7 +127,7 @@ class SequenceBuilder {
   }
 
   [[nodiscard]] bool is_free(const Thing& thing, const Spot& spot) const {
-    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    const TabletopSurface& surface = stage_.surfaces[static_cast<std::size_t>(spot.surface)];
     const auto collides = [&](const Footprint& other) { return overlaps(spot.covered, other, options_.gap_m); };
     return lies_within(spot.covered, surface.half_area) && std::ranges::none_of(surface.obstacles, collides) &&
            std::ranges::none_of(things_, [&](const Thing& other) {
@@ -242,20 +149,20 @@ class SequenceBuilder {
       return spot;
     }
     spot.surface = draw_surface();
-    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    const TabletopSurface& surface = stage_.surfaces[static_cast<std::size_t>(spot.surface)];
     spot.covered.center = {rng_.uniform(-1, 1) * surface.half_area.x(), rng_.uniform(-1, 1) * surface.half_area.y()};
     return spot;
   }
 
   int draw_surface() {
     double total = 0;
-    for (const Surface& s : surfaces_) total += s.half_area.prod();
+    for (const TabletopSurface& s : stage_.surfaces) total += s.half_area.prod();
     double left = rng_.uniform() * total;
-    for (std::size_t i = 0; i + 1 < surfaces_.size(); ++i) {
-      left -= surfaces_[i].half_area.prod();
+    for (std::size_t i = 0; i + 1 < stage_.surfaces.size(); ++i) {
+      left -= stage_.surfaces[i].half_area.prod();
       if (left < 0) return static_cast<int>(i);
     }
-    return static_cast<int>(surfaces_.size()) - 1;
+    return static_cast<int>(stage_.surfaces.size()) - 1;
   }
 
   // A thing that stands there already, to be put next to.
@@ -290,7 +197,7 @@ class SequenceBuilder {
   }
 
   [[nodiscard]] Placement placement_of(const Thing& thing, const Spot& spot) const {
-    const Surface& surface = surfaces_[static_cast<std::size_t>(spot.surface)];
+    const TabletopSurface& surface = stage_.surfaces[static_cast<std::size_t>(spot.surface)];
     Placement p;
     p.support = surface.support;
     p.level = surface.level;
@@ -406,14 +313,14 @@ class SequenceBuilder {
     for (int view = 0; view < num_views; ++view) {
       const double t = static_cast<double>(view) / (num_views - 1);
       const auto wave = [&](double cycles, double phase) { return std::sin(2 * kPi * cycles * t + phase); };
-      const double azimuth = middle_rad + side * half_arc_rad_ * std::cos(2 * kPi * 0.9 * t) + jitter(0.03);
+      const double azimuth = middle_rad + side * stage_.half_arc_rad * std::cos(2 * kPi * 0.9 * t) + jitter(0.03);
       const double elevation = radians(32 + 9 * wave(1.3, phase_height)) + jitter(0.02);
       const double middle_m = 0.5 * (options_.min_distance_m + options_.max_distance_m);
       const double swing_m = 0.5 * (options_.max_distance_m - options_.min_distance_m);
       const double distance = middle_m + swing_m * wave(1.1, phase_distance);
       const double pan = wave(1.7, phase_pan);
-      const Vector3d target =
-          look_at_point_ + Vector3d(pan * pan_m_.x() + jitter(0.02), pan * pan_m_.y() + jitter(0.02), jitter(0.02));
+      const Vector3d target = stage_.look_at_point_m + Vector3d(pan * stage_.pan_m.x() + jitter(0.02),
+                                                                pan * stage_.pan_m.y() + jitter(0.02), jitter(0.02));
       const Vector3d eye = target + distance * Vector3d(std::cos(elevation) * std::cos(azimuth),
                                                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       script_.world_from_camera.push_back(look_at(eye, target) *
@@ -428,12 +335,9 @@ class SequenceBuilder {
   int index_;
   const DynamicTabletopOptions& options_;
   SceneScript script_;
-  std::vector<Surface> surfaces_;
+  TabletopStage stage_;
   std::vector<Thing> things_;
   int num_starting_ = 0;
-  Vector3d look_at_point_ = Vector3d::Zero();
-  Vector2d pan_m_ = Vector2d::Zero();
-  double half_arc_rad_ = 0;
 };
 
 }  // namespace
