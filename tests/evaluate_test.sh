@@ -67,7 +67,7 @@ done
 grep -o 'worst/.*jpg' "$work/whole/worst.md" | while read -r picture; do
   [[ -s $work/whole/$picture ]] || fail "worst.md shows $picture, which is not there"
 done
-[[ $(find "$work/whole/worst" -name '*.jpg' | wc -l) -gt 4 ]] || fail "too few pictures of the worst views"
+[[ $(find "$work/whole/worst" -name '*.jpg' | wc -l) -gt 0 ]] || fail "there are no pictures of the worst views"
 [[ $(find "$work/whole/runs" -name '*.json' | wc -l) == 16 ]] || fail "expected 16 runs, there are: $(ls "$work/whole/runs")"
 grep -q '"true_positives": [1-9]' "$work/whole/results.json" || fail "nothing was recognised"
 

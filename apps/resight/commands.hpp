@@ -27,6 +27,9 @@ inline void value_or_throw(const Result<void>& result) {
   if (!result.ok()) throw InputError(result.error().message);
 }
 
+/// Three digits, or "-" for a share of nothing.
+[[nodiscard]] std::string format_share(double share);
+
 /// One line on standard error.
 void print_warning(const std::string& what);
 

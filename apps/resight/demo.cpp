@@ -17,8 +17,9 @@ void print_table(const std::vector<ReportRun>& runs) {
              "changes", "s a view");
   for (const ReportRun& run : runs) {
     const RunSummary s = summarize(run);
-    fmt::print("{:<10} {:>9.3f} {:>7.3f} {:>7.3f} {:>7} {:>8} {:>10.2f}\n", run.preset, s.score.precision(),
-               s.score.recall(), s.score.f_score(), s.num_ghosts, s.num_events, s.median_view_wall_s);
+    fmt::print("{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10.2f}\n", run.preset, format_share(s.score.precision()),
+               format_share(s.score.recall()), format_share(s.score.f_score()), s.num_ghosts, s.num_events,
+               s.median_view_wall_s);
   }
   fmt::print("(true within 5 cm and 30 deg; ghost: an object reported at a place that it has left)\n\n");
 }

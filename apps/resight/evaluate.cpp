@@ -148,10 +148,10 @@ class Evaluation {
     fmt::print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
                "strict F", "ghosts", "/place", "s a view");
     for (const ConfigurationSummary& c : summarize_runs(runs))
-      fmt::print("{:<10} {:>2} {:>9.3f} {:>7.3f} {:>7.3f} {:>9.3f} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset,
-                 c.num_previous_views, c.score.precision(), c.score.recall(), c.score.f_score(),
-                 c.strict_score.f_score(), c.num_ghosts, c.ghosts_per_change(), c.times.total_wall_s() / c.num_views,
-                 c.is_clustered ? "" : "  without clustering");
+      fmt::print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
+                 format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),
+                 format_share(c.strict_score.f_score()), c.num_ghosts, c.ghosts_per_change(),
+                 c.times.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
     fmt::print("\ntables: {}\n", (arguments_.out / "tables.md").string());
   }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -178,6 +181,8 @@ std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const 
 }
 
 }  // namespace
+
+std::string resight::app::format_share(double share) { return std::isnan(share) ? "-" : fmt::format("{:.3f}", share); }
 
 void resight::app::print_warning(const std::string& what) {
   std::fprintf(stderr, "resight: warning: %s\n", what.c_str());
