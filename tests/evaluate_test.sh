@@ -64,10 +64,11 @@ evaluate whole --without-clustering || fail "evaluate failed: $(cat "$work/whole
 for name in results.json times.json tables.md times.md worst.md precision.svg recall.svg f.svg ghosts.svg view_time.svg; do
   [[ -s $work/whole/$name ]] || fail "evaluate wrote no $name"
 done
-grep -o 'worst/.*jpg' "$work/whole/worst.md" | while read -r picture; do
+pictures=$(grep -o 'worst/.*jpg' "$work/whole/worst.md")
+[[ -n $pictures ]] || fail "worst.md shows no pictures"
+for picture in $pictures; do
   [[ -s $work/whole/$picture ]] || fail "worst.md shows $picture, which is not there"
 done
-[[ $(find "$work/whole/worst" -name '*.jpg' | wc -l) -gt 0 ]] || fail "there are no pictures of the worst views"
 [[ $(find "$work/whole/runs" -name '*.json' | wc -l) == 16 ]] || fail "expected 16 runs, there are: $(ls "$work/whole/runs")"
 grep -q '"true_positives": [1-9]' "$work/whole/results.json" || fail "nothing was recognised"
 

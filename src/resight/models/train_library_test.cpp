@@ -188,13 +188,18 @@ TEST(TrainObjectFromViews, OneColourInAllPixelsIsNone) {
   EXPECT_TRUE(train_object("thing", views, make_quick_options())->surface.has_colors());
 }
 
-TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
-  const ProceduralObject object = make_any_object();
-  const TrainOptions options = make_quick_options();
+ModelSource make_source_of_one_view(const ProceduralObject& object, const TrainOptions& options) {
   ModelSource source;
   source.name = "thing";
   source.views = render_turntable(object.mesh, options.turntable);
   source.views.resize(1);
+  return source;
+}
+
+TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
+  const ProceduralObject object = make_any_object();
+  const TrainOptions options = make_quick_options();
+  ModelSource source = make_source_of_one_view(object, options);
   const Result<ObjectModel> from_views = train_object(source, options);
   ASSERT_TRUE(from_views.ok()) << from_views.error().message;
   source.surface = train_surface("thing", object.mesh, options).value();
@@ -217,10 +222,7 @@ TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
 TEST(TrainObjectFromSource, TheViewsTellWhetherAPlainSurfaceHasItsColour) {
   const ProceduralObject object = make_any_object();
   const TrainOptions options = make_quick_options();
-  ModelSource source;
-  source.name = "thing";
-  source.views = render_turntable(object.mesh, options.turntable);
-  source.views.resize(1);
+  ModelSource source = make_source_of_one_view(object, options);
   source.surface = train_surface("thing", object.mesh, options).value();
   source.surface->colors.assign(source.surface->size(), Rgb8{200, 30, 20});
   const Result<ObjectModel> plain = train_object(source, options);

@@ -63,7 +63,8 @@ struct VerifyOptions {
   int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
   double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
   double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
-  double min_pattern_similarity = 0;  ///< Prints that differ more are not the same, however well they fit in the mean.
+  double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
+                                       ///< -1 turns it off.
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;

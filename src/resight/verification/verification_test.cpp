@@ -250,6 +250,23 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
               testing::ElementsAre(0));
 }
 
+TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
+  // Black for white: the similarity is negative.
+  const Rgb8 dark{80, 80, 80};
+  const Rgb8 bright{200, 200, 200};
+  Solid box{Shape::kBox, {0.1, 0.1, 0.1}, checks(dark, bright, 0.02), on_table(0, 0, 0.05)};
+  ModelLibrary library;
+  library.objects = {make_model("negative", box)};
+  box.paint = checks(bright, dark, 0.02);
+  const Fixture f({.solids = {box}}, circle_of_cameras(4));
+  const std::vector<Hypothesis> negative = {make_hypothesis(0, box.world_from_object)};
+  const HypothesisEvidence evidence =
+      f.verify(negative, library, {.light = {0, 0, 0, 0, 0}, .min_explained_share = 0}).evidence[0];
+  EXPECT_LT(evidence.pattern_similarity, 0);
+  EXPECT_GT(evidence.num_explained, 0);
+  EXPECT_NE(evidence.verdict, Verdict::kOtherPattern);
+}
+
 TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
   // The same can, once striped and once in the stripes' mean colour.
   const auto striped = [](const Eigen::Vector3d& p) {
