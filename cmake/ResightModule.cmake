@@ -5,6 +5,7 @@
 # RESIGHT_LAYERS: an upward edge is a configure error.
 set(RESIGHT_LAYERS
     core geometry sensor io simulation features models changes reconstruction hypotheses verification
+    shape_search
     recognition evaluation report)
 
 add_library(resight_build_flags INTERFACE)

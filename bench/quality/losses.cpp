@@ -28,11 +28,14 @@ void print_evidence(const HypothesisEvidence& e) {
       e.outlier_cost, e.clutter_cost, e.plane_cost, e.cost_alone);
 }
 
-void print_loss(int view, const GroundTruthObject& truth, const Loss& loss) {
+void print_loss(int view, const GroundTruthObject& truth, const Loss& loss, const RecognitionTrace& trace,
+                const ModelLibrary& library) {
   fmt::print("view {:2} missed {:16} vis {:.2f} {:13} keypoints {} matches {} right {}", view, truth.object,
              truth.visible_share, to_string(loss.stage), loss.num_keypoints, loss.num_correspondences, loss.num_right);
   if (loss.best)
     fmt::print(" best {:.1f} mm {:.1f} deg", 1e3 * loss.best->center_distance_m, 57.2958 * loss.best->rotation_rad);
+  if (loss.evidence && loss.evidence->outvoted_by >= 0)
+    fmt::print(" by {}", library.objects[trace.verified[loss.evidence->outvoted_by].object].name);
   if (loss.evidence)
     print_evidence(*loss.evidence);
   else
@@ -85,7 +88,7 @@ int main(int argc, char** argv) {
     for (const int t : matched.false_negatives) {
       const Loss loss = find_loss(truth[t], frame.world_from_camera, trace, library, options);
       ++losses[loss.stage];
-      print_loss(v, truth[t], loss);
+      print_loss(v, truth[t], loss, trace, library);
     }
     for (const int d : matched.false_positives) {
       const Detection& detection = update.detections[d];

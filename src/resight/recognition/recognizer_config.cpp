@@ -87,6 +87,40 @@ void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                               });
 }
 
+void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  ShapeSearchOptions& s = c.shape;
+  fields.insert(fields.end(), {
+                                  {"shape.enabled", &s.enabled},
+                                  {"shape.scene_spacing_m", &s.scene.spacing_m},
+                                  {"shape.scene_max_depth_m", &s.scene.max_depth_m},
+                                  {"shape.scene_max_plane_m", &s.scene.max_plane_m},
+                                  {"shape.scene_min_edge_distance_px", &s.scene.min_edge_distance_px},
+                                  {"shape.max_model_samples", &s.max_model_samples},
+                                  {"shape.max_seeds", &s.max_seeds},
+                                  {"shape.pairs_per_seed", &s.pairs_per_seed},
+                                  {"shape.max_entries", &s.max_entries},
+                                  {"shape.coarse_samples", &s.coarse_samples},
+                                  {"shape.max_coarse_wrong", &s.max_coarse_wrong},
+                                  {"shape.min_coarse_score", &s.min_coarse_score},
+                                  {"shape.coarse_tolerance_m", &s.coarse.tolerance_m},
+                                  {"shape.coarse_tolerance_sigmas", &s.coarse.tolerance_sigmas},
+                                  {"shape.coarse_max_chroma_difference", &s.coarse.max_chroma_difference},
+                                  {"shape.max_refined", &s.max_refined},
+                                  {"shape.refine_iterations", &s.refine_iterations},
+                                  {"shape.refine_distance_m", &s.refine_distance_m},
+                                  {"shape.tolerance_m", &s.tolerance_m},
+                                  {"shape.min_explained_share", &s.min_explained_share},
+                                  {"shape.min_pattern_similarity", &s.min_pattern_similarity},
+                                  {"shape.min_visible_share", &s.min_visible_share},
+                                  {"shape.color_sigma_l", &s.color_sigma_l},
+                                  {"shape.color_sigma_ab", &s.color_sigma_ab},
+                                  {"shape.max_hypotheses", &s.max_hypotheses},
+                                  {"shape.same_place_m", &s.same_place_m},
+                                  {"shape.same_rotation_rad", &s.same_rotation_rad},
+                                  {"shape.seed", &s.seed},
+                              });
+}
+
 void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
@@ -182,9 +216,11 @@ std::vector<Field> list_fields(RecognizerConfig& c) {
   std::vector<Field> fields{{"num_previous_views", &c.num_previous_views},
                             {"detect_changes", &c.detect_changes},
                             {"cluster_hypotheses", &c.cluster_hypotheses},
-                            {"clear_tolerance_m", &c.clear_tolerance_m}};
+                            {"clear_tolerance_m", &c.clear_tolerance_m},
+                            {"min_reported_share", &c.min_reported_share}};
   add_feature_fields(c, fields);
   add_hypothesis_fields(c, fields);
+  add_shape_fields(c, fields);
   add_change_fields(c, fields);
   add_verification_fields(c, fields);
   return fields;
@@ -281,7 +317,10 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
     config.verify.min_explained_share = 0.6;     // A third of an object may lie in a hard shadow...
     config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own.
-    config.verify.clutter_weight = 3;
+    config.verify.clutter_weight = 6;
+    config.verify.near_clutter_weight = 3;
+    config.min_reported_share = 0.02;
+    config.shape.enabled = true;
     config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;
     return config;
@@ -293,12 +332,12 @@ void RecognizerConfig::set_num_threads(int num_threads) {
   check_positive("num_threads", num_threads);
   for (int* field :
        {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.index.num_threads,
-        &generate.num_threads, &cluster.num_threads, &changes.num_threads, &integrate.num_threads, &verify.num_threads})
+        &generate.num_threads, &shape.num_threads, &cluster.num_threads, &changes.num_threads, &integrate.num_threads, &verify.num_threads})
     *field = num_threads;
 }
 
 void RecognizerConfig::set_seed(std::uint64_t seed) {
-  for (std::uint64_t* field : {&match.index.seed, &generate.grouping.pose.seed, &cluster.pose.seed, &verify.seed})
+  for (std::uint64_t* field : {&match.index.seed, &generate.grouping.pose.seed, &shape.seed, &cluster.pose.seed, &verify.seed})
     *field = seed;
 }
 

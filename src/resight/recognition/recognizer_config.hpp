@@ -15,6 +15,7 @@
 #include "resight/recognition/object_history.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/shape_search/shape_search.hpp"
 #include "resight/verification/verification.hpp"
 
 namespace resight {
@@ -27,11 +28,14 @@ struct RecognizerConfig {
   bool detect_changes = true;       ///< Off: the static world of the paper's baseline.
   bool cluster_hypotheses = true;   ///< Off: Tables II and III without clustering.
   double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
+  double min_reported_share = 0;    ///< An object of which the view itself sees less (of the model's points; hidden, or
+                                    ///< outside the image) is known to the history, but no detection of this view.
   PrepareViewOptions prepare;
   SiftOptions sift;
   ShotOptions shot;
   MatchFeaturesOptions match;
   GenerateHypothesesOptions generate;
+  ShapeSearchOptions shape;
   ClusterHypothesesOptions cluster;
   DetectChangesOptions changes;
   RemovalSupportOptions removal;

@@ -41,6 +41,7 @@ struct SceneRecognizer::Impl {
   const ModelLibrary& library;
   RecognizerConfig config;
   std::optional<ModelFeatureIndex> index;  // with a store: made when a view needs it
+  std::optional<ShapeSearch> shapes;       // made when a view needs it
   ObjectHistory history;
   DynamicScene scene;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
@@ -74,6 +75,8 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   std::vector<const RgbdFrame*> earlier;
   for (std::size_t v = 0; v + 1 < window.size(); ++v) earlier.push_back(&window[v].raw);
   update.events = history.update(update.view, update.detections, window.back().raw, earlier, config.detect_changes);
+  std::erase_if(update.detections,
+                [&](const Detection& d) { return d.views.back().visible_share < config.min_reported_share; });
   return update;
 }
 
@@ -110,13 +113,28 @@ ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedVie
     made.shot = extract_shot(view, config.shot);
   }
   if (!index) index.emplace(library, config.match);
+  if (config.shape.enabled && !shapes) shapes.emplace(library, config.shape);
   {
     const ScopedTimer timer(made.times, "match");
     made.correspondences = index->match(made.sift, made.shot);
   }
-  const ScopedTimer timer(made.times, "hypotheses");
-  made.hypotheses = generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, next_hypothesis_id,
-                                        config.generate);
+  {
+    const ScopedTimer timer(made.times, "hypotheses");
+    made.hypotheses = generate_hypotheses(made.correspondences, view.frame.world_from_camera, number,
+                                          next_hypothesis_id, config.generate);
+  }
+  if (shapes) {
+    const ScopedTimer timer(made.times, "shape search");
+    for (const ShapeCandidate& candidate : shapes->search(view)) {
+      Hypothesis hypothesis;
+      hypothesis.id = next_hypothesis_id + made.hypotheses.size();
+      hypothesis.object = candidate.object;
+      hypothesis.world_from_object = view.frame.world_from_camera * candidate.camera_from_object;
+      hypothesis.origin_view = number;
+      hypothesis.origin_views = {number};
+      made.hypotheses.push_back(std::move(hypothesis));
+    }
+  }
   return made;
 }
 

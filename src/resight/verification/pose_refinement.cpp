@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/pose_refinement.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "resight/core/check.hpp"
 #include "resight/verification/local_scene.hpp"
+#include "resight/verification/point_to_plane.hpp"
 #include "resight/verification/scene_preparation.hpp"
 
 namespace resight {
@@ -16,37 +15,6 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 300;
 constexpr int kMinPairs = 20;
-constexpr double kDamping = 1e-3;  // Share of the mean direction that holds those which nothing else does.
-constexpr double kStill = 1e-4;    // Metres and radians.
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-// The normal equations of one step: turn about the middle and shift, both in the world frame. Turns are scaled to
-// metres by the radius of the points, so that the damping treats both alike.
-struct StepEquations {
-  Matrix6 matrix = Matrix6::Zero();
-  Vector6 right = Vector6::Zero();
-  int num_pairs = 0;
-
-  void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight, double radius_m) {
-    Vector6 row;
-    row << arm.cross(normal) / radius_m, normal;
-    matrix += weight * row * row.transpose();
-    right += weight * residual * row;
-    ++num_pairs;
-  }
-  // A pair of points that should coincide.
-  void add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight, double radius_m) {
-    for (int axis = 0; axis < 3; ++axis) add(arm, Eigen::Vector3d::Unit(axis), offset[axis], weight, radius_m);
-  }
-  [[nodiscard]] Vector6 solve() const {
-    Matrix6 damped = matrix;
-    damped.diagonal().array() += kDamping * matrix.trace() / 6;
-    return damped.ldlt().solve(right);
-  }
-};
-
 class Refiner {
  public:
   Refiner(const PreparedModel& model, std::span<const int> visible, std::span<const Correspondence> correspondences,
@@ -73,15 +41,9 @@ class Refiner {
     for (int i = 0; i < options_.max_iterations; ++i) {
       const StepEquations equations = linearize(pose, local);
       if (equations.num_pairs < kMinPairs) return start;
-      const Vector6 x = equations.solve();
-      const Eigen::Vector3d turn = x.head<3>() / radius_m_;
-      const Eigen::Vector3d middle = pose * middle_.cast<double>().eval();
-      pose.rotation = Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? turn.normalized() : Eigen::Vector3d::UnitX())
-                          .toRotationMatrix() *
-                      pose.rotation;
-      pose.translation = middle + x.tail<3>() - pose.rotation * middle_.cast<double>();
+      const bool moved = equations.step(pose, middle_.cast<double>(), radius_m_);
       if ((pose * middle_.cast<double>().eval() - start_middle).norm() > options_.max_step_m) return start;
-      if (x.norm() < kStill) break;
+      if (!moved) break;
     }
     return pose;
   }

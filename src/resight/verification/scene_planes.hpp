@@ -14,7 +14,7 @@ namespace resight {
 struct ScenePlane {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   float offset = 0;
-  float extent_m = 0;  ///< Diagonal of the rectangle along its principal axes that holds its points.
+  float extent_m = 0;  ///< Largest distance of two of its points.
   int num_points = 0;
 
   [[nodiscard]] float signed_distance(const Eigen::Vector3f& p) const { return normal.dot(p) - offset; }

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "resight/geometry/rigid3.hpp"
+
+namespace resight {
+
+/// Two oriented points (a dipole; Winkelbach, Molkenstruck and Wahl 2006). Unit normals.
+struct Dipole {
+  Eigen::Vector3f p1, n1, p2, n2;
+};
+
+/// Bin of the four numbers that a rigid motion leaves as they are: distance, the angles of both normals with the line
+/// between the points, and the torsion of the normals about it. None for points closer than a bin of distance, or a
+/// pair that fixes no pose well: both normals alike and square to the line (a plane).
+[[nodiscard]] std::optional<std::uint32_t> dipole_bin(const Dipole& dipole, double max_distance_m);
+[[nodiscard]] std::uint32_t num_dipole_bins(double max_distance_m);
+
+/// Rotation and translation that put `from` onto `onto`: middle on middle, line on line, and the mean of the normals as
+/// near as that leaves. None if the normals have no part square to the line.
+[[nodiscard]] std::optional<Rigid3f> align(const Dipole& from, const Dipole& onto);
+
+/// A pair of samples of an object.
+struct DipoleEntry {
+  std::uint16_t object = 0;
+  std::uint16_t first = 0;
+  std::uint16_t second = 0;
+};
+
+/// Pairs of samples of all objects by bin.
+class DipoleTable {
+ public:
+  struct Samples {
+    std::span<const Eigen::Vector3f> points;
+    std::span<const Eigen::Vector3f> normals;
+    double min_distance_m = 0;  ///< Of a pair...
+    double max_distance_m = 0;  ///< ...both inclusive.
+  };
+  DipoleTable() = default;
+  /// At most 65,535 objects with as many samples each.
+  explicit DipoleTable(std::span<const Samples> objects);
+
+  /// In the order of objects.
+  [[nodiscard]] std::span<const DipoleEntry> find(std::uint32_t bin) const;
+  [[nodiscard]] double max_distance_m() const { return max_distance_m_; }
+  [[nodiscard]] std::size_t size() const { return entries_.size(); }
+
+ private:
+  double max_distance_m_ = 0;
+  std::vector<std::uint32_t> begin_;  // Per bin, and one more.
+  std::vector<DipoleEntry> entries_;
+};
+
+}  // namespace resight

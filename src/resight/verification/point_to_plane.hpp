@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "resight/geometry/rigid3.hpp"
+
+namespace resight {
+
+/// The normal equations of one step of point-to-plane ICP (Chen and Medioni 1992): a turn about the middle of the moved
+/// points and a shift, both in the frame they are moved in. Turns are scaled to metres by the radius of the points, so
+/// that the damping treats both alike.
+struct StepEquations {
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  int num_pairs = 0;
+
+  /// `arm`: the point from the middle; `residual`: how far it is to move along `normal`.
+  void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight, double radius_m);
+  /// A pair of points that should coincide.
+  void add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight, double radius_m);
+  /// Moves the pose, `middle` in the frame of the object. False when it stands still. Needs a pair.
+  [[nodiscard]] bool step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const;
+};
+
+}  // namespace resight
