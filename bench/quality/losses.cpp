@@ -26,6 +26,11 @@ void print_evidence(const HypothesisEvidence& e) {
       "{:.0f}\n",
       to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.pattern_similarity, e.explained_scene,
       e.outlier_cost, e.clutter_cost, e.plane_cost, e.cost_alone);
+  if (e.accepted) return;
+  fmt::print("    visible and explained per view:");
+  for (std::size_t v = 0; v < e.visible_share_per_view.size(); ++v)
+    fmt::print(" {:.2f}/{:.2f}", e.visible_share_per_view[v], e.explained_share_per_view[v]);
+  fmt::print("\n");
 }
 
 void print_loss(int view, const GroundTruthObject& truth, const Loss& loss, const RecognitionTrace& trace,

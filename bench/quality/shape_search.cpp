@@ -2,6 +2,8 @@
 // What the shape search finds of each object in single views, without what comes after it: recall per object, and how
 // many hypotheses it takes.
 //   bench_shape_search SEQUENCE LIBRARY [config.toml|-] [every]
+#include "resight/shape_search/shape_search.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -13,7 +15,6 @@
 #include "resight/evaluation/match_detections.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/shape_search/shape_search.hpp"
 
 namespace {
 
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
   const int every = argc > 4 ? std::atoi(argv[4]) : 1;
   config.set_num_threads(2);
   const auto start = std::chrono::steady_clock::now();
-  const ShapeSearch search(library, config.shape);
+  const ShapeSearch search(library, config.shape, config.verify);
   const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
   std::map<std::string, Tally> tallies;
   double seconds = 0;
@@ -62,8 +63,8 @@ int main(int argc, char** argv) {
       bool hit = false;
       for (const ShapeCandidate& c : candidates) {
         if (c.object != object) continue;
-        const PoseDifference difference = compare_poses(c.camera_from_object, truth.camera_from_object,
-                                                        library.objects[object]);
+        const PoseDifference difference =
+            compare_poses(c.camera_from_object, truth.camera_from_object, library.objects[object]);
         const bool right = difference.center_distance_m < 0.02 && difference.rotation_rad < 0.26;
         line += fmt::format(" {}{:.2f}({},{:.0f}mm,{:.0f}deg)", right ? "*" : "", c.quality, c.num_explained,
                             1e3 * difference.center_distance_m, 57.3 * difference.rotation_rad);
@@ -75,8 +76,12 @@ int main(int argc, char** argv) {
         ++rank;
       }
       const auto trial = search.try_pose(view, object, truth.camera_from_object);
-      fmt::print("view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} off {} through {} hidden | explained {:.2f} of {:.2f} pattern {:.2f} |{}\n", v, truth.object, truth.visible_share, hit ? "found" : "LOST ",
-                 trial.coarse.facing, trial.coarse.confirmed, trial.coarse.off_color, trial.coarse.through, trial.coarse.hidden, trial.fit.explained_share, trial.fit.visible_share, trial.fit.pattern_similarity, line);
+      fmt::print(
+          "view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} off {} through {} hidden | explained {:.2f} of "
+          "{:.2f} pattern {:.2f} |{}\n",
+          v, truth.object, truth.visible_share, hit ? "found" : "LOST ", trial.coarse.facing, trial.coarse.confirmed,
+          trial.coarse.off_color, trial.coarse.through, trial.coarse.hidden, trial.fit.explained_share,
+          trial.fit.visible_share, trial.fit.pattern_similarity, line);
     }
   }
   Tally sum;

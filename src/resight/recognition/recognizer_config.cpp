@@ -99,8 +99,8 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.max_seeds", &s.max_seeds},
                                   {"shape.pairs_per_seed", &s.pairs_per_seed},
                                   {"shape.max_entries", &s.max_entries},
-                                  {"shape.coarse_samples", &s.coarse_samples},
-                                  {"shape.max_coarse_wrong", &s.max_coarse_wrong},
+                                  {"shape.coarse_max_samples", &s.coarse.max_samples},
+                                  {"shape.coarse_max_wrong", &s.coarse.max_wrong},
                                   {"shape.min_coarse_score", &s.min_coarse_score},
                                   {"shape.coarse_tolerance_m", &s.coarse.tolerance_m},
                                   {"shape.coarse_tolerance_sigmas", &s.coarse.tolerance_sigmas},
@@ -112,8 +112,6 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.min_explained_share", &s.min_explained_share},
                                   {"shape.min_pattern_similarity", &s.min_pattern_similarity},
                                   {"shape.min_visible_share", &s.min_visible_share},
-                                  {"shape.color_sigma_l", &s.color_sigma_l},
-                                  {"shape.color_sigma_ab", &s.color_sigma_ab},
                                   {"shape.max_hypotheses", &s.max_hypotheses},
                                   {"shape.same_place_m", &s.same_place_m},
                                   {"shape.same_rotation_rad", &s.same_rotation_rad},
@@ -174,6 +172,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.color_sigma_l", &v.color_sigma_l},
                                   {"verify.color_sigma_ab", &v.color_sigma_ab},
                                   {"verify.light_max_log_exposure", &v.light.max_log_exposure},
+                                  {"verify.light_max_log_darkening", &v.light.max_log_darkening},
                                   {"verify.light_max_log_white_balance", &v.light.max_log_white_balance},
                                   {"verify.light_max_log_chroma", &v.light.max_log_chroma},
                                   {"verify.light_max_veil", &v.light.max_veil},
@@ -199,6 +198,8 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.steep_weight", &v.steep_weight},
                                   {"verify.min_inlier_weight", &v.min_inlier_weight},
                                   {"verify.max_inlier_angle_rad", &v.max_inlier_angle_rad},
+                                  {"verify.newest_view_decides", &v.newest_view_decides},
+                                  {"verify.continuation_offset_m", &v.continuation_offset_m},
                                   {"verify.max_seen_through_share", &v.max_seen_through_share},
                                   {"verify.max_moves", &v.max_moves},
                                   {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
@@ -312,13 +313,16 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.inlier_distance_m = 0.01;      // Poses are refined.
-    config.verify.color_sigma_l = 0.45;          // What lies in a shadow is darker than the light fit has it...
-    config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
-    config.verify.min_explained_share = 0.6;     // A third of an object may lie in a hard shadow...
-    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own.
+    config.verify.inlier_distance_m = 0.01;       // Poses are refined.
+    config.verify.color_sigma_l = 0.45;           // What lies in a shadow is darker than the light fit has it...
+    config.verify.color_sigma_ab = 0.17;          // ...but not of another hue.
+    config.verify.min_explained_share = 0.6;      // A third of an object may lie in a hard shadow...
+    config.verify.min_pattern_similarity = 0.57;  // ...but its print stays its own.
     config.verify.clutter_weight = 6;
-    config.verify.near_clutter_weight = 3;
+    config.verify.continuation_offset_m = 0.005;
+    config.verify.newest_view_decides = true;
+    config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
+    config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.02;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;
@@ -330,25 +334,28 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
 
 void RecognizerConfig::set_num_threads(int num_threads) {
   check_positive("num_threads", num_threads);
-  for (int* field :
-       {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.index.num_threads,
-        &generate.num_threads, &shape.num_threads, &cluster.num_threads, &changes.num_threads, &integrate.num_threads, &verify.num_threads})
+  for (int* field : {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.index.num_threads,
+                     &generate.num_threads, &shape.num_threads, &cluster.num_threads, &changes.num_threads,
+                     &integrate.num_threads, &verify.num_threads})
     *field = num_threads;
 }
 
 void RecognizerConfig::set_seed(std::uint64_t seed) {
-  for (std::uint64_t* field : {&match.index.seed, &generate.grouping.pose.seed, &shape.seed, &cluster.pose.seed, &verify.seed})
+  for (std::uint64_t* field :
+       {&match.index.seed, &generate.grouping.pose.seed, &shape.seed, &cluster.pose.seed, &verify.seed})
     *field = seed;
 }
 
 void RecognizerConfig::check() const {
   check_in_range("num_previous_views", num_previous_views, 0, 1000);
   check_positive("clear_tolerance_m", clear_tolerance_m);
+  check_in_range("min_reported_share", min_reported_share, 0, 1);
   prepare.check();
   sift.check();
   shot.check();
   match.check();
   generate.check();
+  shape.check();
   cluster.check();
   changes.check();
   removal.check();

@@ -93,7 +93,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
   constexpr int kThreads = 1;
   constexpr int kPose = num_fields<EstimatePoseOptions>();
   const std::map<std::string, int> expected{
-      {"", num_fields<RecognizerConfig>() - 11},  // the options of the stages
+      {"", num_fields<RecognizerConfig>() - 12},  // the options of the stages
       {"prepare", num_fields<PrepareViewOptions>() - 2 - kThreads + num_fields<ComputeNormalsOptions>() - kThreads +
                       num_fields<DepthEdgeOptions>()},
       {"sift", num_fields<SiftOptions>()},
@@ -101,6 +101,8 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"match", num_fields<MatchFeaturesOptions>() - 1 + num_fields<DescriptorIndexOptions>() - kThreads},
       {"grouping",
        num_fields<GenerateHypothesesOptions>() - 1 - kThreads + num_fields<GroupCorrespondencesOptions>() - 1 + kPose},
+      {"shape", num_fields<ShapeSearchOptions>() - 2 - kThreads + num_fields<SampleSceneOptions>() +
+                    num_fields<CountSamplesOptions>()},
       {"cluster", num_fields<ClusterHypothesesOptions>() - 1 - kThreads + kPose},
       {"changes", num_fields<DetectChangesOptions>() - kThreads},
       {"removal", num_fields<RemovalSupportOptions>()},

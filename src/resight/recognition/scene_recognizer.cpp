@@ -113,7 +113,7 @@ ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedVie
     made.shot = extract_shot(view, config.shot);
   }
   if (!index) index.emplace(library, config.match);
-  if (config.shape.enabled && !shapes) shapes.emplace(library, config.shape);
+  if (config.shape.enabled && !shapes) shapes.emplace(library, config.shape, config.verify);
   {
     const ScopedTimer timer(made.times, "match");
     made.correspondences = index->match(made.sift, made.shot);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/shape_search/dipole_table.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,8 +23,8 @@ std::uint32_t bin_of(float value, float range, std::uint32_t bins) {
   return std::min(bins - 1, static_cast<std::uint32_t>(std::max(0.0F, scaled)));
 }
 
-std::uint32_t num_distance_bins(double max_distance_m) {
-  return static_cast<std::uint32_t>(std::ceil(max_distance_m / kDistanceBin_m)) + 1;
+std::uint32_t num_distance_bins(double max_length_m) {
+  return static_cast<std::uint32_t>(std::ceil(max_length_m / kDistanceBin_m)) + 1;
 }
 
 // Columns: the line, the part of the normals' sum that is square to it, and what completes them.
@@ -41,14 +42,14 @@ std::optional<Eigen::Matrix3f> frame_of(const Dipole& d) {
 
 }  // namespace
 
-std::uint32_t num_dipole_bins(double max_distance_m) {
-  return num_distance_bins(max_distance_m) * kAngleBins * kAngleBins * kTorsionBins;
+std::uint32_t num_dipole_bins(double max_length_m) {
+  return num_distance_bins(max_length_m) * kAngleBins * kAngleBins * kTorsionBins;
 }
 
-std::optional<std::uint32_t> dipole_bin(const Dipole& d, double max_distance_m) {
+std::optional<std::uint32_t> dipole_bin(const Dipole& d, double max_length_m) {
   const Eigen::Vector3f offset = d.p2 - d.p1;
   const float distance = offset.norm();
-  if (!(distance >= static_cast<float>(kDistanceBin_m)) || distance > static_cast<float>(max_distance_m))
+  if (!(distance >= static_cast<float>(kDistanceBin_m)) || distance > static_cast<float>(max_length_m))
     return std::nullopt;
   const Eigen::Vector3f line = offset / distance;
   const float c1 = line.dot(d.n1);
@@ -78,7 +79,7 @@ std::optional<Rigid3f> align(const Dipole& from, const Dipole& onto) {
 
 DipoleTable::DipoleTable(std::span<const Samples> objects) {
   require(objects.size() <= std::numeric_limits<std::uint16_t>::max(), "DipoleTable: too many objects");
-  for (const Samples& s : objects) max_distance_m_ = std::max(max_distance_m_, s.max_distance_m);
+  for (const Samples& s : objects) max_length_m_ = std::max(max_length_m_, s.max_length_m);
   std::vector<std::pair<std::uint32_t, DipoleEntry>> found;
   for (std::size_t o = 0; o < objects.size(); ++o) {
     const Samples& s = objects[o];
@@ -87,14 +88,13 @@ DipoleTable::DipoleTable(std::span<const Samples> objects) {
     for (std::size_t i = 0; i < s.points.size(); ++i)
       for (std::size_t j = 0; j < s.points.size(); ++j) {
         const double distance = (s.points[i] - s.points[j]).norm();
-        if (i == j || distance < s.min_distance_m || distance > s.max_distance_m) continue;
-        if (const auto bin = dipole_bin({s.points[i], s.normals[i], s.points[j], s.normals[j]}, max_distance_m_))
-          found.push_back({*bin,
-                           {static_cast<std::uint16_t>(o), static_cast<std::uint16_t>(i),
-                            static_cast<std::uint16_t>(j)}});
+        if (i == j || distance < s.min_length_m || distance > s.max_length_m) continue;
+        if (const auto bin = dipole_bin({s.points[i], s.normals[i], s.points[j], s.normals[j]}, max_length_m_))
+          found.push_back(
+              {*bin, {static_cast<std::uint16_t>(o), static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)}});
       }
   }
-  begin_.assign(num_dipole_bins(max_distance_m_) + 1, 0);
+  begin_.assign(num_dipole_bins(max_length_m_) + 1, 0);
   for (const auto& [bin, entry] : found) ++begin_[bin + 1];
   for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
   entries_.resize(found.size());

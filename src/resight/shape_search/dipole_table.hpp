@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,10 +16,10 @@ struct Dipole {
 };
 
 /// Bin of the four numbers that a rigid motion leaves as they are: distance, the angles of both normals with the line
-/// between the points, and the torsion of the normals about it. None for points closer than a bin of distance, or a
-/// pair that fixes no pose well: both normals alike and square to the line (a plane).
-[[nodiscard]] std::optional<std::uint32_t> dipole_bin(const Dipole& dipole, double max_distance_m);
-[[nodiscard]] std::uint32_t num_dipole_bins(double max_distance_m);
+/// between the points, and the torsion of the normals about it. None for points nearer than a bin (1 cm) or farther
+/// apart than `max_length_m`, and for what fixes no pose: both normals alike and square to the line (a plane).
+[[nodiscard]] std::optional<std::uint32_t> dipole_bin(const Dipole& dipole, double max_length_m);
+[[nodiscard]] std::uint32_t num_dipole_bins(double max_length_m);
 
 /// Rotation and translation that put `from` onto `onto`: middle on middle, line on line, and the mean of the normals as
 /// near as that leaves. None if the normals have no part square to the line.
@@ -38,8 +38,8 @@ class DipoleTable {
   struct Samples {
     std::span<const Eigen::Vector3f> points;
     std::span<const Eigen::Vector3f> normals;
-    double min_distance_m = 0;  ///< Of a pair...
-    double max_distance_m = 0;  ///< ...both inclusive.
+    double min_length_m = 0;  ///< Of a dipole...
+    double max_length_m = 0;  ///< ...both inclusive.
   };
   DipoleTable() = default;
   /// At most 65,535 objects with as many samples each.
@@ -47,11 +47,11 @@ class DipoleTable {
 
   /// In the order of objects.
   [[nodiscard]] std::span<const DipoleEntry> find(std::uint32_t bin) const;
-  [[nodiscard]] double max_distance_m() const { return max_distance_m_; }
+  [[nodiscard]] double max_length_m() const { return max_length_m_; }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
  private:
-  double max_distance_m_ = 0;
+  double max_length_m_ = 0;
   std::vector<std::uint32_t> begin_;  // Per bin, and one more.
   std::vector<DipoleEntry> entries_;
 };

@@ -9,9 +9,9 @@
 namespace resight {
 
 struct SampleSceneOptions {
-  double spacing_m = 0.008;    ///< One point a voxel of this size.
-  double max_depth_m = 2.0;    ///< Normals of farther points say little.
-  double max_plane_m = 0.4;    ///< Points of planes whose extent is larger (tables, walls) are left out.
+  double spacing_m = 0.008;         ///< One point a voxel of this size.
+  double max_depth_m = 2.0;         ///< Normals of farther points say little.
+  double max_plane_m = 0.4;         ///< Points of planes whose extent is larger (tables, walls) are left out.
   double min_edge_distance_px = 2;  ///< Nearer to a depth edge, normals are bent.
   void check() const;
 };

@@ -3,21 +3,85 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/shape_search/oriented_points.hpp"
+#include "resight/verification/light_fit.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/point_to_plane.hpp"
 
 namespace resight {
 namespace {
 
-constexpr float kMinFacing = 0.25F;  // Cosine between normal and viewing ray.
-constexpr float kMinNormalDot = 0.6F;
+constexpr double kSpacingShare = 0.05;
+constexpr double kMinSpacing_m = 0.005;
+constexpr float kMinFacing = 0.25F;    // Cosine between normal and viewing ray: steeper ones are measured badly.
+constexpr float kMinNormalDot = 0.5F;  // 60 deg.
+constexpr float kMinDepth_m = 0.05F;
 constexpr int kMinPairs = 15;
 
 bool faces_camera(const Eigen::Vector3f& p, const Eigen::Vector3f& n) { return -n.dot(p) > kMinFacing * p.norm(); }
 
+// The samples of a pose that depth and normal confirm, and how many they do not.
+struct Confirmed {
+  std::vector<int> samples;
+  std::vector<std::size_t> pixels;
+  std::vector<Eigen::Vector3f> normals;  // Camera frame.
+  int facing = 0;
+  int hidden = 0;
+  int wrong = 0;
+};
+
+// Replaces num_explained by the number of confirmed samples whose colours, too, are alike.
+void compare_colors(const ProbeModel& model, const Confirmed& confirmed, const Image<Rgb8>& image,
+                    const Image<LabColor>& lab, const VerifyOptions& options, PoseFit& fit) {
+  std::vector<Eigen::Vector3f> model_light;
+  std::vector<Eigen::Vector3f> scene_light;
+  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
+    model_light.push_back(model.linear_light[static_cast<std::size_t>(confirmed.samples[k])]);
+    scene_light.push_back(to_linear_light(image[confirmed.pixels[k]]));
+  }
+  const LightFit light = fit_light(model_light, scene_light, confirmed.normals, options.light);
+  std::vector<LabColor> seen;
+  std::vector<LabColor> expected;
+  fit.num_explained = 0;
+  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
+    expected.push_back(to_lab(light(model_light[k], confirmed.normals[k])));
+    seen.push_back(lab[confirmed.pixels[k]]);
+    const double dl = (expected[k].l - seen[k].l) / options.color_sigma_l;
+    const double chroma_sq = chroma_difference_sq(expected[k], seen[k]) / std::pow(options.color_sigma_ab, 2);
+    if (std::exp(-0.25 * (dl * dl + chroma_sq)) > options.min_inlier_weight) ++fit.num_explained;
+  }
+  fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
+}
+
 }  // namespace
+
+void CountSamplesOptions::check() const {
+  check_positive("CountSamplesOptions.max_samples", max_samples);
+  check_not_negative("CountSamplesOptions.max_wrong", max_wrong);
+  check_positive("CountSamplesOptions.tolerance_m", tolerance_m);
+  check_not_negative("CountSamplesOptions.tolerance_sigmas", tolerance_sigmas);
+  check_positive("CountSamplesOptions.max_chroma_difference", max_chroma_difference);
+}
+
+ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
+  const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
+  PointCloud samples = sample_surface(model.surface, spacing_m, max_samples);
+  ProbeModel result;
+  if (samples.has_colors()) {
+    result.linear_light = to_linear_light(samples.colors);
+    result.lab = to_lab(result.linear_light);
+  }
+  result.points = std::move(samples.points);
+  result.normals = std::move(samples.normals);
+  result.center = model.center;
+  for (const Eigen::Vector3f& p : result.points)
+    result.radius_m = std::max<double>(result.radius_m, (p - result.center).norm());
+  return result;
+}
 
 PoseProbe::PoseProbe(const PreparedView& view, double max_depth_m, int num_threads)
     : view_(view), lab_(view.cloud.width(), view.cloud.height()) {
@@ -28,56 +92,49 @@ PoseProbe::PoseProbe(const PreparedView& view, double max_depth_m, int num_threa
 }
 
 int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
-  if (!(p.z() > 0.05F)) return -1;
+  if (!(p.z() > kMinDepth_m)) return -1;
   const Camera& camera = view_.frame.camera;
-  const int u = static_cast<int>(std::floor(static_cast<float>(camera.fx) * p.x() / p.z() +
-                                            static_cast<float>(camera.cx) + 0.5F));
-  const int v = static_cast<int>(std::floor(static_cast<float>(camera.fy) * p.y() / p.z() +
-                                            static_cast<float>(camera.cy) + 0.5F));
-  return view_.cloud.z.contains(u, v) ? static_cast<int>(view_.cloud.z.index(u, v)) : -1;
+  const float u = static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx) + 0.5F;
+  const float v = static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy) + 0.5F;
+  if (!(u >= 0 && v >= 0 && u < static_cast<float>(camera.width) && v < static_cast<float>(camera.height))) return -1;
+  return static_cast<int>(lab_.index(static_cast<int>(u), static_cast<int>(v)));
 }
 
-ProbeCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object, int max_samples, int max_wrong,
-                             const ProbeOptions& options) const {
-  ProbeCounts counts;
+float PoseProbe::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
+  return static_cast<float>(tolerance_m + sigmas * nguyen_noise(z_m, 0, view_.frame.camera.fx).axial_m);
+}
+
+SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object,
+                              const CountSamplesOptions& options) const {
+  SampleCounts counts;
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
-  for (std::size_t i = 0; i < model.points.size() && counts.facing < max_samples; ++i) {
+  const float tolerance =
+      tolerance_at((camera_from_object * model.center).z(), options.tolerance_m, options.tolerance_sigmas);
+  for (std::size_t i = 0; i < model.points.size() && counts.facing < options.max_samples; ++i) {
     const Eigen::Vector3f p = camera_from_object * model.points[i];
     if (!faces_camera(p, camera_from_object.rotation * model.normals[i])) continue;
     ++counts.facing;
     const int pixel = pixel_of(p);
-    if (pixel < 0) {
-      ++counts.hidden;
-      continue;
-    }
-    const auto at = static_cast<std::size_t>(pixel);
-    const float depth = view_.cloud.z[at];
+    const float depth = pixel < 0 ? -1 : view_.cloud.z[static_cast<std::size_t>(pixel)];
     if (std::isnan(depth)) continue;
-    const float tolerance = static_cast<float>(options.tolerance_m) +
-                            static_cast<float>(options.tolerance_sigmas) * 0.0019F * (p.z() - 0.4F) * (p.z() - 0.4F);
     if (p.z() > depth + tolerance) {
       ++counts.hidden;
     } else if (p.z() < depth - tolerance) {
       ++counts.through;
     } else {
       ++counts.confirmed;
-      if (!model.lab.empty()) {
-        const float da = model.lab[i].a - lab_[at].a;
-        const float db = model.lab[i].b - lab_[at].b;
-        if (da * da + db * db > max_chroma_sq) ++counts.off_color;
-      }
+      if (!model.lab.empty() && chroma_difference_sq(model.lab[i], lab(pixel)) > max_chroma_sq) ++counts.off_color;
     }
-    if (counts.through + counts.off_color > max_wrong + counts.facing / 4) break;
+    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4;
+    if (counts.gave_up) break;
   }
   return counts;
 }
 
-Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int iterations,
+Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
                          double max_distance_m) const {
   Rigid3 pose = camera_from_object;
-  double radius_m = 1e-3;
-  for (const Eigen::Vector3f& p : model.points) radius_m = std::max<double>(radius_m, (p - model.center).norm());
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const Rigid3f motion(pose);
     const Eigen::Vector3f middle = motion * model.center;
     StepEquations equations;
@@ -89,82 +146,47 @@ Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_obje
       if (pixel < 0 || !view_.cloud.has_normal(static_cast<std::size_t>(pixel))) continue;
       const Eigen::Vector3f q = view_.cloud.point(static_cast<std::size_t>(pixel));
       const Eigen::Vector3f m = view_.cloud.normal(static_cast<std::size_t>(pixel));
-      const float distance_sq = (q - p).squaredNorm();
-      const float u = 1 - distance_sq / static_cast<float>(max_distance_m * max_distance_m);
-      if (u <= 0 || m.dot(n) < kMinNormalDot) continue;
-      equations.add((p - middle).cast<double>(), m.cast<double>(), m.dot(q - p), u * u, radius_m);
+      const float u = 1 - (q - p).squaredNorm() / static_cast<float>(max_distance_m * max_distance_m);
+      if (!(u > 0) || m.dot(n) < kMinNormalDot) continue;
+      equations.add((p - middle).cast<double>(), m.cast<double>(), m.dot(q - p), u * u, model.radius_m);
     }
-    if (equations.num_pairs < kMinPairs) break;
-    if (!equations.step(pose, model.center.cast<double>(), radius_m)) break;
+    if (equations.num_pairs < kMinPairs || !equations.step(pose, model.center.cast<double>(), model.radius_m)) break;
   }
   return pose;
 }
 
-PoseProbe::Fit PoseProbe::judge(const ProbeModel& model, const Rigid3f& camera_from_object, double tolerance_m,
-                                double sigma_l, double sigma_ab, const LightLimits& limits) const {
-  std::vector<int> confirmed;  // Samples, and beside them their pixels.
-  std::vector<std::size_t> pixels;
-  std::vector<Eigen::Vector3f> normals;
-  int facing = 0;
-  int hidden = 0;
-  int wrong = 0;
+PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                         const VerifyOptions& colors) const {
+  const Rigid3f motion(camera_from_object);
+  const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
+  Confirmed confirmed;
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const Eigen::Vector3f p = camera_from_object * model.points[i];
-    const Eigen::Vector3f n = camera_from_object.rotation * model.normals[i];
+    const Eigen::Vector3f p = motion * model.points[i];
+    const Eigen::Vector3f n = motion.rotation * model.normals[i];
     if (!faces_camera(p, n)) continue;
-    ++facing;
+    ++confirmed.facing;
     const int pixel = pixel_of(p);
-    if (pixel < 0) {
-      ++hidden;
-      continue;
-    }
     const auto at = static_cast<std::size_t>(pixel);
-    const float depth = view_.cloud.z[at];
+    const float depth = pixel < 0 ? -1 : view_.cloud.z[at];
     if (std::isnan(depth)) continue;
-    const float tolerance = static_cast<float>(tolerance_m) + 3 * 0.0019F * (p.z() - 0.4F) * (p.z() - 0.4F);
     if (p.z() > depth + tolerance) {
-      ++hidden;
-      continue;
+      ++confirmed.hidden;
+    } else if (p.z() < depth - tolerance ||
+               (view_.cloud.has_normal(at) && view_.cloud.normal(at).dot(n) < kMinNormalDot)) {
+      ++confirmed.wrong;
+    } else {
+      confirmed.samples.push_back(static_cast<int>(i));
+      confirmed.pixels.push_back(at);
+      confirmed.normals.push_back(n);
     }
-    if (p.z() < depth - tolerance ||
-        (view_.cloud.has_normal(at) && view_.cloud.normal(at).dot(n) < 0.5F)) {
-      ++wrong;
-      continue;
-    }
-    confirmed.push_back(static_cast<int>(i));
-    pixels.push_back(at);
-    normals.push_back(n);
   }
-  Fit fit;
-  if (facing == 0) return fit;
-  fit.visible_share = 1 - static_cast<double>(hidden) / facing;
-  double explained = static_cast<double>(confirmed.size());
-  if (!model.lab.empty()) {
-    std::vector<Eigen::Vector3f> model_light;
-    std::vector<Eigen::Vector3f> scene_light;
-    for (std::size_t k = 0; k < confirmed.size(); ++k) {
-      model_light.push_back(model.linear_light[static_cast<std::size_t>(confirmed[k])]);
-      scene_light.push_back(to_linear_light(view_.frame.color[pixels[k]]));
-    }
-    const LightFit light = fit_light(model_light, scene_light, normals, limits);
-    std::vector<LabColor> model_lab;
-    std::vector<LabColor> scene_lab;
-    explained = 0;
-    for (std::size_t k = 0; k < confirmed.size(); ++k) {
-      model_lab.push_back(to_lab(light(model_light[k], normals[k])));
-      scene_lab.push_back(lab_[pixels[k]]);
-      const float dl = model_lab[k].l - scene_lab[k].l;
-      const float da = model_lab[k].a - scene_lab[k].a;
-      const float db = model_lab[k].b - scene_lab[k].b;
-      explained += std::exp(-0.25 * (dl * dl / (sigma_l * sigma_l) + (da * da + db * db) / (sigma_ab * sigma_ab))) > 0.8
-                       ? 1
-                       : 0;
-    }
-    fit.pattern_similarity = pattern_similarity(model_lab, scene_lab, sigma_l / sigma_ab);
-  }
-  fit.num_explained = static_cast<int>(explained);
-  const double visible = static_cast<double>(confirmed.size()) + wrong;
-  fit.explained_share = visible > 0 ? explained / visible : 0;
+  PoseFit fit;
+  if (confirmed.samples.empty()) return fit;
+  fit.num_explained = static_cast<int>(confirmed.samples.size());
+  if (!model.lab.empty()) compare_colors(model, confirmed, view_.frame.color, lab_, colors, fit);
+  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  fit.explained_share =
+      fit.num_explained / (static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong));
   return fit;
 }
 

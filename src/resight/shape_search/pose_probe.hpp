@@ -4,67 +4,83 @@
 #include <vector>
 
 #include "resight/geometry/rigid3.hpp"
+#include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/verification/lab_color.hpp"
-#include "resight/verification/light_fit.hpp"
+#include "resight/verification/verification.hpp"
 
 namespace resight {
 
-/// An object as poses of it are tested: samples of its surface in random order.
+/// An object as poses of it are tested: samples of its surface, any first part of them spread over all of it. Object
+/// frame.
 struct ProbeModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
   std::vector<LabColor> lab;                  ///< Of the same.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  double radius_m = 0;  ///< About the centre.
 };
 
-struct ProbeOptions {
-  double tolerance_m = 0.012;  ///< Depth that differs less confirms a point, more contradicts or hides it...
-  double tolerance_sigmas = 3;  ///< ...beside this many sigmas of the sensor's noise.
-  double max_chroma_difference = 0.2;  ///< Of a/128 and b/128.
+/// Samples about a twentieth of the diameter apart, at most `max_samples`; none if the surface has no normals.
+[[nodiscard]] ProbeModel make_probe_model(const ObjectModel& model, int max_samples);
+
+struct CountSamplesOptions {
+  int max_samples = 40;                ///< That face the camera.
+  int max_wrong = 5;                   ///< Beside a quarter of those seen so far: with more, counting stops.
+  double tolerance_m = 0.012;          ///< Of the depth, beside...
+  double tolerance_sigmas = 3;         ///< ...so many sigmas of the sensor.
+  double max_chroma_difference = 0.2;  ///< Of a/128 and b/128, before the light is known.
+  void check() const;
 };
 
 /// What a view says about the samples of an object at a pose.
-struct ProbeCounts {
-  int facing = 0;     ///< Turned to the camera and inside the image.
-  int confirmed = 0;  ///< At the measured depth,
-  int off_color = 0;  ///< of these: of another hue.
-  int through = 0;    ///< The camera looks through them.
-  int hidden = 0;     ///< Behind what was measured.
+struct SampleCounts {
+  int facing = 0;        ///< Turned to the camera; of these:
+  int confirmed = 0;     ///< At the measured depth,
+  int off_color = 0;     ///< of which of another hue.
+  int through = 0;       ///< The camera looks through them.
+  int hidden = 0;        ///< Behind what was measured, or outside the image.
+  bool gave_up = false;  ///< Too many wrong (off_color, through): the rest was not counted.
 };
 
-/// A view as poses are tested in it.
+/// How well a pose fits a view.
+struct PoseFit {
+  double explained_share = 0;  ///< Confirmed by depth, normal and (in the fitted light) colour, of those not hidden.
+  double visible_share = 0;    ///< Not hidden, of those that face the camera.
+  double pattern_similarity = 1;
+  int num_explained = 0;
+};
+
+/// Tests poses in one view. The view must outlive it; camera frame.
 class PoseProbe {
  public:
-  explicit PoseProbe(const PreparedView& view, double max_depth_m, int num_threads);
+  /// Colours farther than `max_depth_m` are not looked at.
+  PoseProbe(const PreparedView& view, double max_depth_m, int num_threads);
 
-  /// Coarse test with the first `max_samples` samples that face the camera. Gives up early, with what it has, when
-  /// more than `max_wrong` are seen through or of another hue.
-  [[nodiscard]] ProbeCounts count(const ProbeModel& model, const Rigid3f& camera_from_object, int max_samples,
-                                  int max_wrong, const ProbeOptions& options) const;
-
-  /// Projective point-to-plane ICP.
-  [[nodiscard]] Rigid3 refine(const ProbeModel& model, const Rigid3& camera_from_object, int iterations,
-                              double max_distance_m) const;
-
-  /// Share of the samples facing the camera and not hidden that depth, normal and (after a fit of the light) colour
-  /// confirm.
-  struct Fit {
-    double explained_share = 0;
-    double visible_share = 0;  ///< Of the facing samples: not hidden.
-    double pattern_similarity = 1;
-    int num_explained = 0;
-  };
-  [[nodiscard]] Fit judge(const ProbeModel& model, const Rigid3f& camera_from_object, double tolerance_m,
-                          double sigma_l, double sigma_ab, const LightLimits& limits) const;
-
-  [[nodiscard]] int pixel_of(const Eigen::Vector3f& p) const;  // -1 outside
+  /// Pixel under a point; -1 outside the image.
+  [[nodiscard]] int pixel_of(const Eigen::Vector3f& point_in_camera) const;
   [[nodiscard]] const LabColor& lab(int pixel) const { return lab_[static_cast<std::size_t>(pixel)]; }
 
+  /// The first test: quick, of rough poses.
+  [[nodiscard]] SampleCounts count(const ProbeModel& model, const Rigid3f& camera_from_object,
+                                   const CountSamplesOptions& options) const;
+  /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
+  [[nodiscard]] Rigid3 refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
+                              double max_distance_m) const;
+  /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp).
+  [[nodiscard]] PoseFit judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                              const VerifyOptions& colors) const;
+
  private:
+  [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
+
   const PreparedView& view_;
   Image<LabColor> lab_;
 };
+
+[[nodiscard]] inline float chroma_difference_sq(const LabColor& a, const LabColor& b) {
+  return (a.a - b.a) * (a.a - b.a) + (a.b - b.b) * (a.b - b.b);
+}
 
 }  // namespace resight

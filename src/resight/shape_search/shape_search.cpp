@@ -2,8 +2,9 @@
 #include "resight/shape_search/shape_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -15,213 +16,246 @@
 namespace resight {
 namespace {
 
-constexpr double kMinDistanceShare = 0.25;  // Of an object's diameter: shorter dipoles turn poses too freely...
-constexpr double kMaxDistanceShare = 0.8;   // ...and longer ones are seldom seen whole.
-constexpr double kSpacingShare = 0.05;
-constexpr double kMinSpacing_m = 0.005;
-constexpr double kSamePlace_m = 0.03;
-constexpr int kMaxPerPlace = 2;
-constexpr float kMinFacingDot = -0.3F;  // Normals that point apart more are not seen together.
+constexpr double kMinLengthShare = 0.25;  // Of an object's diameter: shorter dipoles turn poses too freely...
+constexpr double kMaxLengthShare = 0.8;   // ...and longer ones are seldom seen whole.
+constexpr int kRings = 4;          // Partners are drawn within so many radii, so that small objects have their share:
+constexpr double kRingStep = 1.6;  // each so much smaller than the one before.
+constexpr double kMinExplainedShareOfSamples = 0.1;
+constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
+constexpr int kMaxPerPlace = 2;        // so many are left to the verification.
 
 struct Candidate {
   int object = -1;
   float score = 0;
-  Rigid3f pose{Rigid3{}};
+  Rigid3f camera_from_object{Rigid3{}};
 };
 
-float coarse_score(const ProbeCounts& c) {
+float coarse_score(const SampleCounts& c) {
+  constexpr float kHiddenWeight = 0.4F;
+  constexpr float kPrior = 3;
   return static_cast<float>(c.confirmed - c.off_color - c.through) /
-         (static_cast<float>(c.confirmed + c.through) + 0.4F * static_cast<float>(c.hidden) + 3.0F);
-}
-
-float chroma_difference_sq(const LabColor& a, const LabColor& b) {
-  return (a.a - b.a) * (a.a - b.a) + (a.b - b.b) * (a.b - b.b);
+         (static_cast<float>(c.confirmed + c.through) + kHiddenWeight * static_cast<float>(c.hidden) + kPrior);
 }
 
 Rigid3 to_double(const Rigid3f& motion) {
   return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
 }
 
+// Dipoles of one view, and the poses they stand for.
+class DipoleSearch {
+ public:
+  DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
+               const DipoleTable& table, const ShapeSearchOptions& options)
+      : scene_(scene), probe_(probe), objects_(objects), table_(table), options_(options), tree_(scene.points) {}
+
+  // Poses that pass the first test, of dipoles from one scene point to others around it.
+  [[nodiscard]] std::vector<Candidate> from_seed(std::size_t seed) const {
+    Rng rng = Rng::stream(options_.seed, seed);
+    std::vector<Candidate> found;
+    std::vector<PointNeighbor> neighbors;
+    double radius_m = table_.max_length_m();
+    for (int ring = 0; ring < kRings; ++ring, radius_m /= kRingStep) {
+      tree_.within(scene_.points[seed], radius_m, neighbors);
+      for (int i = 0; i < options_.pairs_per_seed / kRings && !neighbors.empty(); ++i) {
+        const auto other =
+            static_cast<std::size_t>(neighbors[rng.below(static_cast<std::uint32_t>(neighbors.size()))].index);
+        if (other != seed)
+          try_dipole({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
+                     found);
+      }
+    }
+    return found;
+  }
+
+ private:
+  // Objects whose bin holds many are drawn from.
+  void try_dipole(const Dipole& seen, Rng& rng, std::vector<Candidate>& found) const {
+    const auto bin = dipole_bin(seen, table_.max_length_m());
+    const int first = probe_.pixel_of(seen.p1);
+    const int second = probe_.pixel_of(seen.p2);
+    if (!bin || first < 0 || second < 0) return;
+    const std::span<const DipoleEntry> entries = table_.find(*bin);
+    for (std::size_t begin = 0; begin < entries.size();) {
+      std::size_t end = begin;
+      while (end < entries.size() && entries[end].object == entries[begin].object) ++end;
+      const auto count = static_cast<std::uint32_t>(end - begin);
+      const auto tries = std::min(count, static_cast<std::uint32_t>(options_.max_entries));
+      for (std::uint32_t t = 0; t < tries; ++t)
+        try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.lab(first), probe_.lab(second),
+                  found);
+      begin = end;
+    }
+  }
+
+  void try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first, const LabColor& second,
+                 std::vector<Candidate>& found) const {
+    const ProbeModel& model = objects_[entry.object];
+    const float max_chroma = static_cast<float>(options_.coarse.max_chroma_difference);
+    if (!model.lab.empty() && std::max(chroma_difference_sq(model.lab[entry.first], first),
+                                       chroma_difference_sq(model.lab[entry.second], second)) > max_chroma * max_chroma)
+      return;
+    const auto pose = align({model.points[entry.first], model.normals[entry.first], model.points[entry.second],
+                             model.normals[entry.second]},
+                            seen);
+    if (!pose) return;
+    const SampleCounts counts = probe_.count(model, *pose, options_.coarse);
+    const float score = coarse_score(counts);
+    if (!counts.gave_up && score >= static_cast<float>(options_.min_coarse_score))
+      found.push_back({entry.object, score, *pose});
+  }
+
+  const PointCloud& scene_;
+  const PoseProbe& probe_;
+  const std::vector<ProbeModel>& objects_;
+  const DipoleTable& table_;
+  const ShapeSearchOptions& options_;
+  KdTree tree_;
+};
+
 }  // namespace
 
 struct ShapeSearch::Impl {
-  Impl(const ModelLibrary& models, const ShapeSearchOptions& settings) : library(models), options(settings) {
+  Impl(const ModelLibrary& models, const ShapeSearchOptions& settings, const VerifyOptions& color_settings)
+      : library(models), options((settings.check(), settings)), colors(color_settings) {
     objects.resize(library.objects.size());
-    parallel_for(objects.size(), options.num_threads, [&](std::size_t o) { objects[o] = prepare(library.objects[o]); });
+    parallel_for(objects.size(), options.num_threads,
+                 [&](std::size_t o) { objects[o] = make_probe_model(library.objects[o], options.max_model_samples); });
     std::vector<DipoleTable::Samples> samples;
-    for (std::size_t o = 0; o < objects.size(); ++o)
-      samples.push_back({objects[o].points, objects[o].normals,
-                         kMinDistanceShare * static_cast<double>(library.objects[o].diameter_m),
-                         kMaxDistanceShare * static_cast<double>(library.objects[o].diameter_m)});
-    table = DipoleTable(samples);
-  }
-
-  [[nodiscard]] ProbeModel prepare(const ObjectModel& model) const {
-    const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
-    PointCloud samples = sample_surface(model.surface, spacing_m, options.max_model_samples);
-    ProbeModel result;
-    if (samples.has_colors()) {
-      result.linear_light = to_linear_light(samples.colors);
-      result.lab = to_lab(result.linear_light);
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+      const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);
+      samples.push_back(
+          {objects[o].points, objects[o].normals, kMinLengthShare * diameter_m, kMaxLengthShare * diameter_m});
     }
-    result.points = std::move(samples.points);
-    result.normals = std::move(samples.normals);
-    result.center = model.center;
-    return result;
+    table = DipoleTable(samples);
   }
 
   [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view) const {
     const PointCloud scene = sample_scene(view, options.scene);
     if (!scene.has_normals() || table.size() == 0) return {};
     const PoseProbe probe(view, options.scene.max_depth_m, options.num_threads);
-    const KdTree tree(scene.points);
-    std::vector<int> seeds(scene.size());
-    for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = static_cast<int>(i);
-    Rng(options.seed).shuffle(seeds);
-    seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(options.max_seeds)));
-    std::vector<std::vector<Candidate>> found(seeds.size());
-    parallel_for(seeds.size(), options.num_threads,
-                 [&](std::size_t s) { found[s] = from_seed(seeds[s], scene, tree, probe); });
-    std::vector<std::vector<Candidate>> of_object(objects.size());
-    for (const auto& list : found)
-      for (const Candidate& c : list) of_object[static_cast<std::size_t>(c.object)].push_back(c);
+    const auto of_object = find_candidates(scene, probe);
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
-    parallel_for(objects.size(), options.num_threads, [&](std::size_t o) { judged[o] = judge(of_object[o], probe); });
+    parallel_for(objects.size(), options.num_threads,
+                 [&](std::size_t o) { judged[o] = choose(judge(of_object[o], probe)); });
     std::vector<ShapeCandidate> result;
     for (const auto& list : judged) result.insert(result.end(), list.begin(), list.end());
     return result;
   }
 
-  // Dipoles from one scene point to others around it, and the poses they stand for that pass the coarse test.
-  [[nodiscard]] std::vector<Candidate> from_seed(int seed, const PointCloud& scene, const KdTree& tree,
-                                                 const PoseProbe& probe) const {
-    Rng rng = Rng::stream(options.seed, static_cast<std::uint64_t>(seed));
-    std::vector<Candidate> found;
-    std::vector<PointNeighbor> neighbors;
-    const Eigen::Vector3f& p = scene.points[static_cast<std::size_t>(seed)];
-    double radius_m = table.max_distance_m();
-    constexpr int kRings = 4;  // Half as wide each, so that small objects have their share.
-    for (int ring = 0; ring < kRings; ++ring, radius_m /= 1.6) {
-      tree.within(p, radius_m, neighbors);
-      for (int i = 0; i < options.pairs_per_seed / kRings && !neighbors.empty(); ++i) {
-        const int other = neighbors[rng.below(static_cast<std::uint32_t>(neighbors.size()))].index;
-        if (other != seed) try_dipole(seed, other, scene, probe, rng, found);
-      }
-    }
-    return found;
+  [[nodiscard]] std::vector<std::vector<Candidate>> find_candidates(const PointCloud& scene,
+                                                                    const PoseProbe& probe) const {
+    const DipoleSearch dipoles(scene, probe, objects, table, options);
+    std::vector<int> seeds(scene.size());
+    std::iota(seeds.begin(), seeds.end(), 0);
+    Rng(options.seed).shuffle(seeds);
+    seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(options.max_seeds)));
+    std::vector<std::vector<Candidate>> found(seeds.size());
+    parallel_for(seeds.size(), options.num_threads,
+                 [&](std::size_t s) { found[s] = dipoles.from_seed(static_cast<std::size_t>(seeds[s])); });
+    std::vector<std::vector<Candidate>> of_object(objects.size());
+    for (const auto& list : found)
+      for (const Candidate& c : list) of_object[static_cast<std::size_t>(c.object)].push_back(c);
+    for (auto& candidates : of_object)
+      std::stable_sort(candidates.begin(), candidates.end(),
+                       [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    return of_object;
   }
 
-  void try_dipole(int first, int second, const PointCloud& scene, const PoseProbe& probe, Rng& rng,
-                  std::vector<Candidate>& found) const {
-    const Dipole seen{scene.points[static_cast<std::size_t>(first)], scene.normals[static_cast<std::size_t>(first)],
-                      scene.points[static_cast<std::size_t>(second)], scene.normals[static_cast<std::size_t>(second)]};
-    const int first_pixel = probe.pixel_of(seen.p1);
-    const int second_pixel = probe.pixel_of(seen.p2);
-    if (first_pixel < 0 || second_pixel < 0) return;
-    const float max_chroma_sq = static_cast<float>(options.coarse.max_chroma_difference * options.coarse.max_chroma_difference);
-    const auto bin = dipole_bin(seen, table.max_distance_m());
-    if (!bin) return;
-    const std::span<const DipoleEntry> entries = table.find(*bin);
-    for (std::size_t begin = 0; begin < entries.size();) {
-      std::size_t end = begin;
-      while (end < entries.size() && entries[end].object == entries[begin].object) ++end;
-      const auto count = static_cast<std::uint32_t>(end - begin);
-      const auto tries = std::min(count, static_cast<std::uint32_t>(options.max_entries));
-      for (std::uint32_t t = 0; t < tries; ++t) {
-        const DipoleEntry entry = entries[begin + (tries == count ? t : rng.below(count))];
-        const ProbeModel& model = objects[entry.object];
-        if (!model.lab.empty() && (chroma_difference_sq(model.lab[entry.first], probe.lab(first_pixel)) > max_chroma_sq ||
-                                   chroma_difference_sq(model.lab[entry.second], probe.lab(second_pixel)) > max_chroma_sq))
-          continue;
-        const auto pose = align({model.points[entry.first], model.normals[entry.first], model.points[entry.second],
-                                 model.normals[entry.second]},
-                                seen);
-        if (!pose) continue;
-        const ProbeCounts counts =
-            probe.count(model, *pose, options.coarse_samples, options.max_coarse_wrong, options.coarse);
-        if (counts.through + counts.off_color > options.max_coarse_wrong + counts.facing / 4) continue;
-        const float score = coarse_score(counts);
-        if (score >= static_cast<float>(options.min_coarse_score)) found.push_back({entry.object, score, *pose});
-      }
-      begin = end;
-    }
-  }
-
-  [[nodiscard]] bool is_same(int object, const Rigid3& a, const Rigid3& b, bool symmetric) const {
-    const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
-    const Eigen::Vector3d center = model.center.cast<double>();
-    if ((a * center - b * center).norm() >= options.same_place_m) return false;
-    const Rigid3 nearest = symmetric ? nearest_symmetric_pose(a, b, model.symmetries) : a;
-    return rotation_angle_rad(nearest.rotation, b.rotation) < options.same_rotation_rad;
-  }
-
-  [[nodiscard]] std::vector<ShapeCandidate> judge(std::vector<Candidate>& candidates, const PoseProbe& probe) const {
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    std::vector<Rigid3> tried;
+  // The best by the first test, no two alike, refined; those that hold.
+  [[nodiscard]] std::vector<ShapeCandidate> judge(const std::vector<Candidate>& candidates,
+                                                  const PoseProbe& probe) const {
     std::vector<ShapeCandidate> judged;
+    std::vector<Rigid3> tried;
     for (const Candidate& c : candidates) {
       if (static_cast<int>(tried.size()) == options.max_refined) break;
-      const Rigid3 start = to_double(c.pose);
-      if (std::any_of(tried.begin(), tried.end(),
-                      [&](const Rigid3& other) { return is_same(c.object, start, other, true); }))
+      const Rigid3 start = to_double(c.camera_from_object);
+      if (std::any_of(tried.begin(), tried.end(), [&](const Rigid3& other) { return is_same(c.object, start, other); }))
         continue;
       tried.push_back(start);
       const ProbeModel& model = objects[static_cast<std::size_t>(c.object)];
       const Rigid3 pose = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
-      const PoseProbe::Fit fit = probe.judge(model, Rigid3f(pose), options.tolerance_m, options.color_sigma_l,
-                                             options.color_sigma_ab, options.light);
-      if (fit.num_explained < 0.1 * static_cast<double>(model.points.size()) || fit.explained_share < options.min_explained_share || fit.visible_share < options.min_visible_share ||
-          fit.pattern_similarity < options.min_pattern_similarity)
+      const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors);
+      if (fit.explained_share < options.min_explained_share || fit.visible_share < options.min_visible_share ||
+          fit.pattern_similarity < options.min_pattern_similarity ||
+          fit.num_explained < kMinExplainedShareOfSamples * static_cast<double>(model.points.size()))
         continue;
-      judged.push_back({c.object, pose,
-                        fit.explained_share * std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity)),
-                        fit.num_explained});
+      const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
+      judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained});
     }
+    return judged;
+  }
+
+  [[nodiscard]] std::vector<ShapeCandidate> choose(std::vector<ShapeCandidate> judged) const {
     std::stable_sort(judged.begin(), judged.end(),
                      [](const ShapeCandidate& a, const ShapeCandidate& b) { return a.quality > b.quality; });
     std::vector<ShapeCandidate> kept;
     for (const ShapeCandidate& c : judged) {
       if (static_cast<int>(kept.size()) == options.max_hypotheses) break;
-      const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(c.object)].center.cast<double>();
       int num_here = 0;
       bool repeated = false;
       for (const ShapeCandidate& other : kept) {
-        repeated = repeated || is_same(c.object, c.camera_from_object, other.camera_from_object, true);
-        num_here += (c.camera_from_object * center - other.camera_from_object * center).norm() < kSamePlace_m ? 1 : 0;
+        repeated = repeated || is_same(c.object, c.camera_from_object, other.camera_from_object);
+        num_here += distance_m(c.object, c.camera_from_object, other.camera_from_object) < kSamePlace_m ? 1 : 0;
       }
       if (!repeated && num_here < kMaxPerPlace) kept.push_back(c);
     }
     return kept;
   }
 
+  [[nodiscard]] double distance_m(int object, const Rigid3& a, const Rigid3& b) const {
+    const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(object)].center.cast<double>();
+    return (a * center - b * center).norm();
+  }
+
+  [[nodiscard]] bool is_same(int object, const Rigid3& a, const Rigid3& b) const {
+    return distance_m(object, a, b) < options.same_place_m &&
+           symmetric_rotation_distance_rad(a, b, library.objects[static_cast<std::size_t>(object)].symmetries) <
+               options.same_rotation_rad;
+  }
+
   const ModelLibrary& library;
   ShapeSearchOptions options;
+  VerifyOptions colors;
   std::vector<ProbeModel> objects;
   DipoleTable table;
 };
 
 void ShapeSearchOptions::check() const {
   scene.check();
+  coarse.check();
   check_positive("ShapeSearchOptions.max_model_samples", max_model_samples);
   check_positive("ShapeSearchOptions.max_seeds", max_seeds);
+  check_not_negative("ShapeSearchOptions.pairs_per_seed", pairs_per_seed);
+  check_positive("ShapeSearchOptions.max_entries", max_entries);
+  check_in_range("ShapeSearchOptions.min_coarse_score", min_coarse_score, 0, 1);
+  check_not_negative("ShapeSearchOptions.max_refined", max_refined);
+  check_not_negative("ShapeSearchOptions.refine_iterations", refine_iterations);
+  check_positive("ShapeSearchOptions.refine_distance_m", refine_distance_m);
+  check_positive("ShapeSearchOptions.tolerance_m", tolerance_m);
+  check_in_range("ShapeSearchOptions.min_explained_share", min_explained_share, 0, 1);
+  check_in_range("ShapeSearchOptions.min_pattern_similarity", min_pattern_similarity, -1, 1);
+  check_in_range("ShapeSearchOptions.min_visible_share", min_visible_share, 0, 1);
+  check_not_negative("ShapeSearchOptions.max_hypotheses", max_hypotheses);
+  check_not_negative("ShapeSearchOptions.same_place_m", same_place_m);
+  check_in_range("ShapeSearchOptions.same_rotation_rad", same_rotation_rad, 0, std::numbers::pi);
   check_positive("ShapeSearchOptions.num_threads", num_threads);
 }
 
-ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options)
-    : impl_(std::make_unique<Impl>(library, options)) {}
+ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors)
+    : impl_(std::make_unique<Impl>(library, options, colors)) {}
 ShapeSearch::~ShapeSearch() = default;
 ShapeSearch::ShapeSearch(ShapeSearch&&) noexcept = default;
-
-ShapeSearch::Trial ShapeSearch::try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const {
-  const ShapeSearchOptions& o = impl_->options;
-  const PoseProbe probe(view, o.scene.max_depth_m, o.num_threads);
-  const ProbeModel& model = impl_->objects[static_cast<std::size_t>(object)];
-  const Rigid3 pose = probe.refine(model, camera_from_object, o.refine_iterations, o.refine_distance_m);
-  return {probe.count(model, Rigid3f(camera_from_object), o.coarse_samples, 1000, o.coarse),
-          probe.judge(model, Rigid3f(pose), o.tolerance_m, o.color_sigma_l, o.color_sigma_ab, o.light)};
-}
+ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
 
 std::vector<ShapeCandidate> ShapeSearch::search(const PreparedView& view) const { return impl_->search(view); }
+
+ShapeSearch::Trial ShapeSearch::try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const {
+  const ShapeSearchOptions& options = impl_->options;
+  const PoseProbe probe(view, options.scene.max_depth_m, options.num_threads);
+  const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(object));
+  const Rigid3 refined = probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
+  return {probe.count(model, Rigid3f(camera_from_object), options.coarse),
+          probe.judge(model, refined, options.tolerance_m, impl_->colors)};
+}
 
 }  // namespace resight

@@ -4,64 +4,69 @@
 #include <memory>
 #include <vector>
 
-#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/shape_search/oriented_points.hpp"
 #include "resight/shape_search/pose_probe.hpp"
+#include "resight/verification/verification.hpp"
 
 namespace resight {
 
+/// Values chosen on the validation seed of the benchmark (bench_shape_search).
 struct ShapeSearchOptions {
   bool enabled = false;
   SampleSceneOptions scene{};
-  int max_model_samples = 300;   ///< Per object.
-  int max_seeds = 1500;          ///< Scene points from which dipoles are drawn.
-  int pairs_per_seed = 20;
-  int max_entries = 32;          ///< Of the table tried per dipole and object.
-  int coarse_samples = 40;       ///< Of a model's surface in the coarse test of a pose.
-  int max_coarse_wrong = 5;      ///< Contradicted samples at which the coarse test gives up.
-  double min_coarse_score = 0.2;
-  ProbeOptions coarse{};
-  int max_refined = 1000;         ///< Poses per object that are refined and judged.
-  int refine_iterations = 6;
-  double refine_distance_m = 0.02;
-  double tolerance_m = 0.008;    ///< Of the depth when a refined pose is judged.
-  double min_explained_share = 0.55;
-  double min_pattern_similarity = 0.4;
-  double min_visible_share = 0.2;
-  double color_sigma_l = 0.45;
-  double color_sigma_ab = 0.17;
-  LightLimits light{};
-  int max_hypotheses = 4;        ///< Per object and view.
-  double same_place_m = 0.015;   ///< Poses nearer than this...
-  double same_rotation_rad = 0.21;  ///< ...and this are one.
+  int max_model_samples = 300;       ///< Of the surface of each object.
+  int max_seeds = 1500;              ///< Scene points that dipoles start from.
+  int pairs_per_seed = 20;           ///< Dipoles from each.
+  int max_entries = 32;              ///< Of each object tried per dipole, drawn at random if its bin holds more.
+  CountSamplesOptions coarse{};      ///< First test of a pose.
+  double min_coarse_score = 0.2;     ///< Of 1: all samples confirmed.
+  int max_refined = 1000;            ///< Poses per object that are refined and judged, the best by the first test.
+  int refine_iterations = 6;         ///< Of projective ICP.
+  double refine_distance_m = 0.02;   ///< Pairs of it that are farther apart do not count.
+  double tolerance_m = 0.008;        ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
+  double min_explained_share = 0.6;  ///< Of the samples that are not hidden.
+  double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
+  double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
+  int max_hypotheses = 4;               ///< Per object.
+  double same_place_m = 0.015;          ///< Poses nearer than this (at the object's centre)...
+  double same_rotation_rad = 0.21;      ///< ...and this (over its symmetries) are one.
   std::uint64_t seed = 1;
-  int num_threads = 1;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
 };
 
 /// A pose found by shape.
 struct ShapeCandidate {
-  int object = -1;
+  int object = -1;  ///< Index into the library.
   Rigid3 camera_from_object;
-  double quality = 0;
+  double quality = 0;  ///< In [0, 1]: explained share, less for what is hidden or of another pattern.
   int num_explained = 0;
 };
 
-/// Finds objects by their shape alone, checked with their colours: for what has no print, and hence no matches.
+/// Finds objects by their shape, and checks them by their colours: for what has no print, and hence few matches.
+///
+/// Pairs of oriented points of the scene (dipoles; Winkelbach et al. 2006, Papazov and Burschka 2010) are looked up
+/// among those of all objects. Each that is alike gives a pose, which has to agree with the depth image and with the
+/// hue of a few samples; the best are refined by projective ICP and judged as the verification does. Unlike voting over
+/// such pairs, nothing is counted: one good pair is enough. Faces of one plane alone are no shape: they fix no pose.
 class ShapeSearch {
  public:
-  ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options);
+  /// Colours are compared with the sigmas and the light limits of `colors`. The library must outlive it. Objects
+  /// without normals are not searched.
+  ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors = {});
   ~ShapeSearch();
   ShapeSearch(ShapeSearch&&) noexcept;
+  ShapeSearch& operator=(ShapeSearch&&) noexcept;
 
+  /// By object, then by quality. Nothing for a view without normals.
   [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view) const;
 
-  /// How a pose would fare, for benches.
+  /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {
-    ProbeCounts coarse;
-    PoseProbe::Fit fit;
+    SampleCounts coarse;
+    PoseFit fit;
   };
   [[nodiscard]] Trial try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const;
 

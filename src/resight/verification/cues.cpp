@@ -15,6 +15,9 @@ namespace resight {
 namespace {
 
 constexpr float kMinWeight = 0.05F;
+constexpr float kWellExplained = 0.5F;
+constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
+constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
 const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
@@ -158,9 +161,10 @@ struct CueComputer::Impl {
 
   // -log of the colour similarity.
   float color_exponent(const Match& m, const LocalScene& local) const {
-    if (!use_color_) return 0;
-    const LabColor& p = lab_[m.visible];
-    const LabColor& q = scene_.lab[local.scene_index(m.local)];
+    return use_color_ ? color_exponent(lab_[m.visible], scene_.lab[local.scene_index(m.local)]) : 0;
+  }
+
+  float color_exponent(const LabColor& p, const LabColor& q) const {
     const float dl = p.l - q.l;
     const float da = p.a - q.a;
     const float db = p.b - q.b;
@@ -236,8 +240,32 @@ struct CueComputer::Impl {
               [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
   }
 
+  // Whether the surface goes on from p to q: near p's tangent plane, of like normal and colour.
+  bool continues(int p, int q) const {
+    const Eigen::Vector3f& normal = scene_.normals[p];
+    if (std::abs(normal.dot(scene_.points[q] - scene_.points[p])) >
+            static_cast<float>(options_.continuation_offset_m) ||
+        normal.dot(scene_.normals[q]) < kMinContinuationDot)
+      return false;
+    return !use_color_ || color_exponent(scene_.lab[p], scene_.lab[q]) < kMaxContinuationExponent;
+  }
+
+  // The same for whatever lies around, but only where the surface goes on.
+  float continuation_weight(const LocalScene& local, std::size_t q) const {
+    float weight = 0;
+    const int scene_q = local.scene_index(q);
+    local.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m), [&](std::size_t p, float) {
+      const int scene_p = local.scene_index(p);
+      if (scene_weight_[p] < kWellExplained || is_background(scene_p) || !continues(scene_p, scene_q)) return true;
+      weight = static_cast<float>(options_.clutter_weight);
+      return false;
+    });
+    return weight;
+  }
+
   // Cost of leaving q unexplained beside the explained points around it.
   float clutter_weight(const LocalScene& local, std::size_t q) const {
+    if (options_.continuation_offset_m > 0) return continuation_weight(local, q);
     const int scene_q = local.scene_index(q);
     const int segment = scene_.segment[scene_q];
     const float radius = static_cast<float>(options_.clutter_radius_m);

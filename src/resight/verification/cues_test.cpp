@@ -167,7 +167,7 @@ TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
   c.options.use_planes = false;
   c.options.refine.max_iterations = 0;
-  c.options.light = {0, 0, 0, 0, 0};  // The oracle does not know of the light.
+  c.options.light = {0, 0, 0, 0, 0, 0};  // The oracle does not know of the light.
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
        {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {

@@ -81,8 +81,9 @@ Eigen::Vector3f fit_shading(const std::vector<Pair>& pairs, const LightFit& fit)
 
 void limit_exposure(LightFit& fit, const LightLimits& limits) {
   const float mean = fit.log_gain.mean();
-  const float most = static_cast<float>(limits.max_log_exposure);
-  fit.log_gain += std::clamp(mean, -most, most) - mean;
+  fit.log_gain +=
+      std::clamp(mean, -static_cast<float>(limits.max_log_darkening), static_cast<float>(limits.max_log_exposure)) -
+      mean;
   const float length = fit.shading.norm();
   if (length > limits.max_log_shading) fit.shading *= static_cast<float>(limits.max_log_shading) / length;
 }

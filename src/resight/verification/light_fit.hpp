@@ -31,7 +31,8 @@ struct LightFit {
 
 /// What light may do. A black object never turns white, nor a green one grey.
 struct LightLimits {
-  double max_log_exposure = 0.9;       ///< Of the mean gain of the channels, either way (0.9: 2.5 times).
+  double max_log_exposure = 0.9;       ///< Of the mean gain of the channels (0.9: 2.5 times brighter)...
+  double max_log_darkening = 0.9;      ///< ...and of its inverse: what stands in the shade.
   double max_log_white_balance = 0.6;  ///< Of a channel's gain beyond that mean, for the scene as a whole...
   double max_log_chroma = 0.15;        ///< ...and of one object beside the scene's white balance.
   double max_log_shading = 0.5;        ///< Length of `shading`.

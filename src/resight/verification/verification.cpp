@@ -240,6 +240,7 @@ void VerifyOptions::check() const {
   check_not_negative(name("merge_distance_m"), merge_distance_m);
   check_in_range(name("merge_rotation_rad"), merge_rotation_rad, 0, std::numbers::pi);
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
+  check_not_negative(name("light.max_log_darkening"), light.max_log_darkening);
   check_not_negative(name("light.max_log_white_balance"), light.max_log_white_balance);
   check_not_negative(name("light.max_veil"), light.max_veil);
   check_not_negative(name("light.max_log_chroma"), light.max_log_chroma);

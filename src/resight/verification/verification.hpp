@@ -31,7 +31,9 @@ struct VerifyOptions {
   double clutter_weight = 1.0;  ///< Of an unexplained point in the smooth segment of an explained one.
   double near_clutter_weight =
       1.0;  ///< Of one in no segment, times (1 - d^2/r^2) max(0, n_p n_q); in another segment: none.
-  double occupancy_weight = 2.0;  ///< Voxels filled by two objects.
+  double continuation_offset_m = 0;  ///< If positive, only points that continue the surface count as unexplained: this
+                                     ///< near the tangent plane of an explained one, of like normal and colour.
+  double occupancy_weight = 2.0;     ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
@@ -55,14 +57,16 @@ struct VerifyOptions {
   double steep_weight = 0.1;           ///< ...count only this much (V4R: 0.1): depth is worst there.
   double min_inlier_weight = 0.8;  ///< Distance times colour weight from which a model point is explained (V4R: 0.8).
   double max_inlier_angle_rad = 1.0472;  ///< ...by a scene point whose normal deviates by less.
-  double max_seen_through_share = 0.5;   ///< A point that more of the views seeing it look through is an outlier,
-                                         ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
-  int max_moves = 5000;                  ///< Accepted moves of the local search, per component: a budget in steps.
-  int max_exact_hypotheses = 12;         ///< Components up to this size (at most 20) are solved exactly.
-  int min_shared_points = 10;            ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
-  int min_visible_points = 20;           ///< Fewer visible model points: no evidence, rejected.
-  double min_visible_share = 0.1;        ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.7;      ///< ...and less of the visible points explained too. 0 turns either off.
+  bool newest_view_decides = false;  ///< A point that the newest view seeing it looks through is an outlier, whatever
+                                     ///< older views saw: things come and go. Instead of the share that follows.
+  double max_seen_through_share = 0.5;  ///< A point that more of the views seeing it look through is an outlier,
+                                        ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
+  int max_moves = 5000;                 ///< Accepted moves of the local search, per component: a budget in steps.
+  int max_exact_hypotheses = 12;        ///< Components up to this size (at most 20) are solved exactly.
+  int min_shared_points = 10;           ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
+  int min_visible_points = 20;          ///< Fewer visible model points: no evidence, rejected.
+  double min_visible_share = 0.1;       ///< As later V4R: less of the model visible is rejected...
+  double min_explained_share = 0.7;     ///< ...and less of the visible points explained too. 0 turns either off.
   double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
                                        ///< -1 turns it off.
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that

@@ -226,6 +226,49 @@ TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
       testing::ElementsAre(0));
 }
 
+TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  const VerifyOptions newest{.newest_view_decides = true};
+  const auto accepts = [&](const std::vector<PreparedView>& views, const VerifyOptions& options) {
+    return !accepted(verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options))
+                .empty();
+  };
+  // Two older views look through the place of what has just come.
+  const std::vector<PreparedView> came = {render({}, cameras[0]), render({}, cameras[1]),
+                                          render(one_box(), cameras[2])};
+  EXPECT_TRUE(accepts(came, newest));
+  EXPECT_FALSE(accepts(came, {}));
+  // Two older views still show what the newest looks through.
+  const std::vector<PreparedView> gone = {render(one_box(), cameras[0]), render(one_box(), cameras[1]),
+                                          render({}, cameras[2])};
+  EXPECT_FALSE(accepts(gone, newest));
+  EXPECT_TRUE(accepts(gone, {}));
+}
+
+TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
+  ModelLibrary library = make_library();
+  const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  library.objects.push_back(make_model("small", small));
+  VerifyOptions options{.clutter_weight = 6, .continuation_offset_m = 0.005, .use_planes = false};
+  const auto clutter = [&](const World& world, const Rigid3& pose) {
+    const Fixture f(world, circle_of_cameras(4));
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
+    const HypothesisEvidence e = f.verify(hypotheses, library, options).evidence[0];
+    EXPECT_GT(e.explained_scene, 100);
+    return e.clutter_cost / e.explained_scene;
+  };
+  // Alone, and beside a lower box and one of another colour that touch it.
+  EXPECT_LT(clutter({.solids = {small}}, small.world_from_object), 0.2);
+  const Solid lower{Shape::kBox, {0.1, 0.1, 0.05}, plain({180, 170, 60}), on_table(0.1, 0, 0.025)};
+  const Solid other{Shape::kBox, {0.1, 0.1, 0.08}, plain({60, 80, 190}), on_table(-0.1, 0, 0.04)};
+  EXPECT_LT(clutter({.solids = {small, lower, other}}, small.world_from_object), 0.35);
+  // Within a board of the same height and colour.
+  const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
+}
+
 TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   // A small box claims a part of a large box's side and top.
   ModelLibrary library = make_library();

@@ -146,6 +146,7 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
   std::vector<float> best_facing(points.size(), -1);
   std::vector<int> num_views(points.size(), 0);
   std::vector<int> num_through(points.size(), 0);
+  std::vector<std::uint8_t> newest_through(points.size(), 0);
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (allowed[v] == 0) continue;
     project_model(points, normals, views[v], projected);
@@ -157,7 +158,8 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
       result.sight[v][i] = sight;
       if (sight == Sight::kHidden) continue;
       ++num_views[i];
-      if (sight == Sight::kSeenThrough) ++num_through[i];
+      newest_through[i] = sight == Sight::kSeenThrough ? 1 : 0;
+      num_through[i] += newest_through[i];
       best_facing[i] = std::max(best_facing[i], projected[i].facing);
     }
   }
@@ -165,7 +167,9 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
     if (num_views[i] == 0) continue;
     result.visible.push_back(static_cast<int>(i));
     result.facing.push_back(best_facing[i]);
-    result.seen_through.push_back(num_through[i] > options.max_seen_through_share * num_views[i] ? 1 : 0);
+    const bool through = options.newest_view_decides ? newest_through[i] != 0
+                                                     : num_through[i] > options.max_seen_through_share * num_views[i];
+    result.seen_through.push_back(through ? 1 : 0);
   }
   return result;
 }

@@ -35,8 +35,8 @@ struct ModelVisibility {
   std::vector<int> visible;               ///< Points not hidden in at least one view, ascending.
   std::vector<float>
       facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
-  std::vector<std::uint8_t>
-      seen_through;  ///< Per entry of `visible`: more than max_seen_through_share of those views look through it.
+  std::vector<std::uint8_t> seen_through;  ///< Per entry of `visible`: the newest of those views looks through it, or
+                                           ///< more than max_seen_through_share of them do.
 };
 
 /// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). `allowed`:

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/shape_search/pose_probe.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/shape_search/oriented_points.hpp"
+#include "resight/verification/testing/analytic_scene.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+struct BoxOnTable {
+  Solid box{Shape::kBox, {0.1, 0.07, 0.12}, checks({200, 60, 50}, {50, 60, 200}, 0.03), on_table(0, 0, 0.06, 0.4)};
+  PreparedView view = prepare_view(render({.solids = {box}}, circle_of_cameras(3)[0]).frame);
+  ObjectModel model = make_model("box", box);
+  ProbeModel samples = make_probe_model(model, 300);
+  PoseProbe probe{view, 2.0, 1};
+  Rigid3 truth = view.frame.world_from_camera.inverse() * box.world_from_object;
+};
+
+TEST(SampleSurface, PointsAreApartAndNoMoreThanAllowed) {
+  const BoxOnTable c;
+  const PointCloud samples = sample_surface(c.model.surface, 0.01, 10000);
+  ASSERT_GT(samples.size(), 200U);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool alike = samples.normals[i].dot(samples.normals[j]) > 0.9F;
+      EXPECT_TRUE(!alike || (samples.points[i] - samples.points[j]).norm() >= 0.0099F);
+    }
+  EXPECT_LE(sample_surface(c.model.surface, 0.01, 50).size(), 50U);
+  EXPECT_GE(sample_surface(c.model.surface, 0.01, 50).size(), 25U);
+  PointCloud bare = c.model.surface;
+  bare.normals.clear();
+  EXPECT_TRUE(sample_surface(bare, 0.01, 50).empty());
+}
+
+TEST(SampleScene, LeavesTheTableOutAndKeepsWhatStandsOnIt) {
+  const BoxOnTable c;
+  const PointCloud scene = sample_scene(c.view);
+  ASSERT_GT(scene.size(), 100U);
+  const Rigid3f world_from_camera(c.view.frame.world_from_camera);
+  int on_table = 0;
+  for (const Eigen::Vector3f& p : scene.points) on_table += (world_from_camera * p).z() < 0.005F ? 1 : 0;
+  EXPECT_LT(on_table, static_cast<int>(scene.size() / 10));
+}
+
+TEST(SampleScene, NothingSeenNothingSampled) {
+  BoxOnTable c;
+  RgbdFrame frame = c.view.frame;
+  for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(sample_scene(prepare_view(frame)).empty());
+}
+
+TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
+  const BoxOnTable c;
+  CountSamplesOptions options;
+  options.max_wrong = 1000;
+  const SampleCounts right = c.probe.count(c.samples, Rigid3f(c.truth), options);
+  EXPECT_EQ(right.facing, options.max_samples);
+  EXPECT_GT(right.confirmed, 0.9 * right.facing);
+  EXPECT_LT(right.off_color, 0.25 * right.facing);
+
+  const auto along_view = [&](double shift_m) {
+    Rigid3 pose = c.truth;
+    pose.translation += shift_m * pose.translation.normalized();
+    return c.probe.count(c.samples, Rigid3f(pose), options);
+  };
+  EXPECT_GT(along_view(-0.1).through, 0.9 * options.max_samples);
+  EXPECT_GT(along_view(0.1).hidden, 0.9 * options.max_samples);
+
+  Rigid3 outside = c.truth;
+  outside.translation.x() += 5;
+  const SampleCounts none = c.probe.count(c.samples, Rigid3f(outside), options);
+  EXPECT_GT(none.facing, 0);
+  EXPECT_EQ(none.hidden, none.facing);
+
+  options.max_wrong = 3;
+  Rigid3 near = c.truth;
+  near.translation *= 0.8;
+  const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(near), options);
+  EXPECT_TRUE(stopped.gave_up);
+  EXPECT_LT(stopped.facing, 10);
+}
+
+TEST(PoseProbe, RefinesARoughPose) {
+  const BoxOnTable c;
+  const Rigid3 rough = disturb(c.truth, {0.006, -0.005, 0.007}, {1, 2, 0.5}, 0.1);
+  const Rigid3 refined = c.probe.refine(c.samples, rough, 20, 0.02);
+  const auto error_m = [&](const Rigid3& pose) {
+    double worst = 0;
+    for (const Eigen::Vector3f& p : c.samples.points)
+      worst = std::max(worst, ((pose * p.cast<double>().eval()) - (c.truth * p.cast<double>().eval())).norm());
+    return worst;
+  };
+  EXPECT_GT(error_m(rough), 0.008);
+  EXPECT_LT(error_m(refined), 0.003);
+  EXPECT_EQ(c.probe.refine(c.samples, rough, 0, 0.02).translation, rough.translation);
+}
+
+TEST(PoseProbe, JudgesDepthAndColour) {
+  const BoxOnTable c;
+  VerifyOptions colors;
+  const PoseFit right = c.probe.judge(c.samples, c.truth, 0.008, colors);
+  EXPECT_GT(right.explained_share, 0.85);
+  EXPECT_GT(right.visible_share, 0.95);
+  EXPECT_GT(right.pattern_similarity, 0.7);
+
+  Solid other = c.box;
+  other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
+  const PoseFit wrong_print = c.probe.judge(make_probe_model(make_model("other", other), 300), c.truth, 0.008, colors);
+  EXPECT_LT(wrong_print.explained_share, right.explained_share - 0.2);
+
+  Rigid3 through = c.truth;
+  through.translation *= 0.85;
+  EXPECT_LT(c.probe.judge(c.samples, through, 0.008, colors).explained_share, 0.3);
+}
+
+TEST(PoseProbe, PixelsOutsideAndBehindAreNone) {
+  const BoxOnTable c;
+  EXPECT_EQ(c.probe.pixel_of({0, 0, -1}), -1);
+  EXPECT_EQ(c.probe.pixel_of({10, 0, 1}), -1);
+  EXPECT_EQ(c.probe.pixel_of({std::numeric_limits<float>::quiet_NaN(), 0, 1}), -1);
+  const Camera& camera = c.view.frame.camera;
+  const Eigen::Vector3d corner = camera.unproject(camera.width - 0.51, camera.height - 0.51, 1);
+  EXPECT_EQ(c.probe.pixel_of(corner.cast<float>()), camera.width * camera.height - 1);
+}
+
+}  // namespace
+}  // namespace resight

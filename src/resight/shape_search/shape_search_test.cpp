@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/shape_search/shape_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/verification/testing/analytic_scene.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+// Three things without print, which give no keypoints on their colours; the third stands on no table.
+struct PlainThings {
+  Solid box{Shape::kBox, {0.12, 0.07, 0.09}, plain({200, 120, 60}), on_table(-0.12, 0.02, 0.045, 0.5)};
+  Solid can{Shape::kCylinder, {0.08, 0.08, 0.1}, plain({60, 110, 190}), on_table(0.12, 0, 0.05)};
+  Solid absent{Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 190, 80}), on_table(0, 0.1, 0.045)};
+  ModelLibrary library = make_library();
+  PreparedView view = prepare_view(render({.solids = {box, can}}, circle_of_cameras(3)[1]).frame);
+
+  ModelLibrary make_library() const {
+    ModelLibrary made{.objects = {make_model("box", box), make_model("can", can), make_model("ball", absent)}};
+    made.objects[1].symmetries.continuous.push_back({Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()});
+    return made;
+  }
+};
+
+const ShapeCandidate* best_of(const std::vector<ShapeCandidate>& found, int object) {
+  for (const ShapeCandidate& c : found)
+    if (c.object == object) return &c;
+  return nullptr;
+}
+
+TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
+  const PlainThings c;
+  const auto found = ShapeSearch(c.library, {}).search(c.view);
+  int object = 0;
+  for (const Solid* solid : {&c.box, &c.can}) {
+    const ShapeCandidate* best = best_of(found, object);
+    ASSERT_NE(best, nullptr) << object;
+    const Rigid3 pose = c.view.frame.world_from_camera * best->camera_from_object;
+    EXPECT_LT((pose.translation - solid->world_from_object.translation).norm(), 0.004) << object;
+    // The box looks the same turned by half a turn, the can turned about its axis: the axis that stands upright must.
+    EXPECT_GT(std::abs(pose.rotation(2, 2)), 0.998) << object;
+    EXPECT_GT(best->quality, 0.6);
+    ++object;
+  }
+  EXPECT_EQ(best_of(found, 2), nullptr);
+}
+
+TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
+  const PlainThings c;
+  ShapeSearchOptions options;
+  options.max_seeds = 300;
+  const auto serial = ShapeSearch(c.library, options).search(c.view);
+  options.num_threads = 4;
+  const auto parallel = ShapeSearch(c.library, options).search(c.view);
+  ASSERT_FALSE(serial.empty());
+  ASSERT_EQ(serial.size(), parallel.size());
+  for (std::size_t i = 0; i < serial.size(); ++i) {
+    EXPECT_EQ(serial[i].object, parallel[i].object);
+    EXPECT_EQ(serial[i].quality, parallel[i].quality);
+    EXPECT_EQ(serial[i].camera_from_object.matrix(), parallel[i].camera_from_object.matrix());
+  }
+}
+
+TEST(ShapeSearch, NothingInAnEmptyViewOrForNoModels) {
+  const PlainThings c;
+  RgbdFrame frame = c.view.frame;
+  for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(prepare_view(frame)).empty());
+  EXPECT_TRUE(ShapeSearch(ModelLibrary{}, {}).search(c.view).empty());
+  ModelLibrary bare = c.library;
+  for (ObjectModel& model : bare.objects) model.surface.normals.clear();
+  EXPECT_TRUE(ShapeSearch(bare, {}).search(c.view).empty());
+}
+
+TEST(ShapeSearch, AnObjectOfUnknownColoursIsFoundByItsShape) {
+  PlainThings c;
+  for (ObjectModel& model : c.library.objects) model.surface.colors.clear();
+  const auto found = ShapeSearch(c.library, {}).search(c.view);
+  const ShapeCandidate* best = best_of(found, 0);
+  ASSERT_NE(best, nullptr);
+  const Rigid3 pose = c.view.frame.world_from_camera * best->camera_from_object;
+  EXPECT_LT((pose.translation - c.box.world_from_object.translation).norm(), 0.004);
+}
+
+TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
+  const PlainThings c;
+  const ShapeSearch search(c.library, {});
+  const Rigid3 truth = c.view.frame.world_from_camera.inverse() * c.box.world_from_object;
+  const auto right = search.try_pose(c.view, 0, truth);
+  EXPECT_GT(right.coarse.confirmed, 30);
+  EXPECT_GT(right.fit.explained_share, 0.8);
+  EXPECT_LT(search.try_pose(c.view, 2, truth).fit.explained_share, 0.6);
+}
+
+TEST(ShapeSearchOptions, ChecksItsFields) {
+  ShapeSearchOptions options;
+  options.max_seeds = 0;
+  EXPECT_THROW(ShapeSearch(ModelLibrary{}, options), std::invalid_argument);
+  options = {};
+  options.coarse.tolerance_m = 0;
+  EXPECT_THROW(ShapeSearch(ModelLibrary{}, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight
