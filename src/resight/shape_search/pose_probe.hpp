@@ -28,7 +28,7 @@ struct ProbeModel {
 struct CountSamplesOptions {
   int max_samples = 40;                ///< That face the camera.
   int max_wrong = 5;                   ///< Beside a quarter of those seen so far: with more, counting stops.
-  double tolerance_m = 0.012;          ///< Of the depth, beside...
+  double tolerance_m = 0.009;          ///< Of the depth, beside...
   double tolerance_sigmas = 3;         ///< ...so many sigmas of the sensor.
   double max_chroma_difference = 0.2;  ///< Of a/128 and b/128, before the light is known.
   void check() const;

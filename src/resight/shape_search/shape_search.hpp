@@ -25,11 +25,11 @@ struct ShapeSearchOptions {
   int max_refined = 1000;            ///< Poses per object that are refined and judged, the best by the first test.
   int refine_iterations = 6;         ///< Of projective ICP.
   double refine_distance_m = 0.02;   ///< Pairs of it that are farther apart do not count.
-  double tolerance_m = 0.008;        ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
+  double tolerance_m = 0.005;        ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
   double min_explained_share = 0.6;  ///< Of the samples that are not hidden.
   double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
   double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
-  int max_hypotheses = 4;               ///< Per object.
+  int max_hypotheses = 3;               ///< Per object.
   double same_place_m = 0.015;          ///< Poses nearer than this (at the object's centre)...
   double same_rotation_rad = 0.21;      ///< ...and this (over its symmetries) are one.
   std::uint64_t seed = 1;

@@ -61,6 +61,17 @@ TEST(PrepareScene, SegmentsAreTheSmoothFaces) {
   EXPECT_GT(best->second, 0.95 * on_ball);
 }
 
+// Its bounding square has a diagonal of 1.4 diameters: no measure of a round face.
+TEST(PrepareScene, ARoundFaceIsAsWideAsItsDiameter) {
+  World world;
+  world.solids.push_back({Shape::kCylinder, {0.3, 0.3, 0.06}, plain({200, 0, 0}), on_table(0, 0, 0.03)});
+  const PreparedScene scene = prepare_scene(merge(render_all(world, circle_of_cameras(5))), {});
+  const auto face = std::find_if(scene.planes.begin(), scene.planes.end(),
+                                 [](const ScenePlane& plane) { return std::abs(plane.offset - 0.06F) < 2e-3F; });
+  ASSERT_NE(face, scene.planes.end());
+  EXPECT_NEAR(face->extent_m, 0.3, 0.02);
+}
+
 TEST(PrepareScene, FindsTheTableAndNothingElse) {
   const PreparedScene scene = prepare_scene(box_and_ball_scene(), {});
   ASSERT_EQ(scene.planes.size(), 1U);
