@@ -125,7 +125,7 @@ ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedVie
   }
   if (shapes) {
     const ScopedTimer timer(made.times, "shape search");
-    for (const ShapeCandidate& candidate : shapes->search(view)) {
+    for (const ShapeCandidate& candidate : shapes->search(view, made.hypotheses)) {
       Hypothesis hypothesis;
       hypothesis.id = next_hypothesis_id + made.hypotheses.size();
       hypothesis.object = candidate.object;

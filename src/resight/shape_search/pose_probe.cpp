@@ -24,39 +24,6 @@ constexpr int kMinPairs = 15;
 
 bool faces_camera(const Eigen::Vector3f& p, const Eigen::Vector3f& n) { return -n.dot(p) > kMinFacing * p.norm(); }
 
-// The samples of a pose that depth and normal confirm, and how many they do not.
-struct Confirmed {
-  std::vector<int> samples;
-  std::vector<std::size_t> pixels;
-  std::vector<Eigen::Vector3f> normals;  // Camera frame.
-  int facing = 0;
-  int hidden = 0;
-  int wrong = 0;
-};
-
-// Replaces num_explained by the number of confirmed samples whose colours, too, are alike.
-void compare_colors(const ProbeModel& model, const Confirmed& confirmed, const Image<Rgb8>& image,
-                    const Image<LabColor>& lab, const VerifyOptions& options, PoseFit& fit) {
-  std::vector<Eigen::Vector3f> model_light;
-  std::vector<Eigen::Vector3f> scene_light;
-  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
-    model_light.push_back(model.linear_light[static_cast<std::size_t>(confirmed.samples[k])]);
-    scene_light.push_back(to_linear_light(image[confirmed.pixels[k]]));
-  }
-  const LightFit light = fit_light(model_light, scene_light, confirmed.normals, options.light);
-  std::vector<LabColor> seen;
-  std::vector<LabColor> expected;
-  fit.num_explained = 0;
-  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
-    expected.push_back(to_lab(light(model_light[k], confirmed.normals[k])));
-    seen.push_back(lab[confirmed.pixels[k]]);
-    const double dl = (expected[k].l - seen[k].l) / options.color_sigma_l;
-    const double chroma_sq = chroma_difference_sq(expected[k], seen[k]) / std::pow(options.color_sigma_ab, 2);
-    if (std::exp(-0.25 * (dl * dl + chroma_sq)) > options.min_inlier_weight) ++fit.num_explained;
-  }
-  fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
-}
-
 }  // namespace
 
 void CountSamplesOptions::check() const {
@@ -71,10 +38,8 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
   const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
   PointCloud samples = sample_surface(model.surface, spacing_m, max_samples);
   ProbeModel result;
-  if (samples.has_colors()) {
-    result.linear_light = to_linear_light(samples.colors);
-    result.lab = to_lab(result.linear_light);
-  }
+  if (samples.has_colors()) result.linear_light = to_linear_light(samples.colors);
+  set_white_balance(result, Eigen::Array3f::Zero());
   result.points = std::move(samples.points);
   result.normals = std::move(samples.normals);
   result.center = model.center;
@@ -155,8 +120,8 @@ Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_obje
   return pose;
 }
 
-PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                         const VerifyOptions& colors) const {
+PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& camera_from_object,
+                                        double tolerance_m) const {
   const Rigid3f motion(camera_from_object);
   const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
   Confirmed confirmed;
@@ -178,16 +143,54 @@ PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_obje
       confirmed.samples.push_back(static_cast<int>(i));
       confirmed.pixels.push_back(at);
       confirmed.normals.push_back(n);
+      if (model.linear_light.empty()) continue;
+      confirmed.model_light.push_back(model.linear_light[i]);
+      confirmed.scene_light.push_back(to_linear_light(view_.frame.color[at]));
     }
   }
+  return confirmed;
+}
+
+LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                             const LightLimits& limits) const {
+  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
+  return fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, limits);
+}
+
+// Counts as explained only what is of like colour, too.
+void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
+  const LightFit light = fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
+  std::vector<LabColor> seen;
+  std::vector<LabColor> expected;
+  fit.num_explained = 0;
+  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
+    expected.push_back(to_lab(light(confirmed.model_light[k], confirmed.normals[k])));
+    seen.push_back(lab_[confirmed.pixels[k]]);
+    const double dl = (expected[k].l - seen[k].l) / options.color_sigma_l;
+    const double da = (expected[k].a - seen[k].a) / options.color_sigma_ab;
+    const double db = (expected[k].b - seen[k].b) / options.color_sigma_ab;
+    if (std::exp(-0.25 * (dl * dl + da * da + db * db)) > options.min_inlier_weight) ++fit.num_explained;
+  }
+  fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
+}
+
+PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                         const VerifyOptions& colors) const {
+  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
   PoseFit fit;
   if (confirmed.samples.empty()) return fit;
   fit.num_explained = static_cast<int>(confirmed.samples.size());
-  if (!model.lab.empty()) compare_colors(model, confirmed, view_.frame.color, lab_, colors, fit);
+  if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
   fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
   fit.explained_share =
       fit.num_explained / (static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong));
   return fit;
+}
+
+void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance) {
+  model.lab.clear();
+  for (const Eigen::Vector3f& color : model.linear_light)
+    model.lab.push_back(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval()));
 }
 
 }  // namespace resight

@@ -17,7 +17,7 @@ struct ProbeModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
-  std::vector<LabColor> lab;                  ///< Of the same.
+  std::vector<LabColor> lab;                  ///< Of the same, under the white balance that was set.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   double radius_m = 0;  ///< About the centre.
 };
@@ -30,7 +30,7 @@ struct CountSamplesOptions {
   int max_wrong = 5;                   ///< Beside a quarter of those seen so far: with more, counting stops.
   double tolerance_m = 0.009;          ///< Of the depth, beside...
   double tolerance_sigmas = 3;         ///< ...so many sigmas of the sensor.
-  double max_chroma_difference = 0.2;  ///< Of a/128 and b/128, before the light is known.
+  double max_chroma_difference = 0.3;  ///< Of a* and b*, each over L* + 26: the light is not known yet.
   void check() const;
 };
 
@@ -68,19 +68,44 @@ class PoseProbe {
   /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
   [[nodiscard]] Rigid3 refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
                               double max_distance_m) const;
+  /// The light on the object at a pose that is known to be about right (light_fit.hpp); its chroma is not limited.
+  [[nodiscard]] LightFit light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                                  const LightLimits& limits) const;
   /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp).
   [[nodiscard]] PoseFit judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
                               const VerifyOptions& colors) const;
 
  private:
+  // The samples of a pose that depth and normal confirm, and how many they do not.
+  struct Confirmed {
+    std::vector<int> samples;
+    std::vector<std::size_t> pixels;
+    std::vector<Eigen::Vector3f> normals;      // Camera frame.
+    std::vector<Eigen::Vector3f> model_light;  // Empty if the model has no colours.
+    std::vector<Eigen::Vector3f> scene_light;
+    int facing = 0;
+    int hidden = 0;
+    int wrong = 0;
+  };
+  [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
+  void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
   [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
 
   const PreparedView& view_;
   Image<LabColor> lab_;
 };
 
-[[nodiscard]] inline float chroma_difference_sq(const LabColor& a, const LabColor& b) {
-  return (a.a - b.a) * (a.a - b.a) + (a.b - b.b) * (a.b - b.b);
+/// The samples' colours for the first test, under the white balance of the scene (LightFit::chroma()).
+void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance);
+
+/// Squared difference of a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for
+/// the dark, whose hue is noise).
+[[nodiscard]] inline float chroma_difference_sq(const LabColor& p, const LabColor& q) {
+  const float p_scale = 128 / (50 * p.l + 76);
+  const float q_scale = 128 / (50 * q.l + 76);
+  const float da = p_scale * p.a - q_scale * q.a;
+  const float db = p_scale * p.b - q_scale * q.b;
+  return da * da + db * db;
 }
 
 }  // namespace resight

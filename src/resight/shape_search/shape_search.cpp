@@ -129,11 +129,31 @@ struct ShapeSearch::Impl {
     table = DipoleTable(samples);
   }
 
-  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view) const {
+  // As the verification does it (find_white_balance): the colours of rough poses are compared before their own light is
+  // known.
+  [[nodiscard]] std::vector<ProbeModel> balance(const PreparedView& view, const PoseProbe& probe,
+                                                std::span<const Hypothesis> from_features) const {
+    const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+    std::vector<LightFit> lights;
+    std::vector<float> votes;
+    for (const Hypothesis& h : from_features) {
+      lights.push_back(probe.light_on(objects[static_cast<std::size_t>(h.object)],
+                                      camera_from_world * h.world_from_object, options.refine_distance_m,
+                                      colors.light));
+      votes.push_back(static_cast<float>(h.correspondences.size() * h.correspondences.size()));
+    }
+    const Eigen::Array3f white_balance = find_white_balance(lights, votes, colors.light);
+    std::vector<ProbeModel> balanced = objects;
+    for (ProbeModel& model : balanced) set_white_balance(model, white_balance);
+    return balanced;
+  }
+
+  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view,
+                                                   std::span<const Hypothesis> from_features) const {
     const PointCloud scene = sample_scene(view, options.scene);
     if (!scene.has_normals() || table.size() == 0) return {};
     const PoseProbe probe(view, options.scene.max_depth_m, options.num_threads);
-    const auto of_object = find_candidates(scene, probe);
+    const auto of_object = find_candidates(scene, probe, balance(view, probe, from_features));
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
     parallel_for(objects.size(), options.num_threads,
                  [&](std::size_t o) { judged[o] = choose(judge(of_object[o], probe)); });
@@ -142,9 +162,9 @@ struct ShapeSearch::Impl {
     return result;
   }
 
-  [[nodiscard]] std::vector<std::vector<Candidate>> find_candidates(const PointCloud& scene,
-                                                                    const PoseProbe& probe) const {
-    const DipoleSearch dipoles(scene, probe, objects, table, options);
+  [[nodiscard]] std::vector<std::vector<Candidate>> find_candidates(const PointCloud& scene, const PoseProbe& probe,
+                                                                    const std::vector<ProbeModel>& balanced) const {
+    const DipoleSearch dipoles(scene, probe, balanced, table, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
@@ -247,7 +267,10 @@ ShapeSearch::~ShapeSearch() = default;
 ShapeSearch::ShapeSearch(ShapeSearch&&) noexcept = default;
 ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
 
-std::vector<ShapeCandidate> ShapeSearch::search(const PreparedView& view) const { return impl_->search(view); }
+std::vector<ShapeCandidate> ShapeSearch::search(const PreparedView& view,
+                                                std::span<const Hypothesis> from_features) const {
+  return impl_->search(view, from_features);
+}
 
 ShapeSearch::Trial ShapeSearch::try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const {
   const ShapeSearchOptions& options = impl_->options;

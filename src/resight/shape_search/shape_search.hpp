@@ -2,8 +2,10 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/shape_search/oriented_points.hpp"
@@ -60,8 +62,10 @@ class ShapeSearch {
   ShapeSearch(ShapeSearch&&) noexcept;
   ShapeSearch& operator=(ShapeSearch&&) noexcept;
 
-  /// By object, then by quality. Nothing for a view without normals.
-  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view) const;
+  /// By object, then by quality. Nothing for a view without normals. The white balance of the view is taken from what
+  /// is known of it, `from_features` (world frame): those with many correspondences are seldom wrong.
+  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view,
+                                                   std::span<const Hypothesis> from_features = {}) const;
 
   /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {

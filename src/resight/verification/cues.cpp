@@ -179,10 +179,12 @@ struct CueComputer::Impl {
     const float wide = t + static_cast<float>(options_.resolution_m);
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
     scene_weight_.assign(local.size(), 0);
+    beside_model_.assign(local.size(), 1);
     fit_exponent_.assign(visibility_.visible.size(), std::numeric_limits<float>::infinity());
     for (const Match& m : matches_) {
       const float dot = normal_dot(m, local);
       if (dot <= 0) continue;
+      if (dot >= min_dot) beside_model_[m.local] = 0;
       const float color = color_exponent(m, local);
       if (dot >= min_dot)
         fit_exponent_[m.visible] = std::min(fit_exponent_[m.visible], m.distance_sq / (2 * wide * wide) + color);
@@ -253,6 +255,7 @@ struct CueComputer::Impl {
   // The same for whatever lies around, but only where the surface goes on.
   float continuation_weight(const LocalScene& local, std::size_t q) const {
     float weight = 0;
+    if (beside_model_[q] == 0) return weight;  // Of another colour: the model's points there are outliers already.
     const int scene_q = local.scene_index(q);
     local.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m), [&](std::size_t p, float) {
       const int scene_p = local.scene_index(p);
@@ -354,8 +357,9 @@ struct CueComputer::Impl {
   std::vector<LabColor> lab_;   // Per visible point, under the scene's light.
   float inverse_color_l_ = 0;
   float inverse_color_ab_ = 0;
-  std::vector<float> scene_weight_;  // Per local scene point.
-  std::vector<float> fit_exponent_;  // Per visible point: -log of its best fit.
+  std::vector<float> scene_weight_;         // Per local scene point.
+  std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near.
+  std::vector<float> fit_exponent_;         // Per visible point: -log of its best fit.
   HypothesisCues cues_;
 };
 
