@@ -113,6 +113,7 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.min_pattern_similarity", &s.min_pattern_similarity},
                                   {"shape.min_visible_share", &s.min_visible_share},
                                   {"shape.max_hypotheses", &s.max_hypotheses},
+                                  {"shape.min_feature_share", &s.min_feature_share},
                                   {"shape.same_place_m", &s.same_place_m},
                                   {"shape.same_rotation_rad", &s.same_rotation_rad},
                                   {"shape.seed", &s.seed},

@@ -34,6 +34,7 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> view_hypotheses(const PreparedView& view, SceneUpdate& update,
                                                         RecognitionTrace* trace);
   [[nodiscard]] ViewHypotheses generate_view_hypotheses(const PreparedView& view, int number);
+  void drop_chance(const PreparedView& view, std::vector<Hypothesis>& hypotheses) const;
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) const;
@@ -125,17 +126,28 @@ ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedVie
   }
   if (shapes) {
     const ScopedTimer timer(made.times, "shape search");
+    drop_chance(view, made.hypotheses);
     for (const ShapeCandidate& candidate : shapes->search(view, made.hypotheses)) {
       Hypothesis hypothesis;
-      hypothesis.id = next_hypothesis_id + made.hypotheses.size();
       hypothesis.object = candidate.object;
       hypothesis.world_from_object = view.frame.world_from_camera * candidate.camera_from_object;
       hypothesis.origin_view = number;
       hypothesis.origin_views = {number};
       made.hypotheses.push_back(std::move(hypothesis));
     }
+    for (std::size_t h = 0; h < made.hypotheses.size(); ++h) made.hypotheses[h].id = next_hypothesis_id + h;
   }
   return made;
+}
+
+// Most groups of correspondences are chance, and a look at their own view tells.
+void SceneRecognizer::Impl::drop_chance(const PreparedView& view, std::vector<Hypothesis>& hypotheses) const {
+  if (config.shape.min_feature_share <= 0) return;
+  const std::vector<PoseFit> fits = shapes->look_at(view, hypotheses);
+  std::vector<Hypothesis> kept;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    if (fits[h].explained_share >= config.shape.min_feature_share) kept.push_back(std::move(hypotheses[h]));
+  hypotheses = std::move(kept);
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -256,6 +257,7 @@ void ShapeSearchOptions::check() const {
   check_in_range("ShapeSearchOptions.min_pattern_similarity", min_pattern_similarity, -1, 1);
   check_in_range("ShapeSearchOptions.min_visible_share", min_visible_share, 0, 1);
   check_not_negative("ShapeSearchOptions.max_hypotheses", max_hypotheses);
+  check_in_range("ShapeSearchOptions.min_feature_share", min_feature_share, 0, 1);
   check_not_negative("ShapeSearchOptions.same_place_m", same_place_m);
   check_in_range("ShapeSearchOptions.same_rotation_rad", same_rotation_rad, 0, std::numbers::pi);
   check_positive("ShapeSearchOptions.num_threads", num_threads);
@@ -270,6 +272,22 @@ ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
 std::vector<ShapeCandidate> ShapeSearch::search(const PreparedView& view,
                                                 std::span<const Hypothesis> from_features) const {
   return impl_->search(view, from_features);
+}
+
+std::vector<PoseFit> ShapeSearch::look_at(const PreparedView& view, std::span<const Hypothesis> hypotheses) const {
+  const ShapeSearchOptions& options = impl_->options;
+  const PoseProbe probe(view, std::numeric_limits<double>::infinity(), options.num_threads);
+  const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+  std::vector<PoseFit> fits(hypotheses.size(),
+                            PoseFit{.explained_share = 1});  // Of what has no normals, nothing is said.
+  parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
+    const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
+    if (model.points.empty()) return;
+    const Rigid3 pose = probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
+                                     options.refine_iterations, options.refine_distance_m);
+    fits[h] = probe.judge(model, pose, options.tolerance_m, impl_->colors);
+  });
+  return fits;
 }
 
 ShapeSearch::Trial ShapeSearch::try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const {

@@ -32,6 +32,8 @@ struct ShapeSearchOptions {
   double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
   double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
   int max_hypotheses = 3;               ///< Per object.
+  double min_feature_share = 0.3;       ///< Hypotheses from features that explain less of themselves in their own view
+                                        ///< are chance; 0 keeps all.
   double same_place_m = 0.015;          ///< Poses nearer than this (at the object's centre)...
   double same_rotation_rad = 0.21;      ///< ...and this (over its symmetries) are one.
   std::uint64_t seed = 1;
@@ -66,6 +68,9 @@ class ShapeSearch {
   /// is known of it, `from_features` (world frame): those with many correspondences are seldom wrong.
   [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view,
                                                    std::span<const Hypothesis> from_features = {}) const;
+
+  /// How well each hypothesis (world frame) fits a view, once refined in it: a quick look before the verification.
+  [[nodiscard]] std::vector<PoseFit> look_at(const PreparedView& view, std::span<const Hypothesis> hypotheses) const;
 
   /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {

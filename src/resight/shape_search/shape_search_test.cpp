@@ -95,6 +95,22 @@ TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   EXPECT_LT(search.try_pose(c.view, 2, truth).fit.explained_share, 0.6);
 }
 
+TEST(ShapeSearch, ALookTellsARightHypothesisFromChance) {
+  PlainThings c;
+  const ShapeSearch search(c.library, {});
+  const std::vector<Hypothesis> hypotheses = {
+      make_hypothesis(0, disturb(c.box.world_from_object, {0.004, -0.003, 0.002}, {1, 1, 0}, 0.05)),
+      make_hypothesis(0, on_table(0.1, 0.3, 0.3, 1.0)), make_hypothesis(2, c.box.world_from_object)};
+  const auto fits = search.look_at(c.view, hypotheses);
+  ASSERT_EQ(fits.size(), 3U);
+  EXPECT_GT(fits[0].explained_share, 0.8);
+  EXPECT_LT(fits[1].explained_share, 0.3);  // In the air.
+  EXPECT_LT(fits[2].explained_share, 0.6);
+  // Of a model without normals nothing is said.
+  for (ObjectModel& model : c.library.objects) model.surface.normals.clear();
+  EXPECT_EQ(ShapeSearch(c.library, {}).look_at(c.view, hypotheses)[1].explained_share, 1.0);
+}
+
 TEST(ShapeSearchOptions, ChecksItsFields) {
   ShapeSearchOptions options;
   options.max_seeds = 0;
