@@ -94,6 +94,21 @@ TEST(RealData, ScannedObjectsOnARenderedTable) {
   EXPECT_GE(score.recall(), 0.75);
 }
 
+// The bowl stands upright in its file, off the origin. The others have prints, or a handle.
+TEST(RealData, SymmetriesOfScannedObjects) {
+  RESIGHT_NEEDS_DATA("ycb-meshes");
+  const auto find = [](const std::string& name) {
+    const ModelSource source = read_model(find_models({shared_data("ycb-meshes/" + name)}).value().front()).value();
+    return find_symmetries(train_surface(name, *source.mesh).value());
+  };
+  const ObjectSymmetries bowl = find("024_bowl");
+  EXPECT_TRUE(bowl.discrete.empty());
+  ASSERT_EQ(bowl.continuous.size(), 1U);
+  EXPECT_LT(bowl.continuous[0].axis.cross(Eigen::Vector3d::UnitZ()).norm(), 0.05);
+  for (const char* name : {"003_cracker_box", "005_tomato_soup_can", "006_mustard_bottle", "025_mug"})
+    EXPECT_TRUE(find(name).none()) << name;
+}
+
 // Share of the surface facing the camera that lies on what the view measured, of that which is not behind something.
 double agreement(const ObjectModel& model, const Detection& detection, const RgbdFrame& frame) {
   const Rigid3 camera_from_object = frame.world_from_camera.inverse() * detection.world_from_object;

@@ -155,7 +155,10 @@ Result<ModelSource> read_bop_model(const ModelLocation& location) {
   if (is_file(folder / "models_info.json")) {
     const auto infos = read_models_info(folder / "models_info.json");
     if (!infos) return infos.error();
-    if (const auto it = infos->find(location.bop_id); it != infos->end()) model.symmetries = it->second.symmetries;
+    if (const auto it = infos->find(location.bop_id); it != infos->end()) {
+      model.symmetries = it->second.symmetries;
+      model.symmetries_known = true;
+    }
   }
   if (is_file(location.path))
     if (const auto done = read_geometry(location.path, model); !done) return done.error();

@@ -168,6 +168,10 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
   ASSERT_TRUE(zebra->mesh.has_value());
   EXPECT_EQ(zebra->mesh->texture, models[0].mesh->texture);
   for (int i = 0; i < 3; ++i) EXPECT_LT((zebra->mesh->vertices[i] - models[0].mesh->vertices[i]).norm(), 1e-7F);
+  EXPECT_TRUE(zebra->symmetries_known);
+  const auto ant = read_model((*found)[0]);
+  ASSERT_TRUE(ant.ok()) << ant.error().message;
+  EXPECT_TRUE(ant->symmetries_known && ant->symmetries.none()) << "declared as having none";
   ASSERT_EQ(zebra->symmetries.discrete.size(), 1U);
   EXPECT_LT(io::pose_difference(zebra->symmetries.discrete[0], models[0].symmetries.discrete[0]), 1e-12);
   ASSERT_EQ(zebra->symmetries.continuous.size(), 1U);

@@ -131,6 +131,7 @@ Result<ModelSource> read_mesh_model(const ModelLocation& location) {
   model.mesh = std::move(mesh->mesh);
   model.warnings = std::move(mesh->warnings);
   model.symmetries = std::move(extras->symmetries);
+  model.symmetries_known = extras->symmetries_known;
   return model;
 }
 

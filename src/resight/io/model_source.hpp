@@ -21,6 +21,7 @@ struct ModelSource {
   std::optional<TriangleMesh> mesh;
   std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd, a PLY without faces), if any.
   ObjectSymmetries symmetries;
+  bool symmetries_known = false;      ///< Somebody has declared them, be it that there are none.
   std::vector<std::string> warnings;  ///< What the model names but lacks (a texture file), one line each.
 };
 

@@ -73,6 +73,7 @@ TEST(TuwModel, ComesBack) {
   ASSERT_TRUE(model.ok()) << model.error().message;
   EXPECT_EQ(model->bop_id, 12);
   EXPECT_EQ(model->symmetries.continuous.size(), 1U);
+  EXPECT_TRUE(model->symmetries_known);
   ASSERT_TRUE(model->surface.has_value());
   EXPECT_EQ(model->surface->points, surface.points);
   EXPECT_EQ(model->surface->colors, surface.colors);
@@ -85,6 +86,17 @@ TEST(TuwModel, ComesBack) {
     EXPECT_EQ(io::pose_difference(model->views[i].frame.world_from_camera, views[i].frame.world_from_camera), 0);
   }
   EXPECT_THAT(write_tuw_model(directory.path(), "mug", views, nullptr).error().message, HasSubstr("exists already"));
+}
+
+TEST(ModelSource, SymmetriesAreKnownWhereTheFileNamesThem) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_ply(directory / "box/box.ply", mesh()).ok());
+  const auto are_known = [&] { return read_model(find_models({directory.path()})->front())->symmetries_known; };
+  EXPECT_FALSE(are_known());
+  io::write_text(directory / "box/model_info.json", R"({"obj_id": 3})");
+  EXPECT_FALSE(are_known());
+  io::write_text(directory / "box/model_info.json", R"({"obj_id": 3, "symmetries_discrete": []})");
+  EXPECT_TRUE(are_known());
 }
 
 TEST(TuwModel, DamagedCompanions) {

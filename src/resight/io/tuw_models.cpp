@@ -108,6 +108,7 @@ Result<ModelExtras> read_model_extras(const fs::path& file) {
   auto symmetries = parse_symmetries(*json, file.string());
   if (!symmetries) return symmetries.error();
   extras.symmetries = std::move(*symmetries);
+  extras.symmetries_known = json->contains("symmetries_discrete") || json->contains("symmetries_continuous");
   extras.bop_id = std::max(0, as_integer(member(*json, "obj_id")).value_or(0));
   return extras;
 }
@@ -138,6 +139,7 @@ Result<ModelSource> read_tuw_model(const path& directory, const std::string& nam
   if (!extras) return extras.error();
   model.bop_id = extras->bop_id;
   model.symmetries = std::move(extras->symmetries);
+  model.symmetries_known = extras->symmetries_known;
   for (const std::string& file : io::list_files(directory / "views")) {
     if (!is_view_cloud(file)) continue;
     auto view = read_view(directory / "views" / file);

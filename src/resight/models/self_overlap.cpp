@@ -140,11 +140,14 @@ SelfOverlap::SelfOverlap(const PointCloud& surface, const SymmetryOptions& optio
   const std::vector<double> areas = find_areas(surface_, tree_, options.num_threads);
   samples_ = spread_samples(areas, options.num_samples);
   double total = 0;
+  Vector3d normals = Vector3d::Zero();
   for (std::size_t i = 0; i < areas.size(); ++i) {
+    normals += areas[i] * surface_.normals[i].cast<double>();
     center_ += areas[i] * surface_.points[i].cast<double>();
     total += areas[i];
   }
   center_ /= total;
+  mean_normal_length_ = normals.norm() / total;
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const Vector3d d = surface_.points[i].cast<double>() - center_;
     covariance_ += areas[i] / total * d * d.transpose();

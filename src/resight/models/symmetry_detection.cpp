@@ -29,7 +29,8 @@ using Axes = std::vector<TurnAxis>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kGoldenAngle_rad = 2.399963;  // of its multiples no two are ever the same turn
 constexpr int kContinuousTurns = 16;
-constexpr double kAlike = 0.8;  // principal moments whose quotient is above this do not tell their axes apart
+constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not what the other half looks like
+constexpr double kAlike = 0.8;           // principal moments whose quotient is above this do not tell their axes apart
 constexpr int kCircleDirections = 36;
 constexpr int kSphereDirections = 1200;       // of which half are tried: 6 deg apart
 constexpr double kDirectionError_rad = 0.06;  // of the nearest direction that is tried
@@ -327,6 +328,7 @@ ObjectSymmetries find_symmetries(const PointCloud& surface, const SymmetryOption
   options.check();
   if (!is_usable(surface)) return {};
   const SelfOverlap overlap(surface, options);
+  if (!(overlap.mean_normal_length() < kMaxMeanNormal)) return {};
   const Directions directions = find_directions(overlap.covariance());
   if (std::optional<ObjectSymmetries> round = find_round(overlap, directions, options.num_threads)) return *round;
   ObjectSymmetries symmetries;

@@ -33,7 +33,8 @@ struct SymmetryOptions {
 /// on a can, a ball with a pattern) it is the direction that was tried, 2.5 deg off at most on what is round, and up to
 /// 4 deg on a ball, where it may therefore be missed.
 ///
-/// None for what tells nothing: fewer than 100 points, no normals, values that are not finite.
+/// None for what tells nothing: fewer than 100 points, no normals, values that are not finite, a surface that is known
+/// from one side only (its mean normal is longer than 0.35, where that of a closed one is 0).
 [[nodiscard]] ObjectSymmetries find_symmetries(const PointCloud& surface, const SymmetryOptions& options = {});
 
 }  // namespace resight

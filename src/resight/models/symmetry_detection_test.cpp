@@ -336,6 +336,21 @@ TEST(FindSymmetries, OfWhatTellsNothingAreNone) {
   EXPECT_NO_THROW((void)find_symmetries(bad));
 }
 
+TEST(FindSymmetries, OfOneSideOfAnObjectAreNone) {
+  const PointCloud all = measure(make_can(), paint_grey, {});
+  std::vector<int> seen;
+  std::vector<int> without_bottom;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+    const Eigen::Vector3f& n = all.normals[static_cast<std::size_t>(i)];
+    if (n.x() > 0.1F) seen.push_back(i);
+    if (n.z() > -0.5F) without_bottom.push_back(i);
+  }
+  EXPECT_TRUE(find_symmetries(select(all, seen)).none());
+  const ObjectSymmetries scanned = find_symmetries(select(all, without_bottom));
+  EXPECT_EQ(scanned.continuous.size(), 1U);
+  EXPECT_TRUE(scanned.discrete.empty());
+}
+
 TEST(FindSymmetries, OnAnyNumberOfThreadsAreTheSame) {
   for (const Shape& shape : {make_box({0.07, 0.07, 0.07}), make_can(), make_ball()}) {
     const PointCloud surface = measure(shape, paint_grey, placements()[2]);

@@ -58,13 +58,22 @@ Result<void> check_names(std::span<const ModelLocation> locations) {
   return {};
 }
 
+ObjectSymmetries find_undeclared(const PointCloud& surface, const TrainOptions& options) {
+  SymmetryOptions symmetry = options.symmetry;
+  symmetry.num_threads = options.num_threads;
+  return find_symmetries(surface, symmetry);
+}
+
 }  // namespace
 
 Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options) {
   Result<ObjectModel> model = train_from_any(source, options);
   if (!model.ok()) return model;
   model->bop_id = source.bop_id;
-  model->symmetries = source.symmetries;
+  if (source.symmetries_known || !source.symmetries.none())
+    model->symmetries = source.symmetries;
+  else if (options.find_symmetries)
+    model->symmetries = find_undeclared(model->surface, options);
   return model;
 }
 

@@ -12,7 +12,8 @@ namespace resight {
 /// Trains from what a data set holds of an object. Features: of its views, or of a turntable around its mesh (else its
 /// complete cloud) if it has none. Surface: of its mesh, else its complete cloud (if that has colours), else fused from
 /// the views.
-/// The name, the symmetries and the bop_id (0 stays 0) are the source's.
+/// The name and the bop_id (0 stays 0) are the source's, and so are the symmetries if it declares them (be it that
+/// there are none); else they are found from the surface (find_symmetries()).
 [[nodiscard]] Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options = {});
 
 /// Called before each object with its place (0 ..), the number of objects and its name.

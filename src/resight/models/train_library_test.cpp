@@ -144,6 +144,41 @@ TEST(TrainObjectFromSource, TakesOverWhatTheSourceKnows) {
   EXPECT_NEAR(from_cloud->diameter_m, from_mesh->diameter_m, 0.01);
 }
 
+TEST(TrainObjectFromSource, FindsSymmetriesUnlessTheyAreDeclared) {
+  ModelSource source;
+  source.name = "can";
+  source.mesh = make_procedural_object("plain_can")->mesh;
+  TrainOptions options = make_quick_options();
+  const Result<ObjectModel> found = train_object(source, options);
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_EQ(found->symmetries.continuous.size(), 1U);
+  EXPECT_EQ(found->symmetries.discrete.size(), 1U);
+  source.symmetries_known = true;
+  EXPECT_TRUE(train_object(source, options)->symmetries.none());
+  source.symmetries_known = false;
+  options.find_symmetries = false;
+  EXPECT_TRUE(train_object(source, options)->symmetries.none());
+}
+
+// Programs and prints say what these are; the sponge is symmetric but for its pores.
+TEST(TrainSurface, OfProceduralObjectsHasTheSymmetriesTheyWereDrawnWith) {
+  int symmetric = 0;
+  for (const std::string& name : procedural_object_names()) {
+    if (name == "sponge") continue;
+    SCOPED_TRACE(name);
+    const ProceduralObject object = *make_procedural_object(name);
+    const ObjectSymmetries found = find_symmetries(train_surface(name, object.mesh).value());
+    ASSERT_EQ(found.continuous.size(), object.symmetries.continuous.size());
+    ASSERT_EQ(found.discrete.size(), object.symmetries.discrete.size());
+    symmetric += found.none() ? 0 : 1;
+    for (std::size_t i = 0; i < found.continuous.size(); ++i)
+      EXPECT_LT(found.continuous[i].axis.cross(object.symmetries.continuous[i].axis).norm(), 0.01);
+    for (const Rigid3& motion : found.discrete)
+      EXPECT_LT(symmetric_rotation_distance_rad(motion, Rigid3::identity(), object.symmetries), 0.02);
+  }
+  EXPECT_EQ(symmetric, 5);
+}
+
 TEST(TrainObjectFromMesh, WithoutAnyColourOnlyItsShapeCounts) {
   ProceduralObject object = make_any_object();
   object.mesh.texture = {};

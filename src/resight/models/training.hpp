@@ -8,6 +8,7 @@
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/models/feature_reduction.hpp"
 #include "resight/models/object_model.hpp"
+#include "resight/models/symmetry_detection.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 #include "resight/simulation/turntable.hpp"
 
@@ -21,7 +22,9 @@ struct TrainOptions {
   double min_edge_distance_px = 2.0;               ///< Surface points nearer to a depth discontinuity are not used.
   FeatureMerging sift_merging{.max_distance_m = 0.005, .max_descriptor_distance = 0.4};
   FeatureMerging shot_merging{.max_distance_m = 0.007, .max_descriptor_distance = 0.4};
-  int num_threads = 1;  ///< Not part of the hash: the bytes do not depend on it.
+  bool find_symmetries = true;  ///< Of objects whose source does not declare theirs.
+  SymmetryOptions symmetry;     ///< How; its num_threads does not count.
+  int num_threads = 1;          ///< Not part of the hash: the bytes do not depend on it.
   void check() const;
   [[nodiscard]] std::uint64_t hash() const;  ///< Of every field that changes the result, and of the format version.
 };
@@ -34,7 +37,8 @@ struct ObjectFeatures {
 
 /// Trains from registered views (frame.world_from_camera is object_from_camera; mask: non-zero = object): SIFT and SHOT
 /// of each view in the object frame, merged (TrainOptions.*_merging) and at 8 bits a component (descriptor_code.hpp),
-/// and the surface fused by sensor noise. Symmetries and bop_id are the caller's to set.
+/// and the surface fused by sensor noise. Symmetries and bop_id are the caller's to set (train_object() of a
+/// ModelSource does).
 ///
 /// Colours that are not known (the same in every pixel of all views, a mesh with neither texture nor vertex colours, a
 /// cloud with none or one) are left out of the model, and so is SIFT: it is then recognised by its shape alone.

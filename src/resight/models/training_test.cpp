@@ -328,6 +328,7 @@ TEST(TrainOptions, RefusesNonsense) {
   EXPECT_THROW(check([](TrainOptions& o) { o.min_edge_distance_px = -1; }), std::invalid_argument);
   EXPECT_THROW(check([](TrainOptions& o) { o.sift_merging.max_distance_m = std::nan(""); }), std::invalid_argument);
   EXPECT_THROW(check([](TrainOptions& o) { o.shot.support_radius_m = -1; }), std::invalid_argument);
+  EXPECT_THROW(check([](TrainOptions& o) { o.symmetry.max_distance_m = 0; }), std::invalid_argument);
   EXPECT_THROW(check([](TrainOptions& o) { o.turntable.step_deg = 0; }), std::invalid_argument);
 }
 
@@ -356,6 +357,16 @@ TEST(TrainOptions, HashTellsEveryFieldThatChangesTheResult) {
       [](TrainOptions& o) { o.sift_merging.max_descriptor_distance = 0.123; },
       [](TrainOptions& o) { o.shot_merging.max_distance_m = 0.004; },
       [](TrainOptions& o) { o.shot_merging.max_descriptor_distance = 0.123; },
+      [](TrainOptions& o) { o.find_symmetries = false; },
+      [](TrainOptions& o) { o.symmetry.min_agreement = 0.96; },
+      [](TrainOptions& o) { o.symmetry.min_close_agreement = 0.8; },
+      [](TrainOptions& o) { o.symmetry.max_distance_m = 0.002; },
+      [](TrainOptions& o) { o.symmetry.max_distance_share = 0.02; },
+      [](TrainOptions& o) { o.symmetry.max_normal_angle_rad = 0.6; },
+      [](TrainOptions& o) { o.symmetry.blur_share = 0.03; },
+      [](TrainOptions& o) { o.symmetry.max_brightness_difference = 0.1; },
+      [](TrainOptions& o) { o.symmetry.max_chroma_difference = 0.1; },
+      [](TrainOptions& o) { o.symmetry.num_samples = 500; },
   };
   std::set<std::uint64_t> hashes;
   for (const auto& change : changes) {
@@ -365,6 +376,7 @@ TEST(TrainOptions, HashTellsEveryFieldThatChangesTheResult) {
     options.num_threads = 7;
     options.turntable.num_threads = 7;
     options.shot.num_threads = 7;
+    options.symmetry.num_threads = 7;
     hashes.insert(options.hash());  // the threads change nothing
   }
   EXPECT_EQ(hashes.size(), changes.size());

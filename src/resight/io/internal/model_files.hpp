@@ -14,6 +14,7 @@ namespace resight::io {
 struct ModelExtras {
   int bop_id = 0;
   ObjectSymmetries symmetries;
+  bool symmetries_known = false;  ///< The file has one of their keys.
 };
 /// Empty if there is no such file.
 [[nodiscard]] Result<ModelExtras> read_model_extras(const std::filesystem::path& file);

@@ -29,6 +29,9 @@ class SelfOverlap {
   [[nodiscard]] const Eigen::Vector3d& center() const { return center_; }          ///< Of the area, metres.
   [[nodiscard]] const Eigen::Matrix3d& covariance() const { return covariance_; }  ///< Of the area, m^2.
 
+  /// Length of the mean normal: 0 for a closed surface, 0.5 and more for what is seen of a body in one view.
+  [[nodiscard]] double mean_normal_length() const { return mean_normal_length_; }
+
   /// Whether the motion puts the surface onto itself, by the limits of the options.
   [[nodiscard]] bool is_symmetry(const Rigid3& motion) const;
   /// The share of the samples that it puts onto the surface, in like colour.
@@ -62,6 +65,7 @@ class SelfOverlap {
   std::vector<int> samples_;
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  double mean_normal_length_ = 0;
   double radius_m_ = 0;  // of the outermost point, about the centre
   float min_cosine_ = 0;
   Limits limits_;
