@@ -49,7 +49,8 @@ int main(int argc, char** argv) {
   for (int v = 0; v < sequence->num_views(); v += every) {
     const PreparedView view = prepare_view(value_or_exit(sequence->read_view(v)), config.prepare);
     const auto begin = std::chrono::steady_clock::now();
-    const auto candidates = search.search(view);
+    const SearchedView searched(view, config.shape);
+    const auto candidates = search.search(searched);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++views;
     for (const ShapeCandidate& c : candidates) ++tallies[library.objects[c.object].name].hypotheses;
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
         }
         ++rank;
       }
-      const auto trial = search.try_pose(view, object, truth.camera_from_object);
+      const auto trial = search.try_pose(searched, object, truth.camera_from_object);
       fmt::print(
           "view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} off {} through {} hidden | explained {:.2f} of "
           "{:.2f} pattern {:.2f} |{}\n",

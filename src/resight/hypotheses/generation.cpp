@@ -77,6 +77,8 @@ void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
   }
 }
 
+}  // namespace
+
 Hypothesis make_hypothesis(const CorrespondenceGroup& group, std::span<const Correspondence> correspondences,
                            const Rigid3& world_from_camera, int object, int view) {
   Hypothesis hypothesis;
@@ -94,8 +96,6 @@ Hypothesis make_hypothesis(const CorrespondenceGroup& group, std::span<const Cor
   }
   return hypothesis;
 }
-
-}  // namespace
 
 struct ModelFeatureIndex::Impl {
   const ModelLibrary* library;

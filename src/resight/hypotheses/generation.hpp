@@ -38,6 +38,12 @@ class ModelFeatureIndex {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A group of correspondences of one object (scene side in the camera frame) as a hypothesis of a view, in the WORLD
+/// frame; its id is left at 0.
+[[nodiscard]] Hypothesis make_hypothesis(const CorrespondenceGroup& group,
+                                         std::span<const Correspondence> correspondences,
+                                         const Rigid3& world_from_camera, int object, int view);
+
 struct GenerateHypothesesOptions {
   GroupCorrespondencesOptions grouping{};
   int num_threads = 1;  ///< Same bits for any value >= 1.

@@ -45,6 +45,7 @@ void ObjectHistoryOptions::check() const {
   check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
   check_positive("ObjectHistoryOptions.same_rotation_rad", same_rotation_rad);
   check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
+  check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
   presence.check();
 }
 
@@ -89,28 +90,34 @@ void ObjectHistory::match_in_place(std::vector<Detection>& detections, std::vect
       best_m = distance_m;
     }
     if (best == kUnmatched) continue;
-    Detection& detection = detections[static_cast<std::size_t>(best)];
     track_of[static_cast<std::size_t>(best)] = static_cast<int>(t);
-    detection.track = track.id;
-    events.push_back({ObjectEventKind::kStillThere, track.object, track.id, view, track.world_from_object,
-                      detection.world_from_object, detection.score});
-    track.world_from_object = detection.world_from_object;
-    track.state = State::kPresent;
+    keep_in_place(track, detections[static_cast<std::size_t>(best)], view, events);
   }
 }
 
-bool ObjectHistory::is_displaced(const Track& track, std::span<const Detection> detections,
-                                 std::span<const int> track_of) const {
+void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
+                                  std::vector<ObjectEvent>& events) const {
+  detection.track = track.id;
+  events.push_back({ObjectEventKind::kStillThere, track.object, track.id, view, track.world_from_object,
+                    detection.world_from_object, detection.score});
+  track.world_from_object = detection.world_from_object;
+  track.last_view = view;
+  track.state = State::kPresent;
+}
+
+// Two bodies of one kind cannot overlap: a detection inside the old place is the same object.
+int ObjectHistory::find_displaced(const Track& track, std::span<const Detection> detections,
+                                  std::span<const int> track_of) const {
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
   for (std::size_t d = 0; d < detections.size(); ++d) {
     if (track_of[d] != kUnmatched || detections[d].object != track.object) continue;
     if (center_distance_m(model, track.world_from_object, detections[d].world_from_object) < 0.5 * model.diameter_m)
-      return true;
+      return static_cast<int>(d);
   }
-  return false;
+  return kUnmatched;
 }
 
-void ObjectHistory::look_at_old_places(std::span<const Detection> detections, std::span<const int> track_of, int view,
+void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                                        const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events) {
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
@@ -120,12 +127,15 @@ void ObjectHistory::look_at_old_places(std::span<const Detection> detections, st
         use_evidence ? assess_presence(library_.objects[static_cast<std::size_t>(track.object)].surface,
                                        track.world_from_object, current, options_.presence)
                      : ObjectPresence{};
-    // Two bodies of one kind cannot overlap: a detection inside the old place is the same object, moved a little.
-    const bool is_displaced_track = is_displaced(track, detections, track_of);
-    if (presence.is_gone || is_displaced_track) {
+    const int displaced = find_displaced(track, detections, track_of);
+    const bool has_moved = !use_evidence || presence.gone_share >= options_.min_displaced_gone_share;
+    if (presence.is_gone || (displaced != kUnmatched && has_moved)) {
       track.state = State::kLeaving;
       track.left_view = view;
-      track.confidence = is_displaced_track ? 1.0 : presence.gone_share;
+      track.confidence = displaced != kUnmatched ? 1.0 : presence.gone_share;
+    } else if (displaced != kUnmatched) {
+      track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
+      keep_in_place(track, detections[static_cast<std::size_t>(displaced)], view, events);
     } else {
       events.push_back(
           {ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt, 0.0});
@@ -164,6 +174,7 @@ void ObjectHistory::place_new(Detection& detection, int view, std::span<const Rg
                       std::nullopt, detection.world_from_object, detection.score});
   }
   from->world_from_object = detection.world_from_object;
+  from->last_view = view;
   from->state = State::kPresent;
   detection.track = from->id;
 }
@@ -175,6 +186,13 @@ void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events)
     events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
                       std::nullopt, track.confidence});
   }
+}
+
+std::vector<KnownObject> ObjectHistory::known_objects() const {
+  std::vector<KnownObject> known;
+  for (const Track& track : tracks_)
+    if (track.state == State::kPresent) known.push_back({track.object, track.world_from_object, track.last_view});
+  return known;
 }
 
 std::vector<ObjectEvent> ObjectHistory::finish() {

@@ -11,11 +11,20 @@ namespace resight {
 
 struct ObjectHistoryOptions {
   double same_place_m = 0.03;  ///< A detection within this and same_rotation_rad of a track's pose: it is still there.
-  double same_rotation_rad = 0.349;  ///< 20 deg, over the object's symmetries.
+  double same_rotation_rad = 0.349;       ///< 20 deg, over the object's symmetries.
+  double min_displaced_gone_share = 0.2;  ///< An object recognised within its old place has moved if at least so much
+                                          ///< of that is seen free; with less it is only seen better, or worse.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
   PresenceOptions presence;
   void check() const;
+};
+
+/// An object that was not seen to leave its place.
+struct KnownObject {
+  int object = -1;
+  Rigid3 world_from_object;
+  int last_view = -1;  ///< That it was recognised with.
 };
 
 /// Remembers which object was where, and tells what happened to it. Memory grows with the number of objects, not of
@@ -32,6 +41,8 @@ class ObjectHistory {
                                                 std::span<const RgbdFrame* const> earlier, bool use_evidence);
   /// Removals that still wait for confirmation; to be called after the last view.
   [[nodiscard]] std::vector<ObjectEvent> finish();
+  /// What is known to be there, by track; whether the last view saw it or not.
+  [[nodiscard]] std::vector<KnownObject> known_objects() const;
 
  private:
   enum class State { kPresent, kLeaving, kGone };
@@ -39,6 +50,7 @@ class ObjectHistory {
     int id = 0;
     int object = -1;
     Rigid3 world_from_object;
+    int last_view = -1;  // that it was recognised with
     State state = State::kPresent;
     int left_view = -1;     // first view that saw its place free
     double confidence = 0;  // of that
@@ -47,9 +59,10 @@ class ObjectHistory {
   [[nodiscard]] bool same_place(const Track& track, const Detection& detection) const;
   void match_in_place(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                       std::vector<ObjectEvent>& events);
-  [[nodiscard]] bool is_displaced(const Track& track, std::span<const Detection> detections,
-                                  std::span<const int> track_of) const;
-  void look_at_old_places(std::span<const Detection> detections, std::span<const int> track_of, int view,
+  void keep_in_place(Track& track, Detection& detection, int view, std::vector<ObjectEvent>& events) const;
+  [[nodiscard]] int find_displaced(const Track& track, std::span<const Detection> detections,
+                                   std::span<const int> track_of) const;
+  void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
   void place_new(Detection& detection, int view, std::span<const RgbdFrame* const> earlier, bool use_evidence,
                  std::vector<ObjectEvent>& events);

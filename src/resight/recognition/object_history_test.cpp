@@ -54,6 +54,22 @@ class ObjectHistoryTest : public ::testing::Test {
 };
 using K = ObjectEventKind;
 
+TEST_F(ObjectHistoryTest, KnowsWhatWasNotSeenToLeave) {
+  EXPECT_TRUE(history_->known_objects().empty());
+  view({{0, left_}, {1, right_}}, see_plates({left_, right_}));
+  ASSERT_EQ(history_->known_objects().size(), 2U);
+  view({{1, right_}}, see_nothing());  // No depth: nothing is known of the left one.
+  const std::vector<KnownObject> known = history_->known_objects();
+  ASSERT_EQ(known.size(), 2U);
+  EXPECT_EQ(known[0].object, 0);
+  EXPECT_EQ(known[0].last_view, 0);
+  EXPECT_EQ(known[0].world_from_object.translation, left_.translation);
+  EXPECT_EQ(known[1].last_view, 1);
+  view({{1, right_}}, see_plates({right_}));  // The left place is seen free.
+  ASSERT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->known_objects()[0].object, 1);
+}
+
 TEST_F(ObjectHistoryTest, FoundThenStillThere) {
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kFound}));
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}));
@@ -127,6 +143,18 @@ TEST_F(ObjectHistoryTest, ASmallShiftIsAMoveAndNotASecondObject) {
   view({{0, left_}}, see_plates({left_}));
   EXPECT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
   EXPECT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kStillThere}));
+}
+
+TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
+  // Turned by 30 deg about the line of sight: the plate still lies where it was taken to be.
+  const Rigid3 turned = left_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.52);
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_EQ(kinds(view({{0, turned}}, see_plates({left_}))), (std::vector{K::kStillThere}));
+  EXPECT_EQ(detections_[0].track, 0);
+  ASSERT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->known_objects()[0].world_from_object.rotation, turned.rotation);
+  // Nothing is known without change detection: what is reported elsewhere has moved.
+  EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}), false)), (std::vector{K::kMoved}));
 }
 
 TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {

@@ -111,6 +111,8 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.tolerance_m", &s.tolerance_m},
                                   {"shape.min_explained_share", &s.min_explained_share},
                                   {"shape.min_pattern_similarity", &s.min_pattern_similarity},
+                                  {"shape.max_matches", &s.max_matches},
+                                  {"shape.match_distance_m", &s.match_distance_m},
                                   {"shape.min_visible_share", &s.min_visible_share},
                                   {"shape.max_hypotheses", &s.max_hypotheses},
                                   {"shape.min_feature_share", &s.min_feature_share},
@@ -147,6 +149,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.same_place_m", &c.history.same_place_m},
                                   {"history.same_rotation_rad", &c.history.same_rotation_rad},
                                   {"history.confirm_removal_views", &c.history.confirm_removal_views},
+                                  {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
                                   {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
                                   {"history.presence_min_seen_points", &c.history.presence.min_seen_points},
                                   {"history.presence_min_seen_share", &c.history.presence.min_seen_share},
@@ -201,6 +204,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.max_inlier_angle_rad", &v.max_inlier_angle_rad},
                                   {"verify.newest_view_decides", &v.newest_view_decides},
                                   {"verify.continuation_offset_m", &v.continuation_offset_m},
+                                  {"verify.continuation_matches", &v.continuation_matches},
                                   {"verify.max_seen_through_share", &v.max_seen_through_share},
                                   {"verify.max_moves", &v.max_moves},
                                   {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
@@ -219,7 +223,9 @@ std::vector<Field> list_fields(RecognizerConfig& c) {
                             {"detect_changes", &c.detect_changes},
                             {"cluster_hypotheses", &c.cluster_hypotheses},
                             {"clear_tolerance_m", &c.clear_tolerance_m},
-                            {"min_reported_share", &c.min_reported_share}};
+                            {"min_reported_share", &c.min_reported_share},
+                            {"remember_objects", &c.remember_objects},
+                            {"skip_planes", &c.skip_planes}};
   add_feature_fields(c, fields);
   add_hypothesis_fields(c, fields);
   add_shape_fields(c, fields);
@@ -321,10 +327,13 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.min_pattern_similarity = 0.57;  // ...but its print stays its own.
     config.verify.clutter_weight = 6;
     config.verify.continuation_offset_m = 0.005;
+    config.verify.continuation_matches = 20;
     config.verify.newest_view_decides = true;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.02;
+    config.remember_objects = true;
+    config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;

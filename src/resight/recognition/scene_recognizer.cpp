@@ -8,6 +8,7 @@
 #include "resight/core/check.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
+#include "resight/recognition/view_hypothesis_generator.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
 
 namespace resight {
@@ -27,28 +28,27 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         scene(scene_options(config)),
         store(std::move(shared)) {
-    if (!store) index.emplace(library, config.match);
+    if (!store) generator.emplace(library, config);
   }
 
   SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace);
   [[nodiscard]] std::vector<Hypothesis> view_hypotheses(const PreparedView& view, SceneUpdate& update,
                                                         RecognitionTrace* trace);
-  [[nodiscard]] ViewHypotheses generate_view_hypotheses(const PreparedView& view, int number);
-  void drop_chance(const PreparedView& view, std::vector<Hypothesis>& hypotheses) const;
-  [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const;
+  [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
+  void add_known_objects(std::vector<Hypothesis>& hypotheses);
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) const;
 
   const ModelLibrary& library;
   RecognizerConfig config;
-  std::optional<ModelFeatureIndex> index;  // with a store: made when a view needs it
-  std::optional<ShapeSearch> shapes;       // made when a view needs it
+  std::optional<ViewHypothesisGenerator> generator;  // with a store: made when a view needs it
   ObjectHistory history;
   DynamicScene scene;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
+  std::uint64_t next_known_id = 1ULL << 40;  // apart: those of views are the same for all that share a store
 };
 
 SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* trace) {
@@ -87,7 +87,8 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   ViewHypotheses made;
   const ViewHypotheses* found = store ? store->find(update.view) : nullptr;
   if (found == nullptr) {
-    made = generate_view_hypotheses(view, update.view);
+    if (!generator) generator.emplace(library, config);
+    made = generator->generate(view, update.view, next_hypothesis_id);
     found = store ? &store->add(update.view, std::move(made)) : &made;
   }
   update.times.add(found->times);
@@ -102,59 +103,25 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   return found->hypotheses;
 }
 
-// Paper Sec. III-A: features of both kinds, matched, grouped into hypotheses of this view alone.
-ViewHypotheses SceneRecognizer::Impl::generate_view_hypotheses(const PreparedView& view, int number) {
-  ViewHypotheses made;
-  {
-    const ScopedTimer timer(made.times, "sift");
-    made.sift = extract_sift(view, config.sift);
+void SceneRecognizer::Impl::add_known_objects(std::vector<Hypothesis>& hypotheses) {
+  if (!config.remember_objects || config.num_previous_views == 0) return;
+  for (const KnownObject& known : history.known_objects()) {
+    Hypothesis hypothesis;
+    hypothesis.id = next_known_id++;
+    hypothesis.object = known.object;
+    hypothesis.world_from_object = known.world_from_object;
+    hypothesis.origin_view = known.last_view;
+    hypothesis.origin_views = {known.last_view};
+    hypotheses.push_back(std::move(hypothesis));
   }
-  {
-    const ScopedTimer timer(made.times, "shot");
-    made.shot = extract_shot(view, config.shot);
-  }
-  if (!index) index.emplace(library, config.match);
-  if (config.shape.enabled && !shapes) shapes.emplace(library, config.shape, config.verify);
-  {
-    const ScopedTimer timer(made.times, "match");
-    made.correspondences = index->match(made.sift, made.shot);
-  }
-  {
-    const ScopedTimer timer(made.times, "hypotheses");
-    made.hypotheses = generate_hypotheses(made.correspondences, view.frame.world_from_camera, number,
-                                          next_hypothesis_id, config.generate);
-  }
-  if (shapes) {
-    const ScopedTimer timer(made.times, "shape search");
-    drop_chance(view, made.hypotheses);
-    for (const ShapeCandidate& candidate : shapes->search(view, made.hypotheses)) {
-      Hypothesis hypothesis;
-      hypothesis.object = candidate.object;
-      hypothesis.world_from_object = view.frame.world_from_camera * candidate.camera_from_object;
-      hypothesis.origin_view = number;
-      hypothesis.origin_views = {number};
-      made.hypotheses.push_back(std::move(hypothesis));
-    }
-    for (std::size_t h = 0; h < made.hypotheses.size(); ++h) made.hypotheses[h].id = next_hypothesis_id + h;
-  }
-  return made;
-}
-
-// Most groups of correspondences are chance, and a look at their own view tells.
-void SceneRecognizer::Impl::drop_chance(const PreparedView& view, std::vector<Hypothesis>& hypotheses) const {
-  if (config.shape.min_feature_share <= 0) return;
-  const std::vector<PoseFit> fits = shapes->look_at(view, hypotheses);
-  std::vector<Hypothesis> kept;
-  for (std::size_t h = 0; h < hypotheses.size(); ++h)
-    if (fits[h].explained_share >= config.shape.min_feature_share) kept.push_back(std::move(hypotheses[h]));
-  hypotheses = std::move(kept);
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
-std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) const {
+std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace) {
   const ScopedTimer timer(update.times, "cluster");
   std::vector<Hypothesis> merged;
   for (const auto& of_view : hypotheses_of_view) merged.insert(merged.end(), of_view.begin(), of_view.end());
+  add_known_objects(merged);
   update.counts.merged = static_cast<int>(merged.size());
   if (trace != nullptr) trace->merged = merged;
   if (config.cluster_hypotheses) merged = cluster_hypotheses(merged, library, config.cluster).hypotheses;

@@ -15,6 +15,8 @@ TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
   RecognizerConfig later = base;
   later.num_previous_views = 1;
   later.cluster_hypotheses = false;
+  later.min_reported_share = 0.5;
+  later.remember_objects = true;
   later.cluster.max_translation_m *= 2;
   later.changes.tolerance_m *= 2;
   later.verify.outlier_weight *= 2;

@@ -2,7 +2,6 @@
 #include "resight/shape_search/oriented_points.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
@@ -13,6 +12,7 @@ namespace resight {
 namespace {
 
 constexpr double kSpacingStep = 1.15;
+constexpr int kMaxSpacingSteps = 40;     // 270 times the first.
 constexpr float kSimilarNormals = 0.3F;  // Cosine; below: the other side of a thin wall, or another face.
 
 PointCloud near_points(const PreparedView& view, const SampleSceneOptions& options) {
@@ -26,19 +26,19 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
   return voxel_downsample(select(all, kept), options.spacing_m);
 }
 
-PointCloud without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
+SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
   VerifyOptions planes_of;
   planes_of.resolution_m = options.spacing_m;
   planes_of.smooth_distance_m = 2 * options.spacing_m;
   const SmoothSegments segments = find_smooth_segments(cloud.points, cloud.normals, planes_of);
-  const ScenePlanes planes = find_scene_planes(cloud.points, cloud.normals, segments, planes_of);
+  ScenePlanes planes = find_scene_planes(cloud.points, cloud.normals, segments, planes_of);
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];
     if (plane < 0 || planes.planes[static_cast<std::size_t>(plane)].extent_m <= static_cast<float>(options.max_plane_m))
       kept.push_back(static_cast<int>(i));
   }
-  return select(cloud, kept);
+  return {select(cloud, kept), std::move(planes.planes)};
 }
 
 // Greedy, in the given order.
@@ -80,10 +80,11 @@ void SampleSceneOptions::check() const {
   check_not_negative("SampleSceneOptions.min_edge_distance_px", min_edge_distance_px);
 }
 
-PointCloud sample_scene(const PreparedView& view, const SampleSceneOptions& options) {
+SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options) {
   options.check();
-  const PointCloud cloud = near_points(view, options);
-  return cloud.has_normals() ? without_large_planes(cloud, options) : cloud;
+  PointCloud cloud = near_points(view, options);
+  if (!cloud.has_normals()) return {std::move(cloud), {}};
+  return without_large_planes(cloud, options);
 }
 
 PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_points) {
@@ -91,12 +92,15 @@ PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_p
   check_positive("sample_surface: max_points", max_points);
   if (!surface.has_normals()) return {};
   const KdTree tree(surface.points);
-  std::vector<int> order(surface.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order;
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    if (surface.normals[i].allFinite()) order.push_back(static_cast<int>(i));
   Rng(1).shuffle(order);
   std::vector<int> chosen = choose_apart(surface, tree, order, spacing_m);
-  while (static_cast<int>(chosen.size()) > max_points)
+  const auto most = static_cast<std::size_t>(max_points);
+  for (int step = 0; step < kMaxSpacingSteps && chosen.size() > most; ++step)
     chosen = choose_apart(surface, tree, order, spacing_m *= kSpacingStep);
+  chosen.resize(std::min(chosen.size(), most));  // Normals that point apart never cover each other.
   PointCloud samples = select(surface, chosen);
   std::vector<PointNeighbor> neighbors;
   for (std::size_t i = 0; i < chosen.size(); ++i)

@@ -5,6 +5,7 @@
 
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/verification/scene_planes.hpp"
 
 namespace resight {
 
@@ -16,9 +17,13 @@ struct SampleSceneOptions {
   void check() const;
 };
 
-/// The points of a view that may belong to an object: thinned, with mean normals and colours, without those of large
-/// planes. Camera frame.
-[[nodiscard]] PointCloud sample_scene(const PreparedView& view, const SampleSceneOptions& options = {});
+/// A view thinned, with mean normals and colours. Camera frame.
+struct SceneSamples {
+  PointCloud points;               ///< Those that may belong to an object: not of large planes.
+  std::vector<ScenePlane> planes;  ///< Of any size.
+};
+
+[[nodiscard]] SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options = {});
 
 /// A subset of a surface with normals, no two points of similar normal nearer than `spacing_m`; normals are means over
 /// the surroundings of `spacing_m`, so that edges are as round as a sensor sees them. The spacing grows until at most

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/shape_search/oriented_points.hpp"
+#include "resight/shape_search/silhouette.hpp"
 #include "resight/verification/light_fit.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/point_to_plane.hpp"
@@ -21,8 +23,41 @@ constexpr float kMinFacing = 0.25F;    // Cosine between normal and viewing ray:
 constexpr float kMinNormalDot = 0.5F;  // 60 deg.
 constexpr float kMinDepth_m = 0.05F;
 constexpr int kMinPairs = 15;
+constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of the samples: without holes.
+constexpr float kMaxContinuationOffset_m = 0.005F;
+constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
+constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
+constexpr float kMinPlane_m = 0.1F;
+constexpr float kPlaneDistance_m = 0.01F;
+constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
+constexpr float kLargerThan = 1.2F;    // As the verification has it: a plane no larger may be the object's own face.
 
 bool faces_camera(const Eigen::Vector3f& p, const Eigen::Vector3f& n) { return -n.dot(p) > kMinFacing * p.norm(); }
+
+// Mean distance to the nearest other sample.
+float spacing_of(const std::vector<Eigen::Vector3f>& points) {
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    float nearest_sq = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i) nearest_sq = std::min(nearest_sq, (points[i] - points[j]).squaredNorm());
+    sum += std::sqrt(static_cast<double>(nearest_sq));
+  }
+  return points.size() < 2 ? 0 : static_cast<float>(sum / static_cast<double>(points.size()));
+}
+
+// The extent of the largest plane that a pixel lies on.
+float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes) {
+  float extent_m = 0;
+  if (!cloud.has_normal(pixel)) return extent_m;
+  const Eigen::Vector3f p = cloud.point(pixel);
+  const Eigen::Vector3f n = cloud.normal(pixel);
+  for (const ScenePlane& plane : planes)
+    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && std::abs(plane.signed_distance(p)) <= kPlaneDistance_m &&
+        plane.normal.dot(n) >= kMinPlaneDot && plane.covers(p))
+      extent_m = plane.extent_m;
+  return extent_m;
+}
 
 }  // namespace
 
@@ -42,18 +77,34 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
   set_white_balance(result, Eigen::Array3f::Zero());
   result.points = std::move(samples.points);
   result.normals = std::move(samples.normals);
+  result.spacing_m = spacing_of(result.points);
   result.center = model.center;
+  result.diameter_m = model.diameter_m;
   for (const Eigen::Vector3f& p : result.points)
     result.radius_m = std::max<double>(result.radius_m, (p - result.center).norm());
   return result;
 }
 
-PoseProbe::PoseProbe(const PreparedView& view, double max_depth_m, int num_threads)
-    : view_(view), lab_(view.cloud.width(), view.cloud.height()) {
+PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
+    : view_(view),
+      lab_(view.cloud.width(), view.cloud.height()),
+      plane_extent_m_(view.cloud.width(), view.cloud.height()) {
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (view.cloud.z[i] <= static_cast<float>(max_depth_m)) lab_[i] = to_lab(view.frame.color[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      lab_[i] = to_lab(view.frame.color[i]);
+      plane_extent_m_[i] = plane_extent_at(view.cloud, i, planes);
+    }
   });
+}
+
+Image<std::uint8_t> PoseProbe::off_larger_planes(float diameter_m) const {
+  Image<std::uint8_t> mask(plane_extent_m_.width(), plane_extent_m_.height());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = plane_extent_m_[i] > kLargerThan * diameter_m ? 0 : 255;
+  return mask;
+}
+
+bool PoseProbe::is_background(std::size_t pixel, const ProbeModel& model) const {
+  return plane_extent_m_[pixel] > kLargerThan * model.diameter_m;
 }
 
 int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
@@ -66,7 +117,8 @@ int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
 }
 
 float PoseProbe::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
-  return static_cast<float>(tolerance_m + sigmas * nguyen_noise(z_m, 0, view_.frame.camera.fx).axial_m);
+  const double seen_z_m = std::max(kMinDepth_m, z_m);  // The centre may lie behind the camera.
+  return static_cast<float>(tolerance_m + sigmas * nguyen_noise(seen_z_m, 0, view_.frame.camera.fx).axial_m);
 }
 
 SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object,
@@ -80,11 +132,16 @@ SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_fro
     if (!faces_camera(p, camera_from_object.rotation * model.normals[i])) continue;
     ++counts.facing;
     const int pixel = pixel_of(p);
-    const float depth = pixel < 0 ? -1 : view_.cloud.z[static_cast<std::size_t>(pixel)];
+    if (pixel < 0) {
+      ++counts.hidden;
+      continue;
+    }
+    const auto at = static_cast<std::size_t>(pixel);
+    const float depth = view_.cloud.z[at];
     if (std::isnan(depth)) continue;
     if (p.z() > depth + tolerance) {
       ++counts.hidden;
-    } else if (p.z() < depth - tolerance) {
+    } else if (p.z() < depth - tolerance || is_background(at, model)) {
       ++counts.through;
     } else {
       ++counts.confirmed;
@@ -131,12 +188,17 @@ PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& c
     if (!faces_camera(p, n)) continue;
     ++confirmed.facing;
     const int pixel = pixel_of(p);
+    if (pixel < 0) {
+      ++confirmed.hidden;
+      continue;
+    }
     const auto at = static_cast<std::size_t>(pixel);
-    const float depth = pixel < 0 ? -1 : view_.cloud.z[at];
+    confirmed.outline.emplace_back(pixel % lab_.width(), pixel / lab_.width());
+    const float depth = view_.cloud.z[at];
     if (std::isnan(depth)) continue;
     if (p.z() > depth + tolerance) {
       ++confirmed.hidden;
-    } else if (p.z() < depth - tolerance ||
+    } else if (p.z() < depth - tolerance || is_background(at, model) ||
                (view_.cloud.has_normal(at) && view_.cloud.normal(at).dot(n) < kMinNormalDot)) {
       ++confirmed.wrong;
     } else {
@@ -160,18 +222,45 @@ LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_
 // Counts as explained only what is of like colour, too.
 void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
   const LightFit light = fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
+  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
   std::vector<LabColor> seen;
   std::vector<LabColor> expected;
   fit.num_explained = 0;
   for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
     expected.push_back(to_lab(light(confirmed.model_light[k], confirmed.normals[k])));
     seen.push_back(lab_[confirmed.pixels[k]]);
-    const double dl = (expected[k].l - seen[k].l) / options.color_sigma_l;
-    const double da = (expected[k].a - seen[k].a) / options.color_sigma_ab;
-    const double db = (expected[k].b - seen[k].b) / options.color_sigma_ab;
-    if (std::exp(-0.25 * (dl * dl + da * da + db * db)) > options.min_inlier_weight) ++fit.num_explained;
+    if (std::exp(-tolerance.exponent(expected[k], seen[k])) > options.min_inlier_weight) ++fit.num_explained;
   }
   fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
+}
+
+double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& confirmed,
+                                   const VerifyOptions& options) const {
+  const float z = view_.cloud.z[confirmed.pixels.front()];
+  const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
+  Silhouette silhouette(confirmed.outline, cell_px);
+  for (std::size_t k = 0; k < confirmed.pixels.size(); ++k) {
+    const auto pixel = static_cast<int>(confirmed.pixels[k]);
+    silhouette.set_known(Eigen::Vector2f(pixel % lab_.width(), pixel / lab_.width()), pixel);
+  }
+  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
+  const auto continues = [&](std::size_t from, std::size_t to) {
+    if (!view_.cloud.has_normal(from) || !view_.cloud.has_normal(to)) return false;
+    const Eigen::Vector3f normal = view_.cloud.normal(from);
+    return std::abs(normal.dot(view_.cloud.point(to) - view_.cloud.point(from))) < kMaxContinuationOffset_m &&
+           normal.dot(view_.cloud.normal(to)) > kMinContinuationDot &&
+           tolerance.exponent(lab_[from], lab_[to]) < kMaxContinuationExponent;
+  };
+  int num_cells = 0;
+  silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
+    const int u = static_cast<int>(px.x());
+    const int v = static_cast<int>(px.y());
+    if (px.x() < 0 || px.y() < 0 || u >= lab_.width() || v >= lab_.height()) return false;
+    const bool goes_on = continues(static_cast<std::size_t>(known_pixel), lab_.index(u, v));
+    num_cells += goes_on ? 1 : 0;
+    return goes_on;
+  });
+  return num_cells * static_cast<double>(kCellSpacings * kCellSpacings);
 }
 
 PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
@@ -182,8 +271,8 @@ PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_obje
   fit.num_explained = static_cast<int>(confirmed.samples.size());
   if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
   fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
-  fit.explained_share =
-      fit.num_explained / (static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong));
+  const double num_visible = static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong);
+  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, colors));
   return fit;
 }
 

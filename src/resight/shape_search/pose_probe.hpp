@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "resight/geometry/rigid3.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/verification/lab_color.hpp"
+#include "resight/verification/scene_planes.hpp"
 #include "resight/verification/verification.hpp"
 
 namespace resight {
@@ -20,6 +23,8 @@ struct ProbeModel {
   std::vector<LabColor> lab;                  ///< Of the same, under the white balance that was set.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   double radius_m = 0;  ///< About the centre.
+  float diameter_m = 0;
+  float spacing_m = 0;  ///< Of the samples.
 };
 
 /// Samples about a twentieth of the diameter apart, at most `max_samples`; none if the surface has no normals.
@@ -39,14 +44,15 @@ struct SampleCounts {
   int facing = 0;        ///< Turned to the camera; of these:
   int confirmed = 0;     ///< At the measured depth,
   int off_color = 0;     ///< of which of another hue.
-  int through = 0;       ///< The camera looks through them.
+  int through = 0;       ///< The camera looks through them, or a plane that is larger than the object lies there.
   int hidden = 0;        ///< Behind what was measured, or outside the image.
   bool gave_up = false;  ///< Too many wrong (off_color, through): the rest was not counted.
 };
 
 /// How well a pose fits a view.
 struct PoseFit {
-  double explained_share = 0;  ///< Confirmed by depth, normal and (in the fitted light) colour, of those not hidden.
+  double explained_share = 0;  ///< Confirmed by depth, normal and (in the fitted light) colour, of those not hidden and
+                               ///< of what goes on beyond the object where it should end.
   double visible_share = 0;    ///< Not hidden, of those that face the camera.
   double pattern_similarity = 1;
   int num_explained = 0;
@@ -55,12 +61,16 @@ struct PoseFit {
 /// Tests poses in one view. The view must outlive it; camera frame.
 class PoseProbe {
  public:
-  /// Colours farther than `max_depth_m` are not looked at.
-  PoseProbe(const PreparedView& view, double max_depth_m, int num_threads);
+  /// `planes`: of the view, camera frame. What lies on one that is larger than an object is not the object's.
+  PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads);
 
+  [[nodiscard]] const PreparedView& view() const { return view_; }
   /// Pixel under a point; -1 outside the image.
   [[nodiscard]] int pixel_of(const Eigen::Vector3f& point_in_camera) const;
   [[nodiscard]] const LabColor& lab(int pixel) const { return lab_[static_cast<std::size_t>(pixel)]; }
+
+  /// Non-zero where no plane lies that is larger than objects of this diameter: where keypoints may be theirs.
+  [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
   /// The first test: quick, of rough poses.
   [[nodiscard]] SampleCounts count(const ProbeModel& model, const Rigid3f& camera_from_object,
@@ -83,16 +93,22 @@ class PoseProbe {
     std::vector<Eigen::Vector3f> normals;      // Camera frame.
     std::vector<Eigen::Vector3f> model_light;  // Empty if the model has no colours.
     std::vector<Eigen::Vector3f> scene_light;
+    std::vector<Eigen::Vector2f> outline;  // Pixels of all that face the camera.
     int facing = 0;
     int hidden = 0;
     int wrong = 0;
   };
   [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
   void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
+  [[nodiscard]] double count_continuing(const ProbeModel& model, const Confirmed& confirmed,
+                                        const VerifyOptions& options) const;
   [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
+
+  [[nodiscard]] bool is_background(std::size_t pixel, const ProbeModel& model) const;
 
   const PreparedView& view_;
   Image<LabColor> lab_;
+  Image<float> plane_extent_m_;  // Of the plane that a pixel lies on; 0: none.
 };
 
 /// The samples' colours for the first test, under the white balance of the scene (LightFit::chroma()).

@@ -16,7 +16,7 @@ struct BoxOnTable {
   PreparedView view = prepare_view(render({.solids = {box}}, circle_of_cameras(3)[0]).frame);
   ObjectModel model = make_model("box", box);
   ProbeModel samples = make_probe_model(model, 300);
-  PoseProbe probe{view, 2.0, 1};
+  PoseProbe probe{view, {}, 1};
   Rigid3 truth = view.frame.world_from_camera.inverse() * box.world_from_object;
 };
 
@@ -31,6 +31,11 @@ TEST(SampleSurface, PointsAreApartAndNoMoreThanAllowed) {
     }
   EXPECT_LE(sample_surface(c.model.surface, 0.01, 50).size(), 50U);
   EXPECT_GE(sample_surface(c.model.surface, 0.01, 50).size(), 25U);
+  // Faces that look six ways never cover each other, nor do normals that are none.
+  EXPECT_EQ(sample_surface(c.model.surface, 0.01, 1).size(), 1U);
+  PointCloud broken = c.model.surface;
+  for (Eigen::Vector3f& n : broken.normals) n.setConstant(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_TRUE(sample_surface(broken, 0.01, 50).empty());
   PointCloud bare = c.model.surface;
   bare.normals.clear();
   EXPECT_TRUE(sample_surface(bare, 0.01, 50).empty());
@@ -38,7 +43,7 @@ TEST(SampleSurface, PointsAreApartAndNoMoreThanAllowed) {
 
 TEST(SampleScene, LeavesTheTableOutAndKeepsWhatStandsOnIt) {
   const BoxOnTable c;
-  const PointCloud scene = sample_scene(c.view);
+  const PointCloud scene = sample_scene(c.view).points;
   ASSERT_GT(scene.size(), 100U);
   const Rigid3f world_from_camera(c.view.frame.world_from_camera);
   int on_table = 0;
@@ -50,7 +55,7 @@ TEST(SampleScene, NothingSeenNothingSampled) {
   BoxOnTable c;
   RgbdFrame frame = c.view.frame;
   for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(sample_scene(prepare_view(frame)).empty());
+  EXPECT_TRUE(sample_scene(prepare_view(frame)).points.empty());
 }
 
 TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
@@ -75,6 +80,16 @@ TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
   const SampleCounts none = c.probe.count(c.samples, Rigid3f(outside), options);
   EXPECT_GT(none.facing, 0);
   EXPECT_EQ(none.hidden, none.facing);
+
+  // Behind the camera, at whatever distance: nothing is known there.
+  for (const double z : {-0.2, -1.0, -3.0}) {
+    Rigid3 behind = c.truth;
+    behind.translation.z() = z;
+    const SampleCounts counts = c.probe.count(c.samples, Rigid3f(behind), options);
+    EXPECT_GT(counts.facing, 0);
+    EXPECT_EQ(counts.hidden, counts.facing) << z;
+    EXPECT_EQ(c.probe.judge(c.samples, behind, 0.008, {}).num_explained, 0) << z;
+  }
 
   options.max_wrong = 3;
   Rigid3 near = c.truth;
@@ -115,6 +130,46 @@ TEST(PoseProbe, JudgesDepthAndColour) {
   Rigid3 through = c.truth;
   through.translation *= 0.85;
   EXPECT_LT(c.probe.judge(c.samples, through, 0.008, colors).explained_share, 0.3);
+}
+
+TEST(PoseProbe, WhatLiesOnALargerPlaneIsNotTheObjects) {
+  // A card of the table's colour, in the table.
+  const Solid card{Shape::kBox, {0.12, 0.08, 0.01}, plain({150, 140, 130}), on_table(0, 0, -0.005)};
+  const World table{.solids = {}};
+  const PreparedView view = prepare_view(render(table, circle_of_cameras(3)[0]).frame);
+  const SceneSamples scene = sample_scene(view);
+  ASSERT_FALSE(scene.planes.empty());
+  const ProbeModel samples = make_probe_model(make_model("card", card), 300);
+  const Rigid3 pose = view.frame.world_from_camera.inverse() * card.world_from_object;
+  const PoseProbe blind(view, {}, 1);
+  const PoseProbe probe(view, scene.planes, 1);
+  EXPECT_GT(blind.count(samples, Rigid3f(pose), {}).confirmed, 20);
+  const SampleCounts counts = probe.count(samples, Rigid3f(pose), {});
+  EXPECT_TRUE(counts.gave_up);
+  EXPECT_EQ(counts.confirmed, 0);
+  EXPECT_EQ(probe.judge(samples, pose, 0.008, {}).explained_share, 0);
+  // A plane no larger than the object may be its own face.
+  std::vector<ScenePlane> small = scene.planes;
+  for (ScenePlane& plane : small) plane.extent_m = 0.15F;
+  EXPECT_GT(PoseProbe(view, small, 1).count(samples, Rigid3f(pose), {}).confirmed, 20);
+}
+
+TEST(PoseProbe, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
+  // A small box in a corner of a crate of the same colour; the same box alone, and beside one of another colour.
+  const Solid small{Shape::kBox, {0.08, 0.08, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
+  const Solid crate{Shape::kBox, {0.2, 0.2, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
+  Solid beside = small;
+  beside.paint = plain({60, 80, 190});
+  beside.world_from_object = small.world_from_object * Rigid3::from_translation({0.08, 0, 0});
+  const ProbeModel samples = make_probe_model(make_model("small", small), 300);
+  const auto explained = [&](const World& world) {
+    const PreparedView view = prepare_view(render(world, circle_of_cameras(3)[0]).frame);
+    const Rigid3 pose = view.frame.world_from_camera.inverse() * small.world_from_object;
+    return PoseProbe(view, {}, 1).judge(samples, pose, 0.008, {}).explained_share;
+  };
+  EXPECT_GT(explained({.solids = {small}}), 0.85);
+  EXPECT_GT(explained({.solids = {small, beside}}), 0.75);
+  EXPECT_LT(explained({.solids = {crate}}), 0.6);
 }
 
 TEST(PoseProbe, PixelsOutsideAndBehindAreNone) {

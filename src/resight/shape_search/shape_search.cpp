@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -12,106 +11,22 @@
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/symmetry.hpp"
-#include "resight/shape_search/dipole_table.hpp"
+#include "resight/shape_search/dipole_search.hpp"
+#include "resight/shape_search/match_pairs.hpp"
 
 namespace resight {
 namespace {
 
 constexpr double kMinLengthShare = 0.25;  // Of an object's diameter: shorter dipoles turn poses too freely...
 constexpr double kMaxLengthShare = 0.8;   // ...and longer ones are seldom seen whole.
-constexpr int kRings = 4;          // Partners are drawn within so many radii, so that small objects have their share:
-constexpr double kRingStep = 1.6;  // each so much smaller than the one before.
+constexpr double kMaxLength_m = 1;        // Whatever a library says of its objects: the table grows with it.
 constexpr double kMinExplainedShareOfSamples = 0.1;
 constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
 constexpr int kMaxPerPlace = 2;        // so many are left to the verification.
 
-struct Candidate {
-  int object = -1;
-  float score = 0;
-  Rigid3f camera_from_object{Rigid3{}};
-};
-
-float coarse_score(const SampleCounts& c) {
-  constexpr float kHiddenWeight = 0.4F;
-  constexpr float kPrior = 3;
-  return static_cast<float>(c.confirmed - c.off_color - c.through) /
-         (static_cast<float>(c.confirmed + c.through) + kHiddenWeight * static_cast<float>(c.hidden) + kPrior);
-}
-
 Rigid3 to_double(const Rigid3f& motion) {
   return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
 }
-
-// Dipoles of one view, and the poses they stand for.
-class DipoleSearch {
- public:
-  DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
-               const DipoleTable& table, const ShapeSearchOptions& options)
-      : scene_(scene), probe_(probe), objects_(objects), table_(table), options_(options), tree_(scene.points) {}
-
-  // Poses that pass the first test, of dipoles from one scene point to others around it.
-  [[nodiscard]] std::vector<Candidate> from_seed(std::size_t seed) const {
-    Rng rng = Rng::stream(options_.seed, seed);
-    std::vector<Candidate> found;
-    std::vector<PointNeighbor> neighbors;
-    double radius_m = table_.max_length_m();
-    for (int ring = 0; ring < kRings; ++ring, radius_m /= kRingStep) {
-      tree_.within(scene_.points[seed], radius_m, neighbors);
-      for (int i = 0; i < options_.pairs_per_seed / kRings && !neighbors.empty(); ++i) {
-        const auto other =
-            static_cast<std::size_t>(neighbors[rng.below(static_cast<std::uint32_t>(neighbors.size()))].index);
-        if (other != seed)
-          try_dipole({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
-                     found);
-      }
-    }
-    return found;
-  }
-
- private:
-  // Objects whose bin holds many are drawn from.
-  void try_dipole(const Dipole& seen, Rng& rng, std::vector<Candidate>& found) const {
-    const auto bin = dipole_bin(seen, table_.max_length_m());
-    const int first = probe_.pixel_of(seen.p1);
-    const int second = probe_.pixel_of(seen.p2);
-    if (!bin || first < 0 || second < 0) return;
-    const std::span<const DipoleEntry> entries = table_.find(*bin);
-    for (std::size_t begin = 0; begin < entries.size();) {
-      std::size_t end = begin;
-      while (end < entries.size() && entries[end].object == entries[begin].object) ++end;
-      const auto count = static_cast<std::uint32_t>(end - begin);
-      const auto tries = std::min(count, static_cast<std::uint32_t>(options_.max_entries));
-      for (std::uint32_t t = 0; t < tries; ++t)
-        try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.lab(first), probe_.lab(second),
-                  found);
-      begin = end;
-    }
-  }
-
-  void try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first, const LabColor& second,
-                 std::vector<Candidate>& found) const {
-    const ProbeModel& model = objects_[entry.object];
-    const float max_chroma = static_cast<float>(options_.coarse.max_chroma_difference);
-    if (!model.lab.empty() && std::max(chroma_difference_sq(model.lab[entry.first], first),
-                                       chroma_difference_sq(model.lab[entry.second], second)) > max_chroma * max_chroma)
-      return;
-    const auto pose = align({model.points[entry.first], model.normals[entry.first], model.points[entry.second],
-                             model.normals[entry.second]},
-                            seen);
-    if (!pose) return;
-    const SampleCounts counts = probe_.count(model, *pose, options_.coarse);
-    const float score = coarse_score(counts);
-    if (!counts.gave_up && score >= static_cast<float>(options_.min_coarse_score))
-      found.push_back({entry.object, score, *pose});
-  }
-
-  const PointCloud& scene_;
-  const PoseProbe& probe_;
-  const std::vector<ProbeModel>& objects_;
-  const DipoleTable& table_;
-  const ShapeSearchOptions& options_;
-  KdTree tree_;
-};
 
 }  // namespace
 
@@ -124,17 +39,17 @@ struct ShapeSearch::Impl {
     std::vector<DipoleTable::Samples> samples;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);
-      samples.push_back(
-          {objects[o].points, objects[o].normals, kMinLengthShare * diameter_m, kMaxLengthShare * diameter_m});
+      samples.push_back({objects[o].points, objects[o].normals, kMinLengthShare * diameter_m,
+                         std::min(kMaxLengthShare * diameter_m, kMaxLength_m)});
     }
     table = DipoleTable(samples);
   }
 
   // As the verification does it (find_white_balance): the colours of rough poses are compared before their own light is
   // known.
-  [[nodiscard]] std::vector<ProbeModel> balance(const PreparedView& view, const PoseProbe& probe,
+  [[nodiscard]] std::vector<ProbeModel> balance(const PoseProbe& probe,
                                                 std::span<const Hypothesis> from_features) const {
-    const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+    const Rigid3 camera_from_world = probe.view().frame.world_from_camera.inverse();
     std::vector<LightFit> lights;
     std::vector<float> votes;
     for (const Hypothesis& h : from_features) {
@@ -149,45 +64,55 @@ struct ShapeSearch::Impl {
     return balanced;
   }
 
-  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view,
+  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchedView& view,
+                                                   std::span<const std::vector<Correspondence>> matches,
                                                    std::span<const Hypothesis> from_features) const {
-    const PointCloud scene = sample_scene(view, options.scene);
-    if (!scene.has_normals() || table.size() == 0) return {};
-    const PoseProbe probe(view, options.scene.max_depth_m, options.num_threads);
-    const auto of_object = find_candidates(scene, probe, balance(view, probe, from_features));
+    require(matches.empty() || matches.size() == objects.size(), "ShapeSearch::search: matches of other objects");
+    const PoseProbe& probe = view.probe;
+    if (!view.samples.points.has_normals()) return {};
+    const std::vector<ProbeModel> balanced = balance(probe, from_features);
+    std::vector<std::vector<PoseCandidate>> of_object = find_candidates(view.samples.points, probe, balanced);
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
-    parallel_for(objects.size(), options.num_threads,
-                 [&](std::size_t o) { judged[o] = choose(judge(of_object[o], probe)); });
+    parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
+      if (!matches.empty()) {
+        const auto more = poses_of_match_pairs(matches[o], static_cast<int>(o), balanced[o], probe, options);
+        of_object[o].insert(of_object[o].end(), more.begin(), more.end());
+      }
+      std::stable_sort(of_object[o].begin(), of_object[o].end(),
+                       [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
+      judged[o] = choose(judge(of_object[o], probe));
+      if (matches.empty()) return;
+      for (ShapeCandidate& c : judged[o])
+        c.matches = agreeing_matches(matches[o], c.camera_from_object, options.match_distance_m);
+    });
     std::vector<ShapeCandidate> result;
     for (const auto& list : judged) result.insert(result.end(), list.begin(), list.end());
     return result;
   }
 
-  [[nodiscard]] std::vector<std::vector<Candidate>> find_candidates(const PointCloud& scene, const PoseProbe& probe,
-                                                                    const std::vector<ProbeModel>& balanced) const {
+  [[nodiscard]] std::vector<std::vector<PoseCandidate>> find_candidates(const PointCloud& scene, const PoseProbe& probe,
+                                                                        const std::vector<ProbeModel>& balanced) const {
+    std::vector<std::vector<PoseCandidate>> of_object(objects.size());
+    if (table.size() == 0) return of_object;
     const DipoleSearch dipoles(scene, probe, balanced, table, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
     seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(options.max_seeds)));
-    std::vector<std::vector<Candidate>> found(seeds.size());
+    std::vector<std::vector<PoseCandidate>> found(seeds.size());
     parallel_for(seeds.size(), options.num_threads,
                  [&](std::size_t s) { found[s] = dipoles.from_seed(static_cast<std::size_t>(seeds[s])); });
-    std::vector<std::vector<Candidate>> of_object(objects.size());
     for (const auto& list : found)
-      for (const Candidate& c : list) of_object[static_cast<std::size_t>(c.object)].push_back(c);
-    for (auto& candidates : of_object)
-      std::stable_sort(candidates.begin(), candidates.end(),
-                       [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+      for (const PoseCandidate& c : list) of_object[static_cast<std::size_t>(c.object)].push_back(c);
     return of_object;
   }
 
   // The best by the first test, no two alike, refined; those that hold.
-  [[nodiscard]] std::vector<ShapeCandidate> judge(const std::vector<Candidate>& candidates,
+  [[nodiscard]] std::vector<ShapeCandidate> judge(const std::vector<PoseCandidate>& candidates,
                                                   const PoseProbe& probe) const {
     std::vector<ShapeCandidate> judged;
     std::vector<Rigid3> tried;
-    for (const Candidate& c : candidates) {
+    for (const PoseCandidate& c : candidates) {
       if (static_cast<int>(tried.size()) == options.max_refined) break;
       const Rigid3 start = to_double(c.camera_from_object);
       if (std::any_of(tried.begin(), tried.end(), [&](const Rigid3& other) { return is_same(c.object, start, other); }))
@@ -201,7 +126,7 @@ struct ShapeSearch::Impl {
           fit.num_explained < kMinExplainedShareOfSamples * static_cast<double>(model.points.size()))
         continue;
       const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
-      judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained});
+      judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
     }
     return judged;
   }
@@ -249,6 +174,8 @@ void ShapeSearchOptions::check() const {
   check_not_negative("ShapeSearchOptions.pairs_per_seed", pairs_per_seed);
   check_positive("ShapeSearchOptions.max_entries", max_entries);
   check_in_range("ShapeSearchOptions.min_coarse_score", min_coarse_score, 0, 1);
+  check_not_negative("ShapeSearchOptions.max_matches", max_matches);
+  check_positive("ShapeSearchOptions.match_distance_m", match_distance_m);
   check_not_negative("ShapeSearchOptions.max_refined", max_refined);
   check_not_negative("ShapeSearchOptions.refine_iterations", refine_iterations);
   check_positive("ShapeSearchOptions.refine_distance_m", refine_distance_m);
@@ -263,40 +190,43 @@ void ShapeSearchOptions::check() const {
   check_positive("ShapeSearchOptions.num_threads", num_threads);
 }
 
+SearchedView::SearchedView(const PreparedView& view, const ShapeSearchOptions& options)
+    : samples(sample_scene(view, options.scene)), probe(view, samples.planes, options.num_threads) {}
+
 ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors)
     : impl_(std::make_unique<Impl>(library, options, colors)) {}
 ShapeSearch::~ShapeSearch() = default;
 ShapeSearch::ShapeSearch(ShapeSearch&&) noexcept = default;
 ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
 
-std::vector<ShapeCandidate> ShapeSearch::search(const PreparedView& view,
+std::vector<ShapeCandidate> ShapeSearch::search(const SearchedView& view,
+                                                std::span<const std::vector<Correspondence>> matches,
                                                 std::span<const Hypothesis> from_features) const {
-  return impl_->search(view, from_features);
+  return impl_->search(view, matches, from_features);
 }
 
-std::vector<PoseFit> ShapeSearch::look_at(const PreparedView& view, std::span<const Hypothesis> hypotheses) const {
+std::vector<PoseFit> ShapeSearch::look_at(const SearchedView& view, std::span<const Hypothesis> hypotheses) const {
   const ShapeSearchOptions& options = impl_->options;
-  const PoseProbe probe(view, std::numeric_limits<double>::infinity(), options.num_threads);
-  const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+  const Rigid3 camera_from_world = view.probe.view().frame.world_from_camera.inverse();
   std::vector<PoseFit> fits(hypotheses.size(),
                             PoseFit{.explained_share = 1});  // Of what has no normals, nothing is said.
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
     const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
     if (model.points.empty()) return;
-    const Rigid3 pose = probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
-                                     options.refine_iterations, options.refine_distance_m);
-    fits[h] = probe.judge(model, pose, options.tolerance_m, impl_->colors);
+    const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
+                                          options.refine_iterations, options.refine_distance_m);
+    fits[h] = view.probe.judge(model, pose, options.tolerance_m, impl_->colors);
   });
   return fits;
 }
 
-ShapeSearch::Trial ShapeSearch::try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const {
+ShapeSearch::Trial ShapeSearch::try_pose(const SearchedView& view, int object, const Rigid3& camera_from_object) const {
   const ShapeSearchOptions& options = impl_->options;
-  const PoseProbe probe(view, options.scene.max_depth_m, options.num_threads);
   const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(object));
-  const Rigid3 refined = probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
-  return {probe.count(model, Rigid3f(camera_from_object), options.coarse),
-          probe.judge(model, refined, options.tolerance_m, impl_->colors)};
+  const Rigid3 refined =
+      view.probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
+  return {view.probe.count(model, Rigid3f(camera_from_object), options.coarse),
+          view.probe.judge(model, refined, options.tolerance_m, impl_->colors)};
 }
 
 }  // namespace resight

@@ -24,6 +24,8 @@ struct ShapeSearchOptions {
   int max_entries = 32;              ///< Of each object tried per dipole, drawn at random if its bin holds more.
   CountSamplesOptions coarse{};      ///< First test of a pose.
   double min_coarse_score = 0.2;     ///< Of 1: all samples confirmed.
+  int max_matches = 300;             ///< Of each object, the best, of which two fix a pose; 0: none.
+  double match_distance_m = 0.015;   ///< Matches nearer than this agree with a pose.
   int max_refined = 1000;            ///< Poses per object that are refined and judged, the best by the first test.
   int refine_iterations = 6;         ///< Of projective ICP.
   double refine_distance_m = 0.02;   ///< Pairs of it that are farther apart do not count.
@@ -41,12 +43,20 @@ struct ShapeSearchOptions {
   void check() const;
 };
 
+/// A view made ready for the search. It must outlive what is asked of it, and the PreparedView must outlive it.
+struct SearchedView {
+  SearchedView(const PreparedView& view, const ShapeSearchOptions& options);
+  SceneSamples samples;
+  PoseProbe probe;
+};
+
 /// A pose found by shape.
 struct ShapeCandidate {
   int object = -1;  ///< Index into the library.
   Rigid3 camera_from_object;
   double quality = 0;  ///< In [0, 1]: explained share, less for what is hidden or of another pattern.
   int num_explained = 0;
+  std::vector<int> matches;  ///< Those of the object that agree with the pose.
 };
 
 /// Finds objects by their shape, and checks them by their colours: for what has no print, and hence few matches.
@@ -64,20 +74,22 @@ class ShapeSearch {
   ShapeSearch(ShapeSearch&&) noexcept;
   ShapeSearch& operator=(ShapeSearch&&) noexcept;
 
-  /// By object, then by quality. Nothing for a view without normals. The white balance of the view is taken from what
-  /// is known of it, `from_features` (world frame): those with many correspondences are seldom wrong.
-  [[nodiscard]] std::vector<ShapeCandidate> search(const PreparedView& view,
+  /// By object, then by quality. Nothing for a view without normals. `matches` (of each object, camera frame; may be
+  /// empty): poses that two of them fix are tried as well. The white balance of the view is taken from what is known of
+  /// it, `from_features` (world frame): those with many correspondences are seldom wrong.
+  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchedView& view,
+                                                   std::span<const std::vector<Correspondence>> matches = {},
                                                    std::span<const Hypothesis> from_features = {}) const;
 
   /// How well each hypothesis (world frame) fits a view, once refined in it: a quick look before the verification.
-  [[nodiscard]] std::vector<PoseFit> look_at(const PreparedView& view, std::span<const Hypothesis> hypotheses) const;
+  [[nodiscard]] std::vector<PoseFit> look_at(const SearchedView& view, std::span<const Hypothesis> hypotheses) const;
 
   /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {
     SampleCounts coarse;
     PoseFit fit;
   };
-  [[nodiscard]] Trial try_pose(const PreparedView& view, int object, const Rigid3& camera_from_object) const;
+  [[nodiscard]] Trial try_pose(const SearchedView& view, int object, const Rigid3& camera_from_object) const;
 
  private:
   struct Impl;

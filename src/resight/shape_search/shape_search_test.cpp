@@ -17,6 +17,7 @@ struct PlainThings {
   Solid absent{Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 190, 80}), on_table(0, 0.1, 0.045)};
   ModelLibrary library = make_library();
   PreparedView view = prepare_view(render({.solids = {box, can}}, circle_of_cameras(3)[1]).frame);
+  SearchedView searched{view, {}};
 
   ModelLibrary make_library() const {
     ModelLibrary made{.objects = {make_model("box", box), make_model("can", can), make_model("ball", absent)}};
@@ -33,7 +34,7 @@ const ShapeCandidate* best_of(const std::vector<ShapeCandidate>& found, int obje
 
 TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
   const PlainThings c;
-  const auto found = ShapeSearch(c.library, {}).search(c.view);
+  const auto found = ShapeSearch(c.library, {}).search(c.searched);
   int object = 0;
   for (const Solid* solid : {&c.box, &c.can}) {
     const ShapeCandidate* best = best_of(found, object);
@@ -52,9 +53,9 @@ TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
   const PlainThings c;
   ShapeSearchOptions options;
   options.max_seeds = 300;
-  const auto serial = ShapeSearch(c.library, options).search(c.view);
+  const auto serial = ShapeSearch(c.library, options).search(c.searched);
   options.num_threads = 4;
-  const auto parallel = ShapeSearch(c.library, options).search(c.view);
+  const auto parallel = ShapeSearch(c.library, options).search(c.searched);
   ASSERT_FALSE(serial.empty());
   ASSERT_EQ(serial.size(), parallel.size());
   for (std::size_t i = 0; i < serial.size(); ++i) {
@@ -68,17 +69,26 @@ TEST(ShapeSearch, NothingInAnEmptyViewOrForNoModels) {
   const PlainThings c;
   RgbdFrame frame = c.view.frame;
   for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(ShapeSearch(c.library, {}).search(prepare_view(frame)).empty());
-  EXPECT_TRUE(ShapeSearch(ModelLibrary{}, {}).search(c.view).empty());
+  const PreparedView view = prepare_view(frame);
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchedView(view, {})).empty());
+  EXPECT_TRUE(ShapeSearch(ModelLibrary{}, {}).search(c.searched).empty());
   ModelLibrary bare = c.library;
   for (ObjectModel& model : bare.objects) model.surface.normals.clear();
-  EXPECT_TRUE(ShapeSearch(bare, {}).search(c.view).empty());
+  EXPECT_TRUE(ShapeSearch(bare, {}).search(c.searched).empty());
+}
+
+TEST(ShapeSearch, AnAbsurdDiameterCostsNothing) {
+  PlainThings c;
+  c.library.objects[2].diameter_m = 1e9F;
+  const auto found = ShapeSearch(c.library, {}).search(c.searched);
+  EXPECT_NE(best_of(found, 0), nullptr);
+  EXPECT_EQ(best_of(found, 2), nullptr);
 }
 
 TEST(ShapeSearch, AnObjectOfUnknownColoursIsFoundByItsShape) {
   PlainThings c;
   for (ObjectModel& model : c.library.objects) model.surface.colors.clear();
-  const auto found = ShapeSearch(c.library, {}).search(c.view);
+  const auto found = ShapeSearch(c.library, {}).search(c.searched);
   const ShapeCandidate* best = best_of(found, 0);
   ASSERT_NE(best, nullptr);
   const Rigid3 pose = c.view.frame.world_from_camera * best->camera_from_object;
@@ -89,10 +99,10 @@ TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   const PlainThings c;
   const ShapeSearch search(c.library, {});
   const Rigid3 truth = c.view.frame.world_from_camera.inverse() * c.box.world_from_object;
-  const auto right = search.try_pose(c.view, 0, truth);
+  const auto right = search.try_pose(c.searched, 0, truth);
   EXPECT_GT(right.coarse.confirmed, 30);
   EXPECT_GT(right.fit.explained_share, 0.8);
-  EXPECT_LT(search.try_pose(c.view, 2, truth).fit.explained_share, 0.6);
+  EXPECT_LT(search.try_pose(c.searched, 2, truth).fit.explained_share, 0.6);
 }
 
 TEST(ShapeSearch, ALookTellsARightHypothesisFromChance) {
@@ -101,14 +111,14 @@ TEST(ShapeSearch, ALookTellsARightHypothesisFromChance) {
   const std::vector<Hypothesis> hypotheses = {
       make_hypothesis(0, disturb(c.box.world_from_object, {0.004, -0.003, 0.002}, {1, 1, 0}, 0.05)),
       make_hypothesis(0, on_table(0.1, 0.3, 0.3, 1.0)), make_hypothesis(2, c.box.world_from_object)};
-  const auto fits = search.look_at(c.view, hypotheses);
+  const auto fits = search.look_at(c.searched, hypotheses);
   ASSERT_EQ(fits.size(), 3U);
   EXPECT_GT(fits[0].explained_share, 0.8);
   EXPECT_LT(fits[1].explained_share, 0.3);  // In the air.
   EXPECT_LT(fits[2].explained_share, 0.6);
   // Of a model without normals nothing is said.
   for (ObjectModel& model : c.library.objects) model.surface.normals.clear();
-  EXPECT_EQ(ShapeSearch(c.library, {}).look_at(c.view, hypotheses)[1].explained_share, 1.0);
+  EXPECT_EQ(ShapeSearch(c.library, {}).look_at(c.searched, hypotheses)[1].explained_share, 1.0);
 }
 
 TEST(ShapeSearchOptions, ChecksItsFields) {

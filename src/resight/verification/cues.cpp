@@ -43,6 +43,7 @@ struct CueComputer::Impl {
       : model_(model),
         scene_(scene),
         options_(options),
+        colors_(options.color_sigma_l, options.color_sigma_ab),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
         use_color_(!model.linear_light.empty() && !scene.linear_light.empty()) {
     place(world_from_object);
@@ -70,6 +71,13 @@ struct CueComputer::Impl {
     if (refined.rotation == pose.rotation && refined.translation == pose.translation) return;
     place(refined);
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+  }
+
+  void count_agreeing(std::span<const Correspondence> correspondences) {
+    const Rigid3f motion(cues_.evidence.world_from_object);
+    for (const Correspondence& c : correspondences)
+      if ((motion * c.model_point - c.scene_point).norm() <= static_cast<float>(options_.inlier_distance_m))
+        ++cues_.evidence.num_correspondences;
   }
 
   void compare_with_scene() {
@@ -161,20 +169,10 @@ struct CueComputer::Impl {
 
   // -log of the colour similarity.
   float color_exponent(const Match& m, const LocalScene& local) const {
-    return use_color_ ? color_exponent(lab_[m.visible], scene_.lab[local.scene_index(m.local)]) : 0;
-  }
-
-  float color_exponent(const LabColor& p, const LabColor& q) const {
-    const float dl = p.l - q.l;
-    const float da = p.a - q.a;
-    const float db = p.b - q.b;
-    return dl * dl * inverse_color_l_ + (da * da + db * db) * inverse_color_ab_;
+    return use_color_ ? colors_.exponent(lab_[m.visible], scene_.lab[local.scene_index(m.local)]) : 0;
   }
 
   void weigh_matches(const LocalScene& local) {
-    const auto quarter_inverse_sq = [](double sigma) { return static_cast<float>(1 / (4 * sigma * sigma)); };
-    inverse_color_l_ = quarter_inverse_sq(options_.color_sigma_l);
-    inverse_color_ab_ = quarter_inverse_sq(options_.color_sigma_ab);
     const float t = static_cast<float>(options_.inlier_distance_m);
     const float wide = t + static_cast<float>(options_.resolution_m);
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
@@ -249,21 +247,24 @@ struct CueComputer::Impl {
             static_cast<float>(options_.continuation_offset_m) ||
         normal.dot(scene_.normals[q]) < kMinContinuationDot)
       return false;
-    return !use_color_ || color_exponent(scene_.lab[p], scene_.lab[q]) < kMaxContinuationExponent;
+    return !use_color_ || colors_.exponent(scene_.lab[p], scene_.lab[q]) < kMaxContinuationExponent;
   }
 
   // The same for whatever lies around, but only where the surface goes on.
   float continuation_weight(const LocalScene& local, std::size_t q) const {
-    float weight = 0;
-    if (beside_model_[q] == 0) return weight;  // Of another colour: the model's points there are outliers already.
+    if (beside_model_[q] == 0) return 0;  // Of another colour: the model's points there are outliers already.
     const int scene_q = local.scene_index(q);
+    bool goes_on = false;
     local.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m), [&](std::size_t p, float) {
       const int scene_p = local.scene_index(p);
-      if (scene_weight_[p] < kWellExplained || is_background(scene_p) || !continues(scene_p, scene_q)) return true;
-      weight = static_cast<float>(options_.clutter_weight);
-      return false;
+      goes_on = scene_weight_[p] >= kWellExplained && !is_background(scene_p) && continues(scene_p, scene_q);
+      return !goes_on;
     });
-    return weight;
+    if (!goes_on) return 0;
+    const double doubt = options_.continuation_matches > 0
+                             ? 1 / (1 + cues_.evidence.num_correspondences / options_.continuation_matches)
+                             : 1;
+    return static_cast<float>(options_.clutter_weight * doubt);
   }
 
   // Cost of leaving q unexplained beside the explained points around it.
@@ -345,6 +346,7 @@ struct CueComputer::Impl {
   const PreparedModel& model_;
   const PreparedScene& scene_;
   const VerifyOptions& options_;
+  ColorTolerance colors_;
   bool use_normals_;
   bool use_color_;
   std::vector<Eigen::Vector3f> points_;
@@ -352,11 +354,9 @@ struct CueComputer::Impl {
   ModelVisibility visibility_;
   std::optional<LocalScene> local_;  // None if nothing is visible.
   LightFit light_;
-  std::vector<Match> matches_;  // Those of one visible point stand side by side.
-  std::vector<Match> nearest_;  // Of each visible point that has one of similar normal.
-  std::vector<LabColor> lab_;   // Per visible point, under the scene's light.
-  float inverse_color_l_ = 0;
-  float inverse_color_ab_ = 0;
+  std::vector<Match> matches_;              // Those of one visible point stand side by side.
+  std::vector<Match> nearest_;              // Of each visible point that has one of similar normal.
+  std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
   std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near.
   std::vector<float> fit_exponent_;         // Per visible point: -log of its best fit.
@@ -369,6 +369,7 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
                          const VerifyOptions& options)
     : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
   impl_->look(correspondences, views, allowed);
+  impl_->count_agreeing(correspondences);
   impl_->compare_with_scene();
 }
 CueComputer::~CueComputer() = default;

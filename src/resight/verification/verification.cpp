@@ -231,6 +231,8 @@ void VerifyOptions::check() const {
   check_positive(name("clutter_radius_m"), clutter_radius_m);
   check_in_range(name("clutter_weight"), clutter_weight, 0, 1000);
   check_in_range(name("near_clutter_weight"), near_clutter_weight, 0, 1000);
+  check_not_negative(name("continuation_offset_m"), continuation_offset_m);
+  check_not_negative(name("continuation_matches"), continuation_matches);
   check_in_range(name("occupancy_weight"), occupancy_weight, 0, 1e6);
   check_positive(name("occupancy_voxel_m"), occupancy_voxel_m);
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);

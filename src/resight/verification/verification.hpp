@@ -33,7 +33,9 @@ struct VerifyOptions {
       1.0;  ///< Of one in no segment, times (1 - d^2/r^2) max(0, n_p n_q); in another segment: none.
   double continuation_offset_m = 0;  ///< If positive, only points that continue the surface count as unexplained: this
                                      ///< near the tangent plane of an explained one, of like normal and colour.
-  double occupancy_weight = 2.0;     ///< Voxels filled by two objects.
+  double continuation_matches = 0;  ///< ...and count half if so many correspondences agree with the pose: a print rules
+                                    ///< out that it is a part of something larger. 0: full in any case.
+  double occupancy_weight = 2.0;    ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
@@ -101,10 +103,11 @@ struct HypothesisEvidence {
   Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined.
   double score = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
                      ///< each weighted by how well; steep ones count little.
-  double visible_share = 0;    ///< Visible / all model points.
-  int num_visible = 0;         ///< Model points visible in at least one allowed view.
-  int num_explained = 0;       ///< Of these, inliers.
-  double explained_scene = 0;  ///< Sum of weights of the scene points it explains, without those of a plane.
+  double visible_share = 0;     ///< Visible / all model points.
+  int num_visible = 0;          ///< Model points visible in at least one allowed view.
+  int num_explained = 0;        ///< Of these, inliers.
+  int num_correspondences = 0;  ///< Of the hypothesis, within inlier_distance_m at the pose.
+  double explained_scene = 0;   ///< Sum of weights of the scene points it explains, without those of a plane.
   double outlier_cost = 0;
   std::vector<float> visible_share_per_view;    ///< One per view; 0 where the presence mask excludes it.
   std::vector<float> explained_share_per_view;  ///< Of the visible points in that view, those with an inlier and not

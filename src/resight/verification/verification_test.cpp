@@ -269,6 +269,33 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
 }
 
+TEST(VerifyHypotheses, APrintThatMatchesRulesOutThatItIsPartOfSomethingLarger) {
+  const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  const ModelLibrary library{.objects = {make_model("small", small)}};
+  const Fixture f({.solids = {board}}, circle_of_cameras(4));
+  Hypothesis hypothesis = make_hypothesis(0, small.world_from_object);
+  const auto evidence = [&](double matches) {
+    const VerifyOptions options{
+        .clutter_weight = 6, .continuation_offset_m = 0.005, .continuation_matches = matches, .use_planes = false};
+    return f.verify({hypothesis}, library, options).evidence[0];
+  };
+  const double full = evidence(0).clutter_cost;
+  EXPECT_GT(full, 100);
+  EXPECT_EQ(evidence(10).num_correspondences, 0);
+  EXPECT_EQ(evidence(10).clutter_cost, full);
+  for (std::size_t i = 0; i < 30; ++i) {
+    Correspondence c;
+    c.model_point = library.objects[0].surface.points[i];
+    c.scene_point = Rigid3f(small.world_from_object) * c.model_point;
+    if (i >= 10) c.scene_point.z() += 0.1F;  // These do not agree with the pose.
+    hypothesis.correspondences.push_back(c);
+  }
+  EXPECT_EQ(evidence(10).num_correspondences, 10);
+  EXPECT_NEAR(evidence(10).clutter_cost, 0.5 * full, 1e-3 * full);
+  EXPECT_EQ(evidence(0).clutter_cost, full);
+}
+
 TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   // A small box claims a part of a large box's side and top.
   ModelLibrary library = make_library();

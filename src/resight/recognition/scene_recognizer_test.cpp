@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recogniser with hypotheses that are given, view by view: what it makes of them over time.
+#include "resight/recognition/scene_recognizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "resight/verification/testing/verify_fixture.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+// A box on a table, of which only the first view has a hypothesis.
+struct OneLook {
+  World world = one_box();
+  ModelLibrary library = analytic::make_library();
+  std::vector<Rigid3> cameras = circle_of_cameras(4, 0.8, 0.6, 0.6);
+  std::shared_ptr<ViewHypothesisStore> store = std::make_shared<ViewHypothesisStore>();
+  RecognizerConfig config = RecognizerConfig::from_preset("default");
+
+  OneLook() {
+    for (int view = 0; view < 4; ++view) store->add(view, {});
+    ViewHypotheses first;
+    first.hypotheses = {make_hypothesis(kBox, world.solids[0].world_from_object)};
+    first.hypotheses[0].origin_view = 0;
+    first.hypotheses[0].origin_views = {0};
+    store->add(0, std::move(first));
+  }
+
+  std::vector<SceneUpdate> run() const {
+    SceneRecognizer recognizer(library, config, store);
+    std::vector<SceneUpdate> updates;
+    for (const Rigid3& camera : cameras) updates.push_back(recognizer.add_view(render(world, camera).frame));
+    return updates;
+  }
+};
+
+TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
+  OneLook c;
+  c.config.num_previous_views = 1;
+  for (const SceneUpdate& update : c.run()) {
+    ASSERT_EQ(update.detections.size(), 1U) << update.view;
+    EXPECT_EQ(update.detections[0].object, kBox);
+    EXPECT_EQ(update.detections[0].track, 0);
+  }
+  c.config.remember_objects = false;
+  const std::vector<SceneUpdate> forgetful = c.run();
+  EXPECT_EQ(forgetful[1].detections.size(), 1U);
+  EXPECT_TRUE(forgetful[2].detections.empty());
+}
+
+TEST(SceneRecognizer, SingleViewsAreSingle) {
+  OneLook c;
+  c.config.num_previous_views = 0;
+  const std::vector<SceneUpdate> updates = c.run();
+  EXPECT_EQ(updates[0].detections.size(), 1U);
+  EXPECT_TRUE(updates[1].detections.empty());
+}
+
+TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
+  OneLook c;
+  SceneRecognizer recognizer(c.library, c.config, c.store);
+  EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[0]).frame).detections.size(), 1U);
+  EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[1]).frame).detections.size(), 1U);
+  c.world.solids.clear();
+  EXPECT_TRUE(recognizer.add_view(render(c.world, c.cameras[2]).frame).detections.empty());
+  const SceneUpdate last = recognizer.add_view(render(c.world, c.cameras[3]).frame);
+  EXPECT_TRUE(last.detections.empty());
+  ASSERT_EQ(last.events.size(), 1U);
+  EXPECT_EQ(last.events[0].kind, ObjectEventKind::kRemoved);
+}
+
+TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
+  OneLook c;
+  const Eigen::Vector3d eye = c.cameras[0].translation;
+  c.cameras[1] = look_at(eye, eye + Eigen::Vector3d(eye.x(), eye.y(), -0.6));  // The other way.
+  const std::vector<SceneUpdate> updates = c.run();
+  EXPECT_EQ(updates[0].detections.size(), 1U);
+  EXPECT_TRUE(updates[1].detections.empty());
+  ASSERT_EQ(updates[1].events.size(), 1U);
+  EXPECT_EQ(updates[1].events[0].kind, ObjectEventKind::kStillThere);
+  EXPECT_EQ(updates[2].detections.size(), 1U);
+  c.config.min_reported_share = 0;
+  EXPECT_EQ(c.run()[1].detections.size(), 1U);
+}
+
+TEST(SceneRecognizer, HypothesesHaveIdsOfTheirOwn) {
+  OneLook c;
+  SceneRecognizer recognizer(c.library, c.config);
+  std::set<std::uint64_t> ids;
+  for (std::size_t view = 0; view < c.cameras.size(); ++view) {
+    RecognitionTrace trace;
+    (void)recognizer.add_view(render(c.world, c.cameras[view]).frame, &trace);
+    std::set<std::uint64_t> of_view;
+    for (const Hypothesis& h : trace.merged) EXPECT_TRUE(of_view.insert(h.id).second) << h.id;
+    ids.merge(of_view);
+  }
+  EXPECT_GT(ids.size(), 3U);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/view_hypothesis_generator.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace resight {
+namespace {
+
+const ModelLibrary kNoModels;
+
+}  // namespace
+
+ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config)
+    : config_(config),
+      index_(library, config.match),
+      shapes_(config.shape.enabled ? library : kNoModels, config.shape, config.verify) {
+  for (const ObjectModel& model : library.objects)
+    largest_diameter_m_ = std::max(largest_diameter_m_, model.diameter_m);
+}
+
+ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id) const {
+  ViewHypotheses made;
+  std::optional<SearchedView> searched;
+  if (config_.shape.enabled) {
+    const ScopedTimer timer(made.times, "planes");
+    searched.emplace(view, config_.shape);
+  }
+  extract_features(view, searched ? &*searched : nullptr, made);
+  {
+    const ScopedTimer timer(made.times, "match");
+    made.correspondences = index_.match(made.sift, made.shot);
+  }
+  {
+    const ScopedTimer timer(made.times, "hypotheses");
+    made.hypotheses =
+        generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, first_id, config_.generate);
+  }
+  if (searched) add_from_shape(view, *searched, number, made);
+  for (std::size_t h = 0; h < made.hypotheses.size(); ++h) made.hypotheses[h].id = first_id + h;
+  return made;
+}
+
+void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchedView* searched,
+                                               ViewHypotheses& made) const {
+  Image<std::uint8_t> off_planes;
+  if (searched != nullptr && config_.skip_planes) off_planes = searched->probe.off_larger_planes(largest_diameter_m_);
+  const Image<std::uint8_t>* mask = off_planes.size() > 0 ? &off_planes : nullptr;
+  {
+    const ScopedTimer timer(made.times, "sift");
+    made.sift = extract_sift(view, config_.sift, mask);
+  }
+  const ScopedTimer timer(made.times, "shot");
+  made.shot = extract_shot(view, config_.shot, mask);
+}
+
+void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchedView& searched, int number,
+                                             ViewHypotheses& made) const {
+  const ScopedTimer timer(made.times, "shape search");
+  drop_chance(searched, made.hypotheses);
+  for (const ShapeCandidate& candidate : shapes_.search(searched, made.correspondences, made.hypotheses))
+    made.hypotheses.push_back(make_hypothesis({candidate.matches, candidate.camera_from_object},
+                                              made.correspondences[static_cast<std::size_t>(candidate.object)],
+                                              view.frame.world_from_camera, candidate.object, number));
+}
+
+// Most groups of correspondences are chance, and a look at their own view tells.
+void ViewHypothesisGenerator::drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const {
+  if (config_.shape.min_feature_share <= 0) return;
+  const std::vector<PoseFit> fits = shapes_.look_at(view, hypotheses);
+  std::vector<Hypothesis> kept;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    if (fits[h].explained_share >= config_.shape.min_feature_share) kept.push_back(std::move(hypotheses[h]));
+  hypotheses = std::move(kept);
+}
+
+}  // namespace resight

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "resight/hypotheses/generation.hpp"
+#include "resight/models/object_model.hpp"
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/recognition/view_hypotheses.hpp"
+#include "resight/sensor/prepared_view.hpp"
+#include "resight/shape_search/shape_search.hpp"
+
+namespace resight {
+
+/// Makes the hypotheses of single views: from groups of correspondences (paper Sec. III-A), and from shape if
+/// RecognizerConfig::shape is enabled. Library and config must outlive it.
+class ViewHypothesisGenerator {
+ public:
+  ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config);
+
+  /// Of a view with its number in the sequence; ids start at `first_id`.
+  [[nodiscard]] ViewHypotheses generate(const PreparedView& view, int number, std::uint64_t first_id) const;
+
+ private:
+  void extract_features(const PreparedView& view, const SearchedView* searched, ViewHypotheses& made) const;
+  void add_from_shape(const PreparedView& view, const SearchedView& searched, int number, ViewHypotheses& made) const;
+  void drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const;
+
+  const RecognizerConfig& config_;
+  ModelFeatureIndex index_;
+  ShapeSearch shapes_;  // Of no objects if it is not enabled.
+  float largest_diameter_m_ = 0;
+};
+
+}  // namespace resight

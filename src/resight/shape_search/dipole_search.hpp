@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "resight/core/random.hpp"
+#include "resight/geometry/kd_tree.hpp"
+#include "resight/shape_search/dipole_table.hpp"
+#include "resight/shape_search/pose_candidate.hpp"
+#include "resight/shape_search/shape_search.hpp"
+
+namespace resight {
+
+/// Dipoles of one view, and the poses they stand for. All arguments must outlive it; camera frame.
+class DipoleSearch {
+ public:
+  DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
+               const DipoleTable& table, const ShapeSearchOptions& options);
+
+  /// Poses that pass the first test, of dipoles from one scene point to others around it.
+  [[nodiscard]] std::vector<PoseCandidate> from_seed(std::size_t seed) const;
+
+ private:
+  void try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCandidate>& found) const;
+  void try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first, const LabColor& second,
+                 std::vector<PoseCandidate>& found) const;
+
+  const PointCloud& scene_;
+  const PoseProbe& probe_;
+  const std::vector<ProbeModel>& objects_;
+  const DipoleTable& table_;
+  const ShapeSearchOptions& options_;
+  KdTree tree_;
+};
+
+}  // namespace resight
