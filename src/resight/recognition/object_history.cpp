@@ -61,7 +61,7 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
   for (std::size_t d = 0; d < detections.size(); ++d)
-    if (track_of[d] == kUnmatched) place_new(detections[d], view, earlier, use_evidence, events);
+    if (track_of[d] == kUnmatched) place_new(detections[d], view, current, earlier, use_evidence, events);
   confirm_removals(view, events);
   return events;
 }
@@ -143,36 +143,67 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
 }
 
-void ObjectHistory::place_new(Detection& detection, int view, std::span<const RgbdFrame* const> earlier,
-                              bool use_evidence, std::vector<ObjectEvent>& events) {
+// The nearest old place of this kind of object that is seen free; one that is leaving goes before one long gone.
+ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection) {
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
-  // The nearest old place of this kind of object that is seen free; one that is leaving goes before one long gone.
-  Track* from = nullptr;
+  Track* left = nullptr;
   for (Track& track : tracks_) {
     if (track.object != detection.object || track.state == State::kPresent) continue;
     const auto rank = [&](const Track& t) {
       return std::pair(t.state == State::kGone,
                        center_distance_m(model, t.world_from_object, detection.world_from_object));
     };
-    if (from == nullptr || rank(track) < rank(*from)) from = &track;
+    if (left == nullptr || rank(track) < rank(*left)) left = &track;
   }
-  if (from != nullptr && from->state == State::kLeaving) {
-    events.push_back({ObjectEventKind::kMoved, detection.object, from->id, view, from->world_from_object,
-                      detection.world_from_object, std::min(from->confidence, detection.score)});
-  } else {
-    const bool was_free =
-        use_evidence && std::any_of(earlier.begin(), earlier.end(), [&](const RgbdFrame* frame) {
-          return assess_presence(model.surface, detection.world_from_object, *frame, options_.presence).is_gone;
-        });
-    if (from == nullptr) {
-      tracks_.push_back({});
-      from = &tracks_.back();
-      from->id = static_cast<int>(tracks_.size()) - 1;
-      from->object = detection.object;
+  return left;
+}
+
+// The only known object of this kind, if the view does not see its place: what is new elsewhere is likely that one.
+ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current) {
+  Track* only = nullptr;
+  for (Track& track : tracks_) {
+    if (track.object != detection.object || track.state != State::kPresent) continue;
+    if (only != nullptr) return nullptr;
+    only = &track;
+  }
+  if (only == nullptr || only->last_view == view) return nullptr;
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(only->object)];
+  const bool is_seen =
+      assess_presence(model.surface, only->world_from_object, current, options_.presence).is_informative;
+  return is_seen ? nullptr : only;
+}
+
+void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& current,
+                              std::span<const RgbdFrame* const> earlier, bool use_evidence,
+                              std::vector<ObjectEvent>& events) {
+  constexpr double kOutOfSightConfidence = 0.5;
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
+  Track* from = find_left(detection);
+  double left_confidence = from != nullptr && from->state == State::kLeaving ? from->confidence : 0;
+  bool was_free = false;
+  if (left_confidence == 0 && use_evidence) {
+    was_free = std::any_of(earlier.begin(), earlier.end(), [&](const RgbdFrame* frame) {
+      return assess_presence(model.surface, detection.world_from_object, *frame, options_.presence).is_gone;
+    });
+    Track* out_of_sight = was_free ? find_out_of_sight(detection, view, current) : nullptr;
+    if (out_of_sight != nullptr) {
+      from = out_of_sight;
+      left_confidence = kOutOfSightConfidence;
+      std::erase_if(events, [&](const ObjectEvent& e) { return e.track == from->id; });  // It was called not seen.
     }
+  }
+  if (from == nullptr) {
+    tracks_.push_back({});
+    from = &tracks_.back();
+    from->id = static_cast<int>(tracks_.size()) - 1;
+    from->object = detection.object;
+  }
+  if (left_confidence > 0)
+    events.push_back({ObjectEventKind::kMoved, detection.object, from->id, view, from->world_from_object,
+                      detection.world_from_object, std::min(left_confidence, detection.score)});
+  else
     events.push_back({was_free ? ObjectEventKind::kAdded : ObjectEventKind::kFound, detection.object, from->id, view,
                       std::nullopt, detection.world_from_object, detection.score});
-  }
   from->world_from_object = detection.world_from_object;
   from->last_view = view;
   from->state = State::kPresent;

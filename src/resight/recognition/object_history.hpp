@@ -35,8 +35,9 @@ class ObjectHistory {
 
   /// Takes over the detections of a view (gives each its track) and returns one event per track concerned. `current` is
   /// the view's frame, `earlier` are raw frames of views before it: what they see at a place decides between added and
-  /// found, moved and found. Without change detection (`use_evidence` false) no free space is looked for: nothing is
-  /// called added or removed.
+  /// found, moved and found. What is new where it was free before has moved if it is the only one known of its kind and
+  /// its old place has been seen free, or is out of sight. Without change detection (`use_evidence` false) no free
+  /// space is looked for: nothing is called added or removed.
   [[nodiscard]] std::vector<ObjectEvent> update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
                                                 std::span<const RgbdFrame* const> earlier, bool use_evidence);
   /// Removals that still wait for confirmation; to be called after the last view.
@@ -64,8 +65,10 @@ class ObjectHistory {
                                    std::span<const int> track_of) const;
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
-  void place_new(Detection& detection, int view, std::span<const RgbdFrame* const> earlier, bool use_evidence,
-                 std::vector<ObjectEvent>& events);
+  [[nodiscard]] Track* find_left(const Detection& detection);
+  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current);
+  void place_new(Detection& detection, int view, const RgbdFrame& current, std::span<const RgbdFrame* const> earlier,
+                 bool use_evidence, std::vector<ObjectEvent>& events);
   void confirm_removals(int view, std::vector<ObjectEvent>& events);
 
   const ModelLibrary& library_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "resight/recognition/square_world_test_util.hpp"
 
@@ -155,6 +156,32 @@ TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
   EXPECT_EQ(history_->known_objects()[0].world_from_object.rotation, turned.rotation);
   // Nothing is known without change detection: what is reported elsewhere has moved.
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}), false)), (std::vector{K::kMoved}));
+}
+
+TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
+  view({{0, left_}}, see_plates({left_}));
+  RgbdFrame only_right = see_plates({right_});
+  const int width = only_right.depth_m.width();
+  for (int v = 0; v < only_right.depth_m.height(); ++v)
+    for (int u = 0; u < width / 2; ++u) only_right.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  const auto events = view({{0, right_}}, only_right);
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
+  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_LE(events[0].confidence, 0.5);
+  EXPECT_TRUE(view({{0, right_}}, see_plates({right_})).front().kind == K::kStillThere);
+  EXPECT_TRUE(history_->finish().empty());  // Its old place is known to be left: no removal follows.
+}
+
+TEST_F(ObjectHistoryTest, OfTwoOfAKindNoneIsTakenForANewOne) {
+  const Rigid3 third = plate_at(0, 0.2, 1);
+  view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
+  RgbdFrame without_left = see_plates({right_, third});
+  for (int v = 0; v < without_left.depth_m.height(); ++v)
+    for (int u = 0; u < without_left.depth_m.width() / 3; ++u)
+      without_left.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  const auto seen = kinds(view({{0, right_}, {0, third}}, without_left));
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kAdded), 1);
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kMoved), 0);
 }
 
 TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {
