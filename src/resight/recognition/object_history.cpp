@@ -17,6 +17,11 @@ double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3
   return (a * center - b * center).norm();
 }
 
+// What only earlier views saw is no news.
+bool is_seen_now(const Detection& detection, double min_share) {
+  return detection.views.empty() || detection.views.back().visible_share >= min_share;
+}
+
 }  // namespace
 
 std::string to_string(ObjectEventKind kind) {
@@ -45,6 +50,7 @@ void ObjectHistoryOptions::check() const {
   check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
   check_positive("ObjectHistoryOptions.same_rotation_rad", same_rotation_rad);
   check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
+  check_in_range("ObjectHistoryOptions.min_new_share", min_new_share, 0, 1);
   check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
   presence.check();
 }
@@ -61,7 +67,8 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
   for (std::size_t d = 0; d < detections.size(); ++d)
-    if (track_of[d] == kUnmatched) place_new(detections[d], view, current, earlier, use_evidence, events);
+    if (track_of[d] == kUnmatched && is_seen_now(detections[d], options_.min_new_share))
+      place_new(detections[d], view, current, earlier, use_evidence, events);
   confirm_removals(view, events);
   return events;
 }
@@ -159,14 +166,14 @@ ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection) {
 }
 
 // The only known object of this kind, if the view does not see its place: what is new elsewhere is likely that one.
-ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current) {
+ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, const RgbdFrame& current) {
   Track* only = nullptr;
   for (Track& track : tracks_) {
     if (track.object != detection.object || track.state != State::kPresent) continue;
     if (only != nullptr) return nullptr;
     only = &track;
   }
-  if (only == nullptr || only->last_view == view) return nullptr;
+  if (only == nullptr) return nullptr;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(only->object)];
   const bool is_seen =
       assess_presence(model.surface, only->world_from_object, current, options_.presence).is_informative;
@@ -185,7 +192,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
     was_free = std::any_of(earlier.begin(), earlier.end(), [&](const RgbdFrame* frame) {
       return assess_presence(model.surface, detection.world_from_object, *frame, options_.presence).is_gone;
     });
-    Track* out_of_sight = was_free ? find_out_of_sight(detection, view, current) : nullptr;
+    Track* out_of_sight = was_free ? find_out_of_sight(detection, current) : nullptr;
     if (out_of_sight != nullptr) {
       from = out_of_sight;
       left_confidence = kOutOfSightConfidence;

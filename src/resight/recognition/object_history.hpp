@@ -14,6 +14,7 @@ struct ObjectHistoryOptions {
   double same_rotation_rad = 0.349;       ///< 20 deg, over the object's symmetries.
   double min_displaced_gone_share = 0.2;  ///< An object recognised within its old place has moved if at least so much
                                           ///< of that is seen free; with less it is only seen better, or worse.
+  double min_new_share = 0;  ///< What the view itself sees less of (of the model's points) is not new in it.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
   PresenceOptions presence;
@@ -66,7 +67,7 @@ class ObjectHistory {
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
   [[nodiscard]] Track* find_left(const Detection& detection);
-  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current);
+  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, const RgbdFrame& current);
   void place_new(Detection& detection, int view, const RgbdFrame& current, std::span<const RgbdFrame* const> earlier,
                  bool use_evidence, std::vector<ObjectEvent>& events);
   void confirm_removals(int view, std::vector<ObjectEvent>& events);

@@ -172,6 +172,23 @@ TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
   EXPECT_TRUE(history_->finish().empty());  // Its old place is known to be left: no removal follows.
 }
 
+TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
+  ObjectHistoryOptions options;
+  options.min_new_share = 0.02;
+  history_ = std::make_unique<ObjectHistory>(library_, options);
+  detections_.resize(2);
+  detections_[0].object = 0;
+  detections_[0].world_from_object = left_;
+  detections_[0].views.push_back({0, true, 0.01F, 1.0F});
+  detections_[1].object = 1;
+  detections_[1].world_from_object = right_;
+  detections_[1].views.push_back({0, true, 0.03F, 1.0F});
+  const auto events = history_->update(0, detections_, see_plates({right_}), {}, true);
+  ASSERT_EQ(kinds(events), (std::vector{K::kFound}));
+  EXPECT_EQ(events[0].object, 1);
+  EXPECT_EQ(detections_[0].track, -1);
+}
+
 TEST_F(ObjectHistoryTest, OfTwoOfAKindNoneIsTakenForANewOne) {
   const Rigid3 third = plate_at(0, 0.2, 1);
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));

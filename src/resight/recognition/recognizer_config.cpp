@@ -149,6 +149,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.same_place_m", &c.history.same_place_m},
                                   {"history.same_rotation_rad", &c.history.same_rotation_rad},
                                   {"history.confirm_removal_views", &c.history.confirm_removal_views},
+                                  {"history.min_new_share", &c.history.min_new_share},
                                   {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
                                   {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
                                   {"history.presence_min_seen_points", &c.history.presence.min_seen_points},
@@ -332,6 +333,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.02;
+    config.history.min_new_share = 0.02;
     config.remember_objects = true;
     config.skip_planes = true;
     config.shape.enabled = true;
