@@ -63,10 +63,8 @@ void DipoleSearch::try_entry(const DipoleEntry& entry, const Dipole& seen, const
       {model.points[entry.first], model.normals[entry.first], model.points[entry.second], model.normals[entry.second]},
       seen);
   if (!pose) return;
-  const SampleCounts counts = probe_.count(model, *pose, options_.coarse);
-  const float score = first_test_score(counts);
-  if (!counts.gave_up && score >= static_cast<float>(options_.min_coarse_score))
-    found.push_back({entry.object, score, *pose});
+  if (const auto candidate = first_test(entry.object, model, *pose, probe_, options_.coarse, options_.min_coarse_score))
+    found.push_back(*candidate);
 }
 
 }  // namespace resight

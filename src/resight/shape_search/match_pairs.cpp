@@ -47,10 +47,8 @@ std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> 
       if (!may_be_one_thing(in_model, in_scene)) continue;
       const auto pose = align(in_model, in_scene);
       if (!pose) continue;
-      const SampleCounts counts = probe.count(model, *pose, options.coarse);
-      const float score = first_test_score(counts);
-      if (!counts.gave_up && score >= static_cast<float>(options.min_coarse_score))
-        found.push_back({object, score, *pose});
+      if (const auto candidate = first_test(object, model, *pose, probe, options.coarse, options.min_coarse_score))
+        found.push_back(*candidate);
     }
   return found;
 }
