@@ -2,6 +2,7 @@
 #include "resight/features/descriptor_index.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,13 +18,16 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 using Block = Eigen::Ref<const Matrix, 0, Eigen::OuterStride<>>;
 using Eigen::Index;
 
-constexpr Index kQueriesPerBlock = 128;   // of products with all centroids
-constexpr Index kQueriesPerBatch = 1024;  // looked up together: the more, the more of them share the reading of a cell
-constexpr std::size_t kNumParts = 8;      // of the rows, scanned in parallel; fixed, whatever the number of threads
+constexpr Index kQueriesPerBlock = 128;    // of products with all centroids
+constexpr std::size_t kMinBatch = 256;     // queries looked up together: the more, the more of them share the reading
+constexpr std::size_t kMaxBatch = 2048;    // of a cell...
+constexpr std::size_t kWantedBatches = 8;  // ...but batches are what threads share
 constexpr Index kRowsPerBlock = 1024;
 constexpr int kSamplesPerCell = 24;  // of the k-means: more changes recall by less than its noise
 constexpr int kMeansIterations = 5;
-constexpr int kSpareCandidates = 4;  // the products round: the exact order is settled among a few more than k
+constexpr int kSpareCandidates = 4;     // the products round: the exact order is settled among a few more than k...
+constexpr int kSpareOfComponents = 16;  // ...and among more of them where not all of a descriptor was compared
+constexpr Index kSamplesOfComponents = 20000;  // rows, evenly taken
 
 // The best few of a query, in the strict order (distance, index): the result does not depend on the order of arrival.
 class BestList {
@@ -107,31 +111,72 @@ Matrix cluster_cells(const Block& data, int num_cells, const DescriptorIndexOpti
   return centroids;
 }
 
+// Which queries look into each cell: those of cell c are queries[begin[c]] to queries[begin[c + 1] - 1].
+struct Probes {
+  std::vector<int> queries;
+  std::vector<std::size_t> begin;
+  [[nodiscard]] std::span<const int> queries_of(std::size_t c) const {
+    return std::span(queries).subspan(begin[c], begin[c + 1] - begin[c]);
+  }
+};
+
+// cell_of_probe: `num_probes` cells for each query in turn.
+Probes sort_by_cell(const std::vector<int>& cell_of_probe, std::size_t num_probes, std::size_t num_cells) {
+  Probes probes;
+  probes.begin.assign(num_cells + 1, 0);
+  for (const int c : cell_of_probe) ++probes.begin[static_cast<std::size_t>(c) + 1];
+  std::partial_sum(probes.begin.begin(), probes.begin.end(), probes.begin.begin());
+  std::vector<std::size_t> next(probes.begin.begin(), probes.begin.end() - 1);
+  probes.queries.resize(cell_of_probe.size());
+  for (std::size_t i = 0; i < cell_of_probe.size(); ++i)
+    probes.queries[next[static_cast<std::size_t>(cell_of_probe[i])]++] = static_cast<int>(i / num_probes);
+  return probes;
+}
+
+// The directions in which the descriptors differ most, as columns.
+Matrix principal_components(const Block& data, const Eigen::RowVectorXf& mean, Index count) {
+  const Index step = std::max<Index>(1, data.rows() / kSamplesOfComponents);
+  Matrix sample((data.rows() + step - 1) / step, data.cols());
+  for (Index i = 0; i < sample.rows(); ++i) sample.row(i) = data.row(i * step) - mean;
+  const Eigen::MatrixXf covariance = sample.transpose() * sample;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
+  return solver.eigenvectors().rightCols(count);  // Eigenvalues ascend.
+}
+
 }  // namespace
 
 void DescriptorIndexOptions::check() const {
   check_not_negative("DescriptorIndexOptions.num_cells", num_cells);
   check_positive("DescriptorIndexOptions.num_probes", num_probes);
   check_not_negative("DescriptorIndexOptions.exact_below", exact_below);
+  check_not_negative("DescriptorIndexOptions.num_components", num_components);
   check_positive("DescriptorIndexOptions.num_threads", num_threads);
 }
 
 struct DescriptorIndex::Impl {
   Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings);
-  void build_cells(const Block& data, int num_cells);
-  void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end, BestList* best) const;
+  void build_cells(const Block& data, const Block& searched, int num_cells);
+  [[nodiscard]] Matrix project(const Block& descriptors) const;
+  void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
+            std::vector<BestList>& best) const;
   void search_batch(const Block& queries, int k, DescriptorMatch* results) const;
-  std::vector<std::vector<int>> probe_cells(const Block& queries) const;
-  void scan_cells(const Block& queries, const std::vector<std::vector<int>>& queries_of_cell, std::size_t part,
-                  BestList* best) const;
-  void scan_rows(const Block& queries, std::size_t part, BestList* best) const;
-  void settle(const Block& queries, Index q, int k, std::vector<BestList>& best, DescriptorMatch* results) const;
+  [[nodiscard]] Probes probe_cells(const Block& queries) const;
+  void scan_cells(const Block& queries, std::vector<BestList>& best) const;
+  void scan_rows(const Block& queries, std::vector<BestList>& best) const;
+  void settle(const Block& queries, Index q, int k, BestList& best, DescriptorMatch* results) const;
+
+  [[nodiscard]] bool is_projected() const { return basis.size() > 0; }
+  [[nodiscard]] const Matrix& searched_rows() const { return is_projected() ? components : rows; }
 
   DescriptorIndexOptions options;
-  Matrix rows;                    // the descriptors, sorted by cell
-  std::vector<int> original;      // index of each row in the caller's order
-  Eigen::VectorXf norms_sq;       // of the rows
-  Matrix centroids;               // empty: exact search
+  Matrix rows;                // the descriptors, sorted by cell
+  Eigen::RowVectorXf mean;    // of the descriptors
+  Matrix basis;               // dimension x components; empty: all of a descriptor is compared
+  Matrix components;          // of the rows, if projected
+  std::vector<int> original;  // index of each row in the caller's order
+  Eigen::VectorXf norms_sq;   // of what is searched
+  Matrix centroids;           // empty: exact search
+  Scores centroid_norms_sq;
   std::vector<Index> cell_begin;  // first row of each cell, and the end
 };
 
@@ -145,15 +190,33 @@ DescriptorIndex::Impl::Impl(std::span<const float> descriptors, int dimension, c
     rows = data;
     original.resize(static_cast<std::size_t>(n));
     std::iota(original.begin(), original.end(), 0);
+  } else if (options.num_components > 0 && 2 * options.num_components <= dimension) {
+    mean = data.colwise().mean();
+    basis = principal_components(data, mean, options.num_components);
+    build_cells(data, project(data), num_cells);
+    components = project(rows);
   } else {
-    build_cells(data, num_cells);
+    build_cells(data, data, num_cells);
   }
-  norms_sq = rows.rowwise().squaredNorm();
+  norms_sq = searched_rows().rowwise().squaredNorm();
 }
 
-void DescriptorIndex::Impl::build_cells(const Block& data, int num_cells) {
-  centroids = cluster_cells(data, num_cells, options);
-  const std::vector<int> cell = assign_to_cells(data, centroids, options.num_threads);
+Matrix DescriptorIndex::Impl::project(const Block& descriptors) const {
+  Matrix projected(descriptors.rows(), basis.cols());
+  parallel_for_blocks(static_cast<std::size_t>(descriptors.rows()), kRowsPerBlock, options.num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        const auto first = static_cast<Index>(begin);
+                        const auto count = static_cast<Index>(end) - first;
+                        const Matrix centered = descriptors.middleRows(first, count).rowwise() - mean;
+                        projected.middleRows(first, count).noalias() = centered * basis;
+                      });
+  return projected;
+}
+
+void DescriptorIndex::Impl::build_cells(const Block& data, const Block& searched, int num_cells) {
+  centroids = cluster_cells(searched, num_cells, options);
+  centroid_norms_sq = centroids.rowwise().squaredNorm();
+  const std::vector<int> cell = assign_to_cells(searched, centroids, options.num_threads);
   cell_begin.assign(static_cast<std::size_t>(num_cells) + 1, 0);
   for (const int c : cell) ++cell_begin[static_cast<std::size_t>(c) + 1];
   std::partial_sum(cell_begin.begin(), cell_begin.end(), cell_begin.begin());
@@ -169,50 +232,45 @@ void DescriptorIndex::Impl::build_cells(const Block& data, int num_cells) {
 
 // Compares all `queries` with the rows [begin, end). query_of_row: which list each query fills.
 void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
-                                 BestList* best) const {
+                                 std::vector<BestList>& best) const {
+  Scores scores;
   for (Index first = begin; first < end; first += kRowsPerBlock) {
     const Index count = std::min(kRowsPerBlock, end - first);
-    const Matrix products = queries * rows.middleRows(first, count).transpose();
+    const Matrix products = queries * searched_rows().middleRows(first, count).transpose();
     for (Index q = 0; q < queries.rows(); ++q) {
-      BestList& list = best[query_of_row[static_cast<std::size_t>(q)]];
-      for (Index r = 0; r < count; ++r) {
-        const float score = norms_sq[first + r] - 2.0F * products(q, r);
-        if (list.accepts(score)) list.add(static_cast<int>(first + r), score);
-      }
+      BestList& list = best[static_cast<std::size_t>(query_of_row[static_cast<std::size_t>(q)])];
+      scores = norms_sq.segment(first, count).array() - 2.0F * products.row(q).transpose().array();
+      if (!list.accepts(scores.minCoeff())) continue;  // Mostly; and vector code tells.
+      for (Index r = 0; r < count; ++r)
+        if (list.accepts(scores[r])) list.add(static_cast<int>(first + r), scores[r]);
     }
   }
 }
 
-// Which queries look into each cell.
-std::vector<std::vector<int>> DescriptorIndex::Impl::probe_cells(const Block& queries) const {
+Probes DescriptorIndex::Impl::probe_cells(const Block& queries) const {
   const auto num_cells = static_cast<std::size_t>(centroids.rows());
   const auto num_probes = std::min<std::size_t>(static_cast<std::size_t>(options.num_probes), num_cells);
-  const auto num_queries = static_cast<std::size_t>(queries.rows());
-  const Scores centroid_norms_sq = centroids.rowwise().squaredNorm();
-  std::vector<int> probes(num_queries * num_probes);
-  parallel_for_blocks(num_queries, kQueriesPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Index>(begin);
-    const Matrix products = queries.middleRows(first, static_cast<Index>(end) - first) * centroids.transpose();
-    Scores scores(centroids.rows());
-    std::vector<DescriptorMatch> nearest;
-    for (std::size_t q = begin; q < end; ++q) {
-      scores = centroid_norms_sq - 2.0F * products.row(static_cast<Index>(q - begin)).transpose().array();
+  std::vector<int> cell_of_probe;
+  cell_of_probe.reserve(static_cast<std::size_t>(queries.rows()) * num_probes);
+  Scores scores(centroids.rows());
+  std::vector<DescriptorMatch> nearest;
+  for (Index first = 0; first < queries.rows(); first += kQueriesPerBlock) {
+    const Index count = std::min(kQueriesPerBlock, queries.rows() - first);
+    const Matrix products = queries.middleRows(first, count) * centroids.transpose();
+    for (Index q = 0; q < count; ++q) {
+      scores = centroid_norms_sq - 2.0F * products.row(q).transpose().array();
       find_nearest_cells(scores, num_probes, nearest);
-      for (std::size_t p = 0; p < num_probes; ++p) probes[q * num_probes + p] = nearest[p].index;
+      for (const DescriptorMatch& cell : nearest) cell_of_probe.push_back(cell.index);
     }
-  });
-  std::vector<std::vector<int>> queries_of_cell(num_cells);
-  for (std::size_t i = 0; i < probes.size(); ++i)
-    queries_of_cell[static_cast<std::size_t>(probes[i])].push_back(static_cast<int>(i / num_probes));
-  return queries_of_cell;
+  }
+  return sort_by_cell(cell_of_probe, num_probes, num_cells);
 }
 
-// Every kNumParts-th cell: neighbouring cells of the k-means are unrelated, so the parts are about even.
-void DescriptorIndex::Impl::scan_cells(const Block& queries, const std::vector<std::vector<int>>& queries_of_cell,
-                                       std::size_t part, BestList* best) const {
+void DescriptorIndex::Impl::scan_cells(const Block& queries, std::vector<BestList>& best) const {
+  const Probes probes = probe_cells(queries);
   Matrix gathered;
-  for (std::size_t c = part; c < queries_of_cell.size(); c += kNumParts) {
-    const std::vector<int>& members = queries_of_cell[c];
+  for (std::size_t c = 0; c + 1 < probes.begin.size(); ++c) {
+    const std::span<const int> members = probes.queries_of(c);
     if (members.empty() || cell_begin[c] == cell_begin[c + 1]) continue;
     gathered.resize(static_cast<Index>(members.size()), queries.cols());
     for (std::size_t m = 0; m < members.size(); ++m) gathered.row(static_cast<Index>(m)) = queries.row(members[m]);
@@ -220,24 +278,16 @@ void DescriptorIndex::Impl::scan_cells(const Block& queries, const std::vector<s
   }
 }
 
-void DescriptorIndex::Impl::scan_rows(const Block& queries, std::size_t part, BestList* best) const {
+void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList>& best) const {
   std::vector<int> all(static_cast<std::size_t>(queries.rows()));
   std::iota(all.begin(), all.end(), 0);
-  const auto begin_of = [&](std::size_t p) {
-    return rows.rows() * static_cast<Index>(p) / static_cast<Index>(kNumParts);
-  };
-  scan(queries, all, begin_of(part), begin_of(part + 1), best);
+  scan(queries, all, 0, rows.rows(), best);
 }
 
-// Brings the lists of all parts of a query together, and gives its best few their true distances.
-void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, std::vector<BestList>& best,
+// Gives the best few of a query their true distances.
+void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, BestList& best,
                                    DescriptorMatch* results) const {
-  BestList& merged = best[static_cast<std::size_t>(q)];
-  for (std::size_t part = 1; part < kNumParts; ++part)
-    for (const DescriptorMatch& entry :
-         best[part * static_cast<std::size_t>(queries.rows()) + static_cast<std::size_t>(q)].entries())
-      if (merged.accepts(entry.distance_sq)) merged.add(entry.index, entry.distance_sq);
-  auto& entries = merged.entries();
+  auto& entries = best.entries();
   for (DescriptorMatch& entry : entries) {
     entry.distance_sq = (queries.row(q) - rows.row(entry.index)).squaredNorm();
     entry.index = original[static_cast<std::size_t>(entry.index)];
@@ -247,20 +297,16 @@ void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, std::ve
 }
 
 void DescriptorIndex::Impl::search_batch(const Block& queries, int k, DescriptorMatch* results) const {
-  const auto num_queries = static_cast<std::size_t>(queries.rows());
-  std::vector<BestList> best(kNumParts * num_queries, BestList(static_cast<std::size_t>(k + kSpareCandidates)));
-  const bool has_cells = centroids.rows() > 0;
-  const auto queries_of_cell = has_cells ? probe_cells(queries) : std::vector<std::vector<int>>();
-  parallel_for(kNumParts, options.num_threads, [&](std::size_t part) {
-    BestList* lists = best.data() + part * num_queries;
-    if (has_cells)
-      scan_cells(queries, queries_of_cell, part, lists);
-    else
-      scan_rows(queries, part, lists);
-  });
-  parallel_for_blocks(num_queries, kQueriesPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t q = begin; q < end; ++q) settle(queries, static_cast<Index>(q), k, best, results);
-  });
+  const int num_kept = k + (is_projected() ? kSpareOfComponents : kSpareCandidates);
+  std::vector<BestList> best(static_cast<std::size_t>(queries.rows()), BestList(static_cast<std::size_t>(num_kept)));
+  Matrix projected;
+  if (is_projected()) projected = project(queries);
+  const Block compared = is_projected() ? Block(projected) : queries;
+  if (centroids.rows() > 0)
+    scan_cells(compared, best);
+  else
+    scan_rows(compared, best);
+  for (Index q = 0; q < queries.rows(); ++q) settle(queries, q, k, best[static_cast<std::size_t>(q)], results);
 }
 
 DescriptorIndex::DescriptorIndex(std::span<const float> descriptors, int dimension,
@@ -287,9 +333,12 @@ std::vector<DescriptorMatch> DescriptorIndex::search(std::span<const float> quer
   const auto num_queries = static_cast<Index>(queries.size()) / dimension;
   const Eigen::Map<const Matrix> all(queries.data(), num_queries, dimension);
   std::vector<DescriptorMatch> results(static_cast<std::size_t>(num_queries * k));
-  for (Index begin = 0; begin < num_queries; begin += kQueriesPerBatch)
-    impl_->search_batch(all.middleRows(begin, std::min(kQueriesPerBatch, num_queries - begin)), k,
-                        results.data() + begin * k);
+  const auto count = static_cast<std::size_t>(num_queries);
+  const std::size_t batch = std::clamp(count / kWantedBatches, kMinBatch, kMaxBatch);
+  parallel_for_blocks(count, batch, impl_->options.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Index>(begin);
+    impl_->search_batch(all.middleRows(first, static_cast<Index>(end) - first), k, results.data() + first * k);
+  });
   return results;
 }
 

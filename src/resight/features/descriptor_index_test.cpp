@@ -74,6 +74,28 @@ TEST(DescriptorIndex, CellsFindNearlyAllNearestNeighbors) {
   EXPECT_GE(hits, 490);
 }
 
+// What differs in few directions is found by these, at its true distance.
+TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
+  const auto families = make_clustered(20000, kDimension, 12, 0.05, 3);
+  const auto queries = make_clustered(300, kDimension, 12, 0.05, 4);
+  const DescriptorIndex few(families, kDimension, {.num_probes = 16, .exact_below = 0, .num_components = 14});
+  const DescriptorIndex exact(families, kDimension, {.num_cells = 1});
+  const auto found = few.search(queries, 2);
+  const auto truth = exact.search(queries, 2);
+  double sum_found = 0;
+  double sum_truth = 0;
+  for (std::size_t q = 0; q < 300; ++q) {
+    const auto index = static_cast<std::size_t>(found[2 * q].index);
+    const auto nearest = brute_force(std::span(families).subspan(index * kDimension, kDimension),
+                                     std::span(queries).subspan(q * kDimension, kDimension), kDimension, 1);
+    EXPECT_NEAR(found[2 * q].distance_sq, nearest[0].distance_sq, 1e-6);
+    EXPECT_LE(found[2 * q].distance_sq, found[2 * q + 1].distance_sq);
+    sum_found += std::sqrt(found[2 * q].distance_sq);
+    sum_truth += std::sqrt(truth[2 * q].distance_sq);
+  }
+  EXPECT_LT(sum_found, 1.05 * sum_truth);
+}
+
 TEST(DescriptorIndex, AllCellsProbedIsExact) {
   const auto data = make_clustered(4000, kDimension, 40, 0.6, 5);
   const auto queries = make_clustered(200, kDimension, 40, 0.6, 6);
@@ -132,15 +154,19 @@ TEST(DescriptorIndex, AnEmptySetFindsNothing) {
 TEST(DescriptorIndex, SameBytesOnAnyNumberOfThreads) {
   const auto data = make_clustered(12000, kDimension, 100, 0.6, 8);
   const auto queries = make_clustered(700, kDimension, 100, 0.6, 9);
-  const auto run = [&](int num_threads) {
-    return DescriptorIndex(data, kDimension, {.exact_below = 0, .num_threads = num_threads}).search(queries, 2);
-  };
-  const auto serial = run(1);
-  const auto parallel = run(2);
-  ASSERT_EQ(serial.size(), parallel.size());
-  for (std::size_t i = 0; i < serial.size(); ++i) {
-    EXPECT_EQ(serial[i].index, parallel[i].index);
-    EXPECT_EQ(serial[i].distance_sq, parallel[i].distance_sq);
+  for (const int num_components : {0, 12}) {
+    const auto run = [&](int num_threads) {
+      return DescriptorIndex(data, kDimension,
+                             {.exact_below = 0, .num_components = num_components, .num_threads = num_threads})
+          .search(queries, 2);
+    };
+    const auto serial = run(1);
+    const auto parallel = run(2);
+    ASSERT_EQ(serial.size(), parallel.size());
+    for (std::size_t i = 0; i < serial.size(); ++i) {
+      EXPECT_EQ(serial[i].index, parallel[i].index);
+      EXPECT_EQ(serial[i].distance_sq, parallel[i].distance_sq);
+    }
   }
 }
 

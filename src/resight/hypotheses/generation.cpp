@@ -108,15 +108,16 @@ void MatchFeaturesOptions::check() const {
   check_positive("MatchFeaturesOptions.shot_neighbors", shot_neighbors);
   check_not_negative("MatchFeaturesOptions.max_sift_distance", max_sift_distance);
   check_not_negative("MatchFeaturesOptions.max_shot_distance", max_shot_distance);
-  index.check();
+  sift_index.check();
+  shot_index.check();
 }
 
 ModelFeatureIndex::ModelFeatureIndex(const ModelLibrary& library, const MatchFeaturesOptions& options) {
   options.check();
-  impl_ = std::make_unique<Impl>(
-      Impl{&library,
-           TypeIndex(library, &ObjectModel::sift, options.sift_neighbors, options.max_sift_distance, options.index),
-           TypeIndex(library, &ObjectModel::shot, options.shot_neighbors, options.max_shot_distance, options.index)});
+  impl_ = std::make_unique<Impl>(Impl{
+      &library,
+      TypeIndex(library, &ObjectModel::sift, options.sift_neighbors, options.max_sift_distance, options.sift_index),
+      TypeIndex(library, &ObjectModel::shot, options.shot_neighbors, options.max_shot_distance, options.shot_index)});
 }
 
 ModelFeatureIndex::~ModelFeatureIndex() = default;

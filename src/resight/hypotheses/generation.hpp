@@ -16,7 +16,8 @@ struct MatchFeaturesOptions {
   int shot_neighbors = 1;
   double max_sift_distance = 0;  ///< L2 between unit descriptors; 0 = no limit (paper).
   double max_shot_distance = 0;
-  DescriptorIndexOptions index{};
+  DescriptorIndexOptions sift_index{};
+  DescriptorIndexOptions shot_index{};
   void check() const;
 };
 

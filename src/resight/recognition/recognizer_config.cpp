@@ -50,10 +50,16 @@ void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"match.shot_neighbors", &c.match.shot_neighbors},
                                   {"match.max_sift_distance", &c.match.max_sift_distance},
                                   {"match.max_shot_distance", &c.match.max_shot_distance},
-                                  {"match.index_num_cells", &c.match.index.num_cells},
-                                  {"match.index_num_probes", &c.match.index.num_probes},
-                                  {"match.index_exact_below", &c.match.index.exact_below},
-                                  {"match.index_seed", &c.match.index.seed},
+                                  {"match.sift_index_num_cells", &c.match.sift_index.num_cells},
+                                  {"match.sift_index_num_probes", &c.match.sift_index.num_probes},
+                                  {"match.sift_index_exact_below", &c.match.sift_index.exact_below},
+                                  {"match.sift_index_num_components", &c.match.sift_index.num_components},
+                                  {"match.sift_index_seed", &c.match.sift_index.seed},
+                                  {"match.shot_index_num_cells", &c.match.shot_index.num_cells},
+                                  {"match.shot_index_num_probes", &c.match.shot_index.num_probes},
+                                  {"match.shot_index_exact_below", &c.match.shot_index.exact_below},
+                                  {"match.shot_index_num_components", &c.match.shot_index.num_components},
+                                  {"match.shot_index_seed", &c.match.shot_index.seed},
                               });
 }
 
@@ -191,6 +197,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.merge_rotation_rad", &v.merge_rotation_rad},
                                   {"verify.use_planes", &v.use_planes},
                                   {"verify.min_plane_points", &v.min_plane_points},
+                                  {"verify.plane_spacing_m", &c.verify.plane_spacing_m},
                                   {"verify.plane_distance_m", &v.plane_distance_m},
                                   {"verify.plane_angle_rad", &v.plane_angle_rad},
                                   {"verify.plane_weight", &v.plane_weight},
@@ -220,13 +227,10 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
 }
 
 std::vector<Field> list_fields(RecognizerConfig& c) {
-  std::vector<Field> fields{{"num_previous_views", &c.num_previous_views},
-                            {"detect_changes", &c.detect_changes},
-                            {"cluster_hypotheses", &c.cluster_hypotheses},
-                            {"clear_tolerance_m", &c.clear_tolerance_m},
-                            {"min_reported_share", &c.min_reported_share},
-                            {"remember_objects", &c.remember_objects},
-                            {"skip_planes", &c.skip_planes}};
+  std::vector<Field> fields{{"num_previous_views", &c.num_previous_views}, {"detect_changes", &c.detect_changes},
+                            {"cluster_hypotheses", &c.cluster_hypotheses}, {"clear_tolerance_m", &c.clear_tolerance_m},
+                            {"min_reported_share", &c.min_reported_share}, {"min_carried_share", &c.min_carried_share},
+                            {"remember_objects", &c.remember_objects},     {"skip_planes", &c.skip_planes}};
   add_feature_fields(c, fields);
   add_hypothesis_fields(c, fields);
   add_shape_fields(c, fields);
@@ -330,15 +334,19 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.continuation_offset_m = 0.005;
     config.verify.continuation_matches = 20;
     config.verify.newest_view_decides = true;
+    config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.02;
     config.history.min_new_share = 0.02;
     config.remember_objects = true;
+    config.min_carried_share = 0.8;
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;
+    config.match.shot_index.num_components = 64;
+    config.match.shot_index.num_probes = 8;
     return config;
   }
   throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));
@@ -346,15 +354,16 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
 
 void RecognizerConfig::set_num_threads(int num_threads) {
   check_positive("num_threads", num_threads);
-  for (int* field : {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.index.num_threads,
-                     &generate.num_threads, &shape.num_threads, &cluster.num_threads, &changes.num_threads,
-                     &integrate.num_threads, &verify.num_threads})
+  for (int* field :
+       {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.sift_index.num_threads,
+        &match.shot_index.num_threads, &generate.num_threads, &shape.num_threads, &cluster.num_threads,
+        &changes.num_threads, &integrate.num_threads, &verify.num_threads})
     *field = num_threads;
 }
 
 void RecognizerConfig::set_seed(std::uint64_t seed) {
-  for (std::uint64_t* field :
-       {&match.index.seed, &generate.grouping.pose.seed, &shape.seed, &cluster.pose.seed, &verify.seed})
+  for (std::uint64_t* field : {&match.sift_index.seed, &match.shot_index.seed, &generate.grouping.pose.seed,
+                               &shape.seed, &cluster.pose.seed, &verify.seed})
     *field = seed;
 }
 
@@ -362,6 +371,7 @@ void RecognizerConfig::check() const {
   check_in_range("num_previous_views", num_previous_views, 0, 1000);
   check_positive("clear_tolerance_m", clear_tolerance_m);
   check_in_range("min_reported_share", min_reported_share, 0, 1);
+  check_in_range("min_carried_share", min_carried_share, 0, 1);
   prepare.check();
   sift.check();
   shot.check();

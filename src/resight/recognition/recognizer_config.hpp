@@ -30,6 +30,8 @@ struct RecognizerConfig {
   double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
   double min_reported_share = 0;    ///< An object of which the view itself sees less (of the model's points; hidden, or
                                     ///< outside the image) is known to the history, but no detection of this view.
+  double min_carried_share = 0;  ///< A hypothesis that is seen, and explains less of itself, is not carried over to the
+                                 ///< next views; 0 = all are.
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
   bool skip_planes = false;       ///< No keypoints on planes larger than the largest object (shape.enabled only).

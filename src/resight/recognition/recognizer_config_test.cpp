@@ -98,7 +98,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
                       num_fields<DepthEdgeOptions>()},
       {"sift", num_fields<SiftOptions>()},
       {"shot", num_fields<ShotOptions>() - kThreads},
-      {"match", num_fields<MatchFeaturesOptions>() - 1 + num_fields<DescriptorIndexOptions>() - kThreads},
+      {"match", num_fields<MatchFeaturesOptions>() - 2 + 2 * (num_fields<DescriptorIndexOptions>() - kThreads)},
       {"grouping",
        num_fields<GenerateHypothesesOptions>() - 1 - kThreads + num_fields<GroupCorrespondencesOptions>() - 1 + kPose},
       {"shape", num_fields<ShapeSearchOptions>() - 2 - kThreads + num_fields<SampleSceneOptions>() +

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "resight/core/check.hpp"
@@ -37,7 +39,8 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   void add_known_objects(std::vector<Hypothesis>& hypotheses);
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
-  void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) const;
+  void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
+  void forget_refuted(const std::vector<Hypothesis>& hypotheses, const std::vector<HypothesisEvidence>& evidence);
 
   const ModelLibrary& library;
   RecognizerConfig config;
@@ -46,6 +49,8 @@ struct SceneRecognizer::Impl {
   DynamicScene scene;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
+  std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
+      members_of_cluster;  // ids by the seed's id; this view's
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
   std::uint64_t next_known_id = 1ULL << 40;  // apart: those of views are the same for all that share a store
@@ -124,7 +129,16 @@ std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& up
   add_known_objects(merged);
   update.counts.merged = static_cast<int>(merged.size());
   if (trace != nullptr) trace->merged = merged;
-  if (config.cluster_hypotheses) merged = cluster_hypotheses(merged, library, config.cluster).hypotheses;
+  members_of_cluster.clear();
+  if (config.cluster_hypotheses) {
+    ClusterResult clusters = cluster_hypotheses(merged, library, config.cluster);
+    for (std::size_t c = 0; c < clusters.hypotheses.size(); ++c)
+      for (const int m : clusters.members[c])
+        members_of_cluster[clusters.hypotheses[c].id].push_back(merged[static_cast<std::size_t>(m)].id);
+    merged = std::move(clusters.hypotheses);
+  } else {
+    for (const Hypothesis& h : merged) members_of_cluster[h.id] = {h.id};
+  }
   update.counts.clustered = static_cast<int>(merged.size());
   if (trace != nullptr) trace->clustered = merged;
   return merged;
@@ -154,8 +168,22 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
   return kept_mask;
 }
 
-void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update,
-                                   RecognitionTrace* trace) const {
+// What was well seen and yet found no support is chance, and is not carried over to the next views.
+void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypotheses,
+                                           const std::vector<HypothesisEvidence>& evidence) {
+  if (config.min_carried_share <= 0) return;
+  std::unordered_set<std::uint64_t> refuted;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    if (evidence[h].verdict == Verdict::kTooFewVisible || evidence[h].explained_share >= config.min_carried_share)
+      continue;
+    const auto& members = members_of_cluster.at(hypotheses[h].id);
+    refuted.insert(members.begin(), members.end());
+  }
+  for (std::vector<Hypothesis>& of_view : hypotheses_of_view)
+    std::erase_if(of_view, [&](const Hypothesis& h) { return refuted.contains(h.id); });
+}
+
+void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) {
   const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
   const ScopedTimer timer(update.times, "verification");
   const auto& window = scene.window();
@@ -177,6 +205,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     update.detections.push_back(std::move(detection));
   }
   update.counts.accepted = static_cast<int>(update.detections.size());
+  forget_refuted(hypotheses, result.evidence);
   if (trace == nullptr) return;
   trace->verified = std::move(hypotheses);
   trace->evidence = std::move(result.evidence);

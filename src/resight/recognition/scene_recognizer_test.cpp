@@ -87,6 +87,28 @@ TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
   EXPECT_EQ(c.run()[1].detections.size(), 1U);
 }
 
+TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
+  OneLook c;
+  ViewHypotheses first;
+  const Rigid3& right = c.world.solids[0].world_from_object;
+  first.hypotheses = {make_hypothesis(kBox, right), make_hypothesis(kBox, right)};
+  first.hypotheses[1].world_from_object.translation += Eigen::Vector3d(0.2, 0.1, 0.05);  // Over the empty table.
+  for (std::size_t h = 0; h < 2; ++h) {
+    first.hypotheses[h].id = h;
+    first.hypotheses[h].origin_view = 0;
+    first.hypotheses[h].origin_views = {0};
+  }
+  c.store->add(0, std::move(first));
+  c.config.remember_objects = false;
+  c.config.min_carried_share = 0.4;
+  for (const SceneUpdate& update : c.run()) {
+    EXPECT_EQ(update.counts.merged, update.view == 0 ? 2 : 1) << update.view;
+    EXPECT_EQ(update.detections.size(), 1U) << update.view;
+  }
+  c.config.min_carried_share = 0;
+  for (const SceneUpdate& update : c.run()) EXPECT_EQ(update.counts.merged, 2) << update.view;
+}
+
 TEST(SceneRecognizer, HypothesesHaveIdsOfTheirOwn) {
   OneLook c;
   SceneRecognizer recognizer(c.library, c.config);

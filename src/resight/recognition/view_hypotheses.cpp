@@ -9,12 +9,13 @@ namespace resight {
 
 std::string generation_settings(const RecognizerConfig& config) {
   // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 14> kLaterSections{"preset",
+  constexpr std::array<std::string_view, 15> kLaterSections{"preset",
                                                             "num_previous_views",
                                                             "detect_changes",
                                                             "cluster_hypotheses",
                                                             "clear_tolerance_m",
                                                             "min_reported_share",
+                                                            "min_carried_share",
                                                             "remember_objects",
                                                             "cluster.",
                                                             "changes.",

@@ -9,22 +9,44 @@ namespace {
 constexpr int kRings = 4;          // Partners are drawn within so many radii, so that small objects have their share:
 constexpr double kRingStep = 1.6;  // each so much smaller than the one before.
 
+// The points within a radius, in order: of all or, of a smaller ring, of those of the ring around it.
+void keep_within(const Eigen::ArrayXf& distances_sq, float radius_sq, bool of_all, std::vector<int>& near) {
+  if (!of_all) {
+    std::erase_if(near, [&](int i) { return !(distances_sq[i] < radius_sq); });
+    return;
+  }
+  for (Eigen::Index i = 0; i < distances_sq.size(); ++i)
+    if (distances_sq[i] < radius_sq) near.push_back(static_cast<int>(i));
+}
+
 }  // namespace
 
 DipoleSearch::DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
                            const DipoleTable& table, const ShapeSearchOptions& options)
-    : scene_(scene), probe_(probe), objects_(objects), table_(table), options_(options), tree_(scene.points) {}
+    : scene_(scene), probe_(probe), objects_(objects), table_(table), options_(options) {
+  coordinates_.resize(static_cast<Eigen::Index>(scene.size()), 3);
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    coordinates_.row(static_cast<Eigen::Index>(i)) = scene.points[i].transpose().array();
+}
+
+// To all points, in vector code: partners are drawn from thousands of points around a seed, more than a tree can spare.
+void DipoleSearch::measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const {
+  const Eigen::Vector3f& p = scene_.points[seed];
+  distances_sq = (coordinates_.col(0) - p.x()).square() + (coordinates_.col(1) - p.y()).square() +
+                 (coordinates_.col(2) - p.z()).square();
+}
 
 std::vector<PoseCandidate> DipoleSearch::from_seed(std::size_t seed) const {
   Rng rng = Rng::stream(options_.seed, seed);
   std::vector<PoseCandidate> found;
-  std::vector<PointNeighbor> neighbors;
+  Eigen::ArrayXf distances_sq;
+  measure_distances(seed, distances_sq);
+  std::vector<int> near;
   double radius_m = table_.max_length_m();
   for (int ring = 0; ring < kRings; ++ring, radius_m /= kRingStep) {
-    tree_.within(scene_.points[seed], radius_m, neighbors);
-    for (int i = 0; i < options_.pairs_per_seed / kRings && !neighbors.empty(); ++i) {
-      const auto other =
-          static_cast<std::size_t>(neighbors[rng.below(static_cast<std::uint32_t>(neighbors.size()))].index);
+    keep_within(distances_sq, static_cast<float>(radius_m * radius_m), ring == 0, near);
+    for (int i = 0; i < options_.pairs_per_seed / kRings && !near.empty(); ++i) {
+      const auto other = static_cast<std::size_t>(near[rng.below(static_cast<std::uint32_t>(near.size()))]);
       if (other != seed)
         try_dipole({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
                    found);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "resight/core/random.hpp"
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/shape_search/dipole_table.hpp"
 #include "resight/shape_search/pose_candidate.hpp"
 #include "resight/shape_search/shape_search.hpp"
@@ -20,6 +20,7 @@ class DipoleSearch {
   [[nodiscard]] std::vector<PoseCandidate> from_seed(std::size_t seed) const;
 
  private:
+  void measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const;
   void try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCandidate>& found) const;
   void try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first, const LabColor& second,
                  std::vector<PoseCandidate>& found) const;
@@ -29,7 +30,7 @@ class DipoleSearch {
   const std::vector<ProbeModel>& objects_;
   const DipoleTable& table_;
   const ShapeSearchOptions& options_;
-  KdTree tree_;
+  Eigen::Array<float, Eigen::Dynamic, 3> coordinates_;  // of the scene
 };
 
 }  // namespace resight

@@ -27,11 +27,7 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
 }
 
 SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
-  VerifyOptions planes_of;
-  planes_of.resolution_m = options.spacing_m;
-  planes_of.smooth_distance_m = 2 * options.spacing_m;
-  const SmoothSegments segments = find_smooth_segments(cloud.points, cloud.normals, planes_of);
-  ScenePlanes planes = find_scene_planes(cloud.points, cloud.normals, segments, planes_of);
+  ScenePlanes planes = find_planes_of_thinned(cloud.points, cloud.normals, options.spacing_m, {});
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];

@@ -26,7 +26,7 @@ struct ShapeSearchOptions {
   double min_coarse_score = 0.2;     ///< Of 1: all samples confirmed.
   int max_matches = 300;             ///< Of each object, the best, of which two fix a pose; 0: none.
   double match_distance_m = 0.015;   ///< Matches nearer than this agree with a pose.
-  int max_refined = 1000;            ///< Poses per object that are refined and judged, the best by the first test.
+  int max_refined = 250;             ///< Poses per object that are refined and judged, the best by the first test.
   int refine_iterations = 6;         ///< Of projective ICP.
   double refine_distance_m = 0.02;   ///< Pairs of it that are farther apart do not count.
   double tolerance_m = 0.005;        ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
@@ -34,7 +34,7 @@ struct ShapeSearchOptions {
   double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
   double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
   int max_hypotheses = 3;               ///< Per object.
-  double min_feature_share = 0.3;       ///< Hypotheses from features that explain less of themselves in their own view
+  double min_feature_share = 0.4;       ///< Hypotheses from features that explain less of themselves in their own view
                                         ///< are chance; 0 keeps all.
   double same_place_m = 0.015;          ///< Poses nearer than this (at the object's centre)...
   double same_rotation_rad = 0.21;      ///< ...and this (over its symmetries) are one.

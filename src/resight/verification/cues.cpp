@@ -251,15 +251,14 @@ struct CueComputer::Impl {
   }
 
   // The same for whatever lies around, but only where the surface goes on.
-  float continuation_weight(const LocalScene& local, std::size_t q) const {
+  float continuation_weight(const LocalScene& local, const LocalScene& well_explained, std::size_t q) const {
     if (beside_model_[q] == 0) return 0;  // Of another colour: the model's points there are outliers already.
-    const int scene_q = local.scene_index(q);
     bool goes_on = false;
-    local.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m), [&](std::size_t p, float) {
-      const int scene_p = local.scene_index(p);
-      goes_on = scene_weight_[p] >= kWellExplained && !is_background(scene_p) && continues(scene_p, scene_q);
-      return !goes_on;
-    });
+    well_explained.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m),
+                                [&](std::size_t p, float) {
+                                  goes_on = continues(well_explained.scene_index(p), local.scene_index(q));
+                                  return !goes_on;
+                                });
     if (!goes_on) return 0;
     const double doubt = options_.continuation_matches > 0
                              ? 1 / (1 + cues_.evidence.num_correspondences / options_.continuation_matches)
@@ -269,7 +268,6 @@ struct CueComputer::Impl {
 
   // Cost of leaving q unexplained beside the explained points around it.
   float clutter_weight(const LocalScene& local, std::size_t q) const {
-    if (options_.continuation_offset_m > 0) return continuation_weight(local, q);
     const int scene_q = local.scene_index(q);
     const int segment = scene_.segment[scene_q];
     const float radius = static_cast<float>(options_.clutter_radius_m);
@@ -292,11 +290,22 @@ struct CueComputer::Impl {
     return weight;
   }
 
+  // The scene points that this hypothesis explains well.
+  LocalScene find_well_explained(const LocalScene& local) const {
+    std::vector<std::uint8_t> kept(local.size(), 0);
+    for (std::size_t p = 0; p < local.size(); ++p)
+      kept[p] = scene_weight_[p] >= kWellExplained && !is_background(local.scene_index(p)) ? 1 : 0;
+    return local.subset(kept);
+  }
+
   void find_clutter(const LocalScene& local) {
     if (scene_.normals.empty() || cues_.explained.empty()) return;
+    const bool only_continuing = options_.continuation_offset_m > 0;
+    std::optional<LocalScene> well_explained;
+    if (only_continuing) well_explained.emplace(find_well_explained(local));
     for (std::size_t q = 0; q < local.size(); ++q) {
       if (scene_weight_[q] >= kMinWeight || is_background(local.scene_index(q))) continue;
-      const float weight = clutter_weight(local, q);
+      const float weight = only_continuing ? continuation_weight(local, *well_explained, q) : clutter_weight(local, q);
       if (weight < kMinWeight) continue;
       cues_.clutter.push_back({local.scene_index(q), weight});
       cues_.evidence.clutter_cost += weight;

@@ -43,4 +43,22 @@ LocalScene::LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& 
   }
 }
 
+LocalScene LocalScene::subset(std::span<const std::uint8_t> kept) const {
+  LocalScene result;
+  result.min_ = min_;
+  result.inverse_cell_ = inverse_cell_;
+  result.dims_ = dims_;
+  result.begin_.assign(1, 0);
+  result.begin_.reserve(begin_.size());
+  for (std::size_t c = 0; c + 1 < begin_.size(); ++c) {
+    for (int i = begin_[c]; i < begin_[c + 1]; ++i) {
+      if (kept[static_cast<std::size_t>(i)] == 0) continue;
+      result.points_.push_back(points_[static_cast<std::size_t>(i)]);
+      result.indices_.push_back(indices_[static_cast<std::size_t>(i)]);
+    }
+    result.begin_.push_back(static_cast<int>(result.points_.size()));
+  }
+  return result;
+}
+
 }  // namespace resight

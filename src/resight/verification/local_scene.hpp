@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ class LocalScene {
   /// The points in the box around `around` widened by `margin_m`. Queries must lie in that box.
   LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& blocks, std::span<const Eigen::Vector3f> around,
              float margin_m, float cell_m);
+
+  /// The points that are kept (one flag each), on the same grid.
+  [[nodiscard]] LocalScene subset(std::span<const std::uint8_t> kept) const;
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] const Eigen::Vector3f& point(std::size_t local) const { return points_[local]; }
@@ -46,6 +50,8 @@ class LocalScene {
         .cwiseMax(0)
         .cwiseMin(dims_ - Eigen::Vector3i::Ones());
   }
+
+  LocalScene() = default;
 
   Eigen::Vector3f min_ = Eigen::Vector3f::Zero();
   float inverse_cell_ = 1;

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "resight/core/parallel.hpp"
+
 namespace resight {
 namespace {
 
@@ -157,7 +159,7 @@ class PlaneFinder {
   std::vector<int> find_inliers_in_scene(const ScenePlane& plane) const {
     std::vector<int> inliers;
     for (std::size_t i = 0; i < points_.size(); ++i)
-      if (result_.plane_of_point[i] < 0 && is_inlier(plane, static_cast<int>(i)) && plane.covers(points_[i]))
+      if (result_.plane_of_point[i] < 0 && plane.holds(points_[i], normals_[i], max_distance_, min_dot_))
         inliers.push_back(static_cast<int>(i));
     return inliers;
   }
@@ -193,6 +195,29 @@ ScenePlanes find_scene_planes(Points points, Points normals, const SmoothSegment
   std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   for (std::vector<int>& segment : members) finder.try_segment(std::move(segment));
   return finder.take();
+}
+
+ScenePlanes find_planes_of_thinned(Points points, Points normals, double spacing_m, const VerifyOptions& options) {
+  constexpr double kSmoothSpacings = 2;
+  VerifyOptions thinned = options;
+  thinned.resolution_m = spacing_m;
+  thinned.smooth_distance_m = kSmoothSpacings * spacing_m;
+  return find_scene_planes(points, normals, find_smooth_segments(points, normals, thinned), thinned);
+}
+
+std::vector<int> assign_to_planes(Points points, Points normals, std::span<const ScenePlane> planes,
+                                  const VerifyOptions& options) {
+  const auto max_distance = static_cast<float>(options.plane_distance_m);
+  const auto min_dot = static_cast<float>(std::cos(options.plane_angle_rad));
+  std::vector<int> plane_of_point(points.size(), -1);
+  parallel_for_blocks(points.size(), 4096, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto holds = [&](const ScenePlane& p) { return p.holds(points[i], normals[i], max_distance, min_dot); };
+      const auto found = std::find_if(planes.begin(), planes.end(), holds);
+      if (found != planes.end()) plane_of_point[i] = static_cast<int>(found - planes.begin());
+    }
+  });
+  return plane_of_point;
 }
 
 }  // namespace resight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct ScenePlane {
   /// Whether the foot of `p` lies within the plane's outline: in a cell between points of its row and of its column,
   /// holes (under objects) included.
   [[nodiscard]] bool covers(const Eigen::Vector3f& p) const;
+  /// Whether a surface point with normal is of the plane.
+  [[nodiscard]] bool holds(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float max_distance_m,
+                           float min_dot) const {
+    return std::abs(signed_distance(p)) <= max_distance_m && normal.dot(n) >= min_dot && covers(p);
+  }
 
   Eigen::Vector3f axis_u = Eigen::Vector3f::UnitX();
   Eigen::Vector3f axis_v = Eigen::Vector3f::UnitY();
@@ -44,5 +50,15 @@ struct ScenePlanes {
 [[nodiscard]] ScenePlanes find_scene_planes(std::span<const Eigen::Vector3f> points,
                                             std::span<const Eigen::Vector3f> normals, const SmoothSegments& segments,
                                             const VerifyOptions& options);
+
+/// The same of a cloud thinned to `spacing_m`, with segments of it.
+[[nodiscard]] ScenePlanes find_planes_of_thinned(std::span<const Eigen::Vector3f> points,
+                                                 std::span<const Eigen::Vector3f> normals, double spacing_m,
+                                                 const VerifyOptions& options);
+
+/// Number of the first plane that each point is of, or -1.
+[[nodiscard]] std::vector<int> assign_to_planes(std::span<const Eigen::Vector3f> points,
+                                                std::span<const Eigen::Vector3f> normals,
+                                                std::span<const ScenePlane> planes, const VerifyOptions& options);
 
 }  // namespace resight

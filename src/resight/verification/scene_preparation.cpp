@@ -22,6 +22,16 @@ PointCloud keep_finite(const PointCloud& cloud) {
   return result;
 }
 
+// In the thinned scene: planes are large.
+void find_planes_quickly(PreparedScene& scene, const VerifyOptions& options) {
+  PointCloud cloud;
+  cloud.points = scene.points;
+  cloud.normals = scene.normals;
+  cloud = voxel_downsample(cloud, options.plane_spacing_m);
+  scene.planes = find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, options).planes;
+  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
+}
+
 }  // namespace
 
 PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
@@ -53,6 +63,10 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
   scene.plane.assign(scene.points.size(), -1);
   scene.blocks = BlockGrid(scene.points, kBlock_m);
   if (scene.normals.empty()) return scene;
+  if (options.continuation_offset_m > 0 && options.plane_spacing_m > options.resolution_m) {
+    if (options.use_planes) find_planes_quickly(scene, options);
+    return scene;
+  }
   SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
   scene.num_segments = segments.num_segments;
   if (options.use_planes) {

@@ -72,6 +72,53 @@ TEST(PrepareScene, ARoundFaceIsAsWideAsItsDiameter) {
   EXPECT_NEAR(face->extent_m, 0.3, 0.02);
 }
 
+TEST(PrepareScene, PlanesOfTheThinnedSceneAreTheSame) {
+  VerifyOptions options;
+  options.continuation_offset_m = 0.005;
+  const PreparedScene full = prepare_scene(box_and_ball_scene(), options);
+  options.plane_spacing_m = 0.012;
+  const PreparedScene quick = prepare_scene(box_and_ball_scene(), options);
+  ASSERT_EQ(full.planes.size(), 1U);
+  ASSERT_EQ(quick.planes.size(), 1U);
+  EXPECT_GT(quick.planes[0].normal.dot(full.planes[0].normal), 0.99999F);
+  EXPECT_NEAR(quick.planes[0].offset, full.planes[0].offset, 1e-3);
+  EXPECT_NEAR(quick.planes[0].extent_m, full.planes[0].extent_m, 0.03);
+  ASSERT_EQ(quick.plane.size(), full.plane.size());
+  int num_on_plane = 0;
+  int num_different = 0;
+  for (std::size_t i = 0; i < full.plane.size(); ++i) {
+    num_on_plane += full.plane[i] == 0 ? 1 : 0;
+    num_different += full.plane[i] != quick.plane[i] ? 1 : 0;
+  }
+  EXPECT_GT(num_on_plane, 1000);
+  EXPECT_LT(num_different, num_on_plane / 100);
+}
+
+TEST(LocalScene, ASubsetIsVisitedAsTheWholeIs) {
+  const PreparedScene scene = prepare_scene(box_and_ball_scene(), {});
+  const std::vector<Eigen::Vector3f> around = {{-0.05F, -0.05F, 0}, {0.05F, 0.05F, 0.12F}};
+  const LocalScene whole(scene.points, scene.blocks, around, 0.04F, 0.01F);
+  std::vector<std::uint8_t> kept;
+  Rng rng(3);
+  for (std::size_t i = 0; i < whole.size(); ++i) kept.push_back(rng.below(3) == 0 ? 1 : 0);
+  const LocalScene subset = whole.subset(kept);
+  EXPECT_EQ(subset.size(), static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 1)));
+  std::size_t num_visited = 0;
+  for (const Eigen::Vector3f& query : {around[0], around[1], Eigen::Vector3f(0.05F, 0, 0.06F)}) {
+    std::set<int> expected;
+    whole.visit_within(query, 0.03F, [&](std::size_t i, float) {
+      if (kept[i] != 0) expected.insert(whole.scene_index(i));
+      return true;
+    });
+    std::set<int> visited;
+    subset.visit_within(query, 0.03F,
+                        [&](std::size_t i, float) { return visited.insert(subset.scene_index(i)).second; });
+    EXPECT_EQ(visited, expected);
+    num_visited += visited.size();
+  }
+  EXPECT_GT(num_visited, 20U);
+}
+
 TEST(PrepareScene, FindsTheTableAndNothingElse) {
   const PreparedScene scene = prepare_scene(box_and_ball_scene(), {});
   ASSERT_EQ(scene.planes.size(), 1U);

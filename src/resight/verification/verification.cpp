@@ -247,6 +247,7 @@ void VerifyOptions::check() const {
   check_not_negative(name("light.max_veil"), light.max_veil);
   check_not_negative(name("light.max_log_chroma"), light.max_log_chroma);
   check_not_negative(name("light.max_log_shading"), light.max_log_shading);
+  check_not_negative(name("plane_spacing_m"), plane_spacing_m);
   check_positive(name("min_plane_points"), min_plane_points);
   check_positive(name("plane_distance_m"), plane_distance_m);
   check_in_range(name("plane_angle_rad"), plane_angle_rad, 0, std::numbers::pi / 2);

@@ -46,8 +46,10 @@ struct VerifyOptions {
   double merge_distance_m = 0.01;        ///< Refined hypotheses of one object nearer than this (at its centre)...
   double merge_rotation_rad = 0.174533;  ///< ...and this (over its symmetries) are one.
   bool use_planes = true;
-  int min_plane_points = 5000;        ///< At the resolution of a full view; scaled with the reconstruction's.
-  double plane_distance_m = 0.01;     ///< V4R: 2 cm, which swallows boxes that lie flat.
+  double plane_spacing_m = 0;      ///< Planes are found in the scene thinned to this, if it is more than resolution_m
+                                   ///< (and segments are not needed: continuation_offset_m > 0).
+  int min_plane_points = 5000;     ///< At the resolution of a full view; scaled with the reconstruction's.
+  double plane_distance_m = 0.01;  ///< V4R: 2 cm, which swallows boxes that lie flat.
   double plane_angle_rad = 0.523599;  ///< Normals of a plane's points deviate by less (V4R: 30 deg).
   double plane_weight = 0.8;          ///< How well a plane explains its points (V4R: 0.8, half of it with colour).
   double smooth_angle_rad = 0.25;     ///< Smooth segments: neighbours' normals differ by less.
