@@ -45,15 +45,6 @@ Points transform_points(const Rigid3& a_from_b, const Points& points_in_b) {
   return points_in_a;
 }
 
-/// A reconstruction of this very voxel size is thin already: counting voxels is cheaper than averaging attributes.
-bool is_thin(const PointCloud& cloud, double voxel_m) {
-  const auto inverse_size = static_cast<float>(1.0 / voxel_m);
-  VoxelMap voxels(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (voxels.insert(voxel_key(cloud.points[i], inverse_size)) != static_cast<int>(i)) return false;
-  return true;
-}
-
 FrustumLimits view_volume(const Camera& camera, const DetectChangesOptions& options) {
   return ViewFrustum{camera, options.min_depth_m, options.max_depth_m, options.frustum_margin_rad}.limits();
 }

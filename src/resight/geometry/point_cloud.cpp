@@ -40,6 +40,14 @@ PointCloud select(const PointCloud& cloud, std::span<const int> indices) {
   return result;
 }
 
+bool is_thin(const PointCloud& cloud, double voxel_size_m) {
+  const auto inverse_size = static_cast<float>(1.0 / voxel_size_m);
+  VoxelMap voxels(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (voxels.insert(voxel_key(cloud.points[i], inverse_size)) != static_cast<int>(i)) return false;
+  return true;
+}
+
 PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
   check_positive("voxel_size_m", voxel_size_m);
   const float inverse_size = static_cast<float>(1.0 / voxel_size_m);

@@ -29,6 +29,9 @@ struct PointCloud {
 /// The points with the given indices, in that order, with their attributes.
 [[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const int> indices);
 
+/// No two points in one cube of side `voxel_size_m`: voxel_downsample() would find nothing to average.
+[[nodiscard]] bool is_thin(const PointCloud& cloud, double voxel_size_m);
+
 /// One point per occupied cube of side `voxel_size_m`: the mean of its points, normals (renormalised) and colours, in
 /// the order of each voxel's first point.
 [[nodiscard]] PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m);

@@ -68,18 +68,18 @@ void DipoleSearch::try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCand
     const auto count = static_cast<std::uint32_t>(end - begin);
     const auto tries = std::min(count, static_cast<std::uint32_t>(options_.max_entries));
     for (std::uint32_t t = 0; t < tries; ++t)
-      try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.lab(first), probe_.lab(second),
-                found);
+      try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.chroma_at(first),
+                probe_.chroma_at(second), found);
     begin = end;
   }
 }
 
-void DipoleSearch::try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first,
-                             const LabColor& second, std::vector<PoseCandidate>& found) const {
+void DipoleSearch::try_entry(const DipoleEntry& entry, const Dipole& seen, const Eigen::Vector2f& first,
+                             const Eigen::Vector2f& second, std::vector<PoseCandidate>& found) const {
   const ProbeModel& model = objects_[entry.object];
   const float max_chroma = static_cast<float>(options_.coarse.max_chroma_difference);
-  if (!model.lab.empty() && std::max(chroma_difference_sq(model.lab[entry.first], first),
-                                     chroma_difference_sq(model.lab[entry.second], second)) > max_chroma * max_chroma)
+  if (!model.chroma.empty() && std::max((model.chroma[entry.first] - first).squaredNorm(),
+                                        (model.chroma[entry.second] - second).squaredNorm()) > max_chroma * max_chroma)
     return;
   const auto pose = align(
       {model.points[entry.first], model.normals[entry.first], model.points[entry.second], model.normals[entry.second]},

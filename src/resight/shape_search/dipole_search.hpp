@@ -22,8 +22,8 @@ class DipoleSearch {
  private:
   void measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const;
   void try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCandidate>& found) const;
-  void try_entry(const DipoleEntry& entry, const Dipole& seen, const LabColor& first, const LabColor& second,
-                 std::vector<PoseCandidate>& found) const;
+  void try_entry(const DipoleEntry& entry, const Dipole& seen, const Eigen::Vector2f& first,
+                 const Eigen::Vector2f& second, std::vector<PoseCandidate>& found) const;
 
   const PointCloud& scene_;
   const PoseProbe& probe_;

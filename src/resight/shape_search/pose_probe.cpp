@@ -87,32 +87,36 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
 
 PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
     : view_(view),
+      pixels_(view.cloud.width(), view.cloud.height()),
       lab_(view.cloud.width(), view.cloud.height()),
-      plane_extent_m_(view.cloud.width(), view.cloud.height()) {
+      fx_(static_cast<float>(view.frame.camera.fx)),
+      fy_(static_cast<float>(view.frame.camera.fy)),
+      cx_(static_cast<float>(view.frame.camera.cx) + 0.5F),
+      cy_(static_cast<float>(view.frame.camera.cy) + 0.5F) {
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       lab_[i] = to_lab(view.frame.color[i]);
-      plane_extent_m_[i] = plane_extent_at(view.cloud, i, planes);
+      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes), chroma(lab_[i])};
     }
   });
 }
 
 Image<std::uint8_t> PoseProbe::off_larger_planes(float diameter_m) const {
-  Image<std::uint8_t> mask(plane_extent_m_.width(), plane_extent_m_.height());
-  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = plane_extent_m_[i] > kLargerThan * diameter_m ? 0 : 255;
+  Image<std::uint8_t> mask(pixels_.width(), pixels_.height());
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    mask[i] = pixels_[i].plane_extent_m > kLargerThan * diameter_m ? 0 : 255;
   return mask;
 }
 
 bool PoseProbe::is_background(std::size_t pixel, const ProbeModel& model) const {
-  return plane_extent_m_[pixel] > kLargerThan * model.diameter_m;
+  return pixels_[pixel].plane_extent_m > kLargerThan * model.diameter_m;
 }
 
 int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
   if (!(p.z() > kMinDepth_m)) return -1;
-  const Camera& camera = view_.frame.camera;
-  const float u = static_cast<float>(camera.fx) * p.x() / p.z() + static_cast<float>(camera.cx) + 0.5F;
-  const float v = static_cast<float>(camera.fy) * p.y() / p.z() + static_cast<float>(camera.cy) + 0.5F;
-  if (!(u >= 0 && v >= 0 && u < static_cast<float>(camera.width) && v < static_cast<float>(camera.height))) return -1;
+  const float u = fx_ * p.x() / p.z() + cx_;
+  const float v = fy_ * p.y() / p.z() + cy_;
+  if (!(u >= 0 && v >= 0 && u < static_cast<float>(lab_.width()) && v < static_cast<float>(lab_.height()))) return -1;
   return static_cast<int>(lab_.index(static_cast<int>(u), static_cast<int>(v)));
 }
 
@@ -136,16 +140,15 @@ SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_fro
       ++counts.hidden;
       continue;
     }
-    const auto at = static_cast<std::size_t>(pixel);
-    const float depth = view_.cloud.z[at];
-    if (std::isnan(depth)) continue;
-    if (p.z() > depth + tolerance) {
+    const Pixel& seen = pixels_[static_cast<std::size_t>(pixel)];
+    if (std::isnan(seen.z_m)) continue;
+    if (p.z() > seen.z_m + tolerance) {
       ++counts.hidden;
-    } else if (p.z() < depth - tolerance || is_background(at, model)) {
+    } else if (p.z() < seen.z_m - tolerance || seen.plane_extent_m > kLargerThan * model.diameter_m) {
       ++counts.through;
     } else {
       ++counts.confirmed;
-      if (!model.lab.empty() && chroma_difference_sq(model.lab[i], lab(pixel)) > max_chroma_sq) ++counts.off_color;
+      if (!model.chroma.empty() && (model.chroma[i] - seen.chroma).squaredNorm() > max_chroma_sq) ++counts.off_color;
     }
     counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4;
     if (counts.gave_up) break;
@@ -277,9 +280,9 @@ PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_obje
 }
 
 void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance) {
-  model.lab.clear();
+  model.chroma.clear();
   for (const Eigen::Vector3f& color : model.linear_light)
-    model.lab.push_back(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval()));
+    model.chroma.push_back(chroma(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval())));
 }
 
 }  // namespace resight

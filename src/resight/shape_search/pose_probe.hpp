@@ -20,7 +20,7 @@ struct ProbeModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
-  std::vector<LabColor> lab;                  ///< Of the same, under the white balance that was set.
+  std::vector<Eigen::Vector2f> chroma;        ///< chroma() of the same, under the white balance that was set.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   double radius_m = 0;  ///< About the centre.
   float diameter_m = 0;
@@ -67,7 +67,10 @@ class PoseProbe {
   [[nodiscard]] const PreparedView& view() const { return view_; }
   /// Pixel under a point; -1 outside the image.
   [[nodiscard]] int pixel_of(const Eigen::Vector3f& point_in_camera) const;
-  [[nodiscard]] const LabColor& lab(int pixel) const { return lab_[static_cast<std::size_t>(pixel)]; }
+  /// chroma() of a pixel.
+  [[nodiscard]] const Eigen::Vector2f& chroma_at(int pixel) const {
+    return pixels_[static_cast<std::size_t>(pixel)].chroma;
+  }
 
   /// Non-zero where no plane lies that is larger than objects of this diameter: where keypoints may be theirs.
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
@@ -106,22 +109,27 @@ class PoseProbe {
 
   [[nodiscard]] bool is_background(std::size_t pixel, const ProbeModel& model) const;
 
+  // What the first test asks of a pixel, in one place.
+  struct Pixel {
+    float z_m = 0;             // NaN: no return.
+    float plane_extent_m = 0;  // Of the plane that it lies on; 0: none.
+    Eigen::Vector2f chroma = Eigen::Vector2f::Zero();
+  };
+
   const PreparedView& view_;
+  Image<Pixel> pixels_;
   Image<LabColor> lab_;
-  Image<float> plane_extent_m_;  // Of the plane that a pixel lies on; 0: none.
+  float fx_, fy_, cx_, cy_;  // Of the camera; centres with half a pixel, so that truncation finds the pixel.
 };
 
 /// The samples' colours for the first test, under the white balance of the scene (LightFit::chroma()).
 void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance);
 
-/// Squared difference of a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for
-/// the dark, whose hue is noise).
-[[nodiscard]] inline float chroma_difference_sq(const LabColor& p, const LabColor& q) {
-  const float p_scale = 128 / (50 * p.l + 76);
-  const float q_scale = 128 / (50 * q.l + 76);
-  const float da = p_scale * p.a - q_scale * q.a;
-  const float db = p_scale * p.b - q_scale * q.b;
-  return da * da + db * db;
+/// a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for the dark, whose hue is
+/// noise). The first test compares colours by it, since the light is not known yet.
+[[nodiscard]] inline Eigen::Vector2f chroma(const LabColor& color) {
+  const float scale = 128 / (50 * color.l + 76);
+  return {scale * color.a, scale * color.b};
 }
 
 }  // namespace resight

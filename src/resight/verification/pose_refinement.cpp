@@ -35,11 +35,12 @@ class Refiner {
     for (const Eigen::Vector3f& p : points_) around.push_back(Rigid3f(start) * p);
     const LocalScene local(scene_.points, scene_.blocks, around,
                            static_cast<float>(options_.max_distance_m + options_.max_step_m),
-                           static_cast<float>(options_.max_distance_m));
+                           static_cast<float>(0.5 * options_.max_distance_m));
+    std::vector<int> partners(points_.size(), -1);
     Rigid3 pose = start;
     const Eigen::Vector3d start_middle = start * middle_.cast<double>().eval();
     for (int i = 0; i < options_.max_iterations; ++i) {
-      const StepEquations equations = linearize(pose, local);
+      const StepEquations equations = linearize(pose, local, partners);
       if (equations.num_pairs < kMinPairs) return start;
       const bool moved = equations.step(pose, middle_.cast<double>(), radius_m_);
       if ((pose * middle_.cast<double>().eval() - start_middle).norm() > options_.max_step_m) return start;
@@ -49,9 +50,9 @@ class Refiner {
   }
 
  private:
-  [[nodiscard]] StepEquations linearize(const Rigid3& pose, const LocalScene& local) const {
+  [[nodiscard]] StepEquations linearize(const Rigid3& pose, const LocalScene& local, std::vector<int>& partners) const {
     StepEquations equations;
-    add_surface(pose, local, equations);
+    add_surface(pose, local, partners, equations);
     add_correspondences(pose, equations);
     return equations;
   }
@@ -66,7 +67,10 @@ class Refiner {
     }
   }
 
-  void add_surface(const Rigid3& pose, const LocalScene& local, StepEquations& equations) const {
+  // partners: of each point the nearest of the last step, if any, and then of this one. No other that is farther need
+  // be looked at.
+  void add_surface(const Rigid3& pose, const LocalScene& local, std::vector<int>& partners,
+                   StepEquations& equations) const {
     const Rigid3f motion(pose);
     const Eigen::Vector3f middle = motion * middle_;
     const float max_distance = static_cast<float>(options_.max_distance_m);
@@ -74,19 +78,28 @@ class Refiner {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Eigen::Vector3f p = motion * points_[i];
       const Eigen::Vector3f n = motion.rotation * normals_[i];
-      int nearest = -1;
+      const auto normal_of = [&](int q) -> const Eigen::Vector3f& {
+        return scene_.normals[static_cast<std::size_t>(local.scene_index(static_cast<std::size_t>(q)))];
+      };
       float nearest_sq = max_distance * max_distance;
-      local.visit_within(p, max_distance, [&](std::size_t q, float distance_sq) {
-        const int index = local.scene_index(q);
-        if (distance_sq <= nearest_sq && n.dot(scene_.normals[static_cast<std::size_t>(index)]) >= min_dot) {
+      int& nearest = partners[i];
+      if (nearest >= 0) {
+        const float again_sq = (local.point(static_cast<std::size_t>(nearest)) - p).squaredNorm();
+        if (again_sq < nearest_sq && n.dot(normal_of(nearest)) >= min_dot)
+          nearest_sq = again_sq;
+        else
+          nearest = -1;
+      }
+      local.visit_within(p, std::sqrt(nearest_sq), [&](std::size_t q, float distance_sq) {
+        if (distance_sq <= nearest_sq && n.dot(normal_of(static_cast<int>(q))) >= min_dot) {
           nearest_sq = distance_sq;
-          nearest = index;
+          nearest = static_cast<int>(q);
         }
         return true;
       });
       if (nearest < 0) continue;
-      const Eigen::Vector3f& normal = scene_.normals[static_cast<std::size_t>(nearest)];
-      const float residual = normal.dot(scene_.points[static_cast<std::size_t>(nearest)] - p);
+      const Eigen::Vector3f& normal = normal_of(nearest);
+      const float residual = normal.dot(local.point(static_cast<std::size_t>(nearest)) - p);
       const float u = 1 - nearest_sq / (max_distance * max_distance);
       equations.add((p - middle).cast<double>(), normal.cast<double>(), residual, u * u, radius_m_);
     }

@@ -51,7 +51,8 @@ PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
 }
 
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
-  PointCloud thinned = voxel_downsample(keep_finite(scene_in_world), options.resolution_m);
+  PointCloud thinned = keep_finite(scene_in_world);
+  if (!is_thin(thinned, options.resolution_m)) thinned = voxel_downsample(thinned, options.resolution_m);
   PreparedScene scene;
   if (options.use_color && thinned.has_colors()) {
     scene.linear_light = to_linear_light(thinned.colors);
