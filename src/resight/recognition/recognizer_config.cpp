@@ -130,6 +130,11 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
 
 void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
+                                  {"attention.max_unseen_share", &c.attention.max_unseen_share},
+                                  {"attention.full_look_every", &c.attention.full_look_every},
+                                  {"attention.max_turn_rad", &c.attention.max_turn_rad},
+                                  {"attention.max_distance_ratio", &c.attention.max_distance_ratio},
+                                  {"attention.max_depth_m", &c.attention.max_depth_m},
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
                                   {"changes.tolerance_sigmas", &c.changes.tolerance_sigmas},
                                   {"changes.voxel_m", &c.changes.voxel_m},
@@ -341,6 +346,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.history.min_new_share = 0.02;
     config.remember_objects = true;
     config.min_carried_share = 0.8;
+    config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;
@@ -374,6 +380,7 @@ void RecognizerConfig::check() const {
   check_in_range("min_carried_share", min_carried_share, 0, 1);
   prepare.check();
   sift.check();
+  attention.check();
   shot.check();
   match.check();
   generate.check();

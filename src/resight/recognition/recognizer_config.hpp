@@ -12,6 +12,7 @@
 #include "resight/features/sift.hpp"
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
+#include "resight/recognition/attention.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -35,6 +36,7 @@ struct RecognizerConfig {
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
   bool skip_planes = false;       ///< No keypoints on planes larger than the largest object (shape.enabled only).
+  AttentionOptions attention;
   PrepareViewOptions prepare;
   SiftOptions sift;
   ShotOptions shot;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/recognition/attention.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
@@ -15,6 +16,8 @@
 
 namespace resight {
 namespace {
+
+constexpr std::uint64_t kFirstKnownId = 1ULL << 40;  // Apart: ids of views are the same for all that share a store.
 
 DynamicSceneOptions scene_options(const RecognizerConfig& config) {
   return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
@@ -29,6 +32,7 @@ struct SceneRecognizer::Impl {
         config((settings.check(), std::move(settings))),
         history(models, config.history),
         scene(scene_options(config)),
+        attention(config.attention),
         store(std::move(shared)) {
     if (!store) generator.emplace(library, config);
   }
@@ -40,6 +44,8 @@ struct SceneRecognizer::Impl {
   void add_known_objects(std::vector<Hypothesis>& hypotheses);
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
+  [[nodiscard]] bool doubts_known_object(const std::vector<Hypothesis>& hypotheses,
+                                         const std::vector<HypothesisEvidence>& evidence) const;
   void forget_refuted(const std::vector<Hypothesis>& hypotheses, const std::vector<HypothesisEvidence>& evidence);
 
   const ModelLibrary& library;
@@ -47,13 +53,14 @@ struct SceneRecognizer::Impl {
   std::optional<ViewHypothesisGenerator> generator;  // with a store: made when a view needs it
   ObjectHistory history;
   DynamicScene scene;
+  Attention attention;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
       members_of_cluster;  // ids by the seed's id; this view's
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
-  std::uint64_t next_known_id = 1ULL << 40;  // apart: those of views are the same for all that share a store
+  std::uint64_t next_known_id = kFirstKnownId;
 };
 
 SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* trace) {
@@ -67,11 +74,13 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
     view = prepare_view(std::move(frame), config.prepare);
   }
   ++num_views;
-  hypotheses_of_view.push_back(view_hypotheses(view, update, trace));
   {
     const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
     update.changes = scene.add_view(std::move(view));
+    update.searched = attention.is_due(scene.window().back().cleared, update.changes);
   }
+  hypotheses_of_view.emplace_back();
+  if (update.searched) hypotheses_of_view.back() = view_hypotheses(scene.window().back().cleared, update, trace);
   while (hypotheses_of_view.size() > scene.window().size()) hypotheses_of_view.pop_front();
   update.reconstruction_points = scene.reconstruction().size();
   verify(merge_and_cluster(update, trace), update, trace);
@@ -168,6 +177,18 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
   return kept_mask;
 }
 
+// Whether something known is in sight and yet not recognised.
+bool SceneRecognizer::Impl::doubts_known_object(const std::vector<Hypothesis>& hypotheses,
+                                                const std::vector<HypothesisEvidence>& evidence) const {
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    const Verdict verdict = evidence[h].verdict;
+    if (verdict != Verdict::kNoSupport && verdict != Verdict::kOtherPattern && verdict != Verdict::kCost) continue;
+    const auto& members = members_of_cluster.at(hypotheses[h].id);
+    if (std::ranges::any_of(members, [](std::uint64_t id) { return id >= kFirstKnownId; })) return true;
+  }
+  return false;
+}
+
 // What was well seen and yet found no support is chance, and is not carried over to the next views.
 void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypotheses,
                                            const std::vector<HypothesisEvidence>& evidence) {
@@ -205,6 +226,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     update.detections.push_back(std::move(detection));
   }
   update.counts.accepted = static_cast<int>(update.detections.size());
+  if (doubts_known_object(hypotheses, result.evidence)) attention.look_at_next();
   forget_refuted(hypotheses, result.evidence);
   if (trace == nullptr) return;
   trace->verified = std::move(hypotheses);

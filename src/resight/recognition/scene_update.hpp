@@ -70,6 +70,7 @@ struct SceneUpdate {
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.
+  bool searched = true;  ///< False: nothing new was to be seen, and only what is known was looked at (Attention).
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;
   StageTimes times;

@@ -9,7 +9,7 @@ namespace resight {
 
 std::string generation_settings(const RecognizerConfig& config) {
   // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 15> kLaterSections{"preset",
+  constexpr std::array<std::string_view, 16> kLaterSections{"preset",
                                                             "num_previous_views",
                                                             "detect_changes",
                                                             "cluster_hypotheses",
@@ -17,6 +17,7 @@ std::string generation_settings(const RecognizerConfig& config) {
                                                             "min_reported_share",
                                                             "min_carried_share",
                                                             "remember_objects",
+                                                            "attention.",
                                                             "cluster.",
                                                             "changes.",
                                                             "removal.",

@@ -9,13 +9,15 @@
 namespace resight {
 namespace {
 
+constexpr std::size_t kMaxNumbersPerVoxel = 4;  // Of places that no view shows any more: memory stays flat.
+
 /// Takes what was removed out of an earlier view. Most views of a large scene do not see the place at all.
 void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& options, DynamicScene::View& view) {
   const std::size_t num_before = count_valid(view.cleared.frame.depth_m);
   view.cleared =
       clear_removed_points(std::move(view.cleared), removed_in_world, options.clear_tolerance_m, options.prepare);
   if (count_valid(view.cleared.frame.depth_m) != num_before)
-    view.voxels = reduce_to_voxels(view.cleared, options.integrate);
+    view.voxels = reduce_again(view.cleared, view.voxels, options.integrate);
 }
 
 }  // namespace
@@ -47,10 +49,20 @@ ChangeResult DynamicScene::add_view(PreparedView view) {
   window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
                      std::move(voxels)});
 
+  number_voxels();
   std::vector<const ViewVoxels*> views;
   for (const View& v : window_) views.push_back(&v.voxels);
   reconstruction_ = merge_voxels(views, options_.integrate);
   return changes;
+}
+
+void DynamicScene::number_voxels() {
+  std::size_t num_voxels = 0;
+  for (const View& view : window_) num_voxels += view.voxels.keys.size();
+  const bool is_stale = numbers_.size() > kMaxNumbersPerVoxel * num_voxels;
+  if (is_stale) numbers_ = {};
+  for (View& view : window_)
+    if (is_stale || view.voxels.numbers.empty()) numbers_.assign_to(view.voxels);
 }
 
 }  // namespace resight

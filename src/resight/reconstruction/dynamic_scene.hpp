@@ -46,8 +46,11 @@ class DynamicScene {
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
+  void number_voxels();
+
   DynamicSceneOptions options_;
   std::deque<View> window_;
+  VoxelNumbers numbers_;  // Of the voxels of the window, and of some before.
   Reconstruction reconstruction_;
   int num_views_ = 0;
 };

@@ -95,6 +95,21 @@ TEST(DynamicScene, AgreesWithStartingFromScratch) {
   }
 }
 
+// What was seen long ago is forgotten, and what is seen is the same all the same.
+TEST(DynamicScene, AgreesWithStartingFromScratchAlongAWay) {
+  DynamicSceneOptions options;
+  options.num_previous_views = 0;
+  DynamicScene scene(options);
+  FromScratch twin(0);
+  for (int step = 0; step < 8; ++step) {
+    const double x = 1.2 * step;
+    const PreparedView view = see(with({kBox}), look_at({x, -0.9, 0.8}, {x, 0, 0.05}));
+    (void)scene.add_view(view);
+    (void)twin.add(view);
+    ASSERT_EQ(scene.reconstruction().points, twin.reconstruction().points) << step;
+  }
+}
+
 TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
   for (const bool detect : {false, true}) {
     DynamicSceneOptions options;

@@ -17,16 +17,21 @@ void check_view(const PreparedView& view) {
           "integrate_views: a view is not prepared (its images have not the size of its cloud, or it has no normals)");
 }
 
+/// Not inlined: a point must round to the same place when its voxel is found and when it is kept.
+[[gnu::noinline]] Eigen::Vector3f point_in_world(const Rigid3f& world_from_camera, const OrganizedCloud& cloud,
+                                                 std::size_t i) {
+  return world_from_camera * cloud.point(i);
+}
+
 /// Best pixel of each voxel.
 struct Winners {
-  std::vector<std::uint64_t> keys;
   std::vector<int> pixels;
   std::vector<float> noise;
   std::vector<int> num_points;
 
-  void add(std::size_t number, std::uint64_t key, int pixel, float pixel_noise) {
-    if (number == keys.size()) {
-      keys.push_back(key);
+  [[nodiscard]] std::size_t size() const { return pixels.size(); }
+  void add(std::size_t number, int pixel, float pixel_noise) {
+    if (number == pixels.size()) {
       pixels.push_back(pixel);
       noise.push_back(pixel_noise);
       num_points.push_back(1);
@@ -40,25 +45,38 @@ struct Winners {
   }
 };
 
-Winners find_winners(const PreparedView& view, const IntegrateOptions& options) {
-  const Rigid3f world_from_camera(view.frame.world_from_camera);
-  const auto inverse_size = static_cast<float>(1.0 / options.voxel_m);
+/// `number_of(pixel)`: of its voxel, in the order of their first pixels. Fills `voxel_of_pixel`.
+template <typename NumberOf>
+Winners find_winners(const PreparedView& view, const IntegrateOptions& options, std::vector<int>& voxel_of_pixel,
+                     NumberOf&& number_of) {
   const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
   const OrganizedCloud& cloud = view.cloud;
-  VoxelMap voxels(cloud.z.size() / 8);
   Winners winners;
-  std::uint64_t last_key = 0;
-  int number = VoxelMap::kNotFound;  // neighbouring pixels often share their voxel: saves the look-up
+  voxel_of_pixel.assign(cloud.z.size(), VoxelMap::kNotFound);
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
     if (!cloud.has_normal(i) || !cloud.has_point(i) || view.edge_distance_px[i] < min_edge_distance_px) continue;
-    const std::uint64_t key = voxel_key(world_from_camera * cloud.point(i), inverse_size);
-    if (number == VoxelMap::kNotFound || key != last_key) number = voxels.insert(key);
-    last_key = key;
+    const int number = number_of(i);
     const float lateral_m = view.noise.lateral_m[i];
-    winners.add(static_cast<std::size_t>(number), key, static_cast<int>(i),
-                lateral_m * lateral_m * view.noise.axial_m[i]);
+    winners.add(static_cast<std::size_t>(number), static_cast<int>(i), lateral_m * lateral_m * view.noise.axial_m[i]);
+    voxel_of_pixel[i] = number;
   }
   return winners;
+}
+
+void keep_winners(const PreparedView& view, Winners winners, ViewVoxels& result) {
+  result.noise = std::move(winners.noise);
+  result.num_points = std::move(winners.num_points);
+  const Rigid3f world_from_camera(view.frame.world_from_camera);
+  PointCloud& cloud_in_world = result.cloud_in_world;
+  cloud_in_world.points.reserve(winners.pixels.size());
+  cloud_in_world.normals.reserve(winners.pixels.size());
+  cloud_in_world.colors.reserve(winners.pixels.size());
+  for (const int pixel : winners.pixels) {
+    const auto i = static_cast<std::size_t>(pixel);
+    cloud_in_world.points.push_back(point_in_world(world_from_camera, view.cloud, i));
+    cloud_in_world.normals.push_back(world_from_camera.rotation * view.cloud.normal(i));
+    cloud_in_world.colors.push_back(view.frame.color[i]);
+  }
 }
 
 }  // namespace
@@ -73,23 +91,48 @@ void IntegrateOptions::check() const {
 ViewVoxels reduce_to_voxels(const PreparedView& view, const IntegrateOptions& options) {
   options.check();
   check_view(view);
-  Winners winners = find_winners(view, options);
-  ViewVoxels result;
-  result.keys = std::move(winners.keys);
-  result.noise = std::move(winners.noise);
-  result.num_points = std::move(winners.num_points);
   const Rigid3f world_from_camera(view.frame.world_from_camera);
-  PointCloud& cloud_in_world = result.cloud_in_world;
-  cloud_in_world.points.reserve(winners.pixels.size());
-  cloud_in_world.normals.reserve(winners.pixels.size());
-  cloud_in_world.colors.reserve(winners.pixels.size());
-  for (const int pixel : winners.pixels) {
-    const auto i = static_cast<std::size_t>(pixel);
-    cloud_in_world.points.push_back(world_from_camera * view.cloud.point(i));
-    cloud_in_world.normals.push_back(world_from_camera.rotation * view.cloud.normal(i));
-    cloud_in_world.colors.push_back(view.frame.color[i]);
-  }
+  const auto inverse_size = static_cast<float>(1.0 / options.voxel_m);
+  ViewVoxels result;
+  VoxelMap voxels(view.cloud.z.size() / 8);
+  std::uint64_t last_key = 0;
+  int number = VoxelMap::kNotFound;  // neighbouring pixels often share their voxel: saves the look-up
+  Winners winners = find_winners(view, options, result.voxel_of_pixel, [&](std::size_t i) {
+    const std::uint64_t key = voxel_key(point_in_world(world_from_camera, view.cloud, i), inverse_size);
+    if (number == VoxelMap::kNotFound || key != last_key) number = voxels.insert(key);
+    last_key = key;
+    if (static_cast<std::size_t>(number) == result.keys.size()) result.keys.push_back(key);
+    return number;
+  });
+  keep_winners(view, std::move(winners), result);
   return result;
+}
+
+ViewVoxels reduce_again(const PreparedView& view, const ViewVoxels& before, const IntegrateOptions& options) {
+  options.check();
+  check_view(view);
+  require(before.voxel_of_pixel.size() == view.cloud.z.size(), "reduce_again: not the view that was reduced before");
+  ViewVoxels result;
+  std::vector<int> number_now(before.keys.size(), VoxelMap::kNotFound);
+  Winners winners = find_winners(view, options, result.voxel_of_pixel, [&](std::size_t i) {
+    const int old_number = before.voxel_of_pixel[i];
+    require(old_number != VoxelMap::kNotFound, "reduce_again: the view has points that it had not before");
+    const auto old = static_cast<std::size_t>(old_number);
+    if (number_now[old] == VoxelMap::kNotFound) {
+      number_now[old] = static_cast<int>(result.keys.size());
+      result.keys.push_back(before.keys[old]);
+      if (!before.numbers.empty()) result.numbers.push_back(before.numbers[old]);
+    }
+    return number_now[old];
+  });
+  keep_winners(view, std::move(winners), result);
+  return result;
+}
+
+void VoxelNumbers::assign_to(ViewVoxels& view) {
+  view.numbers.clear();
+  view.numbers.reserve(view.keys.size());
+  for (const std::uint64_t key : view.keys) view.numbers.push_back(voxels_.insert(key));
 }
 
 Reconstruction merge_voxels(std::span<const ViewVoxels* const> views, const IntegrateOptions& options) {
@@ -100,26 +143,29 @@ Reconstruction merge_voxels(std::span<const ViewVoxels* const> views, const Inte
     int num_points;
     float noise;
   };
-  std::size_t largest = 0;
+  constexpr int kNone = -1;
+  int num_numbers = 0;
   for (const ViewVoxels* view : views) {
     require(view != nullptr, "merge_voxels: a view is null");
-    largest = std::max(largest, view->keys.size());
+    require(view->numbers.size() == view->keys.size(), "merge_voxels: the voxels of a view are not numbered");
+    for (const int number : view->numbers) num_numbers = std::max(num_numbers, number + 1);
   }
-  VoxelMap voxels(largest * 2);
-  std::vector<Winner> winners;
-  winners.reserve(largest * 2);
+  std::vector<int> winner_of(static_cast<std::size_t>(num_numbers), kNone);
+  std::vector<Winner> winners;  // In the order of the voxels' first points, view by view.
   for (std::size_t v = 0; v < views.size(); ++v) {
     const ViewVoxels& view = *views[v];
     for (std::size_t i = 0; i < view.keys.size(); ++i) {
-      const auto number = static_cast<std::size_t>(voxels.insert(view.keys[i]));
+      int& w = winner_of[static_cast<std::size_t>(view.numbers[i])];
       const Winner candidate{static_cast<int>(v), static_cast<int>(i), view.num_points[i], view.noise[i]};
-      if (number == winners.size()) {
+      if (w == kNone) {
+        w = static_cast<int>(winners.size());
         winners.push_back(candidate);
         continue;
       }
-      const int num_points = winners[number].num_points + candidate.num_points;
-      if (candidate.noise <= winners[number].noise) winners[number] = candidate;  // ties: the later view
-      winners[number].num_points = num_points;
+      Winner& winner = winners[static_cast<std::size_t>(w)];
+      const int num_points = winner.num_points + candidate.num_points;
+      if (candidate.noise <= winner.noise) winner = candidate;  // ties: the later view
+      winner.num_points = num_points;
     }
   }
   std::erase_if(winners, [&](const Winner& w) { return w.num_points < options.min_points_per_voxel; });
@@ -148,8 +194,12 @@ Reconstruction integrate_views(std::span<const PreparedView* const> views, const
   std::vector<ViewVoxels> voxels(views.size());
   parallel_for(views.size(), options.num_threads,
                [&](std::size_t v) { voxels[v] = reduce_to_voxels(*views[v], options); });
+  VoxelNumbers numbers;
   std::vector<const ViewVoxels*> pointers;
-  for (const ViewVoxels& v : voxels) pointers.push_back(&v);
+  for (ViewVoxels& v : voxels) {
+    numbers.assign_to(v);
+    pointers.push_back(&v);
+  }
   return merge_voxels(pointers, options);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "resight/geometry/point_cloud.hpp"
+#include "resight/geometry/voxel_map.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
 namespace resight {
@@ -44,10 +45,29 @@ struct ViewVoxels {
   PointCloud cloud_in_world;        ///< The point of the lowest noise of each, with normal and colour.
   std::vector<float> noise;         ///< sigma_L^2 sigma_A, m^3.
   std::vector<int> num_points;      ///< Points of the view in the voxel.
+  std::vector<int> voxel_of_pixel;  ///< Position in `keys`, or -1.
+  std::vector<int> numbers;         ///< Of the voxels, the same in all views that VoxelNumbers has seen; empty before.
 };
 [[nodiscard]] ViewVoxels reduce_to_voxels(const PreparedView& view, const IntegrateOptions& options = {});
 
-/// The second half: the winners over all views. `views` must have been reduced with the same voxel size.
+/// The same of a view from which points were taken since it was reduced: each pixel's voxel is known. Numbers are kept.
+/// Throws std::invalid_argument if the view has points that it had not before.
+[[nodiscard]] ViewVoxels reduce_again(const PreparedView& view, const ViewVoxels& before,
+                                      const IntegrateOptions& options = {});
+
+/// Numbers voxels, 0, 1, 2, .. as they come: a view is looked up in the hash table once, and not for each
+/// reconstruction that it takes part in.
+class VoxelNumbers {
+ public:
+  void assign_to(ViewVoxels& view);
+  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+
+ private:
+  VoxelMap voxels_;
+};
+
+/// The second half: the winners over all views. `views` must have been reduced with the same voxel size, and numbered
+/// by the same VoxelNumbers.
 [[nodiscard]] Reconstruction merge_voxels(std::span<const ViewVoxels* const> views,
                                           const IntegrateOptions& options = {});
 

@@ -87,8 +87,8 @@ void expect_equal(const Reconstruction& result, const std::map<Cell, Best>& expe
     const Eigen::Vector3i index = voxel_index(p, static_cast<float>(1 / voxel_m));
     const auto found = expected.find({index.x(), index.y(), index.z()});
     ASSERT_NE(found, expected.end());
-    EXPECT_EQ(p, found->second.point);
-    EXPECT_EQ(result.cloud_in_world.normals[i], found->second.normal);
+    EXPECT_LT((p - found->second.point).norm(), 1e-6F);  // The order of rounding is the compiler's.
+    EXPECT_LT((result.cloud_in_world.normals[i] - found->second.normal).norm(), 1e-6F);
     EXPECT_EQ(result.cloud_in_world.colors[i], found->second.color);
     EXPECT_EQ(result.noise[i], found->second.noise);
     EXPECT_EQ(result.view[i], found->second.view);
@@ -143,6 +143,37 @@ TEST(IntegrateViews, EdgesAndPointsWithoutNormalsTakeNoPart) {
   EXPECT_LT(inner + 100, all);
   for (float& nx : views[0].cloud.nx.data()) nx = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(integrate_views(pointers(views)).cloud_in_world.empty());
+}
+
+TEST(ReduceAgain, IsWhatReducingGives) {
+  const PreparedView view = three_views()[0];
+  ViewVoxels before = reduce_to_voxels(view);
+  VoxelNumbers numbers;
+  numbers.assign_to(before);
+  PointCloud removed;
+  for (std::size_t i = 0; i < before.cloud_in_world.size(); i += 50)
+    removed.points.push_back(before.cloud_in_world.points[i]);
+  const PreparedView cleared = clear_removed_points(view, removed, 0.01);
+  const ViewVoxels expected = reduce_to_voxels(cleared);
+  const ViewVoxels again = reduce_again(cleared, before);
+  ASSERT_LT(again.keys.size(), before.keys.size());
+  EXPECT_EQ(again.keys, expected.keys);
+  EXPECT_EQ(again.cloud_in_world.points, expected.cloud_in_world.points);
+  EXPECT_EQ(again.cloud_in_world.normals, expected.cloud_in_world.normals);
+  EXPECT_EQ(again.noise, expected.noise);
+  EXPECT_EQ(again.num_points, expected.num_points);
+  EXPECT_EQ(again.voxel_of_pixel, expected.voxel_of_pixel);
+  ViewVoxels numbered = expected;
+  numbers.assign_to(numbered);
+  EXPECT_EQ(again.numbers, numbered.numbers);
+  EXPECT_THROW((void)reduce_again(view, again), std::invalid_argument);  // points that it had not before
+  EXPECT_THROW((void)reduce_again(view, {}), std::invalid_argument);
+}
+
+TEST(MergeVoxels, WantsNumbers) {
+  const ViewVoxels voxels = reduce_to_voxels(three_views()[0]);
+  const std::vector<const ViewVoxels*> views{&voxels};
+  EXPECT_THROW((void)merge_voxels(views), std::invalid_argument);
 }
 
 TEST(IntegrateViews, NothingFromNothing) {
