@@ -2,6 +2,7 @@
 #include "resight/reconstruction/integration.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -45,16 +46,20 @@ struct Winners {
   }
 };
 
+bool takes_part(const PreparedView& view, std::size_t i, const IntegrateOptions& options) {
+  return view.cloud.has_normal(i) && view.cloud.has_point(i) &&
+         !(view.edge_distance_px[i] < static_cast<float>(options.min_edge_distance_px));
+}
+
 /// `number_of(pixel)`: of its voxel, in the order of their first pixels. Fills `voxel_of_pixel`.
 template <typename NumberOf>
 Winners find_winners(const PreparedView& view, const IntegrateOptions& options, std::vector<int>& voxel_of_pixel,
                      NumberOf&& number_of) {
-  const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
   const OrganizedCloud& cloud = view.cloud;
   Winners winners;
   voxel_of_pixel.assign(cloud.z.size(), VoxelMap::kNotFound);
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
-    if (!cloud.has_normal(i) || !cloud.has_point(i) || view.edge_distance_px[i] < min_edge_distance_px) continue;
+    if (!takes_part(view, i, options)) continue;
     const int number = number_of(i);
     const float lateral_m = view.noise.lateral_m[i];
     winners.add(static_cast<std::size_t>(number), static_cast<int>(i), lateral_m * lateral_m * view.noise.axial_m[i]);
@@ -77,6 +82,18 @@ void keep_winners(const PreparedView& view, Winners winners, ViewVoxels& result)
     cloud_in_world.normals.push_back(world_from_camera.rotation * view.cloud.normal(i));
     cloud_in_world.colors.push_back(view.frame.color[i]);
   }
+}
+
+/// The numbers of voxels that were numbered before; none at all if others have come.
+void keep_numbers(const ViewVoxels& before, const std::vector<int>& number_of_slot, ViewVoxels& result) {
+  const std::size_t num_before = before.keys.size();
+  if (before.numbers.empty() || std::any_of(number_of_slot.begin() + static_cast<std::ptrdiff_t>(num_before),
+                                            number_of_slot.end(), [](int n) { return n != VoxelMap::kNotFound; }))
+    return;
+  result.numbers.resize(result.keys.size());
+  for (std::size_t old = 0; old < num_before; ++old)
+    if (number_of_slot[old] != VoxelMap::kNotFound)
+      result.numbers[static_cast<std::size_t>(number_of_slot[old])] = before.numbers[old];
 }
 
 }  // namespace
@@ -112,19 +129,36 @@ ViewVoxels reduce_again(const PreparedView& view, const ViewVoxels& before, cons
   options.check();
   check_view(view);
   require(before.voxel_of_pixel.size() == view.cloud.z.size(), "reduce_again: not the view that was reduced before");
+  const Rigid3f world_from_camera(view.frame.world_from_camera);
+  const auto inverse_size = static_cast<float>(1.0 / options.voxel_m);
+  const auto key_of = [&](std::size_t i) {
+    return voxel_key(point_in_world(world_from_camera, view.cloud, i), inverse_size);
+  };
+  // An edge may go with the points of one side: then points of the other side come in, into voxels old or new.
+  VoxelMap joined;
+  for (std::size_t i = 0; i < view.cloud.z.size(); ++i)
+    if (takes_part(view, i, options) && before.voxel_of_pixel[i] == VoxelMap::kNotFound) joined.insert(key_of(i));
+  const std::size_t num_before = before.keys.size();
+  std::vector<std::size_t> slot_of_joined(joined.size());
+  std::iota(slot_of_joined.begin(), slot_of_joined.end(), num_before);
+  for (std::size_t old = 0; joined.size() > 0 && old < num_before; ++old)
+    if (const int number = joined.find(before.keys[old]); number != VoxelMap::kNotFound)
+      slot_of_joined[static_cast<std::size_t>(number)] = old;
+
   ViewVoxels result;
-  std::vector<int> number_now(before.keys.size(), VoxelMap::kNotFound);
+  std::vector<int> number_of_slot(num_before + joined.size(), VoxelMap::kNotFound);
   Winners winners = find_winners(view, options, result.voxel_of_pixel, [&](std::size_t i) {
-    const int old_number = before.voxel_of_pixel[i];
-    require(old_number != VoxelMap::kNotFound, "reduce_again: the view has points that it had not before");
-    const auto old = static_cast<std::size_t>(old_number);
-    if (number_now[old] == VoxelMap::kNotFound) {
-      number_now[old] = static_cast<int>(result.keys.size());
-      result.keys.push_back(before.keys[old]);
-      if (!before.numbers.empty()) result.numbers.push_back(before.numbers[old]);
+    const int old = before.voxel_of_pixel[i];
+    const std::size_t slot = old != VoxelMap::kNotFound
+                                 ? static_cast<std::size_t>(old)
+                                 : slot_of_joined[static_cast<std::size_t>(joined.find(key_of(i)))];
+    if (number_of_slot[slot] == VoxelMap::kNotFound) {
+      number_of_slot[slot] = static_cast<int>(result.keys.size());
+      result.keys.push_back(slot < num_before ? before.keys[slot] : key_of(i));
     }
-    return number_now[old];
+    return number_of_slot[slot];
   });
+  keep_numbers(before, number_of_slot, result);
   keep_winners(view, std::move(winners), result);
   return result;
 }

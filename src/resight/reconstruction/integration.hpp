@@ -50,8 +50,8 @@ struct ViewVoxels {
 };
 [[nodiscard]] ViewVoxels reduce_to_voxels(const PreparedView& view, const IntegrateOptions& options = {});
 
-/// The same of a view from which points were taken since it was reduced: each pixel's voxel is known. Numbers are kept.
-/// Throws std::invalid_argument if the view has points that it had not before.
+/// The same of a view from which points were taken since it was reduced, without looking up what did not change.
+/// Numbers are kept, unless voxels have come (with an edge, the points beside it may come in).
 [[nodiscard]] ViewVoxels reduce_again(const PreparedView& view, const ViewVoxels& before,
                                       const IntegrateOptions& options = {});
 

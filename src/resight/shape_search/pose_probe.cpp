@@ -46,6 +46,23 @@ float spacing_of(const std::vector<Eigen::Vector3f>& points) {
   return points.size() < 2 ? 0 : static_cast<float>(sum / static_cast<double>(points.size()));
 }
 
+std::vector<SampleBlock> to_blocks(const std::vector<Eigen::Vector3f>& points,
+                                   const std::vector<Eigen::Vector3f>& normals) {
+  constexpr std::size_t kSize = SampleBlock::kSize;
+  std::vector<SampleBlock> blocks((points.size() + kSize - 1) / kSize);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SampleBlock& block = blocks[i / kSize];
+    const std::size_t k = i % kSize;
+    block.x[k] = points[i].x();
+    block.y[k] = points[i].y();
+    block.z[k] = points[i].z();
+    block.nx[k] = normals[i].x();
+    block.ny[k] = normals[i].y();
+    block.nz[k] = normals[i].z();
+  }
+  return blocks;
+}
+
 // The extent of the largest plane that a pixel lies on.
 float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes) {
   float extent_m = 0;
@@ -77,6 +94,7 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
   set_white_balance(result, Eigen::Array3f::Zero());
   result.points = std::move(samples.points);
   result.normals = std::move(samples.normals);
+  result.blocks = to_blocks(result.points, result.normals);
   result.spacing_m = spacing_of(result.points);
   result.center = model.center;
   result.diameter_m = model.diameter_m;
@@ -131,29 +149,62 @@ SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_fro
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
   const float tolerance =
       tolerance_at((camera_from_object * model.center).z(), options.tolerance_m, options.tolerance_sigmas);
-  for (std::size_t i = 0; i < model.points.size() && counts.facing < options.max_samples; ++i) {
-    const Eigen::Vector3f p = camera_from_object * model.points[i];
-    if (!faces_camera(p, camera_from_object.rotation * model.normals[i])) continue;
-    ++counts.facing;
-    const int pixel = pixel_of(p);
-    if (pixel < 0) {
-      ++counts.hidden;
-      continue;
+  std::size_t i = 0;
+  for (const SampleBlock& block : model.blocks) {
+    const Projected seen = project(block, camera_from_object);
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k, ++i) {
+      if (seen.faces[k] == 0) continue;
+      ++counts.facing;
+      if (seen.pixel[k] < 0) {
+        ++counts.hidden;
+      } else {
+        const Pixel& pixel = pixels_[static_cast<std::size_t>(seen.pixel[k])];
+        if (std::isnan(pixel.z_m)) continue;
+        if (seen.z_m[k] > pixel.z_m + tolerance) {
+          ++counts.hidden;
+        } else if (seen.z_m[k] < pixel.z_m - tolerance || pixel.plane_extent_m > kLargerThan * model.diameter_m) {
+          ++counts.through;
+        } else {
+          ++counts.confirmed;
+          if (!model.chroma.empty() && (model.chroma[i] - pixel.chroma).squaredNorm() > max_chroma_sq)
+            ++counts.off_color;
+        }
+      }
+      counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4;
+      if (counts.gave_up || counts.facing == options.max_samples) return counts;
     }
-    const Pixel& seen = pixels_[static_cast<std::size_t>(pixel)];
-    if (std::isnan(seen.z_m)) continue;
-    if (p.z() > seen.z_m + tolerance) {
-      ++counts.hidden;
-    } else if (p.z() < seen.z_m - tolerance || seen.plane_extent_m > kLargerThan * model.diameter_m) {
-      ++counts.through;
-    } else {
-      ++counts.confirmed;
-      if (!model.chroma.empty() && (model.chroma[i] - seen.chroma).squaredNorm() > max_chroma_sq) ++counts.off_color;
-    }
-    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4;
-    if (counts.gave_up) break;
   }
   return counts;
+}
+
+PoseProbe::Projected PoseProbe::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
+  const Eigen::Matrix3f& r = camera_from_object.rotation;
+  const Eigen::Vector3f& t = camera_from_object.translation;
+  const auto width = static_cast<float>(lab_.width());
+  const auto height = static_cast<float>(lab_.height());
+  std::array<float, SampleBlock::kSize> u;
+  std::array<float, SampleBlock::kSize> v;
+  Projected result;
+  for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {  // No branches: the compiler makes vector code of it.
+    const float x = r(0, 0) * block.x[k] + r(0, 1) * block.y[k] + r(0, 2) * block.z[k] + t.x();
+    const float y = r(1, 0) * block.x[k] + r(1, 1) * block.y[k] + r(1, 2) * block.z[k] + t.y();
+    const float z = r(2, 0) * block.x[k] + r(2, 1) * block.y[k] + r(2, 2) * block.z[k] + t.z();
+    const float nx = r(0, 0) * block.nx[k] + r(0, 1) * block.ny[k] + r(0, 2) * block.nz[k];
+    const float ny = r(1, 0) * block.nx[k] + r(1, 1) * block.ny[k] + r(1, 2) * block.nz[k];
+    const float nz = r(2, 0) * block.nx[k] + r(2, 1) * block.ny[k] + r(2, 2) * block.nz[k];
+    const float facing = -(nx * x + ny * y + nz * z);
+    const float least = kMinFacing * kMinFacing * (x * x + y * y + z * z);
+    result.faces[k] = static_cast<std::uint8_t>((facing > 0) & (facing * facing > least));
+    const float inverse_z = 1 / std::max(z, kMinDepth_m);
+    u[k] = fx_ * x * inverse_z + cx_;
+    v[k] = fy_ * y * inverse_z + cy_;
+    const bool inside = (z > kMinDepth_m) & (u[k] >= 0) & (v[k] >= 0) & (u[k] < width) & (v[k] < height);
+    u[k] = inside ? u[k] : -1.0F;
+    result.z_m[k] = z;
+  }
+  for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
+    result.pixel[k] = u[k] < 0 ? -1 : static_cast<int>(v[k]) * lab_.width() + static_cast<int>(u[k]);
+  return result;
 }
 
 Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,

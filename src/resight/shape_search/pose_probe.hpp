@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,11 +15,18 @@
 
 namespace resight {
 
+/// Eight samples of a surface side by side, for vector instructions. Places that are not filled have no normal.
+struct SampleBlock {
+  static constexpr int kSize = 8;
+  std::array<float, kSize> x{}, y{}, z{}, nx{}, ny{}, nz{};
+};
+
 /// An object as poses of it are tested: samples of its surface, any first part of them spread over all of it. Object
 /// frame.
 struct ProbeModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
+  std::vector<SampleBlock> blocks;            ///< Both again.
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
   std::vector<Eigen::Vector2f> chroma;        ///< chroma() of the same, under the white balance that was set.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
@@ -101,6 +109,13 @@ class PoseProbe {
     int hidden = 0;
     int wrong = 0;
   };
+  // Eight samples at a pose.
+  struct Projected {
+    std::array<std::uint8_t, SampleBlock::kSize> faces;
+    std::array<float, SampleBlock::kSize> z_m;
+    std::array<int, SampleBlock::kSize> pixel;  // -1: outside the image.
+  };
+  [[nodiscard]] Projected project(const SampleBlock& block, const Rigid3f& camera_from_object) const;
   [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
   void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const ProbeModel& model, const Confirmed& confirmed,
