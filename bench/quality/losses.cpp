@@ -4,6 +4,7 @@
 //   bench_losses scene models.resight [preset] [config.toml] [K] [min_visible_share]
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
   SceneRecognizer recognizer(library, config);
   std::map<LossStage, int> losses;
   std::vector<PoseDifference> differences;
+  std::vector<double> errors_in_sigmas;  // of the centre
   RecognitionScore score;
   StageTimes times;
   for (int v = 0; v < sequence->num_views(); ++v) {
@@ -87,6 +89,10 @@ int main(int argc, char** argv) {
     times.add(update.times);
     for (const DetectionMatch& m : matched.matches) {
       differences.push_back(m.difference);
+      const PoseUncertainty& uncertainty = update.detections[m.detection].uncertainty;
+      if (uncertainty.is_known())
+        errors_in_sigmas.push_back(m.difference.center_distance_m /
+                                   std::sqrt(uncertainty.covariance.bottomRightCorner<3, 3>().trace()));
       fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg", v, truth[m.truth].object,
                  1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad);
       print_evidence(evidence_of(update.detections[m.detection], trace));
@@ -111,6 +117,10 @@ int main(int argc, char** argv) {
             [](const auto& a, const auto& b) { return a.center_distance_m < b.center_distance_m; });
   if (!differences.empty())
     fmt::print("median centre error {:.1f} mm\n", 1e3 * differences[differences.size() / 2].center_distance_m);
+  std::sort(errors_in_sigmas.begin(), errors_in_sigmas.end());
+  if (!errors_in_sigmas.empty())
+    fmt::print("centre error over its standard deviation: median {:.1f}, 95 % {:.1f}\n",
+               errors_in_sigmas[errors_in_sigmas.size() / 2], errors_in_sigmas[errors_in_sigmas.size() * 95 / 100]);
   fmt::print("P {:.3f} R {:.3f} F {:.3f}  TP {} FP {} FN {}\n", score.precision(), score.recall(), score.f_score(),
              score.true_positives, score.false_positives, score.false_negatives);
   return 0;

@@ -218,6 +218,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     detection.object = hypotheses[h].object;
     detection.hypothesis_id = hypotheses[h].id;
     detection.world_from_object = evidence.world_from_object;
+    detection.uncertainty = evidence.uncertainty;
     detection.score = evidence.score;
     detection.visible_share = evidence.visible_share;
     for (std::size_t v = 0; v < window.size(); ++v)

@@ -8,6 +8,7 @@
 #include "resight/changes/change_detector.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/geometry/rigid3.hpp"
+#include "resight/verification/pose_uncertainty.hpp"
 
 namespace resight {
 
@@ -25,6 +26,7 @@ struct Detection {
   int track = -1;   ///< Number in the object history; the same object keeps it when it moves.
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
+  PoseUncertainty uncertainty;
   double score = 0;          ///< In [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;

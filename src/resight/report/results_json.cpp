@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "resight/core/check.hpp"
@@ -26,6 +27,22 @@ Json pose_json(const Rigid3& pose) {
 
 Json optional_pose_json(const std::optional<Rigid3>& pose) { return pose ? pose_json(*pose) : Json(nullptr); }
 
+// Numbers row by row; null where it is not known.
+Json uncertainty_json(const PoseUncertainty& uncertainty) {
+  if (!uncertainty.is_known()) return nullptr;
+  const auto& c = uncertainty.covariance;
+  const auto std_of = [&](int i) { return std::sqrt(c(i, i)); };
+  Json free = Json::array();
+  for (const auto& d : uncertainty.free_directions) free.push_back(std::vector<double>(d.begin(), d.end()));
+  std::vector<double> rows;
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 6; ++k) rows.push_back(c(i, k));
+  return {{"turn_std_rad", {std_of(0), std_of(1), std_of(2)}},
+          {"shift_std_m", {std_of(3), std_of(4), std_of(5)}},
+          {"covariance", rows},
+          {"free_directions", free}};
+}
+
 Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrary& library) {
   const Detection& detection = view.update.detections[index];
   const ObjectModel& model = model_of(detection.object, library);
@@ -43,6 +60,7 @@ Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrar
                {"visible_share", detection.visible_share},
                {"camera_from_object", pose_json(view.update.world_from_camera.inverse() * detection.world_from_object)},
                {"world_from_object", pose_json(detection.world_from_object)},
+               {"uncertainty", uncertainty_json(detection.uncertainty)},
                {"evidence", evidence}};
   if (view.evaluation) json["verdict"] = to_string(view.marks.at(index));
   return json;

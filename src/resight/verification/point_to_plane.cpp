@@ -21,6 +21,8 @@ void StepEquations::add(const Eigen::Vector3d& arm, const Eigen::Vector3d& norma
   row << arm.cross(normal) / radius_m, normal;
   matrix += weight * row * row.transpose();
   right += weight * residual * row;
+  sum_weights += weight;
+  sum_residuals_sq += weight * residual * residual;
   ++num_pairs;
 }
 

@@ -12,6 +12,8 @@ namespace resight {
 struct StepEquations {
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  double sum_weights = 0;
+  double sum_residuals_sq = 0;  ///< Weighted.
   int num_pairs = 0;
 
   /// `arm`: the point from the middle; `residual`: how far it is to move along `normal`.

@@ -4,6 +4,7 @@
 
 #include "resight/geometry/rigid3.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
+#include "resight/verification/pose_uncertainty.hpp"
 
 namespace resight {
 
@@ -28,5 +29,13 @@ struct RefinePoseOptions {
 [[nodiscard]] Rigid3 refine_pose_on_scene(const PreparedModel& model, const Rigid3& world_from_object,
                                           std::span<const int> visible, std::span<const Correspondence> correspondences,
                                           const PreparedScene& scene, const RefinePoseOptions& options = {});
+
+/// How well the same pairs fix the pose, about the model's centre; not known where refine_pose_on_scene() would leave
+/// the pose as it is for want of normals or pairs.
+[[nodiscard]] PoseUncertainty estimate_pose_uncertainty(const PreparedModel& model, const Rigid3& world_from_object,
+                                                        std::span<const int> visible,
+                                                        std::span<const Correspondence> correspondences,
+                                                        const PreparedScene& scene,
+                                                        const RefinePoseOptions& options = {});
 
 }  // namespace resight

@@ -97,6 +97,13 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
   return cues;
 }
 
+std::vector<int> visible_points(const HypothesisCues& cues) {
+  std::vector<int> visible;
+  for (std::size_t i = 0; i < cues.state.size(); ++i)
+    if (cues.state[i] != ModelPointState::kNotVisible) visible.push_back(static_cast<int>(i));
+  return visible;
+}
+
 // Whether there is evidence enough to enter the choice; else the verdict says why not.
 bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share) {
@@ -295,6 +302,11 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
   }
   drop_repeated(hypotheses, library, options, candidates, result.evidence);
   choose(hypotheses, library, cues, candidates, options, result);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    if (HypothesisEvidence& e = result.evidence[h]; e.accepted)
+      e.uncertainty =
+          estimate_pose_uncertainty(models[hypotheses[h].object], e.world_from_object, visible_points(cues[h]),
+                                    hypotheses[h].correspondences, scene, options.refine);
   return result;
 }
 

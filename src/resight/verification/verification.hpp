@@ -121,6 +121,7 @@ struct HypothesisEvidence {
   double plane_cost = 0;          ///< Points of planes that it claims, and model points on the far side of a plane.
   double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
   Verdict verdict = Verdict::kTooFewVisible;
+  PoseUncertainty uncertainty;  ///< Of accepted ones.
   int outvoted_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
 };
 
