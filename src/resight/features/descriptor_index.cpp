@@ -298,7 +298,9 @@ void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, BestLis
 
 void DescriptorIndex::Impl::search_batch(const Block& queries, int k, DescriptorMatch* results) const {
   const int num_kept = k + (is_projected() ? kSpareOfComponents : kSpareCandidates);
-  std::vector<BestList> best(static_cast<std::size_t>(queries.rows()), BestList(static_cast<std::size_t>(num_kept)));
+  std::vector<BestList> best;
+  best.reserve(static_cast<std::size_t>(queries.rows()));
+  for (Index q = 0; q < queries.rows(); ++q) best.emplace_back(static_cast<std::size_t>(num_kept));
   Matrix projected;
   if (is_projected()) projected = project(queries);
   const Block compared = is_projected() ? Block(projected) : queries;

@@ -89,6 +89,20 @@ TEST(Attention, KnownObjectsAreConfirmedWithoutASearch) {
   }
 }
 
+// What remembers nothing has to search each view.
+TEST(Attention, SingleViewsAreSearched) {
+  const World world = one_box();
+  const ModelLibrary library = analytic::make_library();
+  for (const bool remember : {false, true}) {
+    RecognizerConfig config = RecognizerConfig::from_preset("default");
+    config.remember_objects = remember;
+    config.num_previous_views = remember ? 0 : 2;
+    SceneRecognizer recognizer(library, config, std::make_shared<ViewHypothesisStore>());
+    const Rigid3 camera = circle_of_cameras(4, 0.8, 0.6, 0.6)[0];
+    for (int view = 0; view < 3; ++view) EXPECT_TRUE(recognizer.add_view(render(world, camera).frame).searched) << view;
+  }
+}
+
 TEST(Attention, RefusesNonsense) {
   EXPECT_THROW(Attention({.max_unseen_share = 2}), std::invalid_argument);
   EXPECT_THROW(Attention({.full_look_every = 0}), std::invalid_argument);

@@ -36,7 +36,7 @@ struct RecognizerConfig {
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
   bool skip_planes = false;       ///< No keypoints on planes larger than the largest object (shape.enabled only).
-  AttentionOptions attention;
+  AttentionOptions attention;  ///< Of no effect unless objects are remembered: a view that is not searched needs them.
   PrepareViewOptions prepare;
   SiftOptions sift;
   ShotOptions shot;

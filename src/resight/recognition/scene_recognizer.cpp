@@ -24,6 +24,9 @@ DynamicSceneOptions scene_options(const RecognizerConfig& config) {
           config.integrate};
 }
 
+// Single views stand for themselves.
+bool remembers(const RecognizerConfig& config) { return config.remember_objects && config.num_previous_views > 0; }
+
 }  // namespace
 
 struct SceneRecognizer::Impl {
@@ -32,7 +35,7 @@ struct SceneRecognizer::Impl {
         config((settings.check(), std::move(settings))),
         history(models, config.history),
         scene(scene_options(config)),
-        attention(config.attention),
+        attention(remembers(config) ? config.attention : AttentionOptions{}),
         store(std::move(shared)) {
     if (!store) generator.emplace(library, config);
   }
@@ -118,7 +121,7 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
 }
 
 void SceneRecognizer::Impl::add_known_objects(std::vector<Hypothesis>& hypotheses) {
-  if (!config.remember_objects || config.num_previous_views == 0) return;
+  if (!remembers(config)) return;
   for (const KnownObject& known : history.known_objects()) {
     Hypothesis hypothesis;
     hypothesis.id = next_known_id++;
