@@ -10,7 +10,7 @@ packages=(
   build-essential cmake ninja-build
   libeigen3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-features2d-dev
-  libtbb-dev libnanoflann-dev libembree-dev libassimp-dev
+  libceres-dev libtbb-dev libnanoflann-dev libembree-dev libassimp-dev
   libflatbuffers-dev flatbuffers-compiler liblzf-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libcli11-dev
 )

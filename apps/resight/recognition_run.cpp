@@ -59,8 +59,9 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
   SceneRecognizer recognizer(library, config);
   Progress progress(config.preset, sequence.num_views());
   for (int v = 0; v < sequence.num_views(); ++v) {
-    const RgbdFrame frame = value_or_throw(sequence.read_view(v));
+    RgbdFrame frame = value_or_throw(sequence.read_view(v));
     SceneUpdate update = recognizer.add_view(frame);
+    frame.world_from_camera = update.world_from_camera;  // as corrected: pictures are drawn with it
     if (v + 1 == sequence.num_views())
       for (ObjectEvent& event : recognizer.finish()) update.events.push_back(std::move(event));
     progress.report(v + 1, describe(update));

@@ -3,7 +3,7 @@
 // returns on slanted surfaces, none near edges (which takes thin things away). As a table.
 //   resight simulate --preset dynamic-tabletop --seed 1 --format bop --out validation
 //   resight train validation/models --out models.resight
-//   bench_robustness validation/test/000001 models.resight [presets] [K] [events.json]
+//   bench_robustness validation/test/000001 models.resight [presets] [K] [events.json] [part of a trouble's name]
 #include <fmt/format.h>
 
 #include <cmath>
@@ -127,7 +127,8 @@ void print_row(const Trouble& trouble, const EvaluatedRun& run) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) exit_with("usage: bench_robustness SEQUENCE LIBRARY [presets] [K] [events.json]");
+  if (argc < 3)
+    exit_with("usage: bench_robustness SEQUENCE LIBRARY [presets] [K] [events.json] [part of a trouble's name]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argc > 5 ? argv[5] : "", ""));
@@ -141,8 +142,10 @@ int main(int argc, char** argv) {
   fmt::print(
       "| trouble | preset | precision | recall | F | ghosts | fewest objects in a view | event precision | event "
       "recall |\n|---|---|---|---|---|---|---|---|---|\n");
+  const std::string wanted = argc > 6 ? argv[6] : "";
   for (const Trouble& trouble : kTroubles)
     for (const RecognizerConfig& config : configs) {
+      if (trouble.name.find(wanted) == std::string::npos) continue;
       const SpoiledSequence spoiled(*sequence, trouble);
       EvaluateSequenceOptions options;
       options.find_losses = false;

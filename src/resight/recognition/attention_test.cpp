@@ -77,10 +77,11 @@ TEST(Attention, KnownObjectsAreConfirmedWithoutASearch) {
   const ModelLibrary library = analytic::make_library();
   auto store = std::make_shared<ViewHypothesisStore>();
   ViewHypotheses first;
+  const Rigid3 camera = circle_of_cameras(4, 0.8, 0.6, 0.6)[0];
+  first.world_from_camera = camera;
   first.hypotheses = {make_hypothesis(kBox, world.solids[0].world_from_object)};
   store->add(0, std::move(first));
   SceneRecognizer recognizer(library, RecognizerConfig::from_preset("default"), store);
-  const Rigid3 camera = circle_of_cameras(4, 0.8, 0.6, 0.6)[0];
   for (int view = 0; view < 4; ++view) {
     const SceneUpdate update = recognizer.add_view(render(world, camera).frame);
     EXPECT_EQ(update.searched, view == 0) << view;

@@ -63,6 +63,31 @@ void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                               });
 }
 
+void add_pose_fields(RecognizerConfig& c, std::vector<Field>& fields) {
+  CorrectCameraOptions& p = c.poses;
+  fields.insert(fields.end(), {
+                                  {"poses.correct", &p.enabled},
+                                  {"poses.num_views", &p.num_views},
+                                  {"poses.sigma_m", &p.sigma_m},
+                                  {"poses.sigma_rad", &p.sigma_rad},
+                                  {"poses.min_overlap", &p.min_overlap},
+                                  {"poses.min_surprise", &p.min_surprise},
+                                  {"poses.max_sigmas", &p.max_sigmas},
+                                  {"poses.view_levels", &p.view.num_levels},
+                                  {"poses.num_levels", &p.align.num_levels},
+                                  {"poses.min_edge_distance_px", &p.view.min_edge_distance_px},
+                                  {"poses.mean_radius", &p.view.mean_radius},
+                                  {"poses.max_distance_m", &p.align.max_distance_m},
+                                  {"poses.min_distance_m", &p.align.min_distance_m},
+                                  {"poses.max_normal_angle_rad", &p.align.max_normal_angle_rad},
+                                  {"poses.max_noise_sigmas", &p.align.max_noise_sigmas},
+                                  {"poses.information_per_pair", &p.align.information_per_pair},
+                                  {"poses.brightness_sigma", &p.align.brightness_sigma},
+                                  {"poses.max_iterations", &p.align.max_iterations},
+                                  {"poses.max_samples", &p.align.max_samples},
+                              });
+}
+
 void add_hypothesis_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   GroupCorrespondencesOptions& g = c.generate.grouping;
   fields.insert(fields.end(), {
@@ -236,6 +261,7 @@ std::vector<Field> list_fields(RecognizerConfig& c) {
                             {"cluster_hypotheses", &c.cluster_hypotheses}, {"clear_tolerance_m", &c.clear_tolerance_m},
                             {"min_reported_share", &c.min_reported_share}, {"min_carried_share", &c.min_carried_share},
                             {"remember_objects", &c.remember_objects},     {"skip_planes", &c.skip_planes}};
+  add_pose_fields(c, fields);
   add_feature_fields(c, fields);
   add_hypothesis_fields(c, fields);
   add_shape_fields(c, fields);
@@ -345,6 +371,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.min_reported_share = 0.02;
     config.history.min_new_share = 0.02;
     config.remember_objects = true;
+    config.poses.enabled = true;
     config.min_carried_share = 0.8;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
     config.skip_planes = true;
@@ -363,7 +390,7 @@ void RecognizerConfig::set_num_threads(int num_threads) {
   for (int* field :
        {&prepare.num_threads, &prepare.normals.num_threads, &shot.num_threads, &match.sift_index.num_threads,
         &match.shot_index.num_threads, &generate.num_threads, &shape.num_threads, &cluster.num_threads,
-        &changes.num_threads, &integrate.num_threads, &verify.num_threads})
+        &poses.align.num_threads, &changes.num_threads, &integrate.num_threads, &verify.num_threads})
     *field = num_threads;
 }
 
@@ -378,6 +405,7 @@ void RecognizerConfig::check() const {
   check_positive("clear_tolerance_m", clear_tolerance_m);
   check_in_range("min_reported_share", min_reported_share, 0, 1);
   check_in_range("min_carried_share", min_carried_share, 0, 1);
+  poses.check();
   prepare.check();
   sift.check();
   attention.check();

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "resight/cameras/camera_corrector.hpp"
 #include "resight/changes/change_detector.hpp"
 #include "resight/changes/removal_support.hpp"
 #include "resight/core/result.hpp"
@@ -37,6 +38,7 @@ struct RecognizerConfig {
                                   ///< for K views (K > 0).
   bool skip_planes = false;       ///< No keypoints on planes larger than the largest object (shape.enabled only).
   AttentionOptions attention;  ///< Of no effect unless objects are remembered: a view that is not searched needs them.
+  CorrectCameraOptions poses;  ///< Of given camera poses (K > 0).
   PrepareViewOptions prepare;
   SiftOptions sift;
   ShotOptions shot;

@@ -93,8 +93,10 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
   constexpr int kThreads = 1;
   constexpr int kPose = num_fields<EstimatePoseOptions>();
   const std::map<std::string, int> expected{
-      {"", num_fields<RecognizerConfig>() - 13},  // the options of the stages
+      {"", num_fields<RecognizerConfig>() - 14},  // the options of the stages
       {"attention", num_fields<AttentionOptions>()},
+      {"poses", num_fields<CorrectCameraOptions>() - 2 + num_fields<AlignmentViewOptions>() +
+                    num_fields<AlignViewOptions>() - kThreads - 2},  // the prior is that of the poses
       {"prepare", num_fields<PrepareViewOptions>() - 2 - kThreads + num_fields<ComputeNormalsOptions>() - kThreads +
                       num_fields<DepthEdgeOptions>()},
       {"sift", num_fields<SiftOptions>()},

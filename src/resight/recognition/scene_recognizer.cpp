@@ -24,6 +24,13 @@ DynamicSceneOptions scene_options(const RecognizerConfig& config) {
           config.integrate};
 }
 
+// A view alone has nothing to be aligned to.
+CorrectCameraOptions correction_options(const RecognizerConfig& config) {
+  CorrectCameraOptions options = config.poses;
+  options.enabled &= config.num_previous_views > 0;
+  return options;
+}
+
 // Single views stand for themselves.
 bool remembers(const RecognizerConfig& config) { return config.remember_objects && config.num_previous_views > 0; }
 
@@ -34,6 +41,7 @@ struct SceneRecognizer::Impl {
       : library(models),
         config((settings.check(), std::move(settings))),
         history(models, config.history),
+        corrector(correction_options(config)),
         scene(scene_options(config)),
         attention(remembers(config) ? config.attention : AttentionOptions{}),
         store(std::move(shared)) {
@@ -55,6 +63,7 @@ struct SceneRecognizer::Impl {
   RecognizerConfig config;
   std::optional<ViewHypothesisGenerator> generator;  // with a store: made when a view needs it
   ObjectHistory history;
+  CameraCorrector corrector;
   DynamicScene scene;
   Attention attention;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
@@ -70,12 +79,16 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   SceneUpdate update;
   update.view = num_views;
   update.view_name = frame.name;
-  update.world_from_camera = frame.world_from_camera;
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
     view = prepare_view(std::move(frame), config.prepare);
   }
+  {
+    const ScopedTimer timer(update.times, "poses");
+    view.frame.world_from_camera = corrector.add_view(view);
+  }
+  update.world_from_camera = view.frame.world_from_camera;
   ++num_views;
   {
     const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
@@ -117,7 +130,10 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
     trace->shot = found->shot;
     trace->correspondences = found->correspondences;
   }
-  return found->hypotheses;
+  const Rigid3& pose = view.frame.world_from_camera;
+  const bool same_pose =
+      found->world_from_camera.rotation == pose.rotation && found->world_from_camera.translation == pose.translation;
+  return same_pose ? found->hypotheses : move_hypotheses(*found, pose);
 }
 
 void SceneRecognizer::Impl::add_known_objects(std::vector<Hypothesis>& hypotheses) {

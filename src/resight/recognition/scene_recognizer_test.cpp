@@ -24,6 +24,7 @@ struct OneLook {
   OneLook() {
     for (int view = 0; view < 4; ++view) store->add(view, {});
     ViewHypotheses first;
+    first.world_from_camera = cameras[0];
     first.hypotheses = {make_hypothesis(kBox, world.solids[0].world_from_object)};
     first.hypotheses[0].origin_view = 0;
     first.hypotheses[0].origin_views = {0};
@@ -50,6 +51,23 @@ TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
   const std::vector<SceneUpdate> forgetful = c.run();
   EXPECT_EQ(forgetful[1].detections.size(), 1U);
   EXPECT_TRUE(forgetful[2].detections.empty());
+}
+
+TEST(SceneRecognizer, APoseThatIsOffIsMended) {
+  OneLook c;
+  const Rigid3 truth = c.cameras[1];
+  RgbdFrame second = render(c.world, truth).frame;
+  second.world_from_camera =
+      truth * Rigid3{Rigid3::from_axis_angle({1, 2, 0}, 0.015).rotation, Eigen::Vector3d(0.008, -0.004, 0.003)};
+  for (const bool correct : {true, false}) {
+    c.config.poses.enabled = correct;
+    SceneRecognizer recognizer(c.library, c.config, c.store);
+    recognizer.add_view(render(c.world, c.cameras[0]).frame);
+    const SceneUpdate update = recognizer.add_view(second);
+    const double off_m = (update.world_from_camera.translation - truth.translation).norm();
+    EXPECT_EQ(off_m < 0.003, correct) << off_m;
+    EXPECT_EQ(update.changes.removed_in_world.size() < 20, correct) << update.changes.removed_in_world.size();
+  }
 }
 
 TEST(SceneRecognizer, SingleViewsAreSingle) {
@@ -90,6 +108,7 @@ TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
 TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
   OneLook c;
   ViewHypotheses first;
+  first.world_from_camera = c.cameras[0];
   const Rigid3& right = c.world.solids[0].world_from_object;
   first.hypotheses = {make_hypothesis(kBox, right), make_hypothesis(kBox, right)};
   first.hypotheses[1].world_from_object.translation += Eigen::Vector3d(0.2, 0.1, 0.05);  // Over the empty table.

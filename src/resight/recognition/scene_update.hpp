@@ -68,7 +68,7 @@ struct HypothesisCounts {
 struct SceneUpdate {
   int view = 0;  ///< Number in the sequence, from 0.
   std::string view_name;
-  Rigid3 world_from_camera;
+  Rigid3 world_from_camera;  ///< As given, or corrected (RecognizerConfig::poses).
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.

@@ -7,9 +7,23 @@
 
 namespace resight {
 
+std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera) {
+  std::vector<Hypothesis> hypotheses = of_view.hypotheses;
+  const Rigid3 new_from_old = world_from_camera * of_view.world_from_camera.inverse();
+  const Rigid3f new_from_old_f(new_from_old);
+  for (Hypothesis& h : hypotheses) {
+    h.world_from_object = new_from_old * h.world_from_object;
+    for (Correspondence& c : h.correspondences) {
+      c.scene_point = new_from_old_f * c.scene_point;
+      c.scene_normal = new_from_old_f.rotation * c.scene_normal;
+    }
+  }
+  return hypotheses;
+}
+
 std::string generation_settings(const RecognizerConfig& config) {
   // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 16> kLaterSections{"preset",
+  constexpr std::array<std::string_view, 17> kLaterSections{"preset",
                                                             "num_previous_views",
                                                             "detect_changes",
                                                             "cluster_hypotheses",
@@ -17,6 +31,7 @@ std::string generation_settings(const RecognizerConfig& config) {
                                                             "min_reported_share",
                                                             "min_carried_share",
                                                             "remember_objects",
+                                                            "poses.",
                                                             "attention.",
                                                             "cluster.",
                                                             "changes.",

@@ -18,7 +18,11 @@ struct ViewHypotheses {
   FeatureSet shot;                                           ///< Camera frame.
   std::vector<std::vector<Correspondence>> correspondences;  ///< Per object.
   StageTimes times;                                          ///< What it took to make them.
+  Rigid3 world_from_camera;                                  ///< Of the view, with which they were put into the world.
 };
+
+/// The same hypotheses for a view whose pose is another.
+[[nodiscard]] std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera);
 
 /// Keeps the hypotheses of each view for several recognisers that are shown the same sequence with the same library and
 /// the same generation_settings(): they do not depend on K, nor on what comes after. The first recogniser makes them,

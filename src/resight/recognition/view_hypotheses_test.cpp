@@ -46,5 +46,25 @@ TEST(ViewHypothesisStore, GivesBackWhatItWasGiven) {
   EXPECT_EQ(store.find(2), nullptr);
 }
 
+TEST(MoveHypotheses, PutsThemWhereTheOtherPoseSeesThem) {
+  ViewHypotheses made;
+  made.world_from_camera = {Rigid3::from_axis_angle({1, 2, 3}, 0.4).rotation, {0.1, 0.2, 0.3}};
+  const Rigid3 camera_from_object = {Rigid3::from_axis_angle({0, 1, 0}, 1.0).rotation, {0, 0.1, 0.8}};
+  const Eigen::Vector3d point_in_camera(0.02, 0.1, 0.75);
+  made.hypotheses.resize(1);
+  made.hypotheses[0].world_from_object = made.world_from_camera * camera_from_object;
+  made.hypotheses[0].correspondences.resize(1);
+  made.hypotheses[0].correspondences[0].scene_point = (made.world_from_camera * point_in_camera).cast<float>();
+  made.hypotheses[0].correspondences[0].scene_normal =
+      (made.world_from_camera.rotation * Eigen::Vector3d::UnitX()).cast<float>();
+  const Rigid3 other = {Rigid3::from_axis_angle({3, 1, 0}, -0.7).rotation, {-1, 0.5, 0}};
+  const std::vector<Hypothesis> moved = move_hypotheses(made, other);
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_LT((moved[0].world_from_object.matrix() - (other * camera_from_object).matrix()).norm(), 1e-12);
+  const Correspondence& c = moved[0].correspondences[0];
+  EXPECT_LT((c.scene_point.cast<double>() - other * point_in_camera).norm(), 1e-6);
+  EXPECT_LT((c.scene_normal.cast<double>() - other.rotation * Eigen::Vector3d::UnitX()).norm(), 1e-6);
+}
+
 }  // namespace
 }  // namespace resight

@@ -22,6 +22,7 @@ ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, co
 
 ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id) const {
   ViewHypotheses made;
+  made.world_from_camera = view.frame.world_from_camera;
   std::optional<SearchedView> searched;
   if (config_.shape.enabled) {
     const ScopedTimer timer(made.times, "planes");

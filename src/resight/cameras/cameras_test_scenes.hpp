@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "resight/core/random.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+/// Analytic views for tests of cameras: a textured floor with a ball and a box wall, seen from anywhere.
+namespace resight::test {
+
+struct BallScene {
+  Eigen::Vector3d ball_m = Eigen::Vector3d(0.1, 0.05, 0.12);
+  double ball_radius_m = 0.12;
+  bool has_ball = true;
+  bool textured = true;
+};
+
+inline Camera small_camera() { return {320, 240, 280.0, 280.0, 159.5, 119.5}; }
+
+/// At `eye`, looking at `target`; world z up.
+inline Rigid3 look_at_point(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
+  const Eigen::Vector3d z = (target - eye).normalized();
+  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Rigid3 pose;
+  pose.rotation << x, z.cross(x), z;
+  pose.translation = eye;
+  return pose;
+}
+
+inline Rgb8 texture_at(const Eigen::Vector3d& p, bool textured) {
+  if (!textured) return {128, 128, 128};
+  double shade = 0;
+  for (int k = 1; k <= 4; ++k)
+    shade += std::sin(17 * k * p.x() + 3 * k * k) * std::sin(19 * k * p.y() + k) + std::sin(23 * k * p.z() + 2 * k);
+  const auto level = static_cast<std::uint8_t>(128 + std::clamp(25 * shade, -120.0, 120.0));
+  return {level, level, level};
+}
+
+/// The floor z = 0, the wall y = 0.8 and the ball, whichever is nearest. `noise_m`: of depth.
+inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_from_camera, double noise_m = 0,
+                                   std::uint64_t seed = 1) {
+  RgbdFrame frame;
+  frame.name = "ball";
+  frame.camera = small_camera();
+  frame.world_from_camera = world_from_camera;
+  frame.color = Image<Rgb8>(frame.camera.width, frame.camera.height);
+  frame.depth_m = Image<float>(frame.camera.width, frame.camera.height, std::numeric_limits<float>::quiet_NaN());
+  Rng rng(seed);
+  const Eigen::Vector3d eye = world_from_camera.translation;
+  for (int v = 0; v < frame.camera.height; ++v)
+    for (int u = 0; u < frame.camera.width; ++u) {
+      const Eigen::Vector3d ray = world_from_camera.rotation * frame.camera.unproject(u, v, 1);
+      double depth = std::numeric_limits<double>::infinity();
+      if (ray.z() < 0) depth = -eye.z() / ray.z();
+      if (ray.y() > 0) depth = std::min(depth, (0.8 - eye.y()) / ray.y());
+      const Eigen::Vector3d offset = eye - scene.ball_m;
+      const double a = ray.squaredNorm(), b = ray.dot(offset);
+      const double root = b * b - a * (offset.squaredNorm() - scene.ball_radius_m * scene.ball_radius_m);
+      if (scene.has_ball && root > 0 && -b - std::sqrt(root) > 0) depth = std::min(depth, (-b - std::sqrt(root)) / a);
+      if (!std::isfinite(depth) || depth > 4) continue;
+      frame.color(u, v) = texture_at(eye + depth * ray, scene.textured);
+      frame.depth_m(u, v) = static_cast<float>(depth + noise_m * rng.normal());
+    }
+  return frame;
+}
+
+/// `a` from `b`: shift in m, rotation in rad.
+inline double shift_m(const Rigid3& a, const Rigid3& b) { return (a.translation - b.translation).norm(); }
+inline double turn_rad(const Rigid3& a, const Rigid3& b) { return rotation_angle_rad(a.rotation, b.rotation); }
+
+}  // namespace resight::test
