@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -15,6 +16,7 @@ struct BallScene {
   double ball_radius_m = 0.12;
   bool has_ball = true;
   bool textured = true;
+  bool ball_print = false;  ///< The ball carries its print along when it moves.
 };
 
 inline Camera small_camera() { return {320, 240, 280.0, 280.0, 159.5, 119.5}; }
@@ -32,8 +34,10 @@ inline Rigid3 look_at_point(const Eigen::Vector3d& eye, const Eigen::Vector3d& t
 inline Rgb8 texture_at(const Eigen::Vector3d& p, bool textured) {
   if (!textured) return {128, 128, 128};
   double shade = 0;
-  for (int k = 1; k <= 4; ++k)
-    shade += std::sin(17 * k * p.x() + 3 * k * k) * std::sin(19 * k * p.y() + k) + std::sin(23 * k * p.z() + 2 * k);
+  // Frequencies without a common period: a pattern that repeats would be the same place again.
+  for (const double f : {11.3, 18.7, 29.9, 47.1})
+    shade += std::sin(f * (p.x() + 0.3 * p.y() * p.y())) * std::sin(1.31 * f * p.y() + 5 * p.x()) +
+             std::sin(1.17 * f * p.z() + 2 * p.x());
   const auto level = static_cast<std::uint8_t>(128 + std::clamp(25 * shade, -120.0, 120.0));
   return {level, level, level};
 }
@@ -60,7 +64,10 @@ inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_f
       const double root = b * b - a * (offset.squaredNorm() - scene.ball_radius_m * scene.ball_radius_m);
       if (scene.has_ball && root > 0 && -b - std::sqrt(root) > 0) depth = std::min(depth, (-b - std::sqrt(root)) / a);
       if (!std::isfinite(depth) || depth > 4) continue;
-      frame.color(u, v) = texture_at(eye + depth * ray, scene.textured);
+      const Eigen::Vector3d p = eye + depth * ray;
+      const bool on_ball = scene.has_ball && (p - scene.ball_m).norm() < scene.ball_radius_m + 1e-6;
+      frame.color(u, v) =
+          texture_at(on_ball && scene.ball_print ? Eigen::Vector3d(4 * (p - scene.ball_m)) : p, scene.textured);
       frame.depth_m(u, v) = static_cast<float>(depth + noise_m * rng.normal());
     }
   return frame;

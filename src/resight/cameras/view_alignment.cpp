@@ -15,12 +15,14 @@ namespace resight {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Twistf = Eigen::Matrix<float, 6, 1>;
 
-constexpr std::size_t kBlock = 512;           // Samples of one partial sum.
-constexpr double kStill = 1e-5;               // Radians and metres: a smaller step has converged.
-constexpr double kMinEigenvalueRatio = 1e-4;  // Directions that the data tell less of are left as they are.
-constexpr double kBrightnessGate = 4;         // In sigmas.
-constexpr float kMaxPairDistance = 3;         // Of points, in units of the largest distance to the plane.
+constexpr std::size_t kBlock = 512;  // Samples of one partial sum.
+constexpr double kStill = 1e-5;      // Radians and metres: a smaller step has converged.
+// Directions that the data tell less of, compared to the best known one, are open, and left as they are.
+constexpr double kMinEigenvalueRatio = 3e-4;
+constexpr double kBrightnessGate = 4;  // In sigmas.
+constexpr float kMaxPairDistance = 3;  // Of points, in units of the largest distance to the plane.
 
 // The points of one level that are aligned.
 struct Samples {
@@ -51,30 +53,55 @@ Samples draw_samples(const AlignmentLevel& level, int max_samples) {
 // Normal equations and counts; sums of blocks are added in order.
 struct Sums {
   Matrix6 h = Matrix6::Zero();  // upper triangle
+  // The same with the view's own normal for one of the two factors. Noise turns every normal a little, so that h has a
+  // plain floor known along itself; the noises of two normals cancel. Not symmetric until the end.
+  Matrix6 unbiased = Matrix6::Zero();
   Twist g = Twist::Zero();
   double distance_m = 0;
   int num_pairs = 0;
+  double brightness[5] = {};  // a, b, a^2, b^2, a b over num_bright pairs
+  int num_bright = 0;
   int num_matched = 0;  // samples with a pair in some target
   int num_seen_through = 0;
 
-  void add(const Eigen::Vector3f& p, const Eigen::Vector3f& direction, double residual, double weight) {
-    const Eigen::Vector3f turn = p.cross(direction);
-    const std::array<double, 6> j{turn.x(), turn.y(), turn.z(), direction.x(), direction.y(), direction.z()};
+  void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
     for (int c = 0; c < 6; ++c) {
-      const double wj = weight * j[static_cast<std::size_t>(c)];
-      for (int r = 0; r <= c; ++r) h(r, c) += wj * j[static_cast<std::size_t>(r)];
+      const double wj = weight * j[c];
+      for (int r = 0; r <= c; ++r) h(r, c) += wj * j[r];
+      for (int r = 0; r < 6; ++r) unbiased(r, c) += wj * other_j[r];
       g[c] += wj * residual;
     }
   }
+  void add_brightness(double a, double b) {
+    const double terms[5] = {a, b, a * a, b * b, a * b};
+    for (int k = 0; k < 5; ++k) brightness[k] += terms[k];
+    ++num_bright;
+  }
+  [[nodiscard]] double brightness_correlation() const {
+    const double n = num_bright;
+    const double variances =
+        (n * brightness[2] - brightness[0] * brightness[0]) * (n * brightness[3] - brightness[1] * brightness[1]);
+    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without print
+  }
   void add(const Sums& other) {
     h += other.h;
+    unbiased += other.unbiased;
     g += other.g;
     distance_m += other.distance_m;
     num_pairs += other.num_pairs;
+    for (int k = 0; k < 5; ++k) brightness[k] += other.brightness[k];
+    num_bright += other.num_bright;
     num_matched += other.num_matched;
     num_seen_through += other.num_seen_through;
   }
 };
+
+// How a motion of a point, along `direction` in the view's frame, follows from a twist of the view.
+Twistf jacobian(const Eigen::Vector3f& p, const Eigen::Vector3f& direction) {
+  Twistf j;
+  j << p.cross(direction), direction;
+  return j;
+}
 
 double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
 
@@ -142,12 +169,14 @@ class LevelTarget {
                 const Eigen::Vector3f& normal, float distance, float gate, float sigma_sq, Sums& sums) const {
     const Eigen::Vector3f p = samples.points[s];
     const double weight = tukey(distance / gate);
-    sums.add(p, pose_.rotation.transpose() * normal, distance, weight / sigma_sq);
+    sums.add(jacobian(p, pose_.rotation.transpose() * normal), jacobian(p, samples.normals[s]), distance,
+             weight / sigma_sq);
     sums.distance_m += std::abs(distance);
     ++sums.num_pairs;
     if (options_.brightness_sigma <= 0) return;
     float value = 0, du = 0, dv = 0;
     if (!interpolate(level_.brightness, pixel.x(), pixel.y(), value, du, dv)) return;
+    sums.add_brightness(value, samples.brightness[s]);
     const double residual = value - samples.brightness[s];
     const double sigma = options_.brightness_sigma;
     const double brightness_weight = weight * tukey(residual / (kBrightnessGate * sigma));
@@ -155,7 +184,8 @@ class LevelTarget {
     const auto gu = static_cast<float>(du * level_.camera.fx) / q.z();
     const auto gv = static_cast<float>(dv * level_.camera.fy) / q.z();
     const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // of brightness, per metre
-    sums.add(p, pose_.rotation.transpose() * gradient, residual, brightness_weight / (sigma * sigma));
+    const Twistf j = jacobian(p, pose_.rotation.transpose() * gradient);
+    sums.add(j, j, residual, brightness_weight / (sigma * sigma));
   }
 
   const AlignmentLevel& level_;
@@ -188,21 +218,30 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
   });
   Sums all;
   for (const Sums& sums : partial) all.add(sums);
-  all.h = all.h.selfadjointView<Eigen::Upper>();
+  all.h = Matrix6(all.h.selfadjointView<Eigen::Upper>());
+  all.unbiased = 0.5 * Matrix6(all.unbiased + all.unbiased.transpose());
   return all;
 }
 
+// A basis of the motions that the information tells of, one a column.
+Eigen::Matrix<double, 6, Eigen::Dynamic> known_motions(const Matrix6& information) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
+  int num_open = 0;
+  while (num_open < 6 && !(solver.eigenvalues()[num_open] > kMinEigenvalueRatio * solver.eigenvalues()[5])) ++num_open;
+  return solver.eigenvectors().rightCols(6 - num_open);
+}
+
 // The least-squares step; what the data (and the prior) leave open stays.
-Twist solve_step(const Matrix6& h, const Twist& g) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(h);
-  const Twist values = solver.eigenvalues();
-  Twist step = Twist::Zero();
-  for (int i = 0; i < 6; ++i) {
-    if (!(values[i] > kMinEigenvalueRatio * values[5])) continue;
-    const Twist direction = solver.eigenvectors().col(i);
-    step -= direction * (direction.dot(g) / values[i]);
-  }
-  return step;
+Twist solve_step(const Matrix6& h, const Matrix6& unbiased, const Twist& g) {
+  const auto motions = known_motions(unbiased);
+  if (motions.cols() == 0) return Twist::Zero();
+  return -motions * (motions.transpose() * h * motions).ldlt().solve(motions.transpose() * g);
+}
+
+Matrix6 known_information(const Matrix6& unbiased) {
+  const auto motions = known_motions(unbiased);
+  const Matrix6 onto_known = motions * motions.transpose();
+  return onto_known * unbiased * onto_known;
 }
 
 Twist prior_information(const AlignViewOptions& options) {
@@ -220,9 +259,11 @@ Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targ
     const Sums sums = sum_pairs(samples, targets, level, pose, gate_m, options);
     if (sums.num_pairs == 0) break;
     Matrix6 h = options.information_per_pair * sums.h;
+    Matrix6 unbiased = options.information_per_pair * sums.unbiased;
     h.diagonal() += prior;
+    unbiased.diagonal() += prior;
     const Twist g = options.information_per_pair * sums.g + prior.cwiseProduct(to_twist(given.inverse() * pose));
-    const Twist step = solve_step(h, g);
+    const Twist step = solve_step(h, unbiased, g);
     pose = pose * from_twist(step);
     if (step.cwiseAbs().maxCoeff() < kStill) break;
   }
@@ -262,11 +303,12 @@ AlignedView judge_alignment(const AlignmentView& view, std::span<const Alignment
   const Sums sums = sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options);
   AlignedView aligned;
   aligned.world_from_camera = world_from_camera;
-  aligned.information = options.information_per_pair * sums.h;
+  aligned.information = options.information_per_pair * known_information(sums.unbiased);
   const double num_samples = std::max<double>(1, static_cast<double>(samples.points.size()));
   aligned.overlap = sums.num_matched / num_samples;
   aligned.seen_through = sums.num_seen_through / num_samples;
   aligned.mean_distance_m = sums.num_pairs > 0 ? sums.distance_m / sums.num_pairs : 0;
+  aligned.brightness_correlation = sums.brightness_correlation();
   aligned.num_pairs = sums.num_pairs;
   return aligned;
 }

@@ -38,6 +38,8 @@ struct AlignedView {
   double overlap = 0;          ///< Share of the view's points that have a counterpart in a target.
   double seen_through = 0;     ///< Share of them that lie in front of what all targets that see there show.
   double mean_distance_m = 0;  ///< Of the pairs, point to plane, absolute.
+  /// Between the brightness of the pairs; NaN where there is no print.
+  double brightness_correlation = 0;
   int num_pairs = 0;
 };
 

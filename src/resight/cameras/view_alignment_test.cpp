@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "resight/cameras/camera_corrector.hpp"
@@ -79,6 +80,18 @@ TEST_F(Alignment, BrighterLightIsNoError) {
   }
   const AlignedView aligned = align_view(make_alignment_view(brighter), targets, off(second_pose(), 0.02, 0.02));
   EXPECT_LT(shift_m(aligned.world_from_camera, second_pose()), 0.0025);
+}
+
+TEST_F(Alignment, APlainFloorIsOpenAlongItself) {
+  BallScene bare;
+  bare.has_ball = bare.textured = false;
+  const Rigid3 down = test::look_at_point({0, -0.5, 0.9}, {0, -0.2, 0});
+  const AlignmentView a = make_alignment_view(prepared(bare, down, 0.0015, 1));
+  const AlignmentView b = make_alignment_view(prepared(bare, down, 0.0015, 2));
+  const std::vector<AlignmentTarget> one{{&a, down}};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(align_view(b, one, down).information);
+  EXPECT_LT(solver.eigenvalues()[2], 1) << "two shifts and a turn";
+  EXPECT_GT(solver.eigenvalues()[3], 1e4);
 }
 
 TEST_F(Alignment, UncertaintyIsThatOfTheErrors) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "resight/features/descriptor_index.hpp"
+#include "resight/features/feature_set.hpp"
+#include "resight/hypotheses/pose_estimation.hpp"
+
+namespace resight {
+
+struct MatchViewsOptions {
+  double max_ratio = 0.85;  ///< Of the distances to the best and the second best descriptor (Lowe 2004).
+  EstimatePoseOptions pose{.inlier_distance_m = 0.02, .max_normal_angle_rad = 0.8, .min_inliers = 10};
+  void check() const;
+};
+
+/// The features of one view, ready to be matched with those of others.
+class ViewFeatures {
+ public:
+  explicit ViewFeatures(FeatureSet features_in_camera);
+  [[nodiscard]] const FeatureSet& features() const { return features_; }
+  [[nodiscard]] const DescriptorIndex& index() const { return index_; }
+
+ private:
+  FeatureSet features_;
+  DescriptorIndex index_;
+};
+
+struct ViewMatch {
+  Rigid3 a_from_b;
+  int num_inliers = 0;
+  double rms_m = 0;  ///< Of the inliers.
+};
+
+/// The relative pose of two cameras that see the same things, by matched features and RANSAC; no match when too few
+/// agree. Neither needs an estimate before. What has moved between the views in one piece may win over the background:
+/// the caller checks the pose with the whole views (judge_alignment()).
+[[nodiscard]] std::optional<ViewMatch> match_views(const ViewFeatures& a, const ViewFeatures& b,
+                                                   const MatchViewsOptions& options = {});
+
+}  // namespace resight

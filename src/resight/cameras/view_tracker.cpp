@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/cameras/view_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+
+namespace resight {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// What features alone say of a pose: added to what the surfaces say, where these leave something open.
+constexpr double kFeatureSigma_m = 0.01;
+constexpr double kFeatureSigma_rad = 0.015;
+// What calibration and time stamps leave between any two views, however many pixels agree.
+constexpr double kFloorSigma_m = 0.003;
+constexpr double kFloorSigma_rad = 0.003;
+constexpr double kMaxOpenSigma = 0.02;  // m, rad: a direction that is known no better is open.
+constexpr int kNumRounds = 2;           // Of closing loops: the second from adjusted poses.
+
+Matrix6 diagonal(double sigma_rad, double sigma_m, int power) {
+  Twist values;
+  values << Eigen::Vector3d::Constant(std::pow(sigma_rad, power)), Eigen::Vector3d::Constant(std::pow(sigma_m, power));
+  return values.asDiagonal();
+}
+
+Matrix6 feature_information() { return diagonal(kFeatureSigma_rad, kFeatureSigma_m, -2); }
+
+// Of an edge: open directions may be off by much, but no direction is known better than the floor.
+Matrix6 edge_information(const Matrix6& information) {
+  const Matrix6 covariance = (information + 1e-3 * Matrix6::Identity()).inverse();
+  const Matrix6 inverse = (covariance + diagonal(kFloorSigma_rad, kFloorSigma_m, 2)).inverse();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+Twist sigma_of(const Matrix6& information) {
+  const Matrix6 regular = information + 1e-6 * Matrix6::Identity();
+  return regular.inverse().diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+struct Keyframe {
+  int view = 0;
+  AlignmentView alignment;
+  ViewFeatures features;
+};
+
+// A way to join a view to a keyframe.
+struct Join {
+  int keyframe = 0;
+  AlignedView aligned;  // in the keyframe's part
+  int num_matches = -1;
+  Matrix6 information = Matrix6::Zero();
+  [[nodiscard]] double score() const { return aligned.overlap - aligned.seen_through; }
+};
+
+}  // namespace
+
+struct ViewTracker::Impl {
+  explicit Impl(const TrackViewsOptions& o) : options((o.check(), o)) {
+    options.align.num_threads = options.num_threads;
+  }
+
+  TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask);
+  CameraTrack finish();
+
+  [[nodiscard]] ViewFeatures extract(const PreparedView& view, const Image<std::uint8_t>* mask) const {
+    return ViewFeatures(extract_sift(view, options.sift, mask));
+  }
+  [[nodiscard]] const Rigid3& pose_of(const Keyframe& k) const {
+    return views[static_cast<std::size_t>(k.view)].world_from_camera;
+  }
+  [[nodiscard]] int part_of(const Keyframe& k) const { return views[static_cast<std::size_t>(k.view)].part; }
+
+  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int part, const Rigid3& pose) const;
+  [[nodiscard]] std::vector<AlignmentTarget> targets_of(const std::vector<std::size_t>& chosen) const;
+  [[nodiscard]] bool is_plausible(const AlignedView& aligned, double min_overlap) const;
+  [[nodiscard]] std::optional<Join> follow(const AlignmentView& view) const;
+  [[nodiscard]] std::optional<Join> find_by_features(const AlignmentView& view, const ViewFeatures& features) const;
+  [[nodiscard]] std::optional<Join> join_to(std::size_t keyframe, const AlignmentView& view,
+                                            const ViewFeatures& features) const;
+  [[nodiscard]] bool is_keyframe(const Join& join) const;
+  void add_edges(int view, const AlignmentView& alignment, const Join& join);
+
+  [[nodiscard]] std::optional<PoseEdge> measure_pair(const Keyframe& a, const Keyframe& b, bool match) const;
+  void close_loops(bool match);
+  void adjust();
+
+  TrackViewsOptions options;
+  std::vector<Keyframe> keyframes;
+  std::vector<TrackedView> views;
+  std::vector<PoseEdge> edges;
+};
+
+// Those of the part that look from about the same side, the nearest first.
+std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int part, const Rigid3& pose) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < keyframes.size(); ++k) {
+    if (part_of(keyframes[k]) != part) continue;
+    const Rigid3& other = pose_of(keyframes[k]);
+    const double distance = (other.translation - pose.translation).norm() / options.keyframe_shift_m +
+                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe_turn_rad;
+    order.emplace_back(distance, k);
+  }
+  std::ranges::sort(order);
+  std::vector<std::size_t> nearest;
+  for (const auto& [distance, k] : order)
+    if (nearest.size() < static_cast<std::size_t>(options.num_targets)) nearest.push_back(k);
+  return nearest;
+}
+
+std::vector<AlignmentTarget> ViewTracker::Impl::targets_of(const std::vector<std::size_t>& chosen) const {
+  std::vector<AlignmentTarget> targets;
+  for (const std::size_t k : chosen) targets.push_back({&keyframes[k].alignment, pose_of(keyframes[k])});
+  return targets;
+}
+
+bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
+  return aligned.num_pairs > 0 && aligned.overlap >= min_overlap &&
+         aligned.seen_through <= options.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
+         !(aligned.brightness_correlation < options.min_correlation);
+}
+
+// From the last view on, as if the camera stood still or went on as before.
+std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
+  const TrackedView& last = views.back();
+  std::vector<Rigid3> starts{last.world_from_camera};
+  if (views.size() > 1 && views[views.size() - 2].part == last.part)
+    starts.push_back(last.world_from_camera *
+                     (views[views.size() - 2].world_from_camera.inverse() * last.world_from_camera));
+  std::optional<Join> best;
+  const std::vector<std::size_t> near = nearest_keyframes(last.part, last.world_from_camera);
+  for (const Rigid3& start : starts) {
+    Join join{static_cast<int>(near.front()), align_view(view, targets_of(near), start, options.align)};
+    join.information = join.aligned.information;
+    const Rigid3 step = start.inverse() * join.aligned.world_from_camera;
+    const bool small = step.translation.norm() < options.max_step_m &&
+                       rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.max_step_rad;
+    if (!small || !is_plausible(join.aligned, options.min_followed_overlap)) continue;
+    if (sigma_of(join.information).maxCoeff() > kMaxOpenSigma) continue;
+    if (!best || join.score() > best->score()) best = std::move(join);
+  }
+  return best;
+}
+
+std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const AlignmentView& view,
+                                               const ViewFeatures& features) const {
+  const Keyframe& k = keyframes[keyframe];
+  const std::optional<ViewMatch> match = match_views(k.features, features, options.match);
+  if (!match) return std::nullopt;
+  AlignViewOptions align = options.align;
+  align.prior_sigma_m = kFeatureSigma_m;
+  align.prior_sigma_rad = kFeatureSigma_rad;
+  const std::vector<AlignmentTarget> targets{{&k.alignment, pose_of(k)}};
+  Join join{static_cast<int>(keyframe), align_view(view, targets, pose_of(k) * match->a_from_b, align),
+            match->num_inliers};
+  join.information = join.aligned.information + feature_information();
+  if (!is_plausible(join.aligned, options.min_overlap)) return std::nullopt;
+  const std::vector<AlignmentTarget> back{{&view, join.aligned.world_from_camera}};
+  if (!is_plausible(judge_alignment(k.alignment, back, pose_of(k), align), options.min_overlap)) return std::nullopt;
+  return join;
+}
+
+// Among the last keyframes first, then among all.
+std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& view, const ViewFeatures& features) const {
+  const std::size_t num_recent = std::min(keyframes.size(), static_cast<std::size_t>(options.num_targets));
+  std::vector<std::optional<Join>> joins(keyframes.size());
+  const auto try_all = [&](std::size_t begin, std::size_t end) {
+    std::optional<Join> best;
+    for (std::size_t k = begin; k < end; ++k) {
+      std::optional<Join> join = join_to(k, view, features);
+      if (join && (!best || join->score() > best->score())) best = std::move(join);
+    }
+    return best;
+  };
+  std::optional<Join> recent = try_all(keyframes.size() - num_recent, keyframes.size());
+  return recent ? recent : try_all(0, keyframes.size() - num_recent);
+}
+
+bool ViewTracker::Impl::is_keyframe(const Join& join) const {
+  const Rigid3& pose = join.aligned.world_from_camera;
+  const int part = part_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
+  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(part, pose).front()]);
+  return (nearest.translation - pose.translation).norm() > options.keyframe_shift_m ||
+         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe_turn_rad;
+}
+
+// To the keyframe that it was joined to, and to those beside it that see the same.
+void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, const Join& join) {
+  const Rigid3& pose = join.aligned.world_from_camera;
+  const Keyframe& first = keyframes[static_cast<std::size_t>(join.keyframe)];
+  AlignViewOptions near = options.align;
+  near.num_levels = 1;
+  for (const std::size_t k : nearest_keyframes(part_of(first), pose)) {
+    if (static_cast<int>(k) == join.keyframe) continue;
+    const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
+    const AlignedView aligned = align_view(alignment, target, pose, near);
+    if (!is_plausible(aligned, options.min_overlap)) continue;
+    edges.push_back({keyframes[k].view, view, pose_of(keyframes[k]).inverse() * aligned.world_from_camera,
+                     edge_information(aligned.information)});
+  }
+  edges.push_back({first.view, view, pose_of(first).inverse() * pose, edge_information(join.information)});
+}
+
+TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<std::uint8_t>* mask) {
+  AlignmentView alignment = make_alignment_view(view, options.view, mask);
+  const int number = static_cast<int>(views.size());
+  TrackedView tracked;
+  tracked.name = view.frame.name;
+  tracked.part = number;
+  tracked.is_keyframe = true;
+  std::optional<ViewFeatures> features;
+  std::optional<Join> join;
+  if (!views.empty()) join = follow(alignment);
+  if (!join) {
+    features.emplace(extract(view, mask));
+    if (!keyframes.empty()) join = find_by_features(alignment, *features);
+  }
+  if (join) {
+    tracked.world_from_camera = join->aligned.world_from_camera;
+    tracked.part = part_of(keyframes[static_cast<std::size_t>(join->keyframe)]);
+    tracked.is_keyframe = is_keyframe(*join);
+    tracked.num_matches = join->num_matches;
+    tracked.overlap = join->aligned.overlap;
+    tracked.sigma = sigma_of(join->information);
+    add_edges(number, alignment, *join);
+  }
+  views.push_back(tracked);
+  if (tracked.is_keyframe) {
+    if (!features) features.emplace(extract(view, mask));
+    keyframes.push_back({number, std::move(alignment), std::move(*features)});
+  }
+  return tracked;
+}
+
+// `match`: by features too, for pairs that are not known to see the same.
+std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
+  const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
+  std::optional<AlignedView> best;
+  Matrix6 information = Matrix6::Zero();
+  AlignViewOptions align = options.align;
+  align.num_threads = 1;  // pairs are measured side by side
+  if (part_of(a) == part_of(b) && judge_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
+    const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
+    if (is_plausible(aligned, options.min_overlap)) best = aligned;
+  }
+  if (!best && match) {
+    if (const std::optional<ViewMatch> found = match_views(a.features, b.features, options.match)) {
+      align.prior_sigma_m = kFeatureSigma_m;
+      align.prior_sigma_rad = kFeatureSigma_rad;
+      const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
+      information += feature_information();
+      if (is_plausible(aligned, options.min_overlap)) best = aligned;
+    }
+  }
+  if (!best) return std::nullopt;
+  const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
+  if (!is_plausible(judge_alignment(a.alignment, back, pose_of(a), align), options.min_overlap)) return std::nullopt;
+  return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
+                  edge_information(best->information + information)};
+}
+
+// Measures all pairs of keyframes anew; edges to other views stay.
+void ViewTracker::Impl::close_loops(bool match) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t b = 0; b < keyframes.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a) pairs.emplace_back(a, b);
+  const bool match_all = match && pairs.size() <= static_cast<std::size_t>(options.max_feature_pairs);
+  std::vector<std::optional<PoseEdge>> measured(pairs.size());
+  parallel_for(pairs.size(), options.num_threads, [&](std::size_t p) {
+    measured[p] = measure_pair(keyframes[pairs[p].first], keyframes[pairs[p].second], match_all);
+  });
+  const auto joins = [](const PoseEdge& e, int a, int b) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); };
+  for (const std::optional<PoseEdge>& edge : measured) {
+    if (!edge) continue;
+    std::erase_if(edges, [&](const PoseEdge& e) { return joins(e, edge->a, edge->b); });
+    edges.push_back(*edge);
+  }
+}
+
+// Adjusts all poses; edges that do not fit go, and with them the parts that only they held together.
+void ViewTracker::Impl::adjust() {
+  std::vector<Rigid3> poses;
+  for (const TrackedView& view : views) poses.push_back(view.world_from_camera);
+  // Parts that have just been joined start from the first edge between them.
+  std::vector<int> parts;
+  for (const TrackedView& view : views) parts.push_back(view.part);
+  for (const PoseEdge& e : edges) {
+    const int keep = parts[static_cast<std::size_t>(e.a)], move = parts[static_cast<std::size_t>(e.b)];
+    if (keep == move) continue;
+    const Rigid3 keep_from_move =
+        poses[static_cast<std::size_t>(e.a)] * e.a_from_b * poses[static_cast<std::size_t>(e.b)].inverse();
+    for (std::size_t v = 0; v < poses.size(); ++v) {
+      if (parts[v] != move) continue;
+      poses[v] = keep_from_move * poses[v];
+      parts[v] = keep;
+    }
+  }
+  for (bool again = true; again;) {
+    PoseGraph graph = adjust_pose_graph(std::move(poses), edges, options.graph);
+    poses = std::move(graph.world_from_node);
+    std::vector<PoseEdge> kept;
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      if (graph.error_sq[e] <= options.max_edge_error_sq) kept.push_back(edges[e]);
+    again = kept.size() < edges.size();
+    edges = std::move(kept);
+  }
+  parts = find_connected_parts(views.size(), edges);
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    views[v].world_from_camera = poses[v];
+    views[v].part = parts[v];
+  }
+}
+
+CameraTrack ViewTracker::Impl::finish() {
+  for (int round = 0; round < kNumRounds; ++round) {
+    close_loops(round == 0);
+    adjust();
+  }
+  CameraTrack track;
+  track.views = views;
+  track.edges = edges;
+  std::vector<std::optional<Rigid3>> first_from_world;
+  for (TrackedView& view : track.views) {
+    const auto part = static_cast<std::size_t>(view.part);
+    if (first_from_world.size() <= part) first_from_world.resize(part + 1);
+    if (!first_from_world[part]) first_from_world[part] = view.world_from_camera.inverse();
+    view.world_from_camera = *first_from_world[part] * view.world_from_camera;
+    view.world_from_camera.rotation = nearest_rotation(view.world_from_camera.rotation);
+  }
+  track.num_parts = static_cast<int>(first_from_world.size());
+  for (const PoseEdge& e : edges) {
+    int between = 0;  // keyframes
+    for (int v = std::min(e.a, e.b) + 1; v < std::max(e.a, e.b); ++v)
+      between += views[static_cast<std::size_t>(v)].is_keyframe ? 1 : 0;
+    track.num_loops += between >= options.num_targets ? 1 : 0;
+  }
+  return track;
+}
+
+void TrackViewsOptions::check() const {
+  check_positive("keyframe_shift_m", keyframe_shift_m);
+  check_positive("keyframe_turn_rad", keyframe_turn_rad);
+  check_positive("num_targets", num_targets);
+  check_positive("max_step_m", max_step_m);
+  check_positive("max_step_rad", max_step_rad);
+  check_in_range("min_overlap", min_overlap, 0, 1);
+  check_in_range("min_followed_overlap", min_followed_overlap, 0, 1);
+  check_in_range("max_seen_through", max_seen_through, 0, 1);
+  check_in_range("min_correlation", min_correlation, -1, 1);
+  check_positive("max_edge_error_sq", max_edge_error_sq);
+  check_not_negative("max_feature_pairs", max_feature_pairs);
+  sift.check();
+  match.check();
+  view.check();
+  align.check();
+  graph.check();
+  check_positive("num_threads", num_threads);
+}
+
+ViewTracker::ViewTracker(const TrackViewsOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+ViewTracker::~ViewTracker() = default;
+ViewTracker::ViewTracker(ViewTracker&&) noexcept = default;
+TrackedView ViewTracker::add_view(const PreparedView& view, const Image<std::uint8_t>* mask) {
+  return impl_->add_view(view, mask);
+}
+CameraTrack ViewTracker::finish() { return impl_->finish(); }
+
+}  // namespace resight

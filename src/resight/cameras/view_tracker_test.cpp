@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/cameras/view_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "resight/cameras/cameras_test_scenes.hpp"
+#include "resight/cameras/trajectory_error.hpp"
+
+namespace resight {
+namespace {
+
+using test::BallScene;
+
+Rigid3 walk(int step, int num_steps) {
+  const double angle = -0.8 + 1.6 * step / (num_steps - 1);
+  return test::look_at_point({1.0 * std::sin(angle), 0.3 - 1.1 * std::cos(angle), 0.75}, {0, 0.3, 0.05});
+}
+
+PreparedView see(const BallScene& scene, const Rigid3& pose, int number) {
+  return prepare_view(test::render_ball_scene(scene, pose, 0.0015, static_cast<std::uint64_t>(number)));
+}
+
+std::vector<Rigid3> poses_of(const CameraTrack& track) {
+  std::vector<Rigid3> poses;
+  for (const TrackedView& view : track.views) poses.push_back(view.world_from_camera);
+  return poses;
+}
+
+TEST(MatchViews, FindsTheRelativePose) {
+  const Rigid3 a = walk(2, 8), b = walk(3, 8);
+  const ViewFeatures in_a(extract_sift(see({}, a, 1))), in_b(extract_sift(see({}, b, 2)));
+  const std::optional<ViewMatch> match = match_views(in_a, in_b);
+  ASSERT_TRUE(match.has_value());
+  EXPECT_GE(match->num_inliers, 10);
+  EXPECT_LT(test::shift_m(match->a_from_b, a.inverse() * b), 0.01);
+  EXPECT_LT(test::turn_rad(match->a_from_b, a.inverse() * b), 0.01);
+}
+
+TEST(MatchViews, NothingInCommonIsNoMatch) {
+  BallScene plain;
+  plain.textured = false;
+  const ViewFeatures in_a(extract_sift(see({}, walk(0, 8), 1))), none(extract_sift(see(plain, walk(1, 8), 2)));
+  EXPECT_FALSE(match_views(in_a, none).has_value());
+  EXPECT_FALSE(match_views(none, in_a).has_value());
+}
+
+TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
+  constexpr int kViews = 9;
+  ViewTracker tracker;
+  std::vector<Rigid3> truth;
+  for (int v = 0; v < kViews; ++v) {
+    BallScene scene;
+    if (v >= 3) scene.ball_m += Eigen::Vector3d(-0.25, 0.1, 0);
+    scene.has_ball = v < 6;
+    truth.push_back(walk(v, kViews));
+    const TrackedView tracked = tracker.add_view(see(scene, truth.back(), v));
+    EXPECT_EQ(tracked.part, 0) << v;
+  }
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.num_parts, 1);
+  const TrajectoryError error = find_trajectory_error(truth, poses_of(track));
+  EXPECT_LT(error.max_m, 0.005);
+  EXPECT_LT(error.max_rad, 0.006);
+  EXPECT_GT(track.num_loops, 0);
+  EXPECT_EQ(track.views[0].world_from_camera.matrix(), Eigen::Matrix4d::Identity());
+}
+
+TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {
+  BallScene other;
+  other.textured = false;
+  other.has_ball = false;
+  ViewTracker tracker;
+  for (int v = 0; v < 3; ++v) tracker.add_view(see({}, walk(v, 9), v));
+  RgbdFrame blind = test::render_ball_scene({}, walk(3, 9));
+  std::ranges::fill(blind.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
+  tracker.add_view(prepare_view(blind));
+  for (int v = 3; v < 5; ++v) tracker.add_view(see({}, walk(v, 9), v));
+  const CameraTrack track = tracker.finish();
+  std::vector<int> parts;
+  for (const TrackedView& view : track.views) parts.push_back(view.part);
+  EXPECT_EQ(parts, (std::vector<int>{0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(track.num_parts, 2);
+}
+
+TEST(ViewTracker, APlainFloorIsNoPlace) {
+  // Nothing on a floor without print tells where one is: two sights of it from different places are not joined.
+  BallScene bare;
+  bare.textured = false;
+  bare.has_ball = false;
+  ViewTracker tracker;
+  tracker.add_view(see(bare, test::look_at_point({0, -0.5, 0.9}, {0, -0.2, 0}), 1));
+  const TrackedView second = tracker.add_view(see(bare, test::look_at_point({0.3, -0.5, 0.9}, {0.3, -0.2, 0}), 2));
+  EXPECT_EQ(second.part, 1);
+}
+
+TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
+  // The ball does not turn, but shifts before a still background; poses relative to it shift the other way.
+  ViewTracker tracker;
+  std::vector<Rigid3> truth;
+  const Rigid3 pose = test::look_at_point({0, -0.6, 0.5}, {0.1, 0.05, 0.1});
+  for (int v = 0; v < 4; ++v) {
+    BallScene scene;
+    scene.ball_m += Eigen::Vector3d(0.012 * v, 0, 0);
+    scene.ball_print = true;
+    const PreparedView view = see(scene, pose, v);
+    Image<std::uint8_t> mask(view.cloud.width(), view.cloud.height());
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      if (!view.cloud.has_point(i)) continue;
+      const Eigen::Vector3d p = pose * view.cloud.point(i).cast<double>();
+      mask[i] = (p - scene.ball_m).norm() < scene.ball_radius_m + 0.01 ? 1 : 0;
+    }
+    truth.push_back(Rigid3::from_translation(-scene.ball_m) * pose);
+    tracker.add_view(view, &mask);
+  }
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.num_parts, 1);
+  EXPECT_LT(find_trajectory_error(truth, poses_of(track)).max_m, 0.004);
+}
+
+TEST(ViewTracker, SameForAnyNumberOfThreads) {
+  std::vector<CameraTrack> tracks;
+  for (const int num_threads : {1, 4}) {
+    TrackViewsOptions options;
+    options.num_threads = num_threads;
+    ViewTracker tracker(options);
+    for (int v = 0; v < 4; ++v) tracker.add_view(see({}, walk(2 * v, 9), v));
+    tracks.push_back(tracker.finish());
+  }
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_EQ(tracks[0].views[v].world_from_camera.matrix(), tracks[1].views[v].world_from_camera.matrix());
+}
+
+TEST(ViewTracker, BadOptionsAreRefused) {
+  TrackViewsOptions options;
+  options.min_overlap = -1;
+  EXPECT_THROW(ViewTracker{options}, std::invalid_argument);
+  EXPECT_EQ(ViewTracker().finish().num_parts, 0);
+}
+
+}  // namespace
+}  // namespace resight
