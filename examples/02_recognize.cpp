@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto library = resight::load_library(argv[1]);
-  const auto sequence = resight::open_sequence(argv[2]);
+  const auto sequence = resight::open_posed_sequence(argv[2]);
   if (!library.ok() || !sequence.ok()) {
     std::fprintf(stderr, "%s\n", (library.ok() ? sequence.error() : library.error()).message.c_str());
     return 2;

@@ -35,7 +35,7 @@ PointCloud paint(PointCloud scene, const ChangeResult& changes) {
 void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
-  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  const auto sequence = value_or_throw(open_posed_sequence(arguments.sequence));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   DynamicScene scene(
       {config.num_previous_views, true, config.clear_tolerance_m, config.prepare, config.changes, config.integrate});

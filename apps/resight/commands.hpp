@@ -43,6 +43,7 @@ struct RecognizeArguments {
   std::filesystem::path models;
   std::filesystem::path sequence;
   std::filesystem::path out;
+  std::string poses = "given";
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;
@@ -56,6 +57,16 @@ struct ChangesArguments {
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;
+  int num_threads = 1;
+};
+
+struct TrackArguments {
+  std::filesystem::path sequence;
+  std::filesystem::path out;
+  std::optional<std::filesystem::path> models;  ///< To join views by common objects.
+  std::optional<std::filesystem::path> posed;   ///< Folder for the sequence with its poses.
+  std::string poses = "auto";
+  std::string format = "tuw";  ///< Of the posed sequence.
   int num_threads = 1;
 };
 
@@ -102,6 +113,7 @@ struct EvaluateArguments {
 void run_train(const TrainArguments& arguments);
 void run_recognize(const RecognizeArguments& arguments);
 void run_changes(const ChangesArguments& arguments);
+void run_track(const TrackArguments& arguments);
 void run_simulate(const SimulateArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);

@@ -41,7 +41,7 @@ void run_demo(const DemoArguments& arguments) {
   run_train({.inputs = {data / "models"}, .out = models, .num_threads = arguments.num_threads});
 
   const ModelLibrary library = value_or_throw(load_library(models, TrainOptions{}.hash()));
-  const auto sequence = value_or_throw(open_sequence(data));
+  const auto sequence = value_or_throw(open_posed_sequence(data));
   std::vector<ReportRun> runs;
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
     RecognizerConfig config = make_config(preset, std::nullopt, std::nullopt, arguments.num_threads);

@@ -51,7 +51,7 @@ class Evaluation {
     if (mine.empty()) return;
     std::size_t num_views = 0;
     for (const EvaluationUnit* unit : mine)
-      num_views += static_cast<std::size_t>(value_or_throw(open_sequence(unit->sequence.folder))->num_views());
+      num_views += static_cast<std::size_t>(value_or_throw(open_posed_sequence(unit->sequence.folder))->num_views());
     Progress progress("evaluate", static_cast<int>(num_views));
     int done = 0;
     for (std::size_t i = 0; i < mine.size();) {
@@ -85,7 +85,7 @@ class Evaluation {
 
   void compute_group(std::span<const EvaluationUnit* const> units, Progress& progress, int& done) {
     const EvaluationSequence& where = units.front()->sequence;
-    const auto sequence = value_or_throw(open_sequence(where.folder));
+    const auto sequence = value_or_throw(open_posed_sequence(where.folder));
     if (!sequence->has_ground_truth())
       throw InputError(fmt::format("{}: has no ground truth to evaluate against", where.folder.string()));
     const SequenceTruth truth =
@@ -109,7 +109,7 @@ class Evaluation {
   [[nodiscard]] Result<std::unique_ptr<Sequence>> open_evaluated(const std::string& name) const {
     const auto unit = std::ranges::find(plan_.units, name,
                                         [](const EvaluationUnit& u) -> const std::string& { return u.sequence.name; });
-    return open_sequence(unit->sequence.folder);
+    return open_posed_sequence(unit->sequence.folder);
   }
 
   void draw_worst_views(const std::vector<EvaluatedRun>& runs) const {

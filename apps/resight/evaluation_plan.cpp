@@ -56,10 +56,10 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
     if (entry.is_directory() && entry.path().filename().string().front() != '.') folders.push_back(entry.path());
   std::ranges::sort(folders);
   std::vector<EvaluationSequence> sequences;
-  if (root == dataset && open_sequence(dataset).ok()) return {describe(dataset)};
+  if (root == dataset && open_posed_sequence(dataset).ok()) return {describe(dataset)};
   for (const fs::path& folder : folders)
-    if (open_sequence(folder).ok()) sequences.push_back(describe(folder));
-  if (sequences.empty()) throw InputError(open_sequence(dataset).error().message);
+    if (open_posed_sequence(folder).ok()) sequences.push_back(describe(folder));
+  if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
   return sequences;
 }
 

@@ -24,6 +24,7 @@ struct Arguments {
   TrainArguments train;
   RecognizeArguments recognize;
   ChangesArguments changes;
+  TrackArguments track;
   SimulateArguments simulate;
   ConvertArguments convert;
   EvaluateArguments evaluate;
@@ -80,6 +81,11 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
   command->add_option("--sequence", a.sequence, "Sequence folder (TUW, BOP, TUM and others, detected)")->required();
   command->add_option("--out", a.out, "Folder for the results")->required();
+  command
+      ->add_option("--poses", a.poses,
+                   "Camera poses: given, refine (from the given ones on) or auto (from the views alone)")
+      ->check(CLI::IsMember({"given", "refine", "auto"}))
+      ->capture_default_str();
   command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")
       ->check(kSeeds)
       ->capture_default_str();
@@ -94,6 +100,20 @@ std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
   command->add_option("--out", a.out, "Folder for coloured clouds (PLY) and overlays (PNG)")->required();
   add_recognition_options(command, a);
   return [&a] { run_changes(a); };
+}
+
+std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
+  CLI::App* command = app.add_subcommand("track", "Find or refine the camera poses of a sequence from its views");
+  command->add_option("--sequence", a.sequence, "Sequence folder; needs no poses")->required();
+  command->add_option("--out", a.out, "Trajectory to write (TUM: stamp tx ty tz qx qy qz qw, metres)")->required();
+  command->add_option("--poses", a.poses, "auto: from the views alone; refine: from the given poses on")
+      ->check(CLI::IsMember({"auto", "refine"}))
+      ->capture_default_str();
+  command->add_option("--models", a.models, "Model library: views without overlap are joined by common objects");
+  command->add_option("--write-sequence", a.posed, "Folder for the sequence with these poses; must not exist");
+  command->add_option("--format", a.format, "Of --write-sequence: tuw or bop")->check(kFormats)->capture_default_str();
+  add_threads(command, a.num_threads);
+  return [&a] { run_track(a); };
 }
 
 std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
@@ -195,13 +215,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{add_demo(app, a.demo),
-                                          add_simulate(app, a.simulate),
-                                          add_train(app, a.train),
-                                          add_recognize(app, a.recognize),
-                                          add_changes(app, a.changes),
-                                          add_convert(app, a.convert),
-                                          add_evaluate(app, a.evaluate, a.shard)};
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
+                                          add_train(app, a.train),     add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes), add_track(app, a.track),
+                                          add_convert(app, a.convert), add_evaluate(app, a.evaluate, a.shard)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "camera_run.hpp"
 #include "commands.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
@@ -21,9 +24,17 @@ void run_recognize(const RecognizeArguments& arguments) {
     if (object.sift.size() + object.shot.size() == 0)
       print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
                                 object.name));
-  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  const bool given = arguments.poses == "given";
+  const auto recorded =
+      value_or_throw(given ? open_posed_sequence(arguments.sequence) : open_sequence(arguments.sequence));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  ReportRun run = recognize_sequence(library, *sequence, config, arguments.num_threads);
+  std::optional<PosedSequence> tracked;
+  if (!given) {
+    const CameraTrack track = track_sequence(*recorded, arguments.poses == "refine", &library, arguments.num_threads);
+    tracked.emplace(take_largest_part(*recorded, track));
+  }
+  const Sequence& sequence = tracked ? *tracked : *recorded;
+  ReportRun run = recognize_sequence(library, sequence, config, arguments.num_threads);
   run.sequence = arguments.sequence.string();
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),

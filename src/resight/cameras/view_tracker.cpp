@@ -66,6 +66,7 @@ struct ViewTracker::Impl {
   }
 
   TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask);
+  void add_posed_view(const PreparedView& view);
   CameraTrack finish();
 
   [[nodiscard]] ViewFeatures extract(const PreparedView& view, const Image<std::uint8_t>* mask) const {
@@ -94,6 +95,7 @@ struct ViewTracker::Impl {
   std::vector<Keyframe> keyframes;
   std::vector<TrackedView> views;
   std::vector<PoseEdge> edges;
+  std::optional<std::size_t> first_given;
 };
 
 // Those of the part that look from about the same side, the nearest first.
@@ -237,6 +239,25 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   return tracked;
 }
 
+void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
+  const int number = static_cast<int>(views.size());
+  TrackedView tracked;
+  tracked.name = view.frame.name;
+  tracked.world_from_camera = view.frame.world_from_camera;
+  tracked.part = first_given ? views[*first_given].part : number;
+  tracked.is_keyframe = true;
+  if (first_given) {
+    const int last = number - 1;
+    edges.push_back({last, number,
+                     views[static_cast<std::size_t>(last)].world_from_camera.inverse() * tracked.world_from_camera,
+                     diagonal(options.given_sigma_rad, options.given_sigma_m, -2)});
+  } else {
+    first_given = views.size();
+  }
+  views.push_back(std::move(tracked));
+  keyframes.push_back({number, make_alignment_view(view, options.view), extract(view, nullptr)});
+}
+
 // `match`: by features too, for pairs that are not known to see the same.
 std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
   const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
@@ -328,7 +349,8 @@ CameraTrack ViewTracker::Impl::finish() {
   for (TrackedView& view : track.views) {
     const auto part = static_cast<std::size_t>(view.part);
     if (first_from_world.size() <= part) first_from_world.resize(part + 1);
-    if (!first_from_world[part]) first_from_world[part] = view.world_from_camera.inverse();
+    if (!first_from_world[part])
+      first_from_world[part] = first_given ? Rigid3::identity() : view.world_from_camera.inverse();
     view.world_from_camera = *first_from_world[part] * view.world_from_camera;
     view.world_from_camera.rotation = nearest_rotation(view.world_from_camera.rotation);
   }
@@ -359,6 +381,8 @@ void TrackViewsOptions::check() const {
   view.check();
   align.check();
   graph.check();
+  check_positive("given_sigma_m", given_sigma_m);
+  check_positive("given_sigma_rad", given_sigma_rad);
   check_positive("num_threads", num_threads);
 }
 
@@ -368,6 +392,7 @@ ViewTracker::ViewTracker(ViewTracker&&) noexcept = default;
 TrackedView ViewTracker::add_view(const PreparedView& view, const Image<std::uint8_t>* mask) {
   return impl_->add_view(view, mask);
 }
+void ViewTracker::add_posed_view(const PreparedView& view) { impl_->add_posed_view(view); }
 CameraTrack ViewTracker::finish() { return impl_->finish(); }
 
 }  // namespace resight

@@ -28,13 +28,15 @@ struct TrackViewsOptions {
   AlignmentViewOptions view;
   AlignViewOptions align;
   PoseGraphOptions graph;
-  int num_threads = 1;  ///< Same bits for any value >= 1.
+  double given_sigma_m = 0.02;     ///< Of given positions (add_posed_view()).
+  double given_sigma_rad = 0.035;  ///< Of given rotations.
+  int num_threads = 1;             ///< Same bits for any value >= 1.
   void check() const;
 };
 
 struct TrackedView {
   std::string name;
-  Rigid3 world_from_camera;  ///< In the frame of its part: that of the part's first view.
+  Rigid3 world_from_camera;  ///< In the frame of its part: that of the part's first view, or the given one.
   int part = 0;              ///< Views of different parts could not be joined. 0 = the part with the most views.
   bool is_keyframe = false;
   int num_matches = -1;         ///< Features that agreed with the keyframe it was joined to; -1 = none were needed.
@@ -62,6 +64,9 @@ class ViewTracker {
   /// The pose as far as it is known now. A view that cannot be joined to any begins a part of its own; finish() may
   /// still join it. `mask`: of the view's size, non-zero = use.
   TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask = nullptr);
+  /// A view of which the pose is known, but not well: finish() refines it. It is a keyframe, in one part with the
+  /// others that are given.
+  void add_posed_view(const PreparedView& view);
   /// Closes loops and adjusts all poses. The tracker may then go on with further views.
   [[nodiscard]] CameraTrack finish();
 

@@ -119,6 +119,26 @@ TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
   EXPECT_LT(find_trajectory_error(truth, poses_of(track)).max_m, 0.004);
 }
 
+TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
+  Rng rng(4);
+  ViewTracker tracker;
+  std::vector<Rigid3> truth, given;
+  for (int v = 0; v < 6; ++v) {
+    truth.push_back(walk(v, 9));
+    const Eigen::Vector3d noise(rng.normal(), rng.normal(), rng.normal());
+    given.push_back(v == 0 ? truth[0]
+                           : truth[static_cast<std::size_t>(v)] *
+                                 Rigid3{Rigid3::from_axis_angle({noise.y(), 1, 0}, 0.01).rotation, 0.007 * noise});
+    PreparedView view = see({}, truth.back(), v);
+    view.frame.world_from_camera = given.back();
+    tracker.add_posed_view(view);
+  }
+  const std::vector<Rigid3> refined = poses_of(tracker.finish());
+  EXPECT_GT(find_trajectory_error(truth, given).rms_m, 0.007);
+  EXPECT_LT(find_trajectory_error(truth, refined).rms_m, 0.003);
+  EXPECT_LT(test::shift_m(refined[0], truth[0]), 1e-9) << "the first view holds the world";
+}
+
 TEST(ViewTracker, SameForAnyNumberOfThreads) {
   std::vector<CameraTrack> tracks;
   for (const int num_threads : {1, 4}) {

@@ -79,7 +79,7 @@ Result<Image<std::uint8_t>> read_object_mask(const fs::path& scene, const Listed
 
 /// The views of a scene that shows nothing but this object; empty if it is none.
 Result<std::vector<TrainingView>> read_training_scene(const fs::path& scene, int bop_id, std::string* name) {
-  auto table = read_bop_scene(scene, false);
+  auto table = read_bop_scene(scene);
   if (!table) return table.error();
   std::vector<TrainingView> views;
   const auto sequence = make_listed_sequence(*table);

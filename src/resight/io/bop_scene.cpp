@@ -117,7 +117,7 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
 
 bool is_bop_scene(const fs::path& directory) { return is_file(directory / "scene_camera.json"); }
 
-Result<SequenceTable> read_bop_scene(const fs::path& directory, bool require_poses) {
+Result<SequenceTable> read_bop_scene(const fs::path& directory) {
   const fs::path file = directory / "scene_camera.json";
   const auto json = read_json(file);
   if (!json) return json.error();
@@ -129,29 +129,20 @@ Result<SequenceTable> read_bop_scene(const fs::path& directory, bool require_pos
   const auto scene_id = parse_integer(folder_name(directory));
   table.scene_id = scene_id && *scene_id >= 0 && *scene_id <= INT32_MAX ? static_cast<int>(*scene_id) : 0;
   int num_poses = 0;
-  int without_pose = -1;
   for (const auto& [image_id, entry] : *cameras) {
     bool has_pose = false;
     auto view = parse_camera(directory, image_id, *entry, has_pose);
     if (!view) return view.error();
-    if (has_pose)
-      ++num_poses;
-    else
-      without_pose = image_id;
+    num_poses += has_pose ? 1 : 0;
     table.views.push_back(std::move(*view));
   }
   table.has_poses = num_poses == static_cast<int>(table.views.size());
-  if (require_poses && !table.has_poses && table.views.size() > 1)
-    return file_error(
-        file,
-        fmt::format("image {} has no cam_R_w2c and cam_t_w2c; several views can only be used with their camera poses",
-                    without_pose));
   if (const auto done = read_ground_truth(directory, table); !done) return done.error();
   return table;
 }
 
 SequenceResult open_bop_scene(const fs::path& directory) {
-  auto table = read_bop_scene(directory, true);
+  auto table = read_bop_scene(directory);
   if (!table) return table.error();
   return make_listed_sequence(std::move(*table));
 }

@@ -76,6 +76,15 @@ Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
   return io::file_error(directory, fmt::format("no sequence found; {}", kExpected));
 }
 
+Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory) {
+  auto sequence = open_sequence(directory);
+  if (sequence.ok() && !(*sequence)->has_poses() && (*sequence)->num_views() > 1)
+    return io::file_error(directory,
+                          "holds no camera poses (cam_R_w2c of each view in BOP, groundtruth.txt in TUM); "
+                          "several views can only be used with them: resight track finds them");
+  return sequence;
+}
+
 Result<std::unique_ptr<SequenceWriter>> create_sequence(const path& directory, DatasetFormat format) {
   return format == DatasetFormat::kBop ? io::create_bop_scene(directory) : io::create_tuw_sequence(directory);
 }

@@ -40,6 +40,9 @@ class Sequence {
 /// Opens a sequence directory; the format is detected from what lies in it. The error says what was looked for.
 [[nodiscard]] Result<std::unique_ptr<Sequence>> open_sequence(const std::filesystem::path& directory);
 
+/// The same, for what needs camera poses: several views without them are an error.
+[[nodiscard]] Result<std::unique_ptr<Sequence>> open_posed_sequence(const std::filesystem::path& directory);
+
 /// Writes a sequence view by view; it appears under its final name only with finish().
 class SequenceWriter {
  public:

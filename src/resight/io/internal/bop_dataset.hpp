@@ -32,7 +32,7 @@ struct BopModelInfo {
 /// models, models_eval or another models_* folder at most three levels up.
 [[nodiscard]] std::optional<std::filesystem::path> find_models_info(const std::filesystem::path& directory);
 
-/// What a BOP scene directory holds, images not read. `require_poses`: several views without cam_R_w2c are an error.
-[[nodiscard]] Result<SequenceTable> read_bop_scene(const std::filesystem::path& directory, bool require_poses);
+/// What a BOP scene directory holds, images not read. Without cam_R_w2c in all views it has no poses.
+[[nodiscard]] Result<SequenceTable> read_bop_scene(const std::filesystem::path& directory);
 
 }  // namespace resight::io

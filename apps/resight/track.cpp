@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "camera_run.hpp"
+#include "commands.hpp"
+#include "resight/cameras/trajectory_error.hpp"
+#include "resight/core/files.hpp"
+#include "resight/io/convert.hpp"
+#include "resight/io/trajectory.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/models/training.hpp"
+
+namespace resight::app {
+namespace {
+
+constexpr double kDegPerRad = 57.29577951308232;
+
+std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int part) {
+  std::vector<TrajectoryPose> poses;
+  for (const TrackedView& view : track.views)
+    if (view.part == part) poses.push_back({view.name, view.world_from_camera});
+  return poses;
+}
+
+// poses.txt, poses_part1.txt, ..
+std::filesystem::path file_of_part(const std::filesystem::path& out, int part) {
+  if (part == 0) return out;
+  return out.parent_path() / fmt::format("{}_part{}{}", out.stem().string(), part, out.extension().string());
+}
+
+void write_parts(const TrackArguments& arguments, const CameraTrack& track) {
+  for (int part = 0; part < track.num_parts; ++part) {
+    const std::vector<TrajectoryPose> poses = poses_of(track, part);
+    std::string comment = fmt::format("world_from_camera of {} of {} views of {}", poses.size(), track.views.size(),
+                                      arguments.sequence.string());
+    if (track.num_parts > 1)
+      comment += fmt::format("; part {} of {}, each in a frame of its own", part, track.num_parts);
+    value_or_throw(write_tum_trajectory(file_of_part(arguments.out, part), poses, comment));
+  }
+}
+
+void print_error(const Sequence& recorded, const CameraTrack& track) {
+  std::vector<Rigid3> given, found;
+  for (std::size_t v = 0; v < track.views.size(); ++v) {
+    if (track.views[v].part != 0) continue;
+    given.push_back(value_or_throw(recorded.read_view(static_cast<int>(v))).world_from_camera);
+    found.push_back(track.views[v].world_from_camera);
+  }
+  const TrajectoryError error = find_trajectory_error(given, found);
+  fmt::print("against the given poses: ATE {:.2f} mm rms, {:.2f} mm at most; {:.3f} deg mean, {:.3f} at most\n",
+             1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
+}
+
+}  // namespace
+
+void run_track(const TrackArguments& arguments) {
+  value_or_throw(check_writable(arguments.out));
+  if (arguments.posed && std::filesystem::exists(*arguments.posed))
+    throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
+  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  std::optional<ModelLibrary> library;
+  if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
+  const CameraTrack track =
+      track_sequence(*sequence, arguments.poses == "refine", library ? &*library : nullptr, arguments.num_threads);
+  write_parts(arguments, track);
+  const PosedSequence posed = take_largest_part(*sequence, track);
+  fmt::print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(),
+             track.edges.size(), track.num_loops, arguments.out.string());
+  if (sequence->has_poses()) print_error(*sequence, track);
+  if (!arguments.posed) return;
+  const DatasetFormat format = arguments.format == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
+  value_or_throw(convert_sequence(posed, *arguments.posed, format));
+  fmt::print("sequence with these poses: {}\n", arguments.posed->string());
+}
+
+}  // namespace resight::app

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "resight/core/result.hpp"
+#include "resight/geometry/rigid3.hpp"
+
+namespace resight {
+
+struct TrajectoryPose {
+  std::string stamp;  ///< Time in seconds or number of the view, as text.
+  Rigid3 world_from_camera;
+};
+
+/// Writes a trajectory as TUM does: a line "stamp tx ty tz qx qy qz qw" a view, metres, after the lines of `comment`
+/// (each of which gets a "# "). All digits: read back they give the same pose.
+[[nodiscard]] Result<void> write_tum_trajectory(const std::filesystem::path& file,
+                                                std::span<const TrajectoryPose> poses, const std::string& comment);
+
+}  // namespace resight
