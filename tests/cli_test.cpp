@@ -278,6 +278,9 @@ const Row kRows[] = {
     {"SeedThatIsTooLarge", kNothing, "demo --out out --seed 99999999999999999999", 2, "seed"},
     {"UnknownFormat", kNothing, "convert views out --to png", 2, "png .*bop"},
     {"UnknownScene", kNothing, "simulate --preset nonsense --out out", 2, "nonsense"},
+    {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
+     "nonsense"},
+    {"ObjectOfAScene", kNothing, "simulate --preset demo --object mug --out out", 2, "--object"},
     {"NoScene", kNothing, "simulate --out out", 2, "neither"},
     {"TwoScenes", kNothing, "simulate scene.toml --preset demo --out out", 2, "simulate: .*excludes"},
 

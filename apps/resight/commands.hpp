@@ -73,6 +73,7 @@ struct TrackArguments {
 struct SimulateArguments {
   std::string preset;            ///< Either this
   std::filesystem::path script;  ///< or this.
+  std::string object;            ///< What is recorded by the presets *-recording; empty = one of print.
   std::filesystem::path out;
   std::string format = "tuw";
   std::uint64_t seed = 1;

@@ -34,6 +34,7 @@ void run_demo(const DemoArguments& arguments) {
   const std::filesystem::path models = arguments.out / "models.resight";
   run_simulate({.preset = "demo",
                 .script = {},
+                .object = {},
                 .out = data,
                 .format = "bop",
                 .seed = arguments.seed,

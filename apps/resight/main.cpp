@@ -121,9 +121,11 @@ std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
       app.add_subcommand("simulate", "Ray-cast a scripted, changing scene into RGB-D views with ground truth");
   CLI::Option* preset = command->add_option("--preset", a.preset,
                                             "Built-in scene: demo, tabletop, crowded, twins, plain; or "
-                                            "dynamic-tabletop, the benchmark of 9 sequences");
+                                            "dynamic-tabletop, the benchmark of 9 sequences; or turntable-recording "
+                                            "and walk-recording, both sides of one object to make a model of");
   CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
   preset->excludes(script);
+  command->add_option("--object", a.object, "Generated object that is recorded (of presets *-recording) [milk_carton]");
   command->add_option("--out", a.out, "Data set folder to write")->required();
   command->add_option("--format", a.format, "tuw or bop")->check(kFormats)->capture_default_str();
   command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->check(kSeeds)->capture_default_str();

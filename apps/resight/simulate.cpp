@@ -5,6 +5,7 @@
 #include "progress.hpp"
 #include "resight/simulation/dynamic_tabletop.hpp"
 #include "resight/simulation/presets.hpp"
+#include "resight/simulation/recording.hpp"
 #include "resight/simulation/simulation.hpp"
 #include "resight/simulation/write_simulation.hpp"
 
@@ -12,6 +13,9 @@ namespace resight::app {
 namespace {
 
 constexpr const char* kBenchmark = "dynamic-tabletop";
+constexpr const char* kTurntableRecording = "turntable-recording";
+constexpr const char* kWalkRecording = "walk-recording";
+constexpr const char* kRecordedObject = "milk_carton";
 
 DatasetFormat to_format(const std::string& name) { return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw; }
 
@@ -59,11 +63,34 @@ void simulate_benchmark(const SimulateArguments& arguments) {
              arguments.out.string());
 }
 
+void simulate_recordings(const SimulateArguments& arguments) {
+  const ProceduralObject object =
+      value_or_throw(make_procedural_object(arguments.object.empty() ? kRecordedObject : arguments.object));
+  RecordingOptions options;
+  options.kind = arguments.preset == kWalkRecording ? RecordingKind::kWalk : RecordingKind::kTurntable;
+  options.sensor.noise_free = arguments.noise_free;
+  options.seed = arguments.seed;
+  options.num_threads = arguments.num_threads;
+  {
+    Progress progress("simulate", 2);
+    value_or_throw(
+        write_recordings(object, arguments.out, to_format(arguments.format), options,
+                         [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
+  }
+  fmt::print("{} of {}, seed {}: {}/side_1, side_2\n", arguments.preset, object.name, arguments.seed,
+             arguments.out.string());
+}
+
+bool is_recording(const std::string& preset) { return preset == kTurntableRecording || preset == kWalkRecording; }
+
 }  // namespace
 
 void run_simulate(const SimulateArguments& arguments) {
   if (arguments.preset.empty() && arguments.script.empty())
     throw InputError("simulate: neither a scene script nor --preset was given");
+  if (!arguments.object.empty() && !is_recording(arguments.preset))
+    throw InputError("simulate: --object goes with --preset turntable-recording or walk-recording");
+  if (is_recording(arguments.preset)) return simulate_recordings(arguments);
   if (arguments.preset == kBenchmark) return simulate_benchmark(arguments);
   simulate_scene(arguments);
 }
