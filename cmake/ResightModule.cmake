@@ -4,7 +4,7 @@
 # the tests (one executable `resight_NAME_test`). A module may depend only on modules that stand before it in
 # RESIGHT_LAYERS: an upward edge is a configure error.
 set(RESIGHT_LAYERS
-    core geometry sensor io simulation features models changes reconstruction hypotheses cameras verification
+    core geometry sensor io simulation features models changes reconstruction hypotheses cameras modelling verification
     shape_search
     recognition evaluation report)
 

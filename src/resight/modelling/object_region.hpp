@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "resight/core/image.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+
+/// What an object stands on: normal . p = offset_m. The normal points up, to the side of the camera.
+struct SupportPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double offset_m = 0;
+  [[nodiscard]] double height_m(const Eigen::Vector3d& p) const { return normal.dot(p) - offset_m; }
+};
+
+/// Where an object is looked for: an upright cylinder on its support. Frame as said by its user: the camera's, from
+/// find_object_region().
+struct ObjectRegion {
+  SupportPlane plane;
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< Middle of the cylinder's base, on the plane.
+  double radius_m = 0;
+  double height_m = 0;
+  [[nodiscard]] double axis_distance_m(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d d = p - foot;
+    return (d - plane.normal.dot(d) * plane.normal).norm();
+  }
+};
+
+/// The same region in frame a.
+[[nodiscard]] ObjectRegion transform(const Rigid3& a_from_b, const ObjectRegion& region_in_b);
+
+/// All values are ours.
+struct ObjectRegionOptions {
+  double max_depth_m = 1.6;            ///< Farther points are background.
+  double plane_distance_m = 0.006;     ///< Of a plane's points from it.
+  double min_tilt_rad = 0.17;          ///< Of the camera down towards the plane (10 deg).
+  double min_support_area_m2 = 0.004;  ///< Of what is seen of a support beside the object: a small turntable.
+  double min_height_m = 0.006;         ///< Of what stands on a support.
+  double max_height_m = 0.45;
+  double max_jump_m = 0.02;        ///< Between neighbouring points of one object.
+  int min_pixels = 300;            ///< Of the object.
+  double min_margin_m = 0.02;      ///< Of the support around the foot of what stands on it, ..
+  double min_margin_share = 0.85;  ///< .. in this share of the directions that are not hidden.
+  double same_place_px = 60;       ///< Things on two supports are one if they are as near to the middle, give or take.
+  double max_support_shift_m = 0.06;  ///< Of the support from the one of the view before, where there is one.
+  int num_hypotheses = 300;           ///< Of the random search (RANSAC) for the dominant plane.
+  std::uint64_t seed = 1;
+  void check() const;
+};
+
+/// Finds the object that stands nearest to the middle of the view (or to that of `previous`) and its support, camera
+/// frame. The dominant plane that the camera looks down on gives the vertical; of all level surfaces the highest one is
+/// taken that something stands on and that goes on beside its foot: the turntable, not the table below it, and not the
+/// object's own lid. std::nullopt: nothing stands on anything here.
+[[nodiscard]] std::optional<ObjectRegion> find_object_region(const PreparedView& view,
+                                                             const ObjectRegionOptions& options = {},
+                                                             const ObjectRegion* previous = nullptr);
+
+/// All values are ours.
+struct SegmentObjectOptions {
+  double min_height_m = 0.005;   ///< Above the support: beyond the noise of its points.
+  double max_jump_m = 0.02;      ///< Between neighbouring points of one object.
+  int max_gap_px = 4;            ///< Between neighbouring points of one object: slanted parts give no return.
+  double min_part_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
+  void check() const;
+};
+
+/// Non-zero where a pixel shows the object of the region (camera frame): points above the support within the cylinder,
+/// of connected parts. Empty of pixels if there are none.
+[[nodiscard]] Image<std::uint8_t> segment_object(const OrganizedCloud& cloud, const ObjectRegion& region_in_camera,
+                                                 const SegmentObjectOptions& options = {});
+
+}  // namespace resight

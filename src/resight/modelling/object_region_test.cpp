@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/modelling/object_region.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "resight/modelling/recorded_object_test_util.hpp"
+
+namespace resight {
+namespace {
+
+// Share of the pixels of either mask that are in both; truth counts where there is depth.
+double mask_overlap(const RecordedView& view, const Image<std::uint8_t>& found) {
+  std::size_t both = 0;
+  std::size_t either = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool truth = view.mask[i] != 0 && !std::isnan(view.frame.depth_m[i]);
+    both += truth && found[i] != 0;
+    either += truth || found[i] != 0;
+  }
+  return static_cast<double>(both) / static_cast<double>(either);
+}
+
+// Height of the truth's lowest point in the region: the object frame has its origin at the bottom of the object.
+void expect_found(const RecordedView& view, const std::optional<ObjectRegion>& region, const PreparedView& prepared,
+                  double min_overlap) {
+  ASSERT_TRUE(region.has_value()) << view.frame.name;
+  const Eigen::Vector3d foot = view.camera_from_object.translation;
+  EXPECT_NEAR(region->plane.height_m(foot), 0, 0.003);
+  EXPECT_GT(region->plane.normal.dot(view.camera_from_object.rotation.col(2)), std::cos(0.03));
+  EXPECT_LT(region->axis_distance_m(foot), 0.03);
+  const Image<std::uint8_t> mask = segment_object(prepared.cloud, *region);
+  EXPECT_GT(mask_overlap(view, mask), min_overlap) << view.frame.name;
+}
+
+TEST(ObjectRegion, FindsTheTurntableBelowAnObjectAndTheObjectOnIt) {
+  for (const char* name : {"milk_carton", "novel", "toy_car"})
+    for (const RecordedView& view : test::record(name, 120)) {
+      const PreparedView prepared = prepare_view(view.frame);
+      expect_found(view, find_object_region(prepared), prepared, name == std::string("novel") ? 0.75 : 0.85);
+    }
+}
+
+TEST(ObjectRegion, FollowsAWalkAroundAnObject) {
+  std::optional<ObjectRegion> region;
+  for (const RecordedView& view : test::record("mug", 60, false, RecordingKind::kWalk)) {
+    const PreparedView prepared = prepare_view(view.frame);
+    region = find_object_region(prepared, {}, region ? &*region : nullptr);
+    expect_found(view, region, prepared, 0.8);
+  }
+}
+
+TEST(ObjectRegion, NothingStandsOnAnEmptyTable) {
+  RecordedView view = test::record("novel", 120)[0];
+  // Only the table near the camera is left.
+  for (int v = 0; v < view.frame.depth_m.height(); ++v)
+    for (int u = 0; u < view.frame.depth_m.width(); ++u)
+      if (v < 380) view.frame.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(find_object_region(prepare_view(view.frame)).has_value());
+  for (float& z : view.frame.depth_m.data()) z = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(find_object_region(prepare_view(view.frame)).has_value());
+}
+
+TEST(ObjectRegion, MovesWithItsFrame) {
+  ObjectRegion region;
+  region.plane = {Eigen::Vector3d(0, 0.6, 0.8), 0.3};
+  region.foot = 0.3 * region.plane.normal;
+  const Rigid3 motion =
+      Rigid3::from_translation({0.1, -0.2, 0.5}) * Rigid3::from_axis_angle(Eigen::Vector3d(1, 2, 3), 0.7);
+  const ObjectRegion moved = transform(motion, region);
+  const Eigen::Vector3d p(0.3, 0.1, 0.9);
+  EXPECT_NEAR(moved.plane.height_m(motion * p), region.plane.height_m(p), 1e-12);
+  EXPECT_NEAR(moved.axis_distance_m(motion * p), region.axis_distance_m(p), 1e-12);
+}
+
+TEST(SegmentObject, LeavesOutTheSupportWhatIsBesideAndSpecks) {
+  const Camera camera{100, 80, 100, 100, 49.5, 39.5};
+  Image<float> depth(100, 80, 1.0F);  // a wall as the support: the normal looks at the camera
+  for (int v = 20; v < 50; ++v)
+    for (int u = 30; u < 60; ++u) depth(u, v) = 0.95F;
+  depth(5, 5) = 0.95F;  // a speck
+  for (int v = 60; v < 70; ++v)
+    for (int u = 85; u < 95; ++u) depth(u, v) = 0.95F;  // something else, out of the cylinder
+  ObjectRegion region;
+  region.plane = {-Eigen::Vector3d::UnitZ(), -1.0};
+  region.foot = {0, 0, 1.0};
+  region.radius_m = 0.4;
+  region.height_m = 0.2;
+  const Image<std::uint8_t> mask = segment_object(back_project(camera, depth), region);
+  for (int v = 0; v < 80; ++v)
+    for (int u = 0; u < 100; ++u) EXPECT_EQ(mask(u, v) != 0, u >= 30 && u < 60 && v >= 20 && v < 50) << u << " " << v;
+}
+
+TEST(ObjectRegion, RefusesBadOptions) {
+  ObjectRegionOptions options;
+  options.max_jump_m = 0;
+  EXPECT_THROW(options.check(), std::invalid_argument);
+  SegmentObjectOptions segment;
+  segment.max_gap_px = 0;
+  EXPECT_THROW(segment.check(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight
