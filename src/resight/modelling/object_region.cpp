@@ -20,10 +20,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSampleStepPx = 4;        // of the points that planes are searched in
-constexpr int kTripleRadiusPx = 60;     // between the three points of a hypothesis
-constexpr double kHeightBinM = 0.004;   // of the histogram of heights
-constexpr double kFootHeightM = 0.03;   // what is so low counts as the object's foot
+constexpr int kSampleStepPx = 4;       // of the points that planes are searched in
+constexpr int kTripleRadiusPx = 60;    // between the three points of a hypothesis
+constexpr double kHeightBinM = 0.004;  // of the histogram of heights
+constexpr double kFootHeightM = 0.03;  // what is so low counts as the object's foot
+constexpr double kMarginReachM = 0.03;
 constexpr double kMinSeenShare = 0.15;  // of the points beside the foot; the others are hidden by the object
 constexpr int kRefits = 4;
 
@@ -56,6 +57,8 @@ SupportPlane fit_plane(const std::vector<Sample>& samples, const std::vector<int
 struct Standing {
   ObjectRegion region;
   double image_distance_px = 0;
+  double reach_m = 0;         // radius of what stands there, seen from above
+  double margin_area_m2 = 0;  // of the support around it, as far as is seen, within 3 cm of that radius
 };
 
 class RegionFinder {
@@ -95,17 +98,28 @@ class RegionFinder {
     return -normal.y() > std::sin(options_.min_tilt_rad);  // y is down in the image
   }
 
-  // Of those that are as near to where the object should be as the nearest: the highest, or the most like the previous.
-  [[nodiscard]] std::optional<ObjectRegion> choose(const std::vector<Standing>& found) const {
+  // Of those that are as near to where the object should be as the nearest: the most like the previous; without one the
+  // lowest, or the turntable upon it.
+  [[nodiscard]] std::optional<ObjectRegion> choose(std::vector<Standing> found) const {
     if (found.empty()) return std::nullopt;
     const double nearest_px = std::ranges::min_element(found, {}, &Standing::image_distance_px)->image_distance_px;
-    const Standing* best = nullptr;
-    for (const Standing& standing : found) {  // from the highest to the lowest
-      if (standing.image_distance_px > nearest_px + options_.same_place_px) continue;
-      if (best == nullptr || (previous_ != nullptr && shift_m(standing) < shift_m(*best))) best = &standing;
+    std::erase_if(found, [&](const Standing& s) { return s.image_distance_px > nearest_px + options_.same_place_px; });
+    if (previous_ != nullptr) {
+      const auto most_alike = std::ranges::min_element(found, {}, [&](const Standing& s) { return shift_m(s); });
+      if (shift_m(*most_alike) > options_.max_support_shift_m) return std::nullopt;
+      return most_alike->region;
     }
-    if (previous_ != nullptr && shift_m(*best) > options_.max_support_shift_m) return std::nullopt;
-    return best->region;
+    const Standing* support = &found.front();
+    for (const Standing& higher : found)
+      if (is_turntable(higher, found.front())) support = &higher;
+    return support->region;
+  }
+
+  // Low, and a good part of what one would take for an object on the lower support.
+  [[nodiscard]] bool is_turntable(const Standing& higher, const Standing& lower) const {
+    const double step_m = higher.region.plane.offset_m - lower.region.plane.offset_m;
+    return step_m > 0 && step_m <= options_.max_turntable_height_m &&
+           higher.margin_area_m2 >= options_.min_turntable_share * std::numbers::pi * lower.reach_m * lower.reach_m;
   }
 
   [[nodiscard]] double shift_m(const Standing& standing) const {
@@ -169,7 +183,7 @@ class RegionFinder {
     return plane;
   }
 
-  // Level surfaces with enough area, from the highest to the lowest: peaks of the histogram of heights.
+  // Level surfaces with enough area, from the lowest to the highest: peaks of the histogram of heights.
   std::vector<SupportPlane> find_level_planes(const SupportPlane& dominant) {
     const int below = static_cast<int>(options_.max_height_m / kHeightBinM);
     std::vector<double> area(static_cast<std::size_t>(2 * below + 1), 0.0);
@@ -178,10 +192,10 @@ class RegionFinder {
       if (bin >= 0 && bin < static_cast<int>(area.size())) area[bin] += s.weight;
     }
     std::vector<SupportPlane> planes;
-    for (int bin = static_cast<int>(area.size()) - 2; bin > 0; --bin) {
+    for (std::size_t bin = 1; bin + 1 < area.size(); ++bin) {
       if (area[bin] < area[bin - 1] || area[bin] <= area[bin + 1]) continue;
       if (area[bin - 1] + area[bin] + area[bin + 1] < options_.min_support_area_m2) continue;
-      const SupportPlane level{dominant.normal, dominant.offset_m + (bin - below) * kHeightBinM};
+      const SupportPlane level{dominant.normal, dominant.offset_m + (static_cast<int>(bin) - below) * kHeightBinM};
       planes.push_back(refit_level(level, dominant));
     }
     return planes;
@@ -244,14 +258,23 @@ class RegionFinder {
     const auto on_plane = [&](const Vector2d& uv) -> Vector3d {
       return uv.x() * axis_u + uv.y() * axis_v + plane.offset_m * plane.normal;
     };
-    if (!is_founded(plane, part)) return std::nullopt;
+    if (top_m < options_.min_object_height_m || !is_founded(plane, part)) return std::nullopt;
     Standing standing;
     standing.region.plane = plane;
     standing.region.foot = on_plane(0.5 * (low + high));
     standing.region.radius_m = 0.5 * (high - low).norm() * 1.3 + 0.03;
     standing.region.height_m = 1.2 * top_m + 0.02;
+    standing.reach_m = 0.5 * (high - low).maxCoeff();
+    standing.margin_area_m2 = margin_area(plane, standing.region.foot, standing.reach_m + kMarginReachM);
     standing.image_distance_px = (pixel - target_px_).norm();
     return standing;
+  }
+
+  [[nodiscard]] double margin_area(const SupportPlane& plane, const Vector3d& middle, double radius_m) const {
+    double area_m2 = 0;
+    for (const int i : find_inliers(plane))
+      if ((samples_[i].point - middle).norm() <= radius_m) area_m2 += pixel_area_m2(samples_[i].point, plane.normal);
+    return area_m2;
   }
 
   // Whether the plane goes on beside the foot of what stands on it, as far as is seen: the lid of a thing, which may
@@ -323,6 +346,9 @@ void ObjectRegionOptions::check() const {
   check_positive("ObjectRegionOptions.max_height_m", max_height_m);
   check_positive("ObjectRegionOptions.max_jump_m", max_jump_m);
   check_positive("ObjectRegionOptions.min_pixels", min_pixels);
+  check_positive("ObjectRegionOptions.min_object_height_m", min_object_height_m);
+  check_not_negative("ObjectRegionOptions.max_turntable_height_m", max_turntable_height_m);
+  check_in_range("ObjectRegionOptions.min_turntable_share", min_turntable_share, 0, 1);
   check_positive("ObjectRegionOptions.min_margin_m", min_margin_m);
   check_in_range("ObjectRegionOptions.min_margin_share", min_margin_share, 0, 1);
   check_positive("ObjectRegionOptions.same_place_px", same_place_px);

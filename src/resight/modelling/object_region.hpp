@@ -38,24 +38,27 @@ struct ObjectRegionOptions {
   double max_depth_m = 1.6;            ///< Farther points are background.
   double plane_distance_m = 0.006;     ///< Of a plane's points from it.
   double min_tilt_rad = 0.17;          ///< Of the camera down towards the plane (10 deg).
-  double min_support_area_m2 = 0.004;  ///< Of what is seen of a support beside the object: a small turntable.
+  double min_support_area_m2 = 0.004;  ///< Of what is seen of a level surface.
   double min_height_m = 0.006;         ///< Of what stands on a support.
   double max_height_m = 0.45;
-  double max_jump_m = 0.02;        ///< Between neighbouring points of one object.
-  int min_pixels = 300;            ///< Of the object.
-  double min_margin_m = 0.02;      ///< Of the support around the foot of what stands on it, ..
-  double min_margin_share = 0.85;  ///< .. in this share of the directions that are not hidden.
-  double same_place_px = 60;       ///< Things on two supports are one if they are as near to the middle, give or take.
-  double max_support_shift_m = 0.06;  ///< Of the support from the one of the view before, where there is one.
+  double min_object_height_m = 0.012;
+  double max_turntable_height_m = 0.08;  ///< Above what it stands on.
+  double min_turntable_share = 0.15;     ///< Of the circle around what stands on the table that is seen of its top.
+  double max_jump_m = 0.02;              ///< Between neighbouring points of one object.
+  int min_pixels = 300;                  ///< Of the object.
+  double min_margin_m = 0.02;            ///< Of the support around the foot of what stands on it, ..
+  double min_margin_share = 0.85;        ///< .. in this share of the directions that are not hidden.
+  double same_place_px = 60;  ///< Things on two supports are one if they are as near to the middle, give or take.
+  double max_support_shift_m = 0.10;  ///< Of the support from the one of the view before, where there is one.
   int num_hypotheses = 300;           ///< Of the random search (RANSAC) for the dominant plane.
   std::uint64_t seed = 1;
   void check() const;
 };
 
 /// Finds the object that stands nearest to the middle of the view (or to that of `previous`) and its support, camera
-/// frame. The dominant plane that the camera looks down on gives the vertical; of all level surfaces the highest one is
-/// taken that something stands on and that goes on beside its foot: the turntable, not the table below it, and not the
-/// object's own lid. std::nullopt: nothing stands on anything here.
+/// frame. The dominant plane that the camera looks down on gives the vertical; of all level surfaces the lowest one is
+/// taken that something stands on and that goes on beside its foot, or a low wide one right above it: the turntable on
+/// a table, not the lid of a box. std::nullopt: nothing stands on anything here.
 [[nodiscard]] std::optional<ObjectRegion> find_object_region(const PreparedView& view,
                                                              const ObjectRegionOptions& options = {},
                                                              const ObjectRegion* previous = nullptr);

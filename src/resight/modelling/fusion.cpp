@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/modelling/fusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/modelling/internal/distance_volume.hpp"
+#include "resight/modelling/internal/surface_nets.hpp"
+#include "resight/modelling/mesh_quality.hpp"
+#include "resight/models/crop_view.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr int kMarginPx = 12;          // around the mask: what lies before the background is free there
+constexpr int kNormalRadiusPx = 3;     // normals only tell the slant here: rather smooth than sharp
+constexpr float kSamePointM = 0.004F;  // a vertex is what the pixel shows
+
+// Inverse variance across the surface, in 1/mm^2.
+double point_weight(const PreparedView& view, std::size_t i, double cosine) {
+  const double axial_mm = 1000.0 * view.noise.axial_m[i] * cosine;
+  const double lateral_mm = 1000.0 * view.noise.lateral_m[i] * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  return cosine / (axial_mm * axial_mm + lateral_mm * lateral_mm);
+}
+
+FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& options) {
+  TrainingView part = crop_to_object(whole, kMarginPx);
+  FusionView result;
+  if (part.mask.empty()) return result;
+  result.camera_from_object = part.frame.world_from_camera.inverse();
+  PrepareViewOptions prepare;
+  prepare.normals.window_radius_px = kNormalRadiusPx;
+  PreparedView view = prepare_view(std::move(part.frame), prepare);
+  result.camera = view.frame.camera;
+  result.weight = Image<float>(result.camera.width, result.camera.height, 0.0F);
+  result.slope = Image<float>(result.camera.width, result.camera.height, 0.0F);
+  const double min_cosine = std::cos(options.max_incidence_rad);
+  for (std::size_t i = 0; i < result.weight.size(); ++i) {
+    if (part.mask[i] == 0 || !view.cloud.has_point(i) || !view.cloud.has_normal(i)) continue;
+    if (view.edge_distance_px[i] < static_cast<float>(options.min_edge_distance_px)) continue;
+    const Vector3d ray = view.cloud.point(i).cast<double>() / static_cast<double>(view.cloud.z[i]);
+    const double across = -ray.dot(view.cloud.normal(i).cast<double>());
+    const double cosine = across / ray.norm();
+    if (cosine < min_cosine) continue;
+    result.weight[i] = static_cast<float>(point_weight(view, i, cosine));
+    result.slope[i] = static_cast<float>(across);
+  }
+  result.depth_m = std::move(view.frame.depth_m);
+  result.color = std::move(view.frame.color);
+  return result;
+}
+
+// Mean over the views that see a vertex, those that look straight at it first.
+class VertexPainter {
+ public:
+  explicit VertexPainter(std::span<const FusionView> views) : views_(views) {
+    for (const FusionView& view : views) camera_from_object_.emplace_back(view.camera_from_object);
+  }
+
+  [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal) const {
+    Vector3d sum = Vector3d::Zero();
+    double weight = 0;
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      const double w = look(k, p, normal, sum);
+      weight += w;
+    }
+    if (weight <= 0) return {128, 128, 128};
+    const auto round = [&](double x) { return static_cast<std::uint8_t>(std::clamp(x / weight + 0.5, 0.0, 255.0)); };
+    return {round(sum.x()), round(sum.y()), round(sum.z())};
+  }
+
+ private:
+  // Adds the weighted colour that view k shows of the point; the weight.
+  double look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal, Vector3d& sum) const {
+    const FusionView& view = views_[k];
+    const Vector3f p = camera_from_object_[k] * p_in_object;
+    if (view.depth_m.empty() || p.z() <= 0) return 0;
+    const Eigen::Vector2d pixel = view.camera.project(p.cast<double>());
+    const int u = static_cast<int>(std::lround(pixel.x()));
+    const int v = static_cast<int>(std::lround(pixel.y()));
+    if (!view.depth_m.contains(u, v) || view.weight(u, v) <= 0) return 0;
+    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return 0;
+    const double cosine = static_cast<double>(-(camera_from_object_[k].rotation * normal).dot(p.normalized()));
+    if (cosine < 0.2) return 0;
+    const double weight = std::pow(cosine, 4) / static_cast<double>(p.z() * p.z());
+    sum += weight * sample(view.color, pixel);
+    return weight;
+  }
+
+  // Bilinear.
+  static Vector3d sample(const Image<Rgb8>& image, const Eigen::Vector2d& pixel) {
+    const double u = std::clamp(pixel.x(), 0.0, image.width() - 1.001);
+    const double v = std::clamp(pixel.y(), 0.0, image.height() - 1.001);
+    const int u0 = static_cast<int>(u);
+    const int v0 = static_cast<int>(v);
+    const int u1 = std::min(u0 + 1, image.width() - 1);
+    const int v1 = std::min(v0 + 1, image.height() - 1);
+    const auto at = [&](int x, int y) -> Vector3d {
+      const Rgb8 c = image(x, y);
+      return Vector3d(c.r, c.g, c.b);
+    };
+    const double a = u - u0;
+    const double b = v - v0;
+    return (1 - b) * ((1 - a) * at(u0, v0) + a * at(u1, v0)) + b * ((1 - a) * at(u0, v1) + a * at(u1, v1));
+  }
+
+  std::span<const FusionView> views_;
+  std::vector<Rigid3f> camera_from_object_;
+};
+
+void paint(TriangleMesh& mesh, std::span<const FusionView> views, int num_threads) {
+  const VertexPainter painter(views);
+  mesh.colors.resize(mesh.vertices.size());
+  parallel_for_blocks(mesh.vertices.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i]);
+  });
+}
+
+}  // namespace
+
+void FuseViewsOptions::check() const {
+  check_in_range("FuseViewsOptions.voxel_m", voxel_m, 0.0003, 0.05);
+  check_in_range("FuseViewsOptions.truncation_m", truncation_m, 2 * voxel_m, 0.2);
+  check_not_negative("FuseViewsOptions.min_edge_distance_px", min_edge_distance_px);
+  check_in_range("FuseViewsOptions.max_incidence_rad", max_incidence_rad, 0.1, 1.5);
+  check_not_negative("FuseViewsOptions.min_weight", min_weight);
+  check_not_negative("FuseViewsOptions.max_free_share", max_free_share);
+  check_in_range("FuseViewsOptions.min_part_share", min_part_share, 0, 1);
+  check_in_range("FuseViewsOptions.num_threads", num_threads, 1, 4096);
+}
+
+TriangleMesh fuse_views(std::span<const TrainingView> views, const FuseViewsOptions& options) {
+  options.check();
+  std::vector<FusionView> seen(views.size());
+  parallel_for(views.size(), options.num_threads,
+               [&](std::size_t i) { seen[i] = make_fusion_view(views[i], options); });
+  std::erase_if(seen, [](const FusionView& view) { return view.depth_m.empty(); });
+  DistanceVolume volume;
+  volume.voxel_m = options.voxel_m;
+  volume.truncation_m = options.truncation_m;
+  allocate_blocks(volume, seen);
+  integrate_views(volume, seen, options.num_threads);
+  TriangleMesh mesh = extract_surface_nets(volume, {.min_weight = static_cast<float>(options.min_weight),
+                                                    .max_free_share = static_cast<float>(options.max_free_share)});
+  mesh = keep_large_parts(mesh, options.min_part_share);
+  compute_vertex_normals(mesh);
+  paint(mesh, seen, options.num_threads);
+  return mesh;
+}
+
+}  // namespace resight

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+
+#include "resight/geometry/triangle_mesh.hpp"
+#include "resight/sensor/training_view.hpp"
+
+namespace resight {
+
+/// All values are ours.
+struct FuseViewsOptions {
+  double voxel_m = 0.0015;            ///< Finer than the noise of one view, as many views are averaged.
+  double truncation_m = 0.005;        ///< Of distances: beyond the noise of a point, thinner than most walls.
+  double min_edge_distance_px = 2.0;  ///< Points nearer to a depth discontinuity are mixtures with the background.
+  double max_incidence_rad = 1.3;     ///< Surface slanted more (75 deg) is not used.
+  double min_weight = 0.4;            ///< Of what is surface, in 1/mm^2: one good point at 0.8 m.
+  double max_free_share = 1.0;        ///< More views, by weight, looked through a place than saw it: it is free.
+  double min_part_share = 0.05;       ///< Of the largest part's faces; smaller loose parts are dropped.
+  int num_threads = 1;                ///< Same bits for any value >= 1.
+  void check() const;
+};
+
+/// The surface of an object seen in views (frame.world_from_camera is object_from_camera; mask: non-zero = object) as
+/// a mesh in the object frame, with normals, and with colours at the vertices: a truncated signed distance field
+/// (Curless and Levoy 1996) that each view adds to with the inverse variance of its points (nguyen_noise()), extracted
+/// by surface nets. Where no view saw anything the surface is open. What views look through, the background of the mask
+/// included, is cut away. Empty if no view has a usable point of the object.
+[[nodiscard]] TriangleMesh fuse_views(std::span<const TrainingView> views, const FuseViewsOptions& options = {});
+
+}  // namespace resight
