@@ -44,7 +44,7 @@ struct ObjectRegionOptions {
   double min_object_height_m = 0.012;
   double max_turntable_height_m = 0.08;  ///< Above what it stands on.
   double min_turntable_share = 0.15;     ///< Of the circle around what stands on the table that is seen of its top.
-  double max_jump_m = 0.02;              ///< Between neighbouring points of one object.
+  double max_jump_m = 0.06;              ///< Between neighbouring points of one object: parts of it may overhang.
   int min_pixels = 300;                  ///< Of the object.
   double min_margin_m = 0.02;            ///< Of the support around the foot of what stands on it, ..
   double min_margin_share = 0.85;        ///< .. in this share of the directions that are not hidden.
@@ -66,7 +66,7 @@ struct ObjectRegionOptions {
 /// All values are ours.
 struct SegmentObjectOptions {
   double min_height_m = 0.005;   ///< Above the support: beyond the noise of its points.
-  double max_jump_m = 0.02;      ///< Between neighbouring points of one object.
+  double max_jump_m = 0.06;      ///< Between neighbouring points of one object: parts of it may overhang.
   int max_gap_px = 4;            ///< Between neighbouring points of one object: slanted parts give no return.
   double min_part_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
   void check() const;
