@@ -81,6 +81,12 @@ struct SimulateArguments {
   int num_threads = 1;
 };
 
+struct ModelArguments {
+  std::vector<std::filesystem::path> sequences;
+  std::filesystem::path out;
+  int num_threads = 1;
+};
+
 struct ConvertArguments {
   std::filesystem::path in;
   std::filesystem::path out;
@@ -116,6 +122,7 @@ void run_recognize(const RecognizeArguments& arguments);
 void run_changes(const ChangesArguments& arguments);
 void run_track(const TrackArguments& arguments);
 void run_simulate(const SimulateArguments& arguments);
+void run_model(const ModelArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);
 void run_demo(const DemoArguments& arguments);

@@ -26,6 +26,7 @@ struct Arguments {
   ChangesArguments changes;
   TrackArguments track;
   SimulateArguments simulate;
+  ModelArguments model;
   ConvertArguments convert;
   EvaluateArguments evaluate;
   std::string shard;
@@ -134,6 +135,19 @@ std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   return [&a] { run_simulate(a); };
 }
 
+std::function<void()> add_model(CLI::App& app, ModelArguments& a) {
+  CLI::App* command = app.add_subcommand(
+      "model", "Make an object model of recordings: on a turntable before a still camera, or walked around");
+  command
+      ->add_option("--sequence", a.sequences,
+                   "Recording once around the object (TUW, BOP, TUM and others, detected); again for the object lying "
+                   "on another side")
+      ->required();
+  command->add_option("--out", a.out, "Model folder to write (TUW), for 'resight train'; must not exist")->required();
+  add_threads(command, a.num_threads);
+  return [&a] { run_model(a); };
+}
+
 std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
   CLI::App* command = app.add_subcommand("convert", "Convert a data set (sequence or models) to another format");
   command->add_option("in", a.in, "Sequence or models folder")->required();
@@ -217,10 +231,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
-                                          add_train(app, a.train),     add_recognize(app, a.recognize),
-                                          add_changes(app, a.changes), add_track(app, a.track),
-                                          add_convert(app, a.convert), add_evaluate(app, a.evaluate, a.shard)};
+  std::vector<std::function<void()>> runs{
+      add_demo(app, a.demo),           add_simulate(app, a.simulate), add_train(app, a.train),
+      add_recognize(app, a.recognize), add_changes(app, a.changes),   add_track(app, a.track),
+      add_model(app, a.model),         add_convert(app, a.convert),   add_evaluate(app, a.evaluate, a.shard)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);

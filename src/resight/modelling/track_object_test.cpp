@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/modelling/track_object.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "resight/cameras/trajectory_error.hpp"
+#include "resight/modelling/build_model.hpp"
+#include "resight/modelling/recorded_object_test_util.hpp"
+
+namespace resight {
+namespace {
+
+struct Recording {
+  std::vector<RgbdFrame> frames;
+  std::vector<Rigid3> object_from_camera;
+};
+
+Recording split(std::vector<RecordedView> views) {
+  Recording recording;
+  for (RecordedView& view : views) {
+    recording.frames.push_back(std::move(view.frame));
+    recording.object_from_camera.push_back(view.camera_from_object.inverse());
+  }
+  return recording;
+}
+
+TrackObjectOptions two_threads() {
+  TrackObjectOptions options;
+  options.num_threads = 2;
+  return options;
+}
+
+std::vector<Rigid3> poses_of(const ObjectTrack& track) {
+  std::vector<Rigid3> poses;
+  for (const TrainingView& view : track.views) poses.push_back(view.frame.world_from_camera);
+  return poses;
+}
+
+// From files to a model, but for the files: both sides on a turntable before a background with more print.
+TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
+  Recording first = split(test::record("milk_carton", 20));
+  Recording second = split(test::record("milk_carton", 20, true));
+  auto track = track_object(std::move(first.frames), two_threads());
+  ASSERT_TRUE(track.ok()) << track.error().message;
+  ASSERT_EQ(track->views.size(), 18U);
+  EXPECT_TRUE(track->is_camera_still);
+  EXPECT_GE(track->num_loops, 1);
+  EXPECT_LT(track->closure_error_m, 0.003);
+  const TrajectoryError one_side = find_trajectory_error(first.object_from_camera, poses_of(*track));
+  EXPECT_LT(one_side.max_rad, 0.06);
+  // z is up from the turntable, as in the frame of the generated object.
+  EXPECT_LT(one_side.reference_from_estimate.rotation.col(2).head<2>().norm(), 0.05);
+
+  auto other = track_object(std::move(second.frames), two_threads());
+  ASSERT_TRUE(other.ok()) << other.error().message;
+  const auto joined = join_tracks(std::move(*track), std::move(*other), two_threads());
+  ASSERT_TRUE(joined.ok()) << joined.error().message;
+  std::vector<Rigid3> truth = first.object_from_camera;
+  truth.insert(truth.end(), second.object_from_camera.begin(), second.object_from_camera.end());
+  const TrajectoryError both = find_trajectory_error(truth, poses_of(*joined));
+  EXPECT_LT(both.max_rad, 0.06);
+
+  BuildModelOptions build;
+  build.num_threads = 2;
+  const auto model = build_model(joined->views, build);
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_LT(model->report.holes.open_share, 0.02);
+  const TriangleMesh mesh = make_procedural_object("milk_carton")->mesh;
+  EXPECT_NEAR(model->report.diameter_m, static_cast<double>(diameter(mesh.vertices)), 0.004);
+}
+
+TEST(TrackObject, SaysWhereItIsLost) {
+  const Recording whole = split(test::record("milk_carton", 40));
+  // The object is turned by hand, while nobody looks.
+  std::vector<RgbdFrame> frames{whole.frames[0], whole.frames[1], whole.frames[5]};
+  const auto lost = track_object(std::move(frames), two_threads());
+  ASSERT_FALSE(lost.ok());
+  EXPECT_THAT(lost.error().message, testing::MatchesRegex("lost at view 00005: [0-9]+ matches"));
+  // It is taken away.
+  frames = {whole.frames[0], whole.frames[0]};
+  for (float& z : frames[1].depth_m.data()) z = std::isnan(z) ? z : 3.0F;
+  const auto gone = track_object(std::move(frames), two_threads());
+  ASSERT_FALSE(gone.ok());
+  EXPECT_THAT(gone.error().message, testing::HasSubstr("lost at view 00000: nothing stands"));
+  frames = {whole.frames[0], whole.frames[0]};
+  for (RgbdFrame& frame : frames)
+    for (float& z : frame.depth_m.data()) z = std::isnan(z) ? z : 3.0F;
+  const auto nothing = track_object(std::move(frames), two_threads());
+  ASSERT_FALSE(nothing.ok());
+  EXPECT_THAT(nothing.error().message, testing::HasSubstr("no object stands"));
+  EXPECT_FALSE(track_object({}, two_threads()).ok());
+}
+
+TEST(TrackObject, RefusesBadOptions) {
+  TrackObjectOptions options;
+  options.min_overlap = 2;
+  EXPECT_THROW(options.check(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight

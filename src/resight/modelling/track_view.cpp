@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/modelling/internal/track_view.hpp"
+
+#include <utility>
+
+#include "resight/core/parallel.hpp"
+#include "resight/models/crop_view.hpp"
+#include "resight/simulation/view_renderer.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kMarginPx = 24;
+// A view that is already about right is not moved farther by the model; else it has slid along a symmetry.
+constexpr double kMaxShiftM = 0.015;
+constexpr double kMaxTurnRad = 0.12;
+
+// Light that changes nothing: the mesh has the colours that were seen.
+Lighting flat_light() {
+  Lighting light;
+  light.ambient = 1;
+  light.diffuse = 0;
+  return light;
+}
+
+}  // namespace
+
+TrainingView crop_for_tracking(const TrainingView& view) { return crop_to_object(view, kMarginPx); }
+
+TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& options) {
+  TrainingView part = crop_for_tracking(view);
+  const PreparedView prepared = prepare_view(std::move(part.frame));
+  return {make_alignment_view(prepared, options.view, &part.mask),
+          ViewFeatures(extract_sift(prepared, options.sift, &part.mask))};
+}
+
+struct ModelTarget::Impl {
+  RaycastScene scene;
+  TrackObjectOptions options;
+};
+
+ModelTarget::ModelTarget(TriangleMesh mesh, const TrackObjectOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+  impl_->scene.add_instance(impl_->scene.add_mesh(std::move(mesh)), Rigid3::identity());
+  impl_->scene.commit();
+}
+ModelTarget::~ModelTarget() = default;
+
+AlignedView ModelTarget::align(const AlignmentView& view, const Camera& camera, const Rigid3& object_from_camera,
+                               bool is_known) const {
+  RenderOptions render;
+  render.samples_per_side = 1;
+  render.lighting = flat_light();
+  RenderedView rendered = render_scene(impl_->scene, camera, object_from_camera, render);
+  RgbdFrame frame;
+  frame.camera = camera;
+  frame.color = std::move(rendered.color);
+  frame.depth_m = std::move(rendered.depth_m);
+  const AlignmentView target = make_alignment_view(prepare_view(std::move(frame)), impl_->options.view);
+  const std::vector<AlignmentTarget> targets{{&target, object_from_camera}};
+  AlignViewOptions align = impl_->options.align;
+  align.num_threads = 1;
+  if (is_known) {
+    align.prior_sigma_m = impl_->options.match_sigma_m;
+    align.prior_sigma_rad = impl_->options.match_sigma_rad;
+  }
+  return align_view(view, targets, object_from_camera, align);
+}
+
+void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions& options, int rounds) {
+  FuseViewsOptions fuse = options.fuse;
+  fuse.num_threads = options.num_threads;
+  for (int round = 0; round < rounds; ++round) {
+    TriangleMesh mesh = fuse_views(views, fuse);
+    if (mesh.empty()) return;
+    const ModelTarget model(std::move(mesh), options);
+    parallel_for(views.size(), options.num_threads, [&](std::size_t i) {
+      TrainingView part = crop_for_tracking(views[i]);
+      if (part.mask.empty()) return;
+      const Rigid3 before = part.frame.world_from_camera;
+      const Camera camera = part.frame.camera;
+      const PreparedView prepared = prepare_view(std::move(part.frame));
+      const AlignedView aligned =
+          model.align(make_alignment_view(prepared, options.view, &part.mask), camera, before, true);
+      const Rigid3 step = before.inverse() * aligned.world_from_camera;
+      const double turn_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
+      // The shift of the camera goes with its turn: what counts is how far the object's surface moves.
+      const Eigen::Vector3d object = before.inverse().translation;
+      if (aligned.overlap < options.min_overlap || turn_rad > kMaxTurnRad ||
+          (step * object - object).norm() > kMaxShiftM)
+        return;
+      views[i].frame.world_from_camera = aligned.world_from_camera;
+    });
+  }
+}
+
+}  // namespace resight
