@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// How right object models are that are made of recordings: both sides of generated objects, 36 views each, sensor
-// noise, against the generated meshes. With --true-poses the poses are the true ones, so that fusion is measured alone.
-//   bench_model_objects [--true-poses] [--out DIR] [OBJECT...]
+// How right object models are that are made of recordings: both sides of generated objects on a turntable, 36 views
+// each, sensor noise, against the generated meshes. With --true-poses tracking and joining are left out: fusion alone.
+//   bench_model_objects [--true-poses] [--walk] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <chrono>
-#include <cstring>
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "resight/cameras/trajectory_error.hpp"
+#include "resight/cameras/twist.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/modelling/build_model.hpp"
-#include "resight/modelling/object_region.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
+#include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
 
 namespace {
@@ -24,59 +28,135 @@ const std::vector<std::string> kObjects{"cereal_red",  "tea_box",    "milk_carto
                                         "soup_tomato", "coffee_tin", "ketchup",     "detergent",
                                         "mug",         "toy_car",    "toy_house",   "duck"};
 
-// Masks are found, not given: the region of the first view, as a turntable's camera stands still.
-std::vector<TrainingView> make_views(const TriangleMesh& mesh, bool upside_down) {
+struct Plan {
+  bool true_poses = false;
+  RecordingKind kind = RecordingKind::kTurntable;
+  std::filesystem::path out;
+  std::vector<std::string> names;
+};
+
+struct Side {
+  std::vector<RgbdFrame> frames;
+  std::vector<Rigid3> object_from_camera;
+};
+
+Side record(const TriangleMesh& mesh, const Plan& plan, bool upside_down) {
   RecordingOptions options;
+  options.kind = plan.kind;
   options.upside_down = upside_down;
   options.num_threads = num_hardware_threads();
-  std::vector<TrainingView> views;
-  std::optional<ObjectRegion> region;
-  for (RecordedView& recorded : simulate_recording(mesh, options)) {
-    const PreparedView prepared = prepare_view(recorded.frame);
-    if (!region) region = find_object_region(prepared);
-    if (!region) break;
-    recorded.mask = segment_object(prepared.cloud, *region);
-    views.push_back(test::to_training_view(std::move(recorded)));
+  Side side;
+  for (RecordedView& view : simulate_recording(mesh, options)) {
+    side.frames.push_back(std::move(view.frame));
+    side.object_from_camera.push_back(view.camera_from_object.inverse());
   }
-  return views;
+  return side;
 }
 
-void measure(const std::string& name, const std::filesystem::path& out) {
+// Masks are found, not given: the region of the first view, as a turntable's camera stands still.
+Result<ObjectTrack> mask_with_true_poses(Side side) {
+  ObjectTrack track;
+  std::optional<ObjectRegion> region;
+  for (std::size_t i = 0; i < side.frames.size(); ++i) {
+    PreparedView view = prepare_view(std::move(side.frames[i]));
+    if (!region) region = find_object_region(view);
+    if (!region) return Error{"no object stands on a support"};
+    Image<std::uint8_t> mask = segment_object(view.cloud, *region);
+    view.frame.world_from_camera = side.object_from_camera[i];
+    track.views.push_back({std::move(view.frame), std::move(mask)});
+  }
+  return track;
+}
+
+Result<ObjectTrack> track_both(const TriangleMesh& mesh, const Plan& plan, std::vector<Rigid3>& truth) {
+  TrackObjectOptions options;
+  options.num_threads = num_hardware_threads();
+  std::vector<ObjectTrack> tracks;
+  for (const bool upside_down : {false, true}) {
+    Side side = record(mesh, plan, upside_down);
+    truth.insert(truth.end(), side.object_from_camera.begin(), side.object_from_camera.end());
+    auto track =
+        plan.true_poses ? mask_with_true_poses(std::move(side)) : track_object(std::move(side.frames), options);
+    if (!track) return track;
+    tracks.push_back(std::move(*track));
+  }
+  if (!plan.true_poses) return join_tracks(std::move(tracks[0]), std::move(tracks[1]), options);
+  for (TrainingView& view : tracks[1].views) tracks[0].views.push_back(std::move(view));
+  return std::move(tracks[0]);
+}
+
+// A model's frame is its own: it is moved onto the true surface (point to plane) before it is compared.
+void fit_to_truth(TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 truth_from_model) {
+  const PointCloud surface = sample_visible_surface(truth, 0.0015);
+  const KdTree tree(surface.points);
+  for (int round = 0; round < 15; ++round) {
+    Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
+    Twist g = Twist::Zero();
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += 7) {
+      const Eigen::Vector3d p = truth_from_model * mesh.vertices[i].cast<double>().eval();
+      const PointNeighbor nearest = tree.nearest(p.cast<float>());
+      if (nearest.distance_sq > 0.01F * 0.01F) continue;
+      const Eigen::Vector3d normal = surface.normals[nearest.index].cast<double>();
+      Twist j;
+      j << p.cross(normal), normal;
+      h += j * j.transpose();
+      g += j * normal.dot(p - surface.points[nearest.index].cast<double>());
+    }
+    truth_from_model = from_twist(-h.ldlt().solve(g)) * truth_from_model;
+  }
+  for (Eigen::Vector3f& p : mesh.vertices) p = (truth_from_model * p.cast<double>().eval()).cast<float>();
+}
+
+void measure(const std::string& name, const Plan& plan) {
   const TriangleMesh truth = make_procedural_object(name)->mesh;
-  std::vector<TrainingView> views = make_views(truth, false);
-  for (TrainingView& view : make_views(truth, true)) views.push_back(std::move(view));
+  std::vector<Rigid3> true_poses;
+  const auto start = std::chrono::steady_clock::now();
+  const auto track = track_both(truth, plan, true_poses);
+  if (!track) {
+    fmt::print("{:12} {}\n", name, track.error().message);
+    return;
+  }
   BuildModelOptions options;
   options.num_threads = num_hardware_threads();
-  const auto start = std::chrono::steady_clock::now();
-  const auto build = build_model(views, options);
+  auto build = build_model(track->views, options);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!build) {
     fmt::print("{:12} {}\n", name, build.error().message);
     return;
   }
-  const test::SurfaceError error = test::measure_surface_error(build->mesh, truth);
-  fmt::print("{:12} {:6} {:9.2f} {:9.2f} {:9.3f} {:9.3f} {:7} {:8.1f}\n", name, views.size(), 1000 * error.median_m,
-             1000 * error.p95_m, error.completeness, build->report.holes.open_share, build->mesh.vertices.size(),
-             seconds);
+  std::vector<Rigid3> poses;
+  for (const TrainingView& view : track->views) poses.push_back(view.frame.world_from_camera);
+  const TrajectoryError trajectory = find_trajectory_error(true_poses, poses);
+  TriangleMesh mesh = build->mesh;
+  if (!plan.true_poses) fit_to_truth(mesh, truth, trajectory.reference_from_estimate);
+  const test::SurfaceError error = test::measure_surface_error(mesh, truth);
+  fmt::print("{:12} {:6} {:10.2f} {:9.2f} {:9.2f} {:9.2f} {:9.3f} {:6.3f} {:8.1f}\n", name, poses.size(),
+             1000 * track->closure_error_m, trajectory.mean_rad * 57.29578, 1000 * error.median_m, 1000 * error.p95_m,
+             error.completeness, build->report.holes.open_share, seconds);
   std::fflush(stdout);
-  if (out.empty()) return;
-  if (const auto done = write_object_model(out / name, views, *build); !done) fmt::print("{}\n", done.error().message);
+  if (plan.out.empty()) return;
+  if (const auto done = write_object_model(plan.out / name, track->views, *build); !done)
+    fmt::print("{}\n", done.error().message);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::filesystem::path out;
-  std::vector<std::string> names;
+  Plan plan;
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--out") == 0 && i + 1 < argc) {
-      out = argv[++i];
-    } else if (std::strcmp(argv[i], "--true-poses") != 0) {
-      names.emplace_back(argv[i]);
+    const std::string_view argument = argv[i];
+    if (argument == "--out" && i + 1 < argc) {
+      plan.out = argv[++i];
+    } else if (argument == "--true-poses") {
+      plan.true_poses = true;
+    } else if (argument == "--walk") {
+      plan.kind = RecordingKind::kWalk;
+    } else {
+      plan.names.emplace_back(argument);
     }
   }
-  fmt::print("{:12} {:>6} {:>9} {:>9} {:>9} {:>9} {:>7} {:>8}\n", "object", "views", "median mm", "p95 mm", "complete",
-             "open", "points", "seconds");
-  for (const std::string& name : names.empty() ? kObjects : names) measure(name, out);
+  fmt::print("{:12} {:>6} {:>10} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "object", "views", "closure mm", "turn deg",
+             "median mm", "p95 mm", "complete", "open", "seconds");
+  for (const std::string& name : plan.names.empty() ? kObjects : plan.names) measure(name, plan);
   return 0;
 }

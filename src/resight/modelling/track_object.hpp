@@ -20,7 +20,7 @@ struct TrackObjectOptions {
   SegmentObjectOptions segment;
   SiftOptions sift{.root_sift = true};
   MatchViewsOptions match{.pose = {.inlier_distance_m = 0.005, .max_normal_angle_rad = 0.8, .min_inliers = 6}};
-  AlignmentViewOptions view{.min_edge_distance_px = 2, .mean_radius = 0.025};
+  AlignmentViewOptions view{.num_levels = 2, .min_edge_distance_px = 2, .mean_radius = 0.0125};
   AlignViewOptions align{.max_distance_m = 0.02, .min_distance_m = 0.006, .brightness_sigma = 25};
   PoseGraphOptions graph;
   double match_sigma_m = 0.003;    ///< Of a pose that features gave, for the alignment that follows.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/modelling/internal/track_view.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "resight/core/parallel.hpp"
@@ -11,6 +12,7 @@ namespace resight {
 namespace {
 
 constexpr int kMarginPx = 24;
+constexpr int kMinWidthPx = 320;  // so that all views have the same number of levels
 // A view that is already about right is not moved farther by the model; else it has slid along a symmetry.
 constexpr double kMaxShiftM = 0.015;
 constexpr double kMaxTurnRad = 0.12;
@@ -25,7 +27,15 @@ Lighting flat_light() {
 
 }  // namespace
 
-TrainingView crop_for_tracking(const TrainingView& view) { return crop_to_object(view, kMarginPx); }
+TrainingView crop_for_tracking(const TrainingView& view) {
+  TrainingView part;
+  int margin_px = kMarginPx;
+  do {
+    part = crop_to_object(view, margin_px);
+    margin_px += kMarginPx;
+  } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidthPx, view.mask.width()));
+  return part;
+}
 
 TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& options) {
   TrainingView part = crop_for_tracking(view);
