@@ -281,7 +281,7 @@ const Row kRows[] = {
     {"ModelWithoutSequence", kNothing, "model --out out", 2, "--sequence"},
     {"ModelOfMissingSequence", kNothing, "model --sequence nowhere --out out", 2, "nowhere"},
     {"ModelOverData", kNothing, "model --sequence tuw --out full", 2, "full: exists already"},
-    {"ModelOfNothingThatStands", kNothing, "model --sequence tuw --out out", 1, "tuw: .*no object stands"},
+    {"ModelOfTinyViews", kNothing, "model --sequence tuw --out out", 1, "tuw: .*is 64 columns wide"},
     {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
      "nonsense"},
     {"ObjectOfAScene", kNothing, "simulate --preset demo --object mug --out out", 2, "--object"},

@@ -25,6 +25,7 @@ constexpr double kFloorSigmaRad = 0.003;
 constexpr double kStillDepthShare = 0.02;  // of z: a pixel that changes by less shows the same
 constexpr int kMinSteps = 6;               // between two views whose edge closes a loop
 constexpr std::size_t kMinMaskPixels = 150;
+constexpr int kMinColumns = 160;  // fewer: nothing is left to align at half of the size
 
 Matrix6 edge_information(const Matrix6& information) {
   Twist floor;
@@ -86,6 +87,9 @@ class ObjectTracker {
   Result<void> segment(std::vector<RgbdFrame> frames) {
     std::optional<ObjectRegion> region;
     for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (frames[i].camera.width < kMinColumns)
+        return Error{fmt::format("view {}: is {} columns wide ({} or more were expected)", frames[i].name,
+                                 frames[i].camera.width, kMinColumns)};
       const PreparedView view = prepare_view(std::move(frames[i]));
       if (i == 1)  // all others are like the first and the second
         track_.is_camera_still =

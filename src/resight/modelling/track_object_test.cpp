@@ -92,6 +92,8 @@ TEST(TrackObject, SaysWhereItIsLost) {
   ASSERT_FALSE(nothing.ok());
   EXPECT_THAT(nothing.error().message, testing::HasSubstr("no object stands"));
   EXPECT_FALSE(track_object({}, two_threads()).ok());
+  frames = {whole.frames[0]};
+  EXPECT_THAT(track_object(std::move(frames), two_threads()).error().message, testing::HasSubstr("at least two views"));
 }
 
 TEST(TrackObject, RefusesBadOptions) {
