@@ -5,13 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "resight/changes/difference.hpp"
+#include "resight/changes/view_difference.hpp"
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/spherical_bins.hpp"
 #include "resight/geometry/view_frustum.hpp"
-#include "resight/geometry/voxel_map.hpp"
-#include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
@@ -19,29 +17,21 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 constexpr std::size_t kGrain = 4096;
 
-/// The measurements of a view without the gaps; `pixels` tells where each came from.
-struct ViewPoints {
+/// The measurements of a view without the gaps.
+Points collect_points(const OrganizedCloud& cloud) {
   Points in_camera;
-  std::vector<int> pixels;
-};
-
-ViewPoints collect_points(const OrganizedCloud& cloud) {
-  ViewPoints result;
-  result.in_camera.reserve(cloud.z.size());
-  result.pixels.reserve(cloud.z.size());
-  for (std::size_t i = 0; i < cloud.z.size(); ++i) {
-    if (!cloud.has_point(i)) continue;
-    result.in_camera.push_back(cloud.point(i));
-    result.pixels.push_back(static_cast<int>(i));
-  }
-  return result;
+  in_camera.reserve(cloud.z.size());
+  for (std::size_t i = 0; i < cloud.z.size(); ++i)
+    if (cloud.has_point(i)) in_camera.push_back(cloud.point(i));
+  return in_camera;
 }
 
-Points transform_points(const Rigid3& a_from_b, const Points& points_in_b) {
+Points transform_points(const Rigid3& a_from_b, const Points& points_in_b, int num_threads) {
   const Rigid3f motion(a_from_b);
-  Points points_in_a;
-  points_in_a.reserve(points_in_b.size());
-  for (const Eigen::Vector3f& p : points_in_b) points_in_a.push_back(motion * p);
+  Points points_in_a(points_in_b.size());
+  parallel_for_blocks(points_in_b.size(), kGrain, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points_in_a[i] = motion * points_in_b[i];
+  });
   return points_in_a;
 }
 
@@ -53,44 +43,24 @@ DepthEvidenceOptions depth_options(const DetectChangesOptions& options) {
   return {options.window_radius_px, options.occlusion_margin_m, options.occlusion_sigmas, options.num_threads};
 }
 
-/// Eq. (2): positions of the points that no point of the grid explains.
-std::vector<int> find_unexplained(const Points& points_in_camera, const ProximityGrid& grid, double focal_px,
-                                  const DetectChangesOptions& options) {
-  std::vector<std::uint8_t> explained(points_in_camera.size());
-  parallel_for_blocks(points_in_camera.size(), kGrain, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3f& p = points_in_camera[i];
-      bool near = grid.any_within(p);
-      if (!near && options.tolerance_sigmas > 0 && p.z() > 0) {
-        // Two measurements of one surface, each with its own noise: their difference has sqrt(2) times as much.
-        const double sigma_m = std::numbers::sqrt2 * nguyen_noise(p.z(), 0, focal_px).axial_m;
-        const double wider_m = options.tolerance_sigmas * sigma_m;
-        near = wider_m > options.tolerance_m && grid.any_within(p, wider_m);
-      }
-      explained[i] = near ? 1 : 0;
-    }
-  });
-  std::vector<int> indices;
-  for (std::size_t i = 0; i < explained.size(); ++i)
-    if (explained[i] == 0) indices.push_back(static_cast<int>(i));
-  return indices;
+Tolerance tolerance_of(const Camera& camera, const DetectChangesOptions& options) {
+  return {options.tolerance_m, options.tolerance_sigmas, camera.fx};
 }
 
-Points select_points(const Points& points, std::span<const int> indices) {
-  Points selected;
-  selected.reserve(indices.size());
-  for (const int i : indices) selected.push_back(points[i]);
-  return selected;
-}
+/// The points of Psi in the view volume that nothing of the view explains.
+struct Unexplained {
+  std::vector<int> indices;
+  Points in_camera;
+};
 
 /// What the view says about points of the past that nothing of it explains.
 std::vector<Evidence> judge_unexplained(const Points& queries_in_camera, const PreparedView& view,
-                                        const Points& view_points_in_camera, const DetectChangesOptions& options) {
+                                        const DetectChangesOptions& options) {
   const Camera& camera = view.frame.camera;
   if (options.occlusion_test == OcclusionTest::kDepthImage)
     return classify_against_depth(queries_in_camera, camera, view.frame.depth_m, depth_options(options));
   std::vector<Evidence> evidence =
-      classify_occlusion(queries_in_camera, view_points_in_camera, SphericalBins(options.bin_size_rad),
+      classify_occlusion(queries_in_camera, collect_points(view.cloud), SphericalBins(options.bin_size_rad),
                          options.occlusion_margin_m, options.num_threads);
   if (!options.require_return) return evidence;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
@@ -101,45 +71,62 @@ std::vector<Evidence> judge_unexplained(const Points& queries_in_camera, const P
   return evidence;
 }
 
-/// Alg. 1, lines 1 to 3, for every point of Psi.
-std::vector<Evidence> judge_previous(const Points& previous_in_camera, const PreparedView& view,
-                                     const Points& view_points_in_camera, const DetectChangesOptions& options) {
-  const ProximityGrid grid(view_points_in_camera, options.tolerance_m);
-  const std::vector<int> unexplained = find_unexplained(previous_in_camera, grid, view.frame.camera.fx, options);
-  const Points queries = select_points(previous_in_camera, unexplained);
-  const std::vector<Evidence> judged = judge_unexplained(queries, view, view_points_in_camera, options);
-  const FrustumLimits volume = view_volume(view.frame.camera, options);
-  std::vector<Evidence> evidence(previous_in_camera.size(), Evidence::kPresent);
-  for (std::size_t i = 0; i < unexplained.size(); ++i)
-    evidence[unexplained[i]] = volume.contains(queries[i]) ? judged[i] : Evidence::kUnobserved;
+/// Alg. 1, lines 1 to 3, for every point of Psi. `explained_pixels`: see find_explained_points().
+std::vector<Evidence> judge_previous(const Points& psi_in_camera, const PreparedView& view,
+                                     const DetectChangesOptions& options, Image<std::uint8_t>* explained_pixels) {
+  const Camera& camera = view.frame.camera;
+  const std::vector<std::uint8_t> explained = find_explained_points(
+      psi_in_camera, view.cloud, camera, tolerance_of(camera, options), options.num_threads, explained_pixels);
+  const FrustumLimits volume = view_volume(camera, options);
+  std::vector<Evidence> evidence(psi_in_camera.size(), Evidence::kPresent);
+  Unexplained open;
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    if (explained[i] != 0) continue;
+    evidence[i] = Evidence::kUnobserved;
+    if (!volume.contains(psi_in_camera[i])) continue;
+    open.indices.push_back(static_cast<int>(i));
+    open.in_camera.push_back(psi_in_camera[i]);
+  }
+  const std::vector<Evidence> judged = judge_unexplained(open.in_camera, view, options);
+  for (std::size_t i = 0; i < open.indices.size(); ++i) evidence[static_cast<std::size_t>(open.indices[i])] = judged[i];
   return evidence;
 }
 
-/// Of the novel points, those whose place an earlier view saw empty (see detect_changes()).
-std::vector<int> keep_seen_through(const std::vector<int>& novel, const Points& view_points_in_camera,
-                                   const PreparedView& view, std::span<const PreparedView* const> earlier_views,
+/// Which of these pixels of the view an earlier view saw through.
+std::vector<std::uint8_t> find_seen_through(const std::vector<int>& pixels, const PreparedView& view,
+                                            const PreparedView& earlier, const DetectChangesOptions& options) {
+  const RgbdFrame& frame = earlier.frame;
+  const Rigid3f earlier_from_view(frame.world_from_camera.inverse() * view.frame.world_from_camera);
+  const FrustumLimits volume = view_volume(frame.camera, options);
+  std::vector<int> positions;
+  Points queries;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector3f p = earlier_from_view * view.cloud.point(static_cast<std::size_t>(pixels[i]));
+    if (!volume.contains(p)) continue;
+    positions.push_back(static_cast<int>(i));
+    queries.push_back(p);
+  }
+  const std::vector<Evidence> evidence =
+      classify_against_depth(queries, frame.camera, frame.depth_m, depth_options(options));
+  std::vector<std::uint8_t> seen_through(pixels.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    seen_through[static_cast<std::size_t>(positions[i])] = evidence[i] == Evidence::kSeenThrough ? 1 : 0;
+  return seen_through;
+}
+
+/// Of the novel pixels, those whose place an earlier view saw empty (see detect_changes()).
+std::vector<int> keep_seen_through(const std::vector<int>& novel, const PreparedView& view,
+                                   std::span<const PreparedView* const> earlier_views,
                                    const DetectChangesOptions& options) {
-  std::vector<std::uint8_t> is_new(view_points_in_camera.size());
+  std::vector<int> kept;
   std::vector<int> open = novel;  // not yet seen through
   for (const PreparedView* earlier : earlier_views) {
-    const RgbdFrame& frame = earlier->frame;
-    const Points queries = transform_points(frame.world_from_camera.inverse() * view.frame.world_from_camera,
-                                            select_points(view_points_in_camera, open));
-    const std::vector<Evidence> evidence =
-        classify_against_depth(queries, frame.camera, frame.depth_m, depth_options(options));
-    const FrustumLimits volume = view_volume(frame.camera, options);
+    const std::vector<std::uint8_t> seen_through = find_seen_through(open, view, *earlier, options);
     std::vector<int> still_open;
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const bool seen_through = evidence[i] == Evidence::kSeenThrough && volume.contains(queries[i]);
-      if (seen_through)
-        is_new[open[i]] = 1;
-      else
-        still_open.push_back(open[i]);
-    }
+    for (std::size_t i = 0; i < open.size(); ++i) (seen_through[i] != 0 ? kept : still_open).push_back(open[i]);
     open = std::move(still_open);
   }
-  std::vector<int> kept;
-  std::copy_if(novel.begin(), novel.end(), std::back_inserter(kept), [&](int i) { return is_new[i] != 0; });
+  std::sort(kept.begin(), kept.end());
   return kept;
 }
 
@@ -147,12 +134,12 @@ double share(std::size_t part, std::size_t rest) {
   return part == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(part + rest);
 }
 
-PointCloud cloud_of_pixels(const std::vector<int>& indices, const ViewPoints& points, const PreparedView& view) {
+PointCloud cloud_of_pixels(const std::vector<int>& pixels, const PreparedView& view) {
   const Rigid3f world_from_camera(view.frame.world_from_camera);
   PointCloud cloud_in_world;
-  for (const int i : indices) {
-    cloud_in_world.points.push_back(world_from_camera * points.in_camera[i]);
-    cloud_in_world.colors.push_back(view.frame.color[points.pixels[i]]);
+  for (const int i : pixels) {
+    cloud_in_world.points.push_back(world_from_camera * view.cloud.point(static_cast<std::size_t>(i)));
+    cloud_in_world.colors.push_back(view.frame.color[static_cast<std::size_t>(i)]);
   }
   return cloud_in_world;
 }
@@ -177,6 +164,7 @@ void DetectChangesOptions::check() const {
   check_positive("DetectChangesOptions.tolerance_m", tolerance_m);
   check_in_range("DetectChangesOptions.tolerance_sigmas", tolerance_sigmas, 0, 10);
   check_positive("DetectChangesOptions.voxel_m", voxel_m);
+  check_not_negative("DetectChangesOptions.previous_voxel_m", previous_voxel_m);
   check_in_range("DetectChangesOptions.bin_size_rad", bin_size_rad, 0.001, std::numbers::pi / 2);
   check_not_negative("DetectChangesOptions.occlusion_margin_m", occlusion_margin_m);
   check_not_negative("DetectChangesOptions.occlusion_sigmas", occlusion_sigmas);
@@ -199,14 +187,15 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
   if (previous_in_world.empty()) return result;
 
   // All in the camera frame: moving Psi there is cheaper than moving the view's points to the world.
-  const bool thin = is_thin(previous_in_world, options.voxel_m);
+  const bool thin = options.previous_voxel_m == options.voxel_m || is_thin(previous_in_world, options.voxel_m);
   const PointCloud thinned = thin ? PointCloud{} : voxel_downsample(previous_in_world, options.voxel_m);
   const PointCloud& psi_in_world = thin ? previous_in_world : thinned;
   const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
-  const Points psi_in_camera = transform_points(camera_from_world, psi_in_world.points);
-  const ViewPoints points = collect_points(view.cloud);
+  const Points psi_in_camera = transform_points(camera_from_world, psi_in_world.points, options.num_threads);
 
-  const std::vector<Evidence> evidence = judge_previous(psi_in_camera, view, points.in_camera, options);
+  Image<std::uint8_t> explained_pixels(view.cloud.width(), view.cloud.height());
+  const std::vector<Evidence> evidence =
+      judge_previous(psi_in_camera, view, options, thin ? &explained_pixels : nullptr);
   std::vector<int> removed;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     ++result.evidence_count[static_cast<std::size_t>(evidence[i])];
@@ -214,11 +203,13 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
   }
   result.changed_share = share(removed.size(), result.evidence_count[static_cast<std::size_t>(Evidence::kPresent)]);
 
-  const ProximityGrid dense_psi(thin ? psi_in_camera : transform_points(camera_from_world, previous_in_world.points),
-                                options.tolerance_m);
-  std::vector<int> novel = find_unexplained(points.in_camera, dense_psi, view.frame.camera.fx, options);
-  const std::size_t num_explained = points.in_camera.size() - novel.size();
-  if (!earlier_views.empty()) novel = keep_seen_through(novel, points.in_camera, view, earlier_views, options);
+  const Points dense_psi =
+      thin ? Points{} : transform_points(camera_from_world, previous_in_world.points, options.num_threads);
+  std::vector<int> novel =
+      find_unexplained_pixels(thin ? psi_in_camera : dense_psi, view.cloud, view.frame.camera,
+                              tolerance_of(view.frame.camera, options), options.num_threads, explained_pixels);
+  const std::size_t num_explained = count_valid(view.cloud.z) - novel.size();
+  if (!earlier_views.empty()) novel = keep_seen_through(novel, view, earlier_views, options);
   result.novel_share = share(novel.size(), num_explained);
 
   // Without earlier views a large share of N may only mean that the camera looks at something else.
@@ -226,8 +217,8 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
                         (!earlier_views.empty() && result.novel_share > options.max_changed_share);
   if (result.pose_suspect) return result;
   result.removed_in_world = select(psi_in_world, removed);
-  result.novel_in_world = voxel_downsample(cloud_of_pixels(novel, points, view), options.voxel_m);
-  for (const int i : novel) result.novel_mask[points.pixels[i]] = 1;
+  result.novel_in_world = voxel_downsample(cloud_of_pixels(novel, view), options.voxel_m);
+  for (const int i : novel) result.novel_mask[static_cast<std::size_t>(i)] = 1;
   return result;
 }
 

@@ -15,6 +15,7 @@ struct DetectChangesOptions {
   double tolerance_m = 0.02;    ///< epsilon of Eq. (2); V4R: 2 cm as called.
   double tolerance_sigmas = 0;  ///< Widens epsilon to so many sigmas of two measurements at that depth; 0: paper.
   double voxel_m = 0.005;       ///< Both clouds are thinned to this (V4R: 5 mm).
+  double previous_voxel_m = 0;  ///< Psi is known to have one point at most in a cube of this side; 0: not known.
   OcclusionTest occlusion_test = OcclusionTest::kDepthImage;  ///< Paper: kSphericalBins.
   double bin_size_rad = 0.0349066;                            ///< Of the spherical z-buffer; paper: 2 deg.
   double occlusion_margin_m = 0.0;  ///< A blocker hides what is farther by more than this. Paper: 0.

@@ -3,32 +3,22 @@
 #include <limits>
 #include <utility>
 
-#include "resight/changes/difference.hpp"
+#include "resight/changes/view_difference.hpp"
 #include "resight/core/check.hpp"
-#include "resight/core/parallel.hpp"
 #include "resight/reconstruction/integration.hpp"
 
 namespace resight {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kGrain = 8192;
 
 /// Pixels whose point lies within the tolerance of a removed one.
-std::vector<std::size_t> find_removed_pixels(const PreparedView& view, const PointCloud& removed_in_world,
-                                             double tolerance_m, int num_threads) {
+std::vector<int> find_removed_pixels(const PreparedView& view, const PointCloud& removed_in_world, double tolerance_m,
+                                     int num_threads) {
   const PointCloud removed_in_camera =
       transform(view.frame.world_from_camera.inverse(),
                 PointCloud{.points = removed_in_world.points, .normals = {}, .colors = {}});
-  const ProximityGrid removed(removed_in_camera.points, tolerance_m);
-  std::vector<std::uint8_t> is_near(view.cloud.z.size());
-  parallel_for_blocks(is_near.size(), kGrain, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) is_near[i] = removed.any_within(view.cloud.point(i)) ? 1 : 0;
-  });
-  std::vector<std::size_t> pixels;
-  for (std::size_t i = 0; i < is_near.size(); ++i)
-    if (is_near[i] != 0) pixels.push_back(i);
-  return pixels;
+  return find_pixels_near(removed_in_camera.points, view.cloud, view.frame.camera, tolerance_m, num_threads);
 }
 
 void clear_pixel(PreparedView& view, std::size_t i) {
@@ -52,7 +42,7 @@ PreparedView clear_removed_points(PreparedView view, const PointCloud& removed_i
   if (removed_in_world.empty()) return view;
   const auto pixels = find_removed_pixels(view, removed_in_world, tolerance_m, prepare.num_threads);
   if (pixels.empty()) return view;
-  for (const std::size_t i : pixels) clear_pixel(view, i);
+  for (const int i : pixels) clear_pixel(view, static_cast<std::size_t>(i));
   view.edge_distance_px =
       find_edge_distance(find_depth_edges(view.frame.depth_m, prepare.edges), prepare.edges.max_distance_px);
   return view;

@@ -30,7 +30,10 @@ void DynamicSceneOptions::check() const {
   integrate.check();
 }
 
-DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(options)) { options_.check(); }
+DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(options)) {
+  options_.check();
+  options_.changes.previous_voxel_m = options_.integrate.voxel_m;  // Psi is our reconstruction.
+}
 
 ChangeResult DynamicScene::add_view(PreparedView view) {
   ChangeResult changes;

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/changes/view_difference.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "resight/changes/depth_tiles.hpp"
+#include "resight/changes/difference.hpp"
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/sensor/noise_model.hpp"
+
+namespace resight {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+constexpr std::size_t kGrain = 4096;
+constexpr int kMaxFirstLook_px = 4;
+constexpr double kSlack_px = 1.0;  // For points that project not quite where their pixel is.
+
+struct Pixel {
+  int u;
+  int v;
+};
+
+/// Rectangle of pixels, clipped to the image; empty if begin >= end.
+struct PixelWindow {
+  int begin_u, end_u;
+  int begin_v, end_v;
+};
+
+/// The search for pixels around points.
+class PixelSearch {
+ public:
+  PixelSearch(const OrganizedCloud& view, const Camera& camera, const Tolerance& tolerance)
+      : view_(view), camera_(camera), tolerance_(tolerance) {}
+
+  /// Whether a pixel explains `p`; `tiles` are those of the view. Marks some of those that do.
+  bool is_explained(const Eigen::Vector3f& p, const DepthTiles& tiles, Image<std::uint8_t>* explained_pixels) const {
+    if (!(p.z() > 0)) return tiles.may_be_near(p) && any_within(p, tolerance_.at(p));
+    const float focal_over_z = static_cast<float>(camera_.fx) / p.z();
+    const float u = focal_over_z * p.x() + static_cast<float>(camera_.cx);
+    const float v = static_cast<float>(camera_.fy) * p.y() / p.z() + static_cast<float>(camera_.cy);
+    if (!tiles.may_be_near(u, v, p.z())) return false;
+    const bool in_image = u > -0.5F && v > -0.5F && u < static_cast<float>(camera_.width) - 0.5F &&
+                          v < static_cast<float>(camera_.height) - 0.5F;
+    // A third of the tolerance, square: marks all that lies between the points of a cloud of 5 mm.
+    const float half_px = focal_over_z * static_cast<float>(tolerance_.distance_m) / 6;
+    const int reach_px = half_px < 2 ? 1 : static_cast<int>(std::min<float>(half_px, kMaxFirstLook_px));
+    if (in_image &&
+        mark_around(p, {static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F)}, reach_px, explained_pixels))
+      return true;
+    return any_within(p, tolerance_.at(p));
+  }
+
+ private:
+  bool mark_around(const Eigen::Vector3f& p, const Pixel& center, int reach_px,
+                   Image<std::uint8_t>* explained_pixels) const {
+    const PixelWindow window = clip(center, reach_px);
+    const auto limit = static_cast<float>(tolerance_.distance_m);
+    bool found = false;
+    for (int v = window.begin_v; v < window.end_v; ++v)
+      for (int u = window.begin_u; u < window.end_u; ++u) {
+        const std::size_t i = view_.z.index(u, v);
+        if (!((view_.point(i) - p).squaredNorm() <= limit * limit)) continue;
+        found = true;
+        if (explained_pixels == nullptr) return true;
+        std::atomic_ref((*explained_pixels)[i]).store(1, std::memory_order_relaxed);  // others may write the same
+      }
+    return found;
+  }
+
+  /// Whether any pixel of the view lies within the radius.
+  [[nodiscard]] bool any_within(const Eigen::Vector3f& p, double radius_m) const {
+    if (!p.allFinite()) return false;
+    const Pixel center = pixel_of(p);
+    const PixelWindow window = window_of(p, radius_m);
+    const auto radius = static_cast<float>(radius_m);
+    // From the middle outwards: there it is likeliest.
+    const int farthest = std::max(center.v - window.begin_v, window.end_v - 1 - center.v);
+    for (int step = 0; step <= farthest; ++step) {
+      if (row_has(center.v - step, window, p, radius * radius)) return true;
+      if (step > 0 && row_has(center.v + step, window, p, radius * radius)) return true;
+    }
+    return false;
+  }
+
+  /// That `p` projects to, within some images' size of the image.
+  [[nodiscard]] Pixel pixel_of(const Eigen::Vector3f& p) const {
+    const auto near_image = [](double x, int size) {  // In this order NaN becomes a number.
+      return static_cast<int>(std::max(-4.0 * size, std::min(5.0 * size, std::floor(x + 0.5))));
+    };
+    if (!(p.z() > 0)) return {camera_.width / 2, camera_.height / 2};
+    return {near_image(camera_.fx * p.x() / p.z() + camera_.cx, camera_.width),
+            near_image(camera_.fy * p.y() / p.z() + camera_.cy, camera_.height)};
+  }
+  [[nodiscard]] PixelWindow clip(const Pixel& center, int reach_px) const {
+    return {std::max(center.u - reach_px, 0), std::min(center.u + reach_px + 1, camera_.width),
+            std::max(center.v - reach_px, 0), std::min(center.v + reach_px + 1, camera_.height)};
+  }
+  /// Where points within the radius project to: at most f r sqrt(1 + s^2) / (z - r) from the projection of `p` itself,
+  /// with its slope s (see DepthTiles::close()).
+  [[nodiscard]] PixelWindow window_of(const Eigen::Vector3f& p, double radius_m) const {
+    const double nearest_m = p.z() - radius_m * (1 + 1e-4);
+    if (!(nearest_m > 0)) return {0, camera_.width, 0, camera_.height};
+    const Eigen::Vector2d projected = camera_.project(p.cast<double>());
+    const double s = p.x() / p.z();
+    const double t = p.y() / p.z();
+    const double reach_u = camera_.fx * radius_m * std::sqrt(1 + s * s) / nearest_m + kSlack_px;
+    const double reach_v = camera_.fy * radius_m * std::sqrt(1 + t * t) / nearest_m + kSlack_px;
+    const auto limit = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, double(size))); };
+    return {limit(std::floor(projected.x() - reach_u), camera_.width),
+            limit(std::ceil(projected.x() + reach_u) + 1, camera_.width),
+            limit(std::floor(projected.y() - reach_v), camera_.height),
+            limit(std::ceil(projected.y() + reach_v) + 1, camera_.height)};
+  }
+  [[nodiscard]] bool row_has(int v, const PixelWindow& window, const Eigen::Vector3f& p, float radius_sq) const {
+    if (v < window.begin_v || v >= window.end_v) return false;
+    const float* x = view_.x.row(v).data();
+    const float* y = view_.y.row(v).data();
+    const float* z = view_.z.row(v).data();
+    int found = 0;
+    for (int u = window.begin_u; u < window.end_u; ++u) {
+      const float dx = x[u] - p.x();
+      const float dy = y[u] - p.y();
+      const float dz = z[u] - p.z();
+      found |= dx * dx + dy * dy + dz * dz <= radius_sq ? 1 : 0;
+    }
+    return found != 0;
+  }
+
+  const OrganizedCloud& view_;
+  const Camera& camera_;
+  const Tolerance& tolerance_;
+};
+
+void check_input(const OrganizedCloud& view, const Camera& camera, const Tolerance& tolerance) {
+  check_positive("Tolerance.distance_m", tolerance.distance_m);
+  check_not_negative("Tolerance.sigmas", tolerance.sigmas);
+  require(camera.is_valid() && camera.width == view.width() && camera.height == view.height(),
+          "view_difference: the camera is not that of the view");
+}
+
+/// The widest tolerance of all the points.
+double widest(std::span<const Eigen::Vector3f> points, const Tolerance& tolerance) {
+  double widest_m = tolerance.distance_m;
+  if (tolerance.sigmas <= 0) return widest_m;
+  for (const Eigen::Vector3f& p : points)
+    if (std::isfinite(p.z())) widest_m = std::max(widest_m, tolerance.at(p));
+  return widest_m;
+}
+
+DepthTiles tiles_of_pixels(const OrganizedCloud& view, const Camera& camera, double radius_m,
+                           std::span<const int> pixels) {
+  DepthTiles tiles(camera, radius_m);
+  for (const int i : pixels) tiles.add_pixel(i % camera.width, i / camera.width, view.z[static_cast<std::size_t>(i)]);
+  tiles.close();
+  return tiles;
+}
+
+DepthTiles tiles_of_view(const OrganizedCloud& view, const Camera& camera, double radius_m) {
+  DepthTiles tiles(camera, radius_m);
+  for (int v = 0; v < view.height(); ++v) {
+    const float* z = view.z.row(v).data();
+    for (int u = 0; u < view.width(); ++u)
+      if (!std::isnan(z[u])) tiles.add_pixel(u, v, z[u]);
+  }
+  tiles.close();
+  return tiles;
+}
+
+/// Positions at which `is_marked` is not 0.
+std::vector<int> positions_of(const std::vector<std::uint8_t>& is_marked) {
+  std::vector<int> positions;
+  for (std::size_t i = 0; i < is_marked.size(); ++i)
+    if (is_marked[i] != 0) positions.push_back(static_cast<int>(i));
+  return positions;
+}
+
+template <typename Test>
+std::vector<std::uint8_t> test_all(std::size_t count, int num_threads, Test&& test) {
+  std::vector<std::uint8_t> result(count);
+  parallel_for_blocks(count, kGrain, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = test(i) ? 1 : 0;
+  });
+  return result;
+}
+
+Points select_near(std::span<const Eigen::Vector3f> points, const DepthTiles& tiles, int num_threads) {
+  const auto may_be_near =
+      test_all(points.size(), num_threads, [&](std::size_t i) { return tiles.may_be_near(points[i]); });
+  Points selected;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (may_be_near[i] != 0) selected.push_back(points[i]);
+  return selected;
+}
+
+}  // namespace
+
+double Tolerance::at(const Eigen::Vector3f& p_in_camera) const {
+  if (sigmas <= 0 || !(p_in_camera.z() > 0)) return distance_m;
+  // Two measurements of one surface, each with its own noise: their difference has sqrt(2) times as much.
+  const double sigma_m = std::numbers::sqrt2 * nguyen_noise(p_in_camera.z(), 0, focal_px).axial_m;
+  return std::max(distance_m, sigmas * sigma_m);
+}
+
+std::vector<std::uint8_t> find_explained_points(std::span<const Eigen::Vector3f> points_in_camera,
+                                                const OrganizedCloud& view_in_camera, const Camera& camera,
+                                                const Tolerance& tolerance, int num_threads,
+                                                Image<std::uint8_t>* explained_pixels) {
+  check_input(view_in_camera, camera, tolerance);
+  require(explained_pixels == nullptr || explained_pixels->size() == view_in_camera.z.size(),
+          "find_explained_points: explained_pixels has not the size of the view");
+  const DepthTiles tiles = tiles_of_view(view_in_camera, camera, widest(points_in_camera, tolerance));
+  const PixelSearch search(view_in_camera, camera, tolerance);
+  return test_all(points_in_camera.size(), num_threads,
+                  [&](std::size_t i) { return search.is_explained(points_in_camera[i], tiles, explained_pixels); });
+}
+
+std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points_in_camera,
+                                         const OrganizedCloud& view_in_camera, const Camera& camera,
+                                         const Tolerance& tolerance, int num_threads,
+                                         const Image<std::uint8_t>& explained_pixels) {
+  check_input(view_in_camera, camera, tolerance);
+  require(explained_pixels.empty() || explained_pixels.size() == view_in_camera.z.size(),
+          "find_unexplained_pixels: explained_pixels has not the size of the view");
+  std::vector<int> open;
+  Points queries;
+  for (std::size_t i = 0; i < view_in_camera.z.size(); ++i) {
+    if (!view_in_camera.has_point(i) || (!explained_pixels.empty() && explained_pixels[i] != 0)) continue;
+    open.push_back(static_cast<int>(i));
+    queries.push_back(view_in_camera.point(i));
+  }
+  const DepthTiles tiles = tiles_of_pixels(view_in_camera, camera, widest(queries, tolerance), open);
+  const ProximityGrid grid(select_near(points_in_camera, tiles, num_threads), tolerance.distance_m);
+  const auto unexplained = test_all(queries.size(), num_threads, [&](std::size_t i) {
+    if (grid.any_within(queries[i])) return false;
+    const double wider_m = tolerance.at(queries[i]);
+    return wider_m <= tolerance.distance_m || !grid.any_within(queries[i], wider_m);
+  });
+  std::vector<int> pixels = positions_of(unexplained);
+  for (int& i : pixels) i = open[static_cast<std::size_t>(i)];
+  return pixels;
+}
+
+std::vector<int> find_pixels_near(std::span<const Eigen::Vector3f> points_in_camera,
+                                  const OrganizedCloud& view_in_camera, const Camera& camera, double distance_m,
+                                  int num_threads) {
+  check_input(view_in_camera, camera, {.distance_m = distance_m});
+  DepthTiles tiles(camera, distance_m);
+  for (const Eigen::Vector3f& p : points_in_camera)
+    if (p.allFinite()) tiles.add(p);
+  tiles.close();
+  const ProximityGrid grid(points_in_camera, distance_m);
+  const std::size_t num_columns = view_in_camera.z.row(0).size();
+  return positions_of(test_all(view_in_camera.z.size(), num_threads, [&](std::size_t i) {
+    const float z = view_in_camera.z[i];  // NaN is near to nothing
+    return tiles.may_be_near(static_cast<float>(i % num_columns), static_cast<float>(i / num_columns), z) &&
+           grid.any_within(view_in_camera.point(i));
+  }));
+}
+
+}  // namespace resight
