@@ -9,7 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMaxNumbersPerVoxel = 4;  // Of places that no view shows any more: memory stays flat.
+constexpr std::size_t kMaxNumbersPerPoint = 3;  // Of places that no view shows any more: memory stays flat.
+constexpr std::size_t kMinNumbers = 1 << 20;
 
 /// Takes what was removed out of an earlier view. Most views of a large scene do not see the place at all.
 void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& options, DynamicScene::View& view) {
@@ -17,7 +18,7 @@ void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& option
   view.cleared =
       clear_removed_points(std::move(view.cleared), removed_in_world, options.clear_tolerance_m, options.prepare);
   if (count_valid(view.cleared.frame.depth_m) != num_before)
-    view.voxels = reduce_again(view.cleared, view.voxels, options.integrate);
+    update_voxels(view.cleared, view.voxels, options.integrate);
 }
 
 }  // namespace
@@ -44,28 +45,33 @@ ChangeResult DynamicScene::add_view(PreparedView view) {
     changes = detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views);
   }
   while (static_cast<int>(window_.size()) > options_.num_previous_views) window_.pop_front();
-  if (!changes.removed_in_world.empty())
-    parallel_for(window_.size(), options_.integrate.num_threads,
-                 [&](std::size_t v) { clear(changes.removed_in_world, options_, window_[v]); });
+  // The new view has no part in the clearing, which numbers no voxels: both at once.
+  ViewVoxels voxels;
+  const std::size_t num_cleared = changes.removed_in_world.empty() ? 0 : window_.size();
+  parallel_for(num_cleared + 1, options_.integrate.num_threads, [&](std::size_t task) {
+    if (task == 0)
+      voxels = reduce_to_voxels(view, numbers_, options_.integrate);
+    else
+      clear(changes.removed_in_world, options_, window_[task - 1]);
+  });
   RgbdFrame raw = view.frame;
-  ViewVoxels voxels = reduce_to_voxels(view, options_.integrate);
   window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
                      std::move(voxels)});
-
-  number_voxels();
-  std::vector<const ViewVoxels*> views;
-  for (const View& v : window_) views.push_back(&v.voxels);
-  reconstruction_ = merge_voxels(views, options_.integrate);
+  reconstruct();
   return changes;
 }
 
-void DynamicScene::number_voxels() {
-  std::size_t num_voxels = 0;
-  for (const View& view : window_) num_voxels += view.voxels.keys.size();
-  const bool is_stale = numbers_.size() > kMaxNumbersPerVoxel * num_voxels;
-  if (is_stale) numbers_ = {};
-  for (View& view : window_)
-    if (is_stale || view.voxels.numbers.empty()) numbers_.assign_to(view.voxels);
+void DynamicScene::reconstruct() {
+  if (numbers_.size() > kMaxNumbersPerPoint * reconstruction_.cloud_in_world.size() + kMinNumbers) {
+    numbers_ = {};
+    for (View& view : window_) view.voxels.numbers.clear();
+  }
+  std::vector<const ViewVoxels*> views;
+  for (View& view : window_) {
+    numbers_.assign_to(view.voxels);
+    views.push_back(&view.voxels);
+  }
+  merger_.merge(views, options_.integrate, reconstruction_);
 }
 
 }  // namespace resight

@@ -46,11 +46,12 @@ class DynamicScene {
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
-  void number_voxels();
+  void reconstruct();
 
   DynamicSceneOptions options_;
   std::deque<View> window_;
   VoxelNumbers numbers_;  // Of the voxels of the window, and of some before.
+  VoxelMerger merger_;
   Reconstruction reconstruction_;
   int num_views_ = 0;
 };

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "resight/geometry/point_cloud.hpp"
-#include "resight/geometry/voxel_map.hpp"
+#include "resight/reconstruction/view_voxels.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
 namespace resight {
@@ -16,14 +15,6 @@ namespace resight {
 /// view is returned unchanged if nothing is near.
 [[nodiscard]] PreparedView clear_removed_points(PreparedView view, const PointCloud& removed_in_world,
                                                 double tolerance_m, const PrepareViewOptions& prepare = {});
-
-struct IntegrateOptions {
-  double voxel_m = 0.005;
-  double min_edge_distance_px = 3.0;  ///< Points nearer to a depth discontinuity are dropped (V4R: 3 px).
-  int min_points_per_voxel = 1;       ///< Of all views together.
-  int num_threads = 1;                ///< Same bits for any value >= 1.
-  void check() const;
-};
 
 /// The scene as the views see it: one point a voxel, that of the lowest noise (sigma_L^2 sigma_A), with its normal,
 /// colour and view.
@@ -38,37 +29,24 @@ struct Reconstruction {
 [[nodiscard]] Reconstruction integrate_views(std::span<const PreparedView* const> views,
                                              const IntegrateOptions& options = {});
 
-/// What a single view has to say, one point a voxel: the first and dearer half of integrate_views(). Depends on the
-/// view alone, so that a view that stays as it is need not be reduced again for the next reconstruction.
-struct ViewVoxels {
-  std::vector<std::uint64_t> keys;  ///< voxel_key() in the world frame, in the order of the voxels' first pixels.
-  PointCloud cloud_in_world;        ///< The point of the lowest noise of each, with normal and colour.
-  std::vector<float> noise;         ///< sigma_L^2 sigma_A, m^3.
-  std::vector<int> num_points;      ///< Points of the view in the voxel.
-  std::vector<int> voxel_of_pixel;  ///< Position in `keys`, or -1.
-  std::vector<int> numbers;         ///< Of the voxels, the same in all views that VoxelNumbers has seen; empty before.
-};
-[[nodiscard]] ViewVoxels reduce_to_voxels(const PreparedView& view, const IntegrateOptions& options = {});
-
-/// The same of a view from which points were taken since it was reduced, without looking up what did not change.
-/// Numbers are kept, unless voxels have come (with an edge, the points beside it may come in).
-[[nodiscard]] ViewVoxels reduce_again(const PreparedView& view, const ViewVoxels& before,
-                                      const IntegrateOptions& options = {});
-
-/// Numbers voxels, 0, 1, 2, .. as they come: a view is looked up in the hash table once, and not for each
-/// reconstruction that it takes part in.
-class VoxelNumbers {
+/// The second half of it: the winners over all views, again and again as views come and go. Keeps its memory.
+class VoxelMerger {
  public:
-  void assign_to(ViewVoxels& view);
-  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+  /// `views` must have been reduced with the same voxel size and VoxelNumbers. `result` is overwritten.
+  void merge(std::span<const ViewVoxels* const> views, const IntegrateOptions& options, Reconstruction& result);
 
  private:
-  VoxelMap voxels_;
-};
+  struct Winner {
+    int number;
+    int view;
+    int slot;
+    float noise;
+  };
+  void find_winners(std::span<const ViewVoxels* const> views);
+  void drop_rare(std::span<const ViewVoxels* const> views, int min_points);
 
-/// The second half: the winners over all views. `views` must have been reduced with the same voxel size, and numbered
-/// by the same VoxelNumbers.
-[[nodiscard]] Reconstruction merge_voxels(std::span<const ViewVoxels* const> views,
-                                          const IntegrateOptions& options = {});
+  std::vector<int> winner_of_number_;  // Position in winners_ if that is of the number; else left from another time.
+  std::vector<Winner> winners_;        // In the order of the voxels' first points, view by view.
+};
 
 }  // namespace resight

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
+#include "resight/core/random.hpp"
 #include "resight/geometry/voxel_key.hpp"
 
 namespace resight {
@@ -145,40 +146,108 @@ TEST(IntegrateViews, EdgesAndPointsWithoutNormalsTakeNoPart) {
   EXPECT_TRUE(integrate_views(pointers(views)).cloud_in_world.empty());
 }
 
-TEST(ReduceAgain, IsWhatReducingGives) {
+/// The voxels in the order of their first pixels, whatever their slots: what a merge goes by.
+struct InOrder {
+  std::vector<std::uint64_t> keys;
+  std::vector<int> numbers;
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<float> noise;
+  std::vector<int> num_points;
+  std::vector<std::uint64_t> key_of_pixel;
+  friend bool operator==(const InOrder&, const InOrder&) = default;
+};
+
+InOrder in_order(const ViewVoxels& voxels) {
+  InOrder result;
+  for (const int slot : voxels.order) {
+    result.keys.push_back(voxels.keys[slot]);
+    result.numbers.push_back(voxels.numbers[slot]);
+    result.points.push_back(voxels.cloud_in_world.points[slot]);
+    result.normals.push_back(voxels.cloud_in_world.normals[slot]);
+    result.noise.push_back(voxels.noise[slot]);
+    result.num_points.push_back(voxels.num_points[slot]);
+  }
+  for (const int slot : voxels.slot_of_pixel) result.key_of_pixel.push_back(slot < 0 ? 0 : voxels.keys[slot]);
+  return result;
+}
+
+TEST(UpdateVoxels, IsWhatReducingGives) {
   const PreparedView view = three_views()[0];
-  ViewVoxels before = reduce_to_voxels(view);
   VoxelNumbers numbers;
-  numbers.assign_to(before);
+  const ViewVoxels before = reduce_to_voxels(view, numbers);
   PointCloud removed;
   for (std::size_t i = 0; i < before.cloud_in_world.size(); i += 50)
     removed.points.push_back(before.cloud_in_world.points[i]);
   const PreparedView cleared = clear_removed_points(view, removed, 0.01);
-  const ViewVoxels expected = reduce_to_voxels(cleared);
-  const ViewVoxels again = reduce_again(cleared, before);
-  ASSERT_LT(again.keys.size(), before.keys.size());
-  EXPECT_EQ(again.keys, expected.keys);
-  EXPECT_EQ(again.cloud_in_world.points, expected.cloud_in_world.points);
-  EXPECT_EQ(again.cloud_in_world.normals, expected.cloud_in_world.normals);
-  EXPECT_EQ(again.noise, expected.noise);
-  EXPECT_EQ(again.num_points, expected.num_points);
-  EXPECT_EQ(again.voxel_of_pixel, expected.voxel_of_pixel);
-  ViewVoxels numbered = expected;
-  numbers.assign_to(numbered);
-  EXPECT_EQ(again.numbers, numbered.numbers);
-  ViewVoxels back = reduce_again(view, again);  // with points that it had not before
-  EXPECT_EQ(back.keys, before.keys);
-  EXPECT_EQ(back.cloud_in_world.points, before.cloud_in_world.points);
-  EXPECT_TRUE(back.numbers.empty());
-  numbers.assign_to(back);
-  EXPECT_EQ(back.numbers, before.numbers);
-  EXPECT_THROW((void)reduce_again(view, {}), std::invalid_argument);
+  const ViewVoxels expected = reduce_to_voxels(cleared, numbers);
+  ViewVoxels voxels = before;
+  update_voxels(cleared, voxels);
+  ASSERT_LT(voxels.order.size(), before.order.size());
+  EXPECT_TRUE(in_order(voxels) == in_order(expected));
+  update_voxels(view, voxels);  // with points that it had not before
+  EXPECT_TRUE(in_order(voxels) == in_order(before));
+  ViewVoxels none;
+  EXPECT_THROW(update_voxels(view, none), std::invalid_argument);
 }
 
-TEST(MergeVoxels, WantsNumbers) {
-  const ViewVoxels voxels = reduce_to_voxels(three_views()[0]);
-  const std::vector<const ViewVoxels*> views{&voxels};
-  EXPECT_THROW((void)merge_voxels(views), std::invalid_argument);
+TEST(UpdateVoxels, VoxelsThatComeAreNew) {
+  const PreparedView view = three_views()[0];
+  PointCloud removed;
+  removed.points = {{0, -0.05F, 0.1F}};
+  const PreparedView cleared = clear_removed_points(view, removed, 0.1);
+  VoxelNumbers numbers;
+  ViewVoxels voxels = reduce_to_voxels(cleared, numbers);
+  update_voxels(view, voxels);
+  ASSERT_LT(voxels.numbers.size(), voxels.keys.size());
+  numbers.assign_to(voxels);
+  EXPECT_TRUE(in_order(voxels) == in_order(reduce_to_voxels(view, numbers)));
+}
+
+TEST(VoxelNumbers, AreThoseOfAMap) {
+  VoxelNumbers numbers;
+  std::map<std::uint64_t, int> twin;
+  Rng rng(1);
+  for (int i = 0; i < 20000; ++i) {
+    const auto next = [&] { return static_cast<int>(rng.below(40)) - 20; };
+    const std::uint64_t key = voxel_key(next(), next(), next());
+    const int expected = twin.try_emplace(key, static_cast<int>(twin.size())).first->second;
+    ASSERT_EQ(numbers.number_of(key), expected);
+  }
+  EXPECT_EQ(numbers.size(), twin.size());
+}
+
+TEST(VoxelMerger, WantsNumbers) {
+  VoxelNumbers numbers;
+  ViewVoxels voxels = reduce_to_voxels(three_views()[0], numbers);
+  voxels.numbers.pop_back();
+  Reconstruction result;
+  for (const ViewVoxels* view : {static_cast<const ViewVoxels*>(&voxels), static_cast<const ViewVoxels*>(nullptr)}) {
+    const std::vector<const ViewVoxels*> views{view};
+    EXPECT_THROW(VoxelMerger().merge(views, {}, result), std::invalid_argument);
+  }
+}
+
+TEST(VoxelMerger, RemembersNothing) {
+  const std::vector<PreparedView> views = three_views();
+  VoxelNumbers numbers;
+  std::vector<ViewVoxels> voxels;
+  for (const PreparedView& view : views) voxels.push_back(reduce_to_voxels(view, numbers));
+  VoxelMerger merger;
+  Reconstruction result;
+  for (const std::vector<std::size_t>& chosen :
+       std::vector<std::vector<std::size_t>>{{0, 1, 2}, {1}, {2, 0}, {}, {0, 1}}) {
+    std::vector<const ViewVoxels*> some;
+    std::vector<const PreparedView*> same;
+    for (const std::size_t v : chosen) {
+      some.push_back(&voxels[v]);
+      same.push_back(&views[v]);
+    }
+    merger.merge(some, {}, result);
+    const Reconstruction expected = integrate_views(same);
+    EXPECT_EQ(result.cloud_in_world.points, expected.cloud_in_world.points);
+    EXPECT_EQ(result.view, expected.view);
+  }
 }
 
 TEST(IntegrateViews, NothingFromNothing) {
