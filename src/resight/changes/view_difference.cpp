@@ -17,6 +17,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kRowGrain = 16;
 constexpr int kMaxFirstLook_px = 4;
 constexpr double kSlack_px = 1.0;  // For points that project not quite where their pixel is.
 
@@ -254,12 +255,20 @@ std::vector<int> find_pixels_near(std::span<const Eigen::Vector3f> points_in_cam
     if (p.allFinite()) tiles.add(p);
   tiles.close();
   const ProximityGrid grid(points_in_camera, distance_m);
-  const std::size_t num_columns = view_in_camera.z.row(0).size();
-  return positions_of(test_all(view_in_camera.z.size(), num_threads, [&](std::size_t i) {
-    const float z = view_in_camera.z[i];  // NaN is near to nothing
-    return tiles.may_be_near(static_cast<float>(i % num_columns), static_cast<float>(i / num_columns), z) &&
-           grid.any_within(view_in_camera.point(i));
-  }));
+  std::vector<std::uint8_t> is_near(view_in_camera.z.size());
+  parallel_for_blocks(static_cast<std::size_t>(camera.height), kRowGrain, num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t v = begin; v < end; ++v) {
+                          const float* z = view_in_camera.z.row(static_cast<int>(v)).data();
+                          for (int u = 0; u < camera.width; ++u) {
+                            if (!tiles.may_be_near(static_cast<float>(u), static_cast<float>(v), z[u]))
+                              continue;  // nor is NaN
+                            const std::size_t i = view_in_camera.z.index(u, static_cast<int>(v));
+                            is_near[i] = grid.any_within(view_in_camera.point(i)) ? 1 : 0;
+                          }
+                        }
+                      });
+  return positions_of(is_near);
 }
 
 }  // namespace resight

@@ -43,8 +43,7 @@ PreparedView clear_removed_points(PreparedView view, const PointCloud& removed_i
   const auto pixels = find_removed_pixels(view, removed_in_world, tolerance_m, prepare.num_threads);
   if (pixels.empty()) return view;
   for (const int i : pixels) clear_pixel(view, static_cast<std::size_t>(i));
-  view.edge_distance_px =
-      find_edge_distance(find_depth_edges(view.frame.depth_m, prepare.edges), prepare.edges.max_distance_px);
+  update_edge_distance(view.frame.depth_m, pixels, prepare.edges, view.edge_distance_px);
   return view;
 }
 

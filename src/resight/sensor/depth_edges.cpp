@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -75,6 +76,41 @@ Image<int> column_distances(const Image<std::uint8_t>& edges, int far) {
   return distance;
 }
 
+struct Rectangle {
+  int begin_u, end_u;
+  int begin_v, end_v;
+  [[nodiscard]] std::int64_t area() const { return std::int64_t{end_u - begin_u} * (end_v - begin_v); }
+};
+
+Rectangle grown(const Rectangle& r, int by_px, const Rectangle& limits) {
+  return {std::max(r.begin_u - by_px, limits.begin_u), std::min(r.end_u + by_px, limits.end_u),
+          std::max(r.begin_v - by_px, limits.begin_v), std::min(r.end_v + by_px, limits.end_v)};
+}
+
+/// What of each tile of the image has changed.
+std::vector<Rectangle> dirty_tiles(std::span<const int> changed_pixels, const Rectangle& image) {
+  constexpr int kTile_px = 64;
+  const int columns = image.end_u / kTile_px + 1;
+  std::vector<Rectangle> tiles(static_cast<std::size_t>(columns * (image.end_v / kTile_px + 1)),
+                               {image.end_u, 0, image.end_v, 0});
+  for (const int i : changed_pixels) {
+    const int u = i % image.end_u;
+    const int v = i / image.end_u;
+    Rectangle& tile = tiles[static_cast<std::size_t>(v / kTile_px * columns + u / kTile_px)];
+    tile = {std::min(tile.begin_u, u), std::max(tile.end_u, u + 1), std::min(tile.begin_v, v),
+            std::max(tile.end_v, v + 1)};
+  }
+  std::erase_if(tiles, [](const Rectangle& tile) { return tile.begin_u >= tile.end_u; });
+  return tiles;
+}
+
+Image<float> cut_out(const Image<float>& image, const Rectangle& r) {
+  Image<float> part(r.end_u - r.begin_u, r.end_v - r.begin_v);
+  for (int v = r.begin_v; v < r.end_v; ++v)
+    std::copy_n(image.row(v).begin() + r.begin_u, part.width(), part.row(v - r.begin_v).begin());
+  return part;
+}
+
 }  // namespace
 
 void DepthEdgeOptions::check() const {
@@ -125,6 +161,34 @@ Image<float> find_edge_distance(const Image<std::uint8_t>& edges, double max_dis
       d[u] = best_sq[u] >= far * far ? cap : std::min(std::sqrt(static_cast<float>(best_sq[u])), cap);
   }
   return distance;
+}
+
+void update_edge_distance(const Image<float>& depth_m, std::span<const int> changed_pixels,
+                          const DepthEdgeOptions& options, Image<float>& edge_distance_px) {
+  options.check();
+  require(depth_m.width() == edge_distance_px.width() && depth_m.height() == edge_distance_px.height(),
+          "update_edge_distance: the images differ in size");
+  const Rectangle all{0, depth_m.width(), 0, depth_m.height()};
+  const std::vector<Rectangle> dirty = dirty_tiles(changed_pixels, all);
+  // A pixel bridges gaps, and a step has two sides, so far away; and then there is the distance to it.
+  const double reach = std::min<double>(std::floor(options.max_distance_px), depth_m.width() + depth_m.height());
+  const int edge_px = options.max_gap_px + 2;
+  const int change_px = edge_px + static_cast<int>(reach) + 1;
+  const int rim_px = change_px + static_cast<int>(reach) + edge_px;
+  std::int64_t num_pixels = 0;
+  for (const Rectangle& tile : dirty) num_pixels += grown(tile, rim_px, all).area();
+  if (num_pixels > all.area() / 2) {
+    edge_distance_px = find_edge_distance(find_depth_edges(depth_m, options), options.max_distance_px);
+    return;
+  }
+  for (const Rectangle& tile : dirty) {
+    const Rectangle from = grown(tile, rim_px, all);
+    const Rectangle to = grown(tile, change_px, all);
+    const Image<float> distance =
+        find_edge_distance(find_depth_edges(cut_out(depth_m, from), options), options.max_distance_px);
+    for (int v = to.begin_v; v < to.end_v; ++v)
+      for (int u = to.begin_u; u < to.end_u; ++u) edge_distance_px(u, v) = distance(u - from.begin_u, v - from.begin_v);
+  }
 }
 
 }  // namespace resight

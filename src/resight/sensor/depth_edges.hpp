@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
+
 #include "resight/core/image.hpp"
 
 namespace resight {
@@ -20,5 +22,10 @@ struct DepthEdgeOptions {
 
 /// Euclidean distance of every pixel to the nearest edge pixel, px, capped at max_distance_px.
 [[nodiscard]] Image<float> find_edge_distance(const Image<std::uint8_t>& edges, double max_distance_px);
+
+/// Brings `edge_distance_px`, made of a depth image by both of the above, up to date after the depth of some pixels has
+/// changed: the same as making it anew, in the parts of the image that they reach.
+void update_edge_distance(const Image<float>& depth_m, std::span<const int> changed_pixels,
+                          const DepthEdgeOptions& options, Image<float>& edge_distance_px);
 
 }  // namespace resight

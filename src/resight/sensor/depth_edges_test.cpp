@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "resight/core/random.hpp"
 #include "resight/sensor/sensor_test_scenes.hpp"
 
 namespace resight {
@@ -118,6 +119,34 @@ TEST(FindEdgeDistance, IsTheCapWithoutEdges) {
   const Image<float> distance = find_edge_distance(Image<std::uint8_t>(7, 5), std::numeric_limits<double>::infinity());
   for (const float d : distance.data()) EXPECT_TRUE(std::isinf(d));
   EXPECT_TRUE(find_edge_distance(Image<std::uint8_t>(), 5).empty());
+}
+
+TEST(UpdateEdgeDistance, IsThatOfTheChangedDepth) {
+  const Camera camera{320, 240, 262.5, 262.5, 159.5, 119.5};
+  const Image<float> depth = test::render_noisy_sphere(camera, 7);
+  for (const DepthEdgeOptions& options :
+       {DepthEdgeOptions{}, DepthEdgeOptions{.max_gap_px = 0, .max_distance_px = 2.5},
+        DepthEdgeOptions{.max_depth_jump = 0.01, .max_gap_px = 4, .max_distance_px = 500}}) {
+    Rng rng(2);
+    for (const int num_patches : {0, 1, 4, 200}) {
+      Image<float> changed = depth;
+      std::vector<int> pixels;
+      for (int patch = 0; patch < num_patches; ++patch) {
+        const int u = static_cast<int>(rng.below(316));
+        const int v = static_cast<int>(rng.below(236));
+        for (int k = 0; k < 16; ++k) {
+          pixels.push_back(static_cast<int>(changed.index(u + k % 4, v + k / 4)));
+          changed(u + k % 4, v + k / 4) = kNan;
+        }
+      }
+      Image<float> distance = find_edge_distance(find_depth_edges(depth, options), options.max_distance_px);
+      update_edge_distance(changed, pixels, options, distance);
+      EXPECT_TRUE(
+          test::same_bytes(distance, find_edge_distance(find_depth_edges(changed, options), options.max_distance_px)));
+    }
+  }
+  Image<float> small(3, 3);
+  EXPECT_THROW(update_edge_distance(depth, {}, {}, small), std::invalid_argument);
 }
 
 TEST(DepthEdges, RefuseBadOptions) {
