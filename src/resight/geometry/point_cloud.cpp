@@ -60,8 +60,12 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
   };
   VoxelMap voxels(cloud.size() / 4);
   std::vector<Sums> sums;
+  std::uint64_t last_key = 0;
+  std::size_t number = 0;  // neighbours on an image grid mostly share their voxel: saves the look-up
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto number = static_cast<std::size_t>(voxels.insert(voxel_key(cloud.points[i], inverse_size)));
+    const std::uint64_t key = voxel_key(cloud.points[i], inverse_size);
+    if (i == 0 || key != last_key) number = static_cast<std::size_t>(voxels.insert(key));
+    last_key = key;
     if (number == sums.size()) sums.emplace_back().first = i;
     Sums& s = sums[number];
     s.point += cloud.points[i].cast<double>();

@@ -27,7 +27,9 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
 }
 
 SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
-  ScenePlanes planes = find_planes_of_thinned(cloud.points, cloud.normals, options.spacing_m, {});
+  VerifyOptions as_verified;
+  as_verified.num_threads = options.num_threads;
+  ScenePlanes planes = find_planes_of_thinned(cloud.points, cloud.normals, options.spacing_m, as_verified);
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];
@@ -74,6 +76,7 @@ void SampleSceneOptions::check() const {
   check_positive("SampleSceneOptions.max_depth_m", max_depth_m);
   check_positive("SampleSceneOptions.max_plane_m", max_plane_m);
   check_not_negative("SampleSceneOptions.min_edge_distance_px", min_edge_distance_px);
+  check_positive("SampleSceneOptions.num_threads", num_threads);
 }
 
 SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options) {

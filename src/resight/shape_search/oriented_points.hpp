@@ -14,6 +14,7 @@ struct SampleSceneOptions {
   double max_depth_m = 2.0;         ///< Normals of farther points say little.
   double max_plane_m = 0.4;         ///< Points of planes whose extent is larger (tables, walls) are left out.
   double min_edge_distance_px = 2;  ///< Nearer to a depth edge, normals are bent.
+  int num_threads = 1;              ///< Same bits for any value >= 1.
   void check() const;
 };
 

@@ -28,6 +28,11 @@ Rigid3 to_double(const Rigid3f& motion) {
   return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
 }
 
+SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
+  options.num_threads = num_threads;
+  return options;
+}
+
 }  // namespace
 
 struct ShapeSearch::Impl {
@@ -191,7 +196,8 @@ void ShapeSearchOptions::check() const {
 }
 
 SearchedView::SearchedView(const PreparedView& view, const ShapeSearchOptions& options)
-    : samples(sample_scene(view, options.scene)), probe(view, samples.planes, options.num_threads) {}
+    : samples(sample_scene(view, with_threads(options.scene, options.num_threads))),
+      probe(view, samples.planes, options.num_threads) {}
 
 ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors)
     : impl_(std::make_unique<Impl>(library, options, colors)) {}

@@ -61,24 +61,80 @@ CellOrder sort_into_cells(std::span<const Eigen::Vector3f> points, std::span<con
   return order;
 }
 
+// The points of some cells, side by side: tested in vector code, against all points of one cell.
+class Neighborhood {
+ public:
+  explicit Neighborhood(const CellOrder& cells) : cells_(cells) {}
+
+  // Of cell `c`, its neighbours from number `first_neighbor` on.
+  void gather(std::size_t c, int first_neighbor) {
+    for (std::vector<float>* values : {&x_, &y_, &z_}) values->clear();
+    normals_.clear();
+    sources_.clear();
+    for (int k = first_neighbor; k < kNumNeighbors; ++k) {
+      const int other = cells_.neighbors[c][k];
+      if (other == VoxelMap::kNotFound) continue;
+      for (int j = cells_.cell_begin[other]; j < cells_.cell_begin[other + 1]; ++j) add(j);
+    }
+    is_near_.resize(x_.size());
+  }
+  [[nodiscard]] std::size_t size() const { return x_.size(); }
+  [[nodiscard]] int source(std::size_t k) const { return sources_[k]; }
+
+  // 1 for the points within the radius of `p`, else 0.
+  const std::vector<float>& mark_near(const Eigen::Vector3f& p, float radius_sq) {
+    mark(x_.data(), y_.data(), z_.data(), p, radius_sq, static_cast<int>(x_.size()), is_near_.data());
+    return is_near_;
+  }
+  // Sum of the marked points' normals and, last, their number. In order: what is added in between is nothing.
+  [[nodiscard]] Eigen::Vector4f sum_of_marked() const {
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    for (std::size_t k = 0; k < normals_.size(); ++k) sum += is_near_[k] * normals_[k];
+    return sum;
+  }
+
+ private:
+  void add(int j) {
+    x_.push_back(cells_.points[j].x());
+    y_.push_back(cells_.points[j].y());
+    z_.push_back(cells_.points[j].z());
+    normals_.emplace_back(cells_.normals[j].x(), cells_.normals[j].y(), cells_.normals[j].z(), 1.0F);
+    sources_.push_back(j);
+  }
+  // Parameters, since compilers trust __restrict on these alone.
+  static void mark(const float* __restrict x, const float* __restrict y, const float* __restrict z,
+                   const Eigen::Vector3f& p, float radius_sq, int count, float* __restrict is_near) {
+    const float px = p.x();
+    const float py = p.y();
+    const float pz = p.z();
+    for (int k = 0; k < count; ++k) {
+      const float dx = px - x[k];
+      const float dy = py - y[k];
+      const float dz = pz - z[k];
+      is_near[k] = dx * dx + dy * dy + dz * dz <= radius_sq ? 1.0F : 0.0F;
+    }
+  }
+
+  const CellOrder& cells_;
+  std::vector<float> x_, y_, z_;
+  std::vector<Eigen::Vector4f> normals_;  // And 1.
+  std::vector<int> sources_;              // In the cells' order.
+  std::vector<float> is_near_;
+};
+
 // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a right-angled edge.
 std::vector<float> find_curvatures(const CellOrder& cells, float radius_sq, int num_threads) {
   std::vector<float> curvatures(cells.points.size());
   parallel_for_blocks(cells.num_cells(), kCellsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c)
+    Neighborhood around(cells);
+    for (std::size_t c = begin; c < end; ++c) {
+      around.gather(c, 0);
       for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
-        Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-        int count = 0;
-        for (const int other : cells.neighbors[c]) {
-          if (other == VoxelMap::kNotFound) continue;
-          for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) {
-            if ((cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) continue;
-            sum += cells.normals[j];
-            ++count;
-          }
-        }
-        curvatures[i] = 1.0F - sum.norm() / static_cast<float>(count);
+        around.mark_near(cells.points[i], radius_sq);
+        const Eigen::Vector4f sum = around.sum_of_marked();
+        curvatures[i] = 1.0F - sum.head<3>().norm() / sum.w();
       }
+    }
   });
   return curvatures;
 }
@@ -104,20 +160,19 @@ class UnionFind {
 // Joins flat neighbours of similar normals; each pair of cells is looked at from one side.
 void join_flat_points(const CellOrder& cells, const std::vector<float>& curvatures, float radius_sq,
                       float max_curvature, float min_dot, UnionFind& sets) {
-  const auto join = [&](int i, int j) {
-    if (curvatures[j] > max_curvature || (cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) return;
-    if (cells.normals[i].dot(cells.normals[j]) >= min_dot) sets.join(i, j);
-  };
-  for (std::size_t c = 0; c < cells.num_cells(); ++c)
+  Neighborhood around(cells);
+  for (std::size_t c = 0; c < cells.num_cells(); ++c) {
+    around.gather(c, kOwnCell);  // Its own points come first.
     for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
       if (curvatures[i] > max_curvature) continue;
-      for (int j = i + 1; j < cells.cell_begin[c + 1]; ++j) join(i, j);
-      for (int k = kOwnCell + 1; k < kNumNeighbors; ++k) {
-        const int other = cells.neighbors[c][k];
-        if (other == VoxelMap::kNotFound) continue;
-        for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) join(i, j);
+      const std::vector<float>& is_near = around.mark_near(cells.points[i], radius_sq);
+      for (auto k = static_cast<std::size_t>(i - cells.cell_begin[c]) + 1; k < around.size(); ++k) {
+        const int j = around.source(k);
+        if (is_near[k] != 0 && curvatures[j] <= max_curvature && cells.normals[i].dot(cells.normals[j]) >= min_dot)
+          sets.join(i, j);
       }
     }
+  }
 }
 
 // The flat neighbour of the most similar normal of a point on an edge, or -1.
