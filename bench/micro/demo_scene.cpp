@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "demo_scene.hpp"
+
+#include <algorithm>
+
+#include "../quality/arguments.hpp"
+#include "resight/features/shot.hpp"
+#include "resight/features/sift.hpp"
+#include "resight/models/training.hpp"
+#include "resight/simulation/presets.hpp"
+#include "resight/simulation/simulation.hpp"
+
+namespace resight::bench {
+namespace {
+
+constexpr int kNumViews = 7;  // K = 5, and one more.
+
+DemoScene make_demo() {
+  DemoScene demo;
+  demo.config = RecognizerConfig::from_preset("default");
+  Simulation simulation = value_or_exit(Simulation::create(make_demo_scene(3), 3, {.num_threads = 2}));
+  demo.objects = simulation.library();
+  TrainOptions training;
+  training.num_threads = 2;
+  for (const ProceduralObject& object : demo.objects)
+    demo.library.objects.push_back(value_or_exit(train_object(object.name, object.mesh, training)));
+  for (int v = 0; v < std::min(kNumViews, simulation.num_views()); ++v)
+    demo.views.push_back(prepare_view(simulation.render_view(v).frame, demo.config.prepare));
+
+  demo.scene = std::make_unique<DynamicScene>(scene_options(demo.config));
+  for (std::size_t v = 0; v + 1 < demo.views.size(); ++v) (void)demo.scene->add_view(demo.views[v]);
+  const PreparedView& view = demo.views.back();
+  demo.sift = extract_sift(view, demo.config.sift);
+  demo.shot = extract_shot(view, demo.config.shot);
+  return demo;
+}
+
+/// What keeps a reference to the library: when that stands where it stays.
+void add_searches(DemoScene& demo) {
+  demo.index = std::make_unique<ModelFeatureIndex>(demo.library, demo.config.match);
+  demo.shapes = std::make_unique<ShapeSearch>(demo.library, demo.config.shape, demo.config.verify);
+  demo.correspondences = demo.index->match(demo.sift, demo.shot);
+  demo.hypotheses = generate_hypotheses(demo.correspondences, demo.views.back().frame.world_from_camera,
+                                        static_cast<int>(demo.views.size()) - 1, 0, demo.config.generate);
+}
+
+}  // namespace
+
+DynamicSceneOptions scene_options(const RecognizerConfig& config) {
+  return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
+          config.integrate};
+}
+
+const DemoScene& demo_scene() {
+  static DemoScene demo = make_demo();
+  if (!demo.shapes) add_searches(demo);
+  return demo;
+}
+
+}  // namespace resight::bench
