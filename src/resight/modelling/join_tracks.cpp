@@ -58,8 +58,8 @@ class TrackJoiner {
     double best_overlap = 0;
     if (model_)
       for (const Way& way : ways) {
-        const auto [pose, overlap, score] = refine(way.first_from_second);
-        if (best && score <= best_score) continue;
+        const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
+        if (likeness < options_.min_correlation || (best && score <= best_score)) continue;
         best = pose;
         best_score = score;
         best_overlap = overlap;
@@ -125,6 +125,7 @@ class TrackJoiner {
     Rigid3 pose;
     double overlap = 0;
     double score = 0;
+    double likeness = 0;  // of brightness
   };
 
   // Each of some views of the second is aligned to the model; the way most like all of theirs is taken, and again.
@@ -134,13 +135,16 @@ class TrackJoiner {
       const std::vector<std::size_t> chosen = choose_evenly(second_.size(), options_.num_join_views);
       std::vector<AlignedView> aligned(chosen.size());
       parallel_for(chosen.size(), options_.num_threads, [&](std::size_t k) { aligned[k] = align(chosen[k], way); });
-      refined = {way, 0, 0};
+      refined = {way, 0, 0, 0};
       std::vector<Way> ways;
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         const AlignedView& a = aligned[k];
         const double likeness = std::isnan(a.brightness_correlation) ? 0 : a.brightness_correlation;
         refined.overlap += a.overlap / static_cast<double>(chosen.size());
-        refined.score += (a.overlap - 2 * a.seen_through + likeness) / static_cast<double>(chosen.size());
+        // Of a flat thing both recordings share the rim only: prints that agree tell more than much in common.
+        refined.score +=
+            (std::min(a.overlap, 0.3) - 2 * a.seen_through + 2 * likeness) / static_cast<double>(chosen.size());
+        refined.likeness += likeness / static_cast<double>(chosen.size());
         if (a.overlap >= options_.min_join_overlap)
           ways.push_back({a.world_from_camera * second_[chosen[k]].frame.world_from_camera.inverse(), a.num_pairs});
       }

@@ -2,6 +2,8 @@
 #include "resight/modelling/internal/track_view.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "resight/core/parallel.hpp"
@@ -23,6 +25,20 @@ Lighting flat_light() {
   light.ambient = 1;
   light.diffuse = 0;
   return light;
+}
+
+// A model of one side is open below: what is seen through there is the inside of its surface, where nothing ever was.
+void drop_insides(const RaycastScene& scene, const Camera& camera, const Rigid3& object_from_camera,
+                  Image<float>& depth_m) {
+  const Rigid3f pose(object_from_camera);
+  for (int v = 0; v < depth_m.height(); ++v)
+    for (int u = 0; u < depth_m.width(); ++u) {
+      if (std::isnan(depth_m(u, v))) continue;
+      const Ray ray = pixel_ray(camera, pose, static_cast<float>(u), static_cast<float>(v));
+      const RayHit hit = scene.cast(ray);
+      if (!hit.has_hit() || scene.face_normal(hit).dot(ray.direction) > 0)
+        depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+    }
 }
 
 }  // namespace
@@ -62,6 +78,7 @@ AlignedView ModelTarget::align(const AlignmentView& view, const Camera& camera, 
   render.samples_per_side = 1;
   render.lighting = flat_light();
   RenderedView rendered = render_scene(impl_->scene, camera, object_from_camera, render);
+  drop_insides(impl_->scene, camera, object_from_camera, rendered.depth_m);
   RgbdFrame frame;
   frame.camera = camera;
   frame.color = std::move(rendered.color);
