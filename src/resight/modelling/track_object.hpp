@@ -34,7 +34,7 @@ struct TrackObjectOptions {
   double min_still_share = 0.8;    ///< Of the pixels beside the object that do not change when the camera stands still.
   int num_refinements = 2;         ///< Rounds of: fuse all views, align each to the whole.
   int num_join_views = 10;         ///< Of a second recording that are tried on the model of the first.
-  double min_join_overlap = 0.12;  ///< Of those with that model, in the mean: less, and they cannot be joined.
+  double min_join_overlap = 0.06;  ///< Of those with that model, in the mean: less, and they cannot be joined.
   FuseViewsOptions fuse{.voxel_m = 0.002, .truncation_m = 0.006};  ///< Of the model that views are aligned to.
   int num_threads = 1;                                             ///< Same bits for any value >= 1.
   void check() const;
