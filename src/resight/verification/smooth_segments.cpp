@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -77,21 +78,21 @@ class Neighborhood {
       for (int j = cells_.cell_begin[other]; j < cells_.cell_begin[other + 1]; ++j) add(j);
     }
     is_near_.resize(x_.size());
+    near_.resize(x_.size());
   }
-  [[nodiscard]] std::size_t size() const { return x_.size(); }
-  [[nodiscard]] int source(std::size_t k) const { return sources_[k]; }
+  [[nodiscard]] int source(int k) const { return sources_[static_cast<std::size_t>(k)]; }
 
-  // 1 for the points within the radius of `p`, else 0.
-  const std::vector<float>& mark_near(const Eigen::Vector3f& p, float radius_sq) {
+  // Positions, ascending, of the points within the radius of `p`.
+  std::span<const int> find_near(const Eigen::Vector3f& p, float radius_sq) {
     mark(x_.data(), y_.data(), z_.data(), p, radius_sq, static_cast<int>(x_.size()), is_near_.data());
-    return is_near_;
+    int count = 0;  // Without a branch, which could not be foreseen.
+    for (std::size_t k = 0; k < is_near_.size(); ++k) {
+      near_[static_cast<std::size_t>(count)] = static_cast<int>(k);
+      count += is_near_[k];
+    }
+    return std::span(near_).first(static_cast<std::size_t>(count));
   }
-  // Sum of the marked points' normals and, last, their number. In order: what is added in between is nothing.
-  [[nodiscard]] Eigen::Vector4f sum_of_marked() const {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-    for (std::size_t k = 0; k < normals_.size(); ++k) sum += is_near_[k] * normals_[k];
-    return sum;
-  }
+  [[nodiscard]] const Eigen::Vector4f& normal(int k) const { return normals_[static_cast<std::size_t>(k)]; }
 
  private:
   void add(int j) {
@@ -103,7 +104,7 @@ class Neighborhood {
   }
   // Parameters, since compilers trust __restrict on these alone.
   static void mark(const float* __restrict x, const float* __restrict y, const float* __restrict z,
-                   const Eigen::Vector3f& p, float radius_sq, int count, float* __restrict is_near) {
+                   const Eigen::Vector3f& p, float radius_sq, int count, int* __restrict is_near) {
     const float px = p.x();
     const float py = p.y();
     const float pz = p.z();
@@ -111,7 +112,7 @@ class Neighborhood {
       const float dx = px - x[k];
       const float dy = py - y[k];
       const float dz = pz - z[k];
-      is_near[k] = dx * dx + dy * dy + dz * dz <= radius_sq ? 1.0F : 0.0F;
+      is_near[k] = dx * dx + dy * dy + dz * dz <= radius_sq ? 1 : 0;
     }
   }
 
@@ -119,7 +120,8 @@ class Neighborhood {
   std::vector<float> x_, y_, z_;
   std::vector<Eigen::Vector4f> normals_;  // And 1.
   std::vector<int> sources_;              // In the cells' order.
-  std::vector<float> is_near_;
+  std::vector<int> is_near_;              // 1 or 0.
+  std::vector<int> near_;
 };
 
 // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a right-angled edge.
@@ -130,8 +132,8 @@ std::vector<float> find_curvatures(const CellOrder& cells, float radius_sq, int 
     for (std::size_t c = begin; c < end; ++c) {
       around.gather(c, 0);
       for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
-        around.mark_near(cells.points[i], radius_sq);
-        const Eigen::Vector4f sum = around.sum_of_marked();
+        Eigen::Vector4f sum = Eigen::Vector4f::Zero();  // Of normals and, last, their number.
+        for (const int k : around.find_near(cells.points[i], radius_sq)) sum += around.normal(k);
         curvatures[i] = 1.0F - sum.head<3>().norm() / sum.w();
       }
     }
@@ -165,32 +167,49 @@ void join_flat_points(const CellOrder& cells, const std::vector<float>& curvatur
     around.gather(c, kOwnCell);  // Its own points come first.
     for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
       if (curvatures[i] > max_curvature) continue;
-      const std::vector<float>& is_near = around.mark_near(cells.points[i], radius_sq);
-      for (auto k = static_cast<std::size_t>(i - cells.cell_begin[c]) + 1; k < around.size(); ++k) {
+      for (const int k : around.find_near(cells.points[i], radius_sq)) {
         const int j = around.source(k);
-        if (is_near[k] != 0 && curvatures[j] <= max_curvature && cells.normals[i].dot(cells.normals[j]) >= min_dot)
-          sets.join(i, j);
+        if (k <= i - cells.cell_begin[c] || curvatures[j] > max_curvature) continue;
+        if (cells.normals[i].dot(cells.normals[j]) >= min_dot) sets.join(i, j);
       }
     }
   }
 }
 
-// The flat neighbour of the most similar normal of a point on an edge, or -1.
-int find_host(const CellOrder& cells, std::size_t cell, int i, const std::vector<float>& curvatures, float radius_sq,
-              float max_curvature, float min_dot) {
+// The flat neighbour of the most similar normal of a point on an edge, or -1. `around`: of its cell.
+int find_host(const CellOrder& cells, Neighborhood& around, int i, const std::vector<float>& curvatures,
+              float radius_sq, float max_curvature, float min_dot) {
   int host = -1;
   float best = min_dot;
-  for (const int other : cells.neighbors[cell]) {
-    if (other == VoxelMap::kNotFound) continue;
-    for (int j = cells.cell_begin[other]; j < cells.cell_begin[other + 1]; ++j) {
-      if (curvatures[j] > max_curvature || (cells.points[i] - cells.points[j]).squaredNorm() > radius_sq) continue;
-      const float dot = cells.normals[i].dot(cells.normals[j]);
-      if (dot < best || (dot == best && host >= 0)) continue;
-      best = dot;
-      host = j;
-    }
+  for (const int k : around.find_near(cells.points[i], radius_sq)) {
+    const int j = around.source(k);
+    if (curvatures[j] > max_curvature) continue;
+    const float dot = cells.normals[i].dot(cells.normals[j]);
+    if (dot < best || (dot == best && host >= 0)) continue;
+    best = dot;
+    host = j;
   }
   return host;
+}
+
+// The host of each point on an edge; flat points are their own.
+std::vector<int> find_hosts(const CellOrder& cells, const std::vector<float>& curvatures, float radius_sq,
+                            float max_curvature, float min_dot, int num_threads) {
+  std::vector<int> hosts(cells.points.size());
+  parallel_for_blocks(cells.num_cells(), kCellsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
+    Neighborhood around(cells);
+    for (std::size_t c = begin; c < end; ++c) {
+      bool gathered = false;
+      for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
+        hosts[i] = i;
+        if (curvatures[i] <= max_curvature) continue;
+        if (!gathered) around.gather(c, 0);
+        gathered = true;
+        hosts[i] = find_host(cells, around, i, curvatures, radius_sq, max_curvature, min_dot);
+      }
+    }
+  });
+  return hosts;
 }
 
 SmoothSegments number_segments(const std::vector<int>& root_of, int min_points) {
@@ -221,13 +240,10 @@ SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points, std
   const std::vector<float> curvatures = find_curvatures(cells, radius_sq, options.num_threads);
   UnionFind sets(points.size());
   join_flat_points(cells, curvatures, radius_sq, max_curvature, min_dot, sets);
+  const std::vector<int> hosts = find_hosts(cells, curvatures, radius_sq, max_curvature, min_dot, options.num_threads);
   std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers of the cell order.
-  for (std::size_t c = 0; c < cells.num_cells(); ++c)
-    for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
-      const bool flat = curvatures[i] <= max_curvature;
-      const int host = flat ? i : find_host(cells, c, i, curvatures, radius_sq, max_curvature, min_dot);
-      if (host >= 0) root_of[cells.source[i]] = sets.find(host);
-    }
+  for (std::size_t i = 0; i < hosts.size(); ++i)
+    if (hosts[i] >= 0) root_of[cells.source[i]] = sets.find(hosts[i]);
   return number_segments(root_of, options.min_smooth_points);
 }
 
