@@ -72,6 +72,11 @@ struct ViewTracker::Impl {
   [[nodiscard]] ViewFeatures extract(const PreparedView& view, const Image<std::uint8_t>* mask) const {
     return ViewFeatures(extract_sift(view, options.sift, mask));
   }
+  // Images too small to be halved, or of another size than the others, cannot be aligned.
+  [[nodiscard]] bool can_align(const AlignmentView& view) const {
+    return !view.levels.empty() &&
+           (keyframes.empty() || view.levels.size() == keyframes.front().alignment.levels.size());
+  }
   [[nodiscard]] const Rigid3& pose_of(const Keyframe& k) const {
     return views[static_cast<std::size_t>(k.view)].world_from_camera;
   }
@@ -136,6 +141,7 @@ std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
                      (views[views.size() - 2].world_from_camera.inverse() * last.world_from_camera));
   std::optional<Join> best;
   const std::vector<std::size_t> near = nearest_keyframes(last.part, last.world_from_camera);
+  if (near.empty()) return best;
   for (const Rigid3& start : starts) {
     Join join{static_cast<int>(near.front()), align_view(view, targets_of(near), start, options.align)};
     join.information = join.aligned.information;
@@ -214,7 +220,11 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   TrackedView tracked;
   tracked.name = view.frame.name;
   tracked.part = number;
-  tracked.is_keyframe = true;
+  tracked.is_keyframe = can_align(alignment);
+  if (!tracked.is_keyframe) {
+    views.push_back(tracked);
+    return tracked;
+  }
   std::optional<ViewFeatures> features;
   std::optional<Join> join;
   if (!views.empty()) join = follow(alignment);
@@ -245,7 +255,8 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   tracked.name = view.frame.name;
   tracked.world_from_camera = view.frame.world_from_camera;
   tracked.part = first_given ? views[*first_given].part : number;
-  tracked.is_keyframe = true;
+  AlignmentView alignment = make_alignment_view(view, options.view);
+  tracked.is_keyframe = can_align(alignment);
   if (first_given) {
     const int last = number - 1;
     edges.push_back({last, number,
@@ -254,8 +265,8 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   } else {
     first_given = views.size();
   }
+  if (tracked.is_keyframe) keyframes.push_back({number, std::move(alignment), extract(view, nullptr)});
   views.push_back(std::move(tracked));
-  keyframes.push_back({number, make_alignment_view(view, options.view), extract(view, nullptr)});
 }
 
 // `match`: by features too, for pairs that are not known to see the same.

@@ -152,6 +152,23 @@ TEST(ViewTracker, SameForAnyNumberOfThreads) {
     EXPECT_EQ(tracks[0].views[v].world_from_camera.matrix(), tracks[1].views[v].world_from_camera.matrix());
 }
 
+TEST(ViewTracker, ImagesOfOtherSizesStandAlone) {
+  RgbdFrame tiny;
+  tiny.name = "tiny";
+  tiny.camera = {40, 30, 40, 40, 19.5, 14.5};
+  tiny.color = Image<Rgb8>(40, 30);
+  tiny.depth_m = Image<float>(40, 30, 1.0F);
+  ViewTracker tracker;
+  tracker.add_view(prepare_view(tiny));
+  tracker.add_view(see({}, walk(0, 9), 0));
+  tracker.add_view(prepare_view(tiny));
+  tracker.add_view(see({}, walk(1, 9), 1));
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.num_parts, 3);
+  EXPECT_EQ(track.views[1].part, 0);
+  EXPECT_EQ(track.views[3].part, 0);
+}
+
 TEST(ViewTracker, BadOptionsAreRefused) {
   TrackViewsOptions options;
   options.min_overlap = -1;

@@ -3,6 +3,7 @@
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
+#include "resight/io/trajectory.hpp"
 
 namespace resight {
 namespace {
@@ -22,6 +23,20 @@ void write_recording(const std::filesystem::path& directory) {
   }
   io::write_text(directory / "rgb.txt", rgb);
   io::write_text(directory / "depth.txt", depth);
+}
+
+TEST(Trajectory, IsReadBackDigitByDigit) {
+  io::TestDirectory directory;
+  write_recording(directory.path());
+  std::vector<TrajectoryPose> poses;
+  for (int v = 0; v < 12; ++v)
+    poses.push_back({std::to_string(10 + 0.5 * v),
+                     {Rigid3::from_axis_angle({1, 2, 0.1 * v}, 0.3 * v).rotation, {0.1, -2.0 / 3, 1e-7 * v}}});
+  ASSERT_TRUE(write_tum_trajectory(directory / "groundtruth.txt", poses, "two\nlines").ok());
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_TRUE((*sequence)->has_poses());
+  EXPECT_NEAR((*sequence)->read_view(0)->world_from_camera.translation.y(), -2.0 / 3, 1e-12);
 }
 
 TEST(Tum, AssociatesAndInterpolates) {
