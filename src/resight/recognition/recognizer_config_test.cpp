@@ -104,10 +104,10 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"match", num_fields<MatchFeaturesOptions>() - 2 + 2 * (num_fields<DescriptorIndexOptions>() - kThreads)},
       {"grouping",
        num_fields<GenerateHypothesesOptions>() - 1 - kThreads + num_fields<GroupCorrespondencesOptions>() - 1 + kPose},
-      {"shape", num_fields<ShapeSearchOptions>() - 2 - kThreads + num_fields<SampleSceneOptions>() +
+      {"shape", num_fields<ShapeSearchOptions>() - 2 - kThreads + num_fields<SampleSceneOptions>() - kThreads +
                     num_fields<CountSamplesOptions>()},
       {"cluster", num_fields<ClusterHypothesesOptions>() - 1 - kThreads + kPose},
-      {"changes", num_fields<DetectChangesOptions>() - kThreads},
+      {"changes", num_fields<DetectChangesOptions>() - kThreads - 1},  // the voxels are those of integrate
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
       {"verify",

@@ -65,7 +65,7 @@ TEST(SceneRecognizer, APoseThatIsOffIsMended) {
     recognizer.add_view(render(c.world, c.cameras[0]).frame);
     const SceneUpdate update = recognizer.add_view(second);
     const double off_m = (update.world_from_camera.translation - truth.translation).norm();
-    EXPECT_EQ(off_m < 0.003, correct) << off_m;
+    EXPECT_EQ(off_m < 0.005, correct) << off_m;  // given: 9 mm off; little but the box tells along the table
     EXPECT_EQ(update.changes.removed_in_world.size() < 20, correct) << update.changes.removed_in_world.size();
   }
 }
