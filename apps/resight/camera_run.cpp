@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "commands.hpp"
@@ -37,6 +38,38 @@ std::vector<ObservedObject> observe_objects(const Sequence& sequence, const Mode
   return observed;
 }
 
+CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& options) {
+  if (options.refine && !sequence.has_poses())
+    throw InputError("the sequence holds no camera poses to refine (try auto)");
+  TrackViewsOptions track;
+  track.num_threads = options.num_threads;
+  ViewTracker tracker(track);
+  PrepareViewOptions prepare;
+  prepare.num_threads = options.num_threads;
+  Progress progress("track", sequence.num_views());
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const PreparedView view = prepare_view(value_or_throw(sequence.read_view(v)), prepare);
+    if (options.refine) tracker.add_posed_view(view);
+    progress.report(v + 1, options.refine ? view.frame.name : describe(tracker.add_view(view)));
+  }
+  return tracker.finish();
+}
+
+// Of some views of each part, evenly: enough to tell whether parts contradict each other.
+std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraTrack& track) {
+  constexpr std::size_t kViewsOfPart = 8;
+  std::vector<std::vector<int>> of_part(static_cast<std::size_t>(track.num_parts));
+  for (std::size_t v = 0; v < track.views.size(); ++v)
+    of_part[static_cast<std::size_t>(track.views[v].part)].push_back(static_cast<int>(v));
+  std::vector<AlignmentView> surfaces(track.views.size());
+  for (const std::vector<int>& views : of_part)
+    for (std::size_t k = 0; k < std::min(views.size(), kViewsOfPart); ++k) {
+      const int v = views[k * views.size() / std::min(views.size(), kViewsOfPart)];
+      surfaces[static_cast<std::size_t>(v)] = make_alignment_view(prepare_view(value_or_throw(sequence.read_view(v))));
+    }
+  return surfaces;
+}
+
 void warn_of_parts(const CameraTrack& track) {
   std::string left_out;
   for (const TrackedView& view : track.views)
@@ -47,26 +80,17 @@ void warn_of_parts(const CameraTrack& track) {
 
 }  // namespace
 
-CameraTrack track_sequence(const Sequence& sequence, bool refine, const ModelLibrary* library, int num_threads) {
-  if (refine && !sequence.has_poses()) throw InputError("the sequence holds no camera poses to refine (try auto)");
-  TrackViewsOptions options;
-  options.num_threads = num_threads;
-  ViewTracker tracker(options);
-  PrepareViewOptions prepare;
-  prepare.num_threads = num_threads;
-  Progress progress("track", sequence.num_views());
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const PreparedView view = prepare_view(value_or_throw(sequence.read_view(v)), prepare);
-    if (refine) tracker.add_posed_view(view);
-    progress.report(v + 1, refine ? view.frame.name : describe(tracker.add_view(view)));
-  }
-  CameraTrack track = tracker.finish();
-  if (track.num_parts > 1 && library != nullptr)
-    track = join_by_objects(std::move(track), observe_objects(sequence, *library, num_threads), *library);
+JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options) {
+  CameraTrack track = track_views(sequence, options);
+  std::vector<ObservedObject> observed;
+  const bool join = options.library != nullptr && track.num_parts > 1;
+  if (join || options.adjust_objects) observed = observe_objects(sequence, *options.library, options.num_threads);
+  if (join) track = join_by_objects(std::move(track), observed, *options.library, read_surfaces(sequence, track));
   if (track.num_parts > 1 && track.num_parts == sequence.num_views())
     throw std::runtime_error("no two views could be joined: nothing tells how their cameras stood to each other");
   warn_of_parts(track);
-  return track;
+  if (!options.adjust_objects) return {std::move(track), {}};
+  return adjust_jointly(std::move(track), observed, *options.library);
 }
 
 PosedSequence take_largest_part(const Sequence& sequence, const CameraTrack& track) {

@@ -39,6 +39,23 @@ void write_parts(const TrackArguments& arguments, const CameraTrack& track) {
   }
 }
 
+// poses_objects.txt
+void write_objects(const TrackArguments& arguments, const CameraTrack& track, std::span<const StaticObject> objects,
+                   const ModelLibrary& library) {
+  std::string text = fmt::format("# objects that stand still in views of {}, adjusted together with the cameras\n",
+                                 arguments.sequence.string());
+  text += "# part object tx ty tz qx qy qz qw first_view last_view num_views (world_from_object of the part)\n";
+  for (const StaticObject& object : objects)
+    text += fmt::format(
+        "{} {} {} {} {} {}\n", object.part, library.objects[static_cast<std::size_t>(object.object)].name,
+        format_tum_pose(object.world_from_object), track.views[static_cast<std::size_t>(object.views.front())].name,
+        track.views[static_cast<std::size_t>(object.views.back())].name, object.views.size());
+  const std::filesystem::path file =
+      arguments.out.parent_path() / (arguments.out.stem().string() + "_objects" + arguments.out.extension().string());
+  value_or_throw(write_file(file, text));
+  fmt::print("{} objects that stand still: {}\n", objects.size(), file.string());
+}
+
 void print_error(const Sequence& recorded, const CameraTrack& track) {
   std::vector<Rigid3> given, found;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
@@ -60,9 +77,12 @@ void run_track(const TrackArguments& arguments) {
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
-  const CameraTrack track =
-      track_sequence(*sequence, arguments.poses == "refine", library ? &*library : nullptr, arguments.num_threads);
+  const auto [track, objects] = track_sequence(*sequence, {.refine = arguments.poses == "refine",
+                                                           .library = library ? &*library : nullptr,
+                                                           .adjust_objects = library.has_value(),
+                                                           .num_threads = arguments.num_threads});
   write_parts(arguments, track);
+  if (library) write_objects(arguments, track, objects, *library);
   const PosedSequence posed = take_largest_part(*sequence, track);
   fmt::print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(),
              track.edges.size(), track.num_loops, arguments.out.string());

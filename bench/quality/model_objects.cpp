@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How right object models are that are made of recordings: both sides of generated objects on a turntable, 36 views
 // each, sensor noise, against the generated meshes. With --true-poses tracking and joining are left out: fusion alone.
+// The models in --out are in the frames of the meshes: results of both can be compared.
 //   bench_model_objects [--true-poses] [--walk] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
@@ -85,8 +86,8 @@ Result<ObjectTrack> track_both(const TriangleMesh& mesh, const Plan& plan, std::
   return std::move(tracks[0]);
 }
 
-// A model's frame is its own: it is moved onto the true surface (point to plane) before it is compared.
-void fit_to_truth(TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 truth_from_model) {
+// A model's frame is its own: how it lies on the true surface (point to plane).
+Rigid3 fit_to_truth(const TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 truth_from_model) {
   const PointCloud surface = sample_visible_surface(truth, 0.0015);
   const KdTree tree(surface.points);
   for (int round = 0; round < 15; ++round) {
@@ -104,14 +105,25 @@ void fit_to_truth(TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 truth_fr
     }
     truth_from_model = from_twist(-h.ldlt().solve(g)) * truth_from_model;
   }
-  for (Eigen::Vector3f& p : mesh.vertices) p = (truth_from_model * p.cast<double>().eval()).cast<float>();
+  return truth_from_model;
+}
+
+// The model in the frame of the generated mesh.
+void move_model(const Rigid3& truth_from_model, ObjectTrack& track, ObjectModelBuild& build) {
+  const auto move = [](const Rigid3& by, std::vector<Eigen::Vector3f>& points) {
+    for (Eigen::Vector3f& p : points) p = (by * p.cast<double>().eval()).cast<float>();
+  };
+  for (TrainingView& view : track.views) view.frame.world_from_camera = truth_from_model * view.frame.world_from_camera;
+  move(truth_from_model, build.mesh.vertices);
+  move(truth_from_model, build.cloud.points);
+  move({truth_from_model.rotation, Eigen::Vector3d::Zero()}, build.cloud.normals);
 }
 
 void measure(const std::string& name, const Plan& plan) {
   const TriangleMesh truth = make_procedural_object(name)->mesh;
   std::vector<Rigid3> true_poses;
   const auto start = std::chrono::steady_clock::now();
-  const auto track = track_both(truth, plan, true_poses);
+  auto track = track_both(truth, plan, true_poses);
   if (!track) {
     fmt::print("{:12} {}\n", name, track.error().message);
     return;
@@ -127,9 +139,9 @@ void measure(const std::string& name, const Plan& plan) {
   std::vector<Rigid3> poses;
   for (const TrainingView& view : track->views) poses.push_back(view.frame.world_from_camera);
   const TrajectoryError trajectory = find_trajectory_error(true_poses, poses);
-  TriangleMesh mesh = build->mesh;
-  if (!plan.true_poses) fit_to_truth(mesh, truth, trajectory.reference_from_estimate);
-  const test::SurfaceError error = test::measure_surface_error(mesh, truth);
+  if (!plan.true_poses)
+    move_model(fit_to_truth(build->mesh, truth, trajectory.reference_from_estimate), *track, *build);
+  const test::SurfaceError error = test::measure_surface_error(build->mesh, truth);
   fmt::print("{:12} {:6} {:10.2f} {:9.2f} {:9.2f} {:9.2f} {:9.3f} {:6.3f} {:8.1f}\n", name, poses.size(),
              1000 * track->closure_error_m, trajectory.mean_rad * 57.29578, 1000 * error.median_m, 1000 * error.p95_m,
              error.completeness, build->report.holes.open_share, seconds);

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera poses from the views alone, against those of the sequence. One line a view, then the trajectory's error.
-//   bench_track_views SEQUENCE [every n-th view]
+// With a library also those after objects and cameras were adjusted together, and how far objects are off before (each
+// sight by itself) and after.
+//   bench_track_views SEQUENCE [every n-th view] [LIBRARY]
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <vector>
 
 #include "arguments.hpp"
+#include "resight/cameras/joint_adjustment.hpp"
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/cameras/view_tracker.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/recognition/scene_recognizer.hpp"
 
 namespace {
 
@@ -23,10 +28,79 @@ void print_error(const char* name, std::span<const Rigid3> truth, std::span<cons
              1000 * e.rms_m, 1000 * e.max_m, kDegPerRad * e.mean_rad, kDegPerRad * e.max_rad);
 }
 
+// What each view shows by itself.
+std::vector<ObservedObject> observe(const Sequence& sequence, const ModelLibrary& library, int step) {
+  RecognizerConfig config = RecognizerConfig::from_preset("default");
+  config.num_previous_views = 0;
+  config.set_num_threads(2);
+  SceneRecognizer recognizer(library, config);
+  std::vector<ObservedObject> observed;
+  for (int v = 0; v < sequence.num_views(); v += step) {
+    const SceneUpdate update = recognizer.add_view(value_or_exit(sequence.read_view(v)));
+    for (const Detection& d : update.detections)
+      observed.push_back({v / step, d.object, update.world_from_camera.inverse() * d.world_from_object});
+  }
+  return observed;
+}
+
+struct Sight {
+  int view = 0;
+  int object = -1;
+  Rigid3 camera_from_object;
+};
+
+// Against the true object of that name nearest to it; those farther than 5 cm are no mistake of the pose.
+void print_object_error(const char* name, const Sequence& sequence, const ModelLibrary& library, int step,
+                        const std::vector<Sight>& sights) {
+  std::vector<double> errors_m, errors_rad;
+  for (const Sight& sight : sights) {
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(sight.object)];
+    for (const GroundTruthObject& truth : value_or_exit(sequence.read_ground_truth(sight.view * step))) {
+      const Rigid3& true_pose = truth.camera_from_object;
+      const Eigen::Vector3d center = model.center.cast<double>();
+      const double off = (true_pose * center - sight.camera_from_object * center).norm();
+      if (truth.object != model.name || off > 0.05) continue;
+      errors_m.push_back(off);
+      errors_rad.push_back(symmetric_rotation_distance_rad(true_pose, sight.camera_from_object, model.symmetries));
+    }
+  }
+  if (errors_m.empty()) return;
+  std::ranges::sort(errors_m);
+  std::ranges::sort(errors_rad);
+  const auto at = [](const std::vector<double>& e, double share) {
+    return e[static_cast<std::size_t>(share * static_cast<double>(e.size() - 1))];
+  };
+  fmt::print("{}: {} sights, centre {:.2f} mm median, {:.2f} mm at 95 %; {:.2f} deg median, {:.2f} at 95 %\n", name,
+             errors_m.size(), 1000 * at(errors_m, 0.5), 1000 * at(errors_m, 0.95), kDegPerRad * at(errors_rad, 0.5),
+             kDegPerRad * at(errors_rad, 0.95));
+}
+
+void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& library, int step, const CameraTrack& track,
+                            std::span<const Rigid3> truth) {
+  const std::vector<ObservedObject> observed = observe(sequence, library, step);
+  std::vector<Sight> before, after;
+  const auto [adjusted, objects] = adjust_jointly(track, observed, library);
+  for (const StaticObject& object : objects)
+    for (const int v : object.views) {
+      const Rigid3& camera = adjusted.views[static_cast<std::size_t>(v)].world_from_camera;
+      after.push_back({v, object.object, camera.inverse() * object.world_from_object});
+      for (const ObservedObject& o : observed) {
+        if (o.view != v || o.object != object.object) continue;
+        if (((o.camera_from_object.translation - after.back().camera_from_object.translation).norm()) < 0.1)
+          before.push_back({v, o.object, o.camera_from_object});
+      }
+    }
+  std::vector<Rigid3> poses;
+  for (const TrackedView& view : adjusted.views) poses.push_back(view.world_from_camera);
+  print_error(fmt::format("with {} objects", objects.size()).c_str(), truth, poses);
+  print_object_error("objects, one view each", sequence, library, step, before);
+  print_object_error("objects, adjusted", sequence, library, step, after);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) exit_with("usage: bench_track_views SEQUENCE [every n-th view]");
+  if (argc < 2) exit_with("usage: bench_track_views SEQUENCE [every n-th view] [LIBRARY]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const int step = argc > 2 ? std::atoi(argv[2]) : 1;
   TrackViewsOptions options;
@@ -64,5 +138,6 @@ int main(int argc, char** argv) {
   fmt::print("{} edges, {} loops; ", track.edges.size(), track.num_loops);
   for (const StageTime& t : times.stages()) fmt::print("{} {:.2f} s  ", t.stage, t.wall_s);
   fmt::print("\n");
+  if (argc > 3) print_joint_adjustment(*sequence, value_or_exit(load_library(argv[3])), step, track, truth);
   return 0;
 }

@@ -11,145 +11,184 @@
 namespace resight {
 namespace {
 
-// An object in the frame of a part.
-struct PlacedObject {
-  int view = 0;
-  int object = -1;
-  Rigid3 part_from_object;
-};
+// Ways to join two parts that differ by less, where the parts' objects are, are one.
+constexpr double kSameWayM = 0.01;
 
-struct Agreement {
-  Rigid3 a_from_b;                                         // of the parts' frames
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;  // of places
+// A way in which two parts may lie.
+struct Candidate {
+  int part_a = 0;
+  int part_b = 0;
+  Rigid3 a_from_b;  // of the parts' frames
+  std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
+  double surface_score = 0;
 };
-
-bool is_same_place(const ObjectModel& model, const Rigid3& a, const Rigid3& b, const JoinByObjectsOptions& options) {
-  const Eigen::Vector3d center = model.center.cast<double>();
-  return (a * center - b * center).norm() <= options.max_distance_m &&
-         symmetric_rotation_distance_rad(a, b, model.symmetries) <= options.max_rotation_rad;
-}
 
 class PartJoiner {
  public:
-  PartJoiner(const ModelLibrary& library, const JoinByObjectsOptions& options) : library_(library), options_(options) {}
+  PartJoiner(const CameraTrack& track, const ModelLibrary& library, std::span<const AlignmentView> views,
+             const JoinByObjectsOptions& options)
+      : track_(track), library_(library), views_(views), options_(options) {}
 
-  // How part b lies in the frame of a: the motion that most objects agree on.
-  [[nodiscard]] std::optional<Agreement> join(const std::vector<PlacedObject>& a,
-                                              const std::vector<PlacedObject>& b) const {
-    std::optional<Agreement> best;
-    for (const PlacedObject& in_a : a)
-      for (const PlacedObject& in_b : b) {
-        if (in_a.object != in_b.object) continue;
-        for (const Rigid3& symmetry : enumerate_symmetries(model(in_a).symmetries)) {
-          Agreement found = count(a, b, in_a.part_from_object * symmetry * in_b.part_from_object.inverse());
-          if (!best || found.pairs.size() > best->pairs.size()) best = std::move(found);
-        }
-      }
-    if (!best || best->pairs.size() < static_cast<std::size_t>(options_.min_objects)) return std::nullopt;
-    best->a_from_b = fit(a, b, *best);
+  // How part b lies in the frame of a: what most objects agree on, and the surfaces do not contradict.
+  [[nodiscard]] std::optional<Candidate> join(int a, int b, std::span<const ObjectPlace> in_a,
+                                              std::span<const ObjectPlace> in_b) const {
+    std::optional<Candidate> best;
+    for (Candidate& candidate : propose(a, b, in_a, in_b)) {
+      const std::optional<double> score = compare_surfaces(candidate);
+      if (!score) continue;
+      candidate.surface_score = *score;
+      if (!best || is_better(candidate, *best)) best = std::move(candidate);
+    }
     return best;
   }
 
- private:
-  [[nodiscard]] const ObjectModel& model(const PlacedObject& o) const {
-    return library_.objects[static_cast<std::size_t>(o.object)];
+  [[nodiscard]] static bool is_better(const Candidate& x, const Candidate& y) {
+    return std::pair(x.agreed.size(), x.surface_score) > std::pair(y.agreed.size(), y.surface_score);
   }
 
-  [[nodiscard]] Agreement count(const std::vector<PlacedObject>& a, const std::vector<PlacedObject>& b,
-                                const Rigid3& a_from_b) const {
-    Agreement found{a_from_b, {}};
-    for (std::size_t i = 0; i < a.size(); ++i)
-      for (std::size_t j = 0; j < b.size(); ++j) {
-        if (a[i].object != b[j].object) continue;
-        if (!is_same_place(model(a[i]), a[i].part_from_object, a_from_b * b[j].part_from_object, options_)) continue;
-        found.pairs.emplace_back(i, j);
-        break;
+ private:
+  [[nodiscard]] const ObjectModel& model(const ObjectPlace& place) const {
+    return library_.objects[static_cast<std::size_t>(place.object)];
+  }
+
+  // The ways with the most objects, those that are one left out.
+  [[nodiscard]] std::vector<Candidate> propose(int a, int b, std::span<const ObjectPlace> in_a,
+                                               std::span<const ObjectPlace> in_b) const {
+    std::vector<Candidate> all;
+    for (const ObjectPlace& place_a : in_a)
+      for (const ObjectPlace& place_b : in_b) {
+        if (place_a.object != place_b.object) continue;
+        for (const Rigid3& symmetry : enumerate_symmetries(model(place_a).symmetries)) {
+          Candidate found{a, b, place_a.part_from_object * symmetry * place_b.part_from_object.inverse(), {}};
+          found.agreed = find_agreed(in_a, in_b, found.a_from_b);
+          if (static_cast<int>(found.agreed.size()) < options_.min_objects) continue;
+          found.a_from_b = fit(found);
+          all.push_back(std::move(found));
+        }
       }
-    return found;
+    std::ranges::stable_sort(all, std::greater<>(), [](const Candidate& c) { return c.agreed.size(); });
+    std::vector<Candidate> ways;
+    for (Candidate& candidate : all) {
+      if (static_cast<int>(ways.size()) == options_.max_candidates) break;
+      const bool known = std::ranges::any_of(ways, [&](const Candidate& w) { return are_one(w, candidate); });
+      if (!known) ways.push_back(std::move(candidate));
+    }
+    return ways;
+  }
+
+  [[nodiscard]] bool are_one(const Candidate& x, const Candidate& y) const {
+    return std::ranges::all_of(y.agreed, [&](const auto& pair) {
+      const std::array<Eigen::Vector3d, 4> points = axes_of(*pair.second);
+      return std::ranges::all_of(
+          points, [&](const Eigen::Vector3d& p) { return (x.a_from_b * p - y.a_from_b * p).norm() < kSameWayM; });
+    });
+  }
+
+  // The object's centre and the ends of its axes, in its part.
+  [[nodiscard]] std::array<Eigen::Vector3d, 4> axes_of(const ObjectPlace& place) const {
+    std::array<Eigen::Vector3d, 4> points;
+    for (int k = 0; k < 4; ++k) {
+      Eigen::Vector3d p = model(place).center.cast<double>();
+      if (k > 0) p[k - 1] += 0.5 * model(place).diameter_m;
+      points[static_cast<std::size_t>(k)] = place.part_from_object * p;
+    }
+    return points;
+  }
+
+  [[nodiscard]] std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> find_agreed(
+      std::span<const ObjectPlace> in_a, std::span<const ObjectPlace> in_b, const Rigid3& a_from_b) const {
+    std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
+    for (const ObjectPlace& a : in_a) {
+      const auto b = std::ranges::find_if(in_b, [&](const ObjectPlace& p) {
+        return p.object == a.object &&
+               is_same_place(model(a), a.part_from_object, a_from_b * p.part_from_object, options_.same_place);
+      });
+      if (b != in_b.end()) agreed.emplace_back(&a, &*b);
+    }
+    return agreed;
   }
 
   // Least squares over the objects' axes, as long as the objects.
-  [[nodiscard]] Rigid3 fit(const std::vector<PlacedObject>& a, const std::vector<PlacedObject>& b,
-                           const Agreement& agreement) const {
+  [[nodiscard]] Rigid3 fit(const Candidate& candidate) const {
     std::vector<Eigen::Vector3f> in_a, in_b;
-    for (const auto& [i, j] : agreement.pairs) {
-      const ObjectModel& m = model(a[i]);
-      const Rigid3 expected = agreement.a_from_b * b[j].part_from_object;
-      const Rigid3 a_from_object = nearest_symmetric_pose(a[i].part_from_object, expected, m.symmetries);
-      const Eigen::Vector3d center = m.center.cast<double>();
-      for (int k = 0; k < 4; ++k) {
-        Eigen::Vector3d p = center;
-        if (k > 0) p[k - 1] += 0.5 * m.diameter_m;
-        in_a.push_back((a_from_object * p).cast<float>());
-        in_b.push_back((b[j].part_from_object * p).cast<float>());
-      }
+    for (const auto& [a, b] : candidate.agreed) {
+      ObjectPlace turned = *a;
+      turned.part_from_object =
+          nearest_symmetric_pose(a->part_from_object, candidate.a_from_b * b->part_from_object, model(*a).symmetries);
+      for (const Eigen::Vector3d& p : axes_of(turned)) in_a.push_back(p.cast<float>());
+      for (const Eigen::Vector3d& p : axes_of(*b)) in_b.push_back(p.cast<float>());
     }
-    return fit_rigid(in_b, in_a).value_or(agreement.a_from_b);
+    return fit_rigid(in_b, in_a).value_or(candidate.a_from_b);
   }
 
+  [[nodiscard]] std::vector<AlignmentTarget> targets_of(int part) const {
+    std::vector<AlignmentTarget> targets;
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      if (track_.views[v].part == part && !views_[v].levels.empty())
+        targets.push_back({&views_[v], track_.views[v].world_from_camera});
+    return targets;
+  }
+
+  // Overlap less what is seen through, of each part's views in the other; nothing if a part contradicts the other.
+  [[nodiscard]] std::optional<double> compare_surfaces(const Candidate& candidate) const {
+    const std::vector<AlignmentTarget> a = targets_of(candidate.part_a), b = targets_of(candidate.part_b);
+    if (a.empty() || b.empty()) return 0;
+    const AlignedView b_in_a = judge(b, a, candidate.a_from_b), a_in_b = judge(a, b, candidate.a_from_b.inverse());
+    if (std::max(b_in_a.seen_through, a_in_b.seen_through) > options_.max_seen_through) return std::nullopt;
+    return b_in_a.overlap + a_in_b.overlap - 2 * (b_in_a.seen_through + a_in_b.seen_through);
+  }
+
+  // Means over the views.
+  [[nodiscard]] AlignedView judge(const std::vector<AlignmentTarget>& views,
+                                  const std::vector<AlignmentTarget>& targets, const Rigid3& targets_from_views) const {
+    AlignedView mean;
+    for (const AlignmentTarget& view : views) {
+      const AlignedView one =
+          judge_alignment(*view.view, targets, targets_from_views * view.world_from_camera, options_.align);
+      mean.overlap += one.overlap / static_cast<double>(views.size());
+      mean.seen_through += one.seen_through / static_cast<double>(views.size());
+    }
+    return mean;
+  }
+
+  const CameraTrack& track_;
   const ModelLibrary& library_;
+  std::span<const AlignmentView> views_;
   const JoinByObjectsOptions& options_;
 };
 
-// Of what several views of a part see at one place, the observation nearest to the others.
-std::vector<PlacedObject> merge_places(const std::vector<PlacedObject>& all, const ModelLibrary& library,
-                                       const JoinByObjectsOptions& options) {
-  const auto model = [&](const PlacedObject& o) -> const ObjectModel& {
-    return library.objects[static_cast<std::size_t>(o.object)];
-  };
-  std::vector<std::vector<PlacedObject>> places;
-  for (const PlacedObject& o : all) {
-    const auto place = std::ranges::find_if(places, [&](const std::vector<PlacedObject>& p) {
-      return p[0].object == o.object && is_same_place(model(o), p[0].part_from_object, o.part_from_object, options);
-    });
-    if (place != places.end())
-      place->push_back(o);
-    else
-      places.push_back({o});
-  }
-  std::vector<PlacedObject> merged;
-  for (const std::vector<PlacedObject>& place : places) {
-    const auto sum_of_distances = [&](const PlacedObject& o) {
-      const Eigen::Vector3d center = model(o).center.cast<double>();
-      double sum = 0;
-      for (const PlacedObject& other : place)
-        sum += (o.part_from_object * center - other.part_from_object * center).norm();
-      return sum;
-    };
-    merged.push_back(*std::ranges::min_element(place, {}, sum_of_distances));
-  }
-  return merged;
-}
-
-std::vector<std::vector<PlacedObject>> place_objects(const CameraTrack& track, std::span<const ObservedObject> observed,
-                                                     const ModelLibrary& library, const JoinByObjectsOptions& options) {
-  std::vector<std::vector<PlacedObject>> of_part(static_cast<std::size_t>(track.num_parts));
-  for (const ObservedObject& o : observed) {
-    const TrackedView& view = track.views[static_cast<std::size_t>(o.view)];
-    of_part[static_cast<std::size_t>(view.part)].push_back(
-        {o.view, o.object, view.world_from_camera * o.camera_from_object});
-  }
-  for (std::vector<PlacedObject>& placed : of_part) placed = merge_places(placed, library, options);
-  return of_part;
-}
-
-Eigen::Matrix<double, 6, 6> information_of(const Agreement& agreement, const JoinByObjectsOptions& options) {
+Eigen::Matrix<double, 6, 6> information_of(const Candidate& candidate, const JoinByObjectsOptions& options) {
   Twist diagonal;
   diagonal << Eigen::Vector3d::Constant(1 / (options.sigma_rad * options.sigma_rad)),
       Eigen::Vector3d::Constant(1 / (options.sigma_m * options.sigma_m));
-  return static_cast<double>(agreement.pairs.size()) * Eigen::Matrix<double, 6, 6>(diagonal.asDiagonal());
+  return static_cast<double>(candidate.agreed.size()) * Eigen::Matrix<double, 6, 6>(diagonal.asDiagonal());
 }
 
-// Part b into the frame of a.
-void merge_parts(CameraTrack& track, int a, int b, const Rigid3& a_from_b) {
-  for (TrackedView& view : track.views) {
-    if (view.part != b) continue;
-    view.world_from_camera = a_from_b * view.world_from_camera;
-    view.part = a;
-  }
+std::span<const ObjectPlace> places_of(const std::vector<ObjectPlace>& places, int part) {
+  const auto range = std::ranges::equal_range(places, part, {}, &ObjectPlace::part);
+  return {range.begin(), range.end()};
 }
 
-void renumber_parts(CameraTrack& track) {
+std::optional<Candidate> find_best_join(const CameraTrack& track, const std::vector<ObjectPlace>& places,
+                                        const PartJoiner& joiner) {
+  std::optional<Candidate> best;
+  for (int b = 0; b < track.num_parts; ++b)
+    for (int a = 0; a < b; ++a) {
+      std::optional<Candidate> found = joiner.join(a, b, places_of(places, a), places_of(places, b));
+      if (found && (!best || PartJoiner::is_better(*found, *best))) best = std::move(found);
+    }
+  return best;
+}
+
+// Part b into the frame of a, with an edge that holds it there.
+void merge_parts(CameraTrack& track, const Candidate& join, int view_a, int view_b,
+                 const JoinByObjectsOptions& options) {
+  for (TrackedView& view : track.views)
+    if (view.part == join.part_b) view.world_from_camera = join.a_from_b * view.world_from_camera;
+  track.edges.push_back({view_a, view_b,
+                         track.views[static_cast<std::size_t>(view_a)].world_from_camera.inverse() *
+                             track.views[static_cast<std::size_t>(view_b)].world_from_camera,
+                         information_of(join, options)});
   const std::vector<int> parts = find_connected_parts(track.views.size(), track.edges);
   track.num_parts = 0;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
@@ -172,43 +211,26 @@ void put_first_views_at_origin(CameraTrack& track) {
 }  // namespace
 
 void JoinByObjectsOptions::check() const {
+  same_place.check();
   check_positive("min_objects", min_objects);
-  check_positive("max_distance_m", max_distance_m);
-  check_positive("max_rotation_rad", max_rotation_rad);
+  check_positive("max_candidates", max_candidates);
+  check_in_range("max_seen_through", max_seen_through, 0, 1);
   check_positive("sigma_m", sigma_m);
   check_positive("sigma_rad", sigma_rad);
+  align.check();
 }
 
 CameraTrack join_by_objects(CameraTrack track, std::span<const ObservedObject> observed, const ModelLibrary& library,
-                            const JoinByObjectsOptions& options) {
+                            std::span<const AlignmentView> views, const JoinByObjectsOptions& options) {
   options.check();
-  for (const ObservedObject& o : observed)
-    require(o.view >= 0 && static_cast<std::size_t>(o.view) < track.views.size() && o.object >= 0 &&
-                static_cast<std::size_t>(o.object) < library.objects.size(),
-            "observed: must name views of the track and objects of the library");
-  const PartJoiner joiner(library, options);
-  for (bool joined = true; joined;) {
-    joined = false;
-    const auto of_part = place_objects(track, observed, library, options);
-    std::optional<Agreement> best;
-    std::pair<std::size_t, std::size_t> parts;
-    for (std::size_t b = 0; b < of_part.size(); ++b)
-      for (std::size_t a = 0; a < b; ++a) {
-        std::optional<Agreement> found = joiner.join(of_part[a], of_part[b]);
-        if (!found || (best && found->pairs.size() <= best->pairs.size())) continue;
-        best = std::move(found);
-        parts = {a, b};
-      }
-    if (!best) break;
-    merge_parts(track, static_cast<int>(parts.first), static_cast<int>(parts.second), best->a_from_b);
-    const auto& [i, j] = best->pairs.front();
-    const int view_a = of_part[parts.first][i].view, view_b = of_part[parts.second][j].view;
-    track.edges.push_back({view_a, view_b,
-                           track.views[static_cast<std::size_t>(view_a)].world_from_camera.inverse() *
-                               track.views[static_cast<std::size_t>(view_b)].world_from_camera,
-                           information_of(*best, options)});
-    renumber_parts(track);
-    joined = true;
+  require(views.empty() || views.size() == track.views.size(), "views: must hold one for each view of the track");
+  while (true) {
+    const std::vector<ObjectPlace> places = find_places(track, observed, library, options.same_place);
+    const std::optional<Candidate> join = find_best_join(track, places, PartJoiner(track, library, views, options));
+    if (!join) break;
+    const auto& [a, b] = join->agreed.front();
+    merge_parts(track, *join, observed[static_cast<std::size_t>(a->observations.front())].view,
+                observed[static_cast<std::size_t>(b->observations.front())].view, options);
   }
   put_first_views_at_origin(track);
   return track;

@@ -115,12 +115,46 @@ TEST(CommonObjects, AllMovedApartJoinNothing) {
   EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 2);
 }
 
+// Two objects of one kind may be taken for each other; only the surfaces tell that the room is not turned by 180 deg.
+TEST(CommonObjects, SurfacesDecideBetweenWaysThatObjectsLeaveOpen) {
+  TwoSides s;
+  s.library.objects.resize(1);
+  s.library.objects[0].symmetries.discrete.push_back(Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159265));
+  s.track.views.resize(2);
+  s.track.edges.clear();
+  s.world_from_camera = {test::look_at_point({-0.5, -0.9, 0.6}, {0, 0.3, 0.1}),
+                         test::look_at_point({0.9, -0.4, 0.5}, {0.1, 0.4, 0.1})};
+  std::vector<AlignmentView> surfaces;
+  for (int v = 0; v < 2; ++v) {
+    s.track.views[static_cast<std::size_t>(v)].part = v;
+    s.track.views[static_cast<std::size_t>(v)].world_from_camera = Rigid3::identity();
+    const Rigid3& camera = s.world_from_camera[static_cast<std::size_t>(v)];
+    surfaces.push_back(make_alignment_view(prepare_view(test::render_ball_scene({}, camera, 0.001))));
+    for (const double x : {-0.2, 0.3})  // nothing of them is in the picture
+      s.observed.push_back({v, 0, camera.inverse() * Rigid3::from_translation({v == 0 ? x : 0.1 - x, 0.2, 0})});
+  }
+  const Rigid3 truth = s.world_from_camera[0].inverse() * s.world_from_camera[1];
+  const CameraTrack joined = join_by_objects(s.track, s.observed, s.library, surfaces);
+  ASSERT_EQ(joined.num_parts, 1);
+  EXPECT_LT(test::shift_m(joined.views[1].world_from_camera, truth), 0.001);
+  // The wrong way alone is none.
+  s.library.objects[0].symmetries.discrete.clear();
+  for (std::size_t o = 2; o < 4; ++o)
+    s.observed[o].camera_from_object =
+        s.observed[o].camera_from_object * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159265);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 1);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library, surfaces).num_parts, 2);
+}
+
 TEST(CommonObjects, WhatDoesNotExistIsRefused) {
   TwoSides s;
   s.observed.push_back({6, 0, {}});
   EXPECT_THROW((void)join_by_objects(s.track, s.observed, s.library), std::invalid_argument);
   s.observed.back() = {0, 3, {}};
   EXPECT_THROW((void)join_by_objects(s.track, s.observed, s.library), std::invalid_argument);
+  s.observed.clear();
+  const std::vector<AlignmentView> too_few(2);
+  EXPECT_THROW((void)join_by_objects(s.track, s.observed, s.library, too_few), std::invalid_argument);
 }
 
 }  // namespace

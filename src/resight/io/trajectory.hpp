@@ -14,6 +14,9 @@ struct TrajectoryPose {
   Rigid3 world_from_camera;
 };
 
+/// "tx ty tz qx qy qz qw", metres, all digits.
+[[nodiscard]] std::string format_tum_pose(const Rigid3& pose);
+
 /// Writes a trajectory as TUM does: a line "stamp tx ty tz qx qy qz qw" a view, metres, after the lines of `comment`
 /// (each of which gets a "# "). All digits: read back they give the same pose.
 [[nodiscard]] Result<void> write_tum_trajectory(const std::filesystem::path& file,
