@@ -32,7 +32,7 @@ std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder) {
 void print_track(const std::filesystem::path& folder, const ObjectTrack& track) {
   fmt::print("{}: {} views, {}", folder.string(), track.views.size(),
              track.is_camera_still ? "turntable" : "moving camera");
-  if (track.num_loops > 0)
+  if (!track.loops.empty())
     fmt::print(", closes with {:.1f} mm (followed: {:.1f} mm)\n", 1000 * track.closure_error_m, 1000 * track.drift_m);
   else
     fmt::print(", does not close\n");

@@ -7,7 +7,8 @@
 #include <optional>
 
 #include "resight/core/parallel.hpp"
-#include "resight/modelling/internal/track_view.hpp"
+#include "resight/modelling/internal/align_shapes.hpp"
+#include "resight/modelling/internal/object_edges.hpp"
 
 namespace resight {
 namespace {
@@ -20,10 +21,17 @@ constexpr double kSameTurnRad = 0.2;
 constexpr int kMaxWays = 4;           // that are tried on the model
 constexpr int kMaxMatchedViews = 18;  // of each recording
 constexpr int kRefineRounds = 3;
+// What shape alone decides, where there is less print than this.
+constexpr std::size_t kFewKeypoints = 40;  // a view, median
+constexpr double kMinAgreement = 0.25;
+constexpr double kMaxContradicted = 0.06;
+constexpr std::size_t kVertexStep = 13;
+constexpr float kFreeM = 0.008F;  // a point so far before what a view shows contradicts it
 
 struct Way {
   Rigid3 first_from_second;
   int num_matches = 0;
+  double shape_score = 0;
 };
 
 bool are_one(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
@@ -31,10 +39,10 @@ bool are_one(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
 }
 
 // About `count` of them, evenly.
-std::vector<std::size_t> choose_evenly(std::size_t size, int count) {
-  std::vector<std::size_t> chosen;
+std::vector<int> choose_evenly(std::size_t size, int count) {
+  std::vector<int> chosen;
   const auto wanted = std::min(size, static_cast<std::size_t>(count));
-  for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(k * size / wanted);
+  for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(static_cast<int>(k * size / wanted));
   return chosen;
 }
 
@@ -44,39 +52,83 @@ class TrackJoiner {
       : first_(first.views), second_(second.views), options_(options) {
     FuseViewsOptions fuse = options.fuse;
     fuse.num_threads = options.num_threads;
-    TriangleMesh mesh = fuse_views(first_, fuse);
-    const TriangleMesh other = fuse_views(second_, fuse);
-    for (const Eigen::Vector3f& p : other.vertices)
-      middle_ += p.cast<double>() / static_cast<double>(other.vertices.size());
-    if (!mesh.empty()) model_ = std::make_unique<ModelTarget>(std::move(mesh), options);
+    first_mesh_ = fuse_views(first_, fuse);
+    second_mesh_ = fuse_views(second_, fuse);
+    for (const Eigen::Vector3f& p : second_mesh_.vertices)
+      middle_ += p.cast<double>() / static_cast<double>(second_mesh_.vertices.size());
+    if (!first_mesh_.empty()) model_ = std::make_unique<ModelTarget>(first_mesh_, options);
   }
 
+  // By features; where these find nothing, by shape.
   Result<Rigid3> find() {
-    const std::vector<Way> ways = find_ways();
-    std::optional<Rigid3> best;
-    double best_score = 0;
-    double best_overlap = 0;
-    if (model_)
-      for (const Way& way : ways) {
-        const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
-        if (likeness < options_.min_correlation || (best && score <= best_score)) continue;
-        best = pose;
-        best_score = score;
-        best_overlap = overlap;
-      }
-    if (!best || best_overlap < options_.min_join_overlap)
-      return Error{fmt::format("the recordings cannot be joined: {} matches at best, {:.0f} % of the views in common",
-                               ways.empty() ? 0 : ways.front().num_matches, 100 * best_overlap)};
-    return *best;
+    const std::vector<Way> matched = find_ways();
+    if (const std::optional<Rigid3> best = choose(matched, options_.min_correlation)) return *best;
+    const bool has_print = num_keypoints_ >= kFewKeypoints;
+    const std::vector<Way> shaped = find_ways_by_shape();
+    if (const std::optional<Rigid3> best = choose(shaped, has_print ? options_.min_correlation : -1)) return *best;
+    return Error{fmt::format(
+        "the recordings cannot be joined: {} matches at best, {}", matched.empty() ? 0 : matched.front().num_matches,
+        shaped.empty() ? "nothing in common of shape" : "and no way by shape that the print agrees with")};
   }
 
  private:
+  // Of the ways, refined, the one that the views of the second are most like.
+  std::optional<Rigid3> choose(const std::vector<Way>& ways, double min_likeness) {
+    std::optional<Rigid3> best;
+    double best_score = 0;
+    if (!model_) return best;
+    for (const Way& way : ways) {
+      const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
+      if (likeness < min_likeness || overlap < options_.min_join_overlap) continue;
+      if (best && score + way.shape_score <= best_score) continue;
+      best = pose;
+      best_score = score + way.shape_score;
+    }
+    return best;
+  }
+
+  // Those in which neither surface stands where the views of the other saw nothing.
+  std::vector<Way> find_ways_by_shape() {
+    std::vector<Way> ways;
+    for (const ShapeFit& fit : align_shapes(first_mesh_, second_mesh_, {.num_threads = options_.num_threads})) {
+      const double contradicted = std::max(contradicted_share(second_mesh_, fit.fixed_from_moving, first_),
+                                           contradicted_share(first_mesh_, fit.fixed_from_moving.inverse(), second_));
+      if (fit.agreement >= kMinAgreement && contradicted <= kMaxContradicted)
+        ways.push_back({fit.fixed_from_moving, 0, fit.agreement - 2 * contradicted});
+    }
+    std::ranges::stable_sort(ways, std::greater{}, &Way::shape_score);
+    if (ways.size() > kMaxWays) ways.resize(kMaxWays);
+    return ways;
+  }
+
+  // Share of the surface's points, in the mean over some of the views, before what the view shows there.
+  [[nodiscard]] double contradicted_share(const TriangleMesh& mesh, const Rigid3& views_from_mesh,
+                                          const std::vector<TrainingView>& views) const {
+    std::size_t before = 0, seen = 0;
+    for (const int v : choose_evenly(views.size(), options_.num_join_views)) {
+      const RgbdFrame& frame = views[v].frame;
+      const Rigid3 camera_from_mesh = frame.world_from_camera.inverse() * views_from_mesh;
+      for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) {
+        const Vector3d p = camera_from_mesh * mesh.vertices[k].cast<double>().eval();
+        const Eigen::Vector2d pixel = frame.camera.project(p);
+        if (p.z() <= 0 || !frame.camera.contains(pixel)) continue;
+        const float depth_m =
+            frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+        if (std::isnan(depth_m)) continue;
+        ++seen;
+        before += p.z() < depth_m - kFreeM;
+      }
+    }
+    return seen == 0 ? 0 : static_cast<double>(before) / static_cast<double>(seen);
+  }
+
   // Features of views of both, each pair with a common pose; those that mean the same added up.
   std::vector<Way> find_ways() {
-    const std::vector<std::size_t> of_first = choose_evenly(first_.size(), kMaxMatchedViews);
-    const std::vector<std::size_t> of_second = choose_evenly(second_.size(), kMaxMatchedViews);
-    const std::vector<TrackView> a = cut_out(first_, of_first);
-    const std::vector<TrackView> b = cut_out(second_, of_second);
+    const std::vector<int> of_first = choose_evenly(first_.size(), kMaxMatchedViews);
+    const std::vector<int> of_second = choose_evenly(second_.size(), kMaxMatchedViews);
+    const std::vector<TrackView> a = make_track_views(first_, of_first, options_);
+    const std::vector<TrackView> b = make_track_views(second_, of_second, options_);
+    num_keypoints_ = std::min(median_keypoints(a), median_keypoints(b));
     std::vector<std::optional<Way>> found(a.size() * b.size());
     parallel_for(found.size(), options_.num_threads, [&](std::size_t k) {
       const std::size_t i = k / b.size();
@@ -90,14 +142,11 @@ class TrackJoiner {
     return add_up(found);
   }
 
-  [[nodiscard]] std::vector<TrackView> cut_out(const std::vector<TrainingView>& views,
-                                               const std::vector<std::size_t>& chosen) const {
-    std::vector<std::optional<TrackView>> parts(chosen.size());
-    parallel_for(parts.size(), options_.num_threads,
-                 [&](std::size_t k) { parts[k].emplace(make_track_view(views[chosen[k]], options_)); });
-    std::vector<TrackView> result;
-    for (std::optional<TrackView>& part : parts) result.push_back(std::move(*part));
-    return result;
+  [[nodiscard]] static std::size_t median_keypoints(const std::vector<TrackView>& views) {
+    std::vector<std::size_t> numbers;
+    for (const TrackView& view : views) numbers.push_back(view.features.features().size());
+    std::ranges::sort(numbers);
+    return numbers.empty() ? 0 : numbers[numbers.size() / 2];
   }
 
   // The best supported first; what is one with a better one is left out.
@@ -132,7 +181,7 @@ class TrackJoiner {
   Refined refine(Rigid3 way) {
     Refined refined;
     for (int round = 0; round < kRefineRounds; ++round) {
-      const std::vector<std::size_t> chosen = choose_evenly(second_.size(), options_.num_join_views);
+      const std::vector<int> chosen = choose_evenly(second_.size(), options_.num_join_views);
       std::vector<AlignedView> aligned(chosen.size());
       parallel_for(chosen.size(), options_.num_threads, [&](std::size_t k) { aligned[k] = align(chosen[k], way); });
       refined = {way, 0, 0, 0};
@@ -155,7 +204,7 @@ class TrackJoiner {
     return refined;
   }
 
-  [[nodiscard]] AlignedView align(std::size_t view, const Rigid3& way) const {
+  [[nodiscard]] AlignedView align(int view, const Rigid3& way) const {
     TrainingView part = crop_for_tracking(second_[view]);
     const Rigid3 start = way * part.frame.world_from_camera;
     const Camera camera = part.frame.camera;
@@ -181,7 +230,9 @@ class TrackJoiner {
   std::vector<TrainingView>& first_;
   std::vector<TrainingView>& second_;
   const TrackObjectOptions& options_;
+  TriangleMesh first_mesh_, second_mesh_;
   std::unique_ptr<ModelTarget> model_;
+  std::size_t num_keypoints_ = 0;       // a view, of the recording with fewer
   Vector3d middle_ = Vector3d::Zero();  // of the second's surface, in its frame
 };
 
@@ -194,11 +245,12 @@ Result<ObjectTrack> join_tracks(ObjectTrack first, ObjectTrack second, const Tra
   for (TrainingView& view : second.views)
     view.frame.world_from_camera = *first_from_second * view.frame.world_from_camera;
   ObjectTrack joined = std::move(first);
+  const int num_first = static_cast<int>(joined.views.size());
+  for (const auto& [a, b] : second.loops) joined.loops.emplace_back(num_first + a, num_first + b);
   std::ranges::move(second.views, std::back_inserter(joined.views));
-  joined.num_loops += second.num_loops;
   joined.drift_m = std::fmax(joined.drift_m, second.drift_m);
-  joined.closure_error_m = std::fmax(joined.closure_error_m, second.closure_error_m);
   refine_on_model(joined.views, options, options.num_refinements);
+  joined.closure_error_m = measure_closure(joined.views, joined.loops, options);
   return joined;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "resight/cameras/match_views.hpp"
@@ -45,8 +46,8 @@ struct ObjectTrack {
   /// All of the recording, in order. frame.world_from_camera is object_from_camera; the object frame has z up from the
   /// support, and its origin there, below the middle of what was seen of the object first.
   std::vector<TrainingView> views;
-  bool is_camera_still = false;  ///< The background does not move: a turntable.
-  int num_loops = 0;             ///< Edges that close the way around the object.
+  bool is_camera_still = false;            ///< The background does not move: a turntable.
+  std::vector<std::pair<int, int>> loops;  ///< Pairs of views between which the way around the object closes.
   /// How far the object is off where the way closes, at its surface, metres: as it was followed from view to view, and
   /// after all poses were adjusted. NaN = it does not close.
   double drift_m = std::numeric_limits<double>::quiet_NaN();

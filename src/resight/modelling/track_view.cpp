@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "resight/core/parallel.hpp"
@@ -58,6 +59,16 @@ TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& op
   const PreparedView prepared = prepare_view(std::move(part.frame));
   return {make_alignment_view(prepared, options.view, &part.mask),
           ViewFeatures(extract_sift(prepared, options.sift, &part.mask))};
+}
+
+std::vector<TrackView> make_track_views(std::span<const TrainingView> views, std::span<const int> chosen,
+                                        const TrackObjectOptions& options) {
+  std::vector<std::optional<TrackView>> made(chosen.size());
+  parallel_for(made.size(), options.num_threads,
+               [&](std::size_t k) { made[k].emplace(make_track_view(views[chosen[k]], options)); });
+  std::vector<TrackView> parts;
+  for (std::optional<TrackView>& part : made) parts.push_back(std::move(*part));
+  return parts;
 }
 
 struct ModelTarget::Impl {

@@ -20,6 +20,10 @@ struct TrackView {
 /// With the camera of the cut-out; the mask of `view` must hold a pixel.
 [[nodiscard]] TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& options);
 
+/// The same of some of the views.
+[[nodiscard]] std::vector<TrackView> make_track_views(std::span<const TrainingView> views, std::span<const int> chosen,
+                                                      const TrackObjectOptions& options);
+
 /// Aligns every view to the fused whole, `rounds` times; their poses are changed. Those that would move far or lose
 /// their hold stay.
 void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions& options, int rounds);

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/modelling/internal/object_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "resight/cameras/twist.hpp"
+#include "resight/core/parallel.hpp"
+
+namespace resight {
+namespace {
+
+using Eigen::Vector3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// What the sensor's bias leaves between any two views, however many pixels agree.
+constexpr double kFloorSigmaM = 0.0007;
+constexpr double kFloorSigmaRad = 0.003;
+constexpr int kPixelStep = 9;  // of the surface on which errors are measured
+
+Matrix6 diagonal(double rad, double m) {
+  Twist values;
+  values << Vector3d::Constant(rad), Vector3d::Constant(m);
+  return values.asDiagonal();
+}
+
+Matrix6 edge_information(const Matrix6& information) {
+  const Matrix6 covariance = (information + Matrix6::Identity()).inverse() +
+                             diagonal(kFloorSigmaRad * kFloorSigmaRad, kFloorSigmaM * kFloorSigmaM);
+  const Matrix6 inverse = covariance.inverse();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+Matrix6 match_information(const TrackObjectOptions& o) {
+  return diagonal(1 / (o.match_sigma_rad * o.match_sigma_rad), 1 / (o.match_sigma_m * o.match_sigma_m));
+}
+
+const Rigid3& pose_of(const TrainingView& view) { return view.frame.world_from_camera; }
+
+std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<const TrackView> parts, int a, int b,
+                                     const TrackObjectOptions& options) {
+  std::vector<AlignmentStart> starts{{poses[b], false}};
+  if (const auto match = match_views(parts[a].features, parts[b].features, options.match))
+    starts.push_back({poses[a] * match->a_from_b, true});
+  const std::vector<AlignmentTarget> target{{&parts[a].alignment, poses[a]}};
+  std::optional<AlignedView> best;
+  for (const AlignmentStart& start : starts) {
+    AlignViewOptions align = align_options(options, start.is_matched);
+    align.num_threads = 1;  // pairs are measured side by side
+    AlignedView aligned = align_view(parts[b].alignment, target, start.pose, align);
+    if (!is_plausible(aligned, options) || (best && alignment_score(aligned) <= alignment_score(*best))) continue;
+    if (start.is_matched) aligned.information += match_information(options);
+    best = aligned;
+  }
+  if (!best) return std::nullopt;
+  return PoseEdge{a, b, poses[a].inverse() * best->world_from_camera, edge_information(best->information)};
+}
+
+// Mean over the points that `view` shows of the object.
+double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object) {
+  double sum = 0;
+  int num = 0;
+  for (int v = 0; v < view.mask.height(); v += kPixelStep)
+    for (int u = 0; u < view.mask.width(); u += kPixelStep) {
+      if (view.mask(u, v) == 0 || std::isnan(view.frame.depth_m(u, v))) continue;
+      const Vector3d p = pose_of(view) * view.frame.camera.unproject(u, v, view.frame.depth_m(u, v));
+      sum += (motion_of_object * p - p).norm();
+      ++num;
+    }
+  return num == 0 ? 0 : sum / num;
+}
+
+}  // namespace
+
+AlignViewOptions align_options(const TrackObjectOptions& options, bool is_matched) {
+  AlignViewOptions align = options.align;
+  align.num_threads = options.num_threads;
+  if (is_matched) {
+    align.prior_sigma_m = options.match_sigma_m;
+    align.prior_sigma_rad = options.match_sigma_rad;
+  }
+  return align;
+}
+
+bool is_plausible(const AlignedView& aligned, const TrackObjectOptions& options) {
+  return aligned.overlap >= options.min_overlap && aligned.seen_through <= options.max_seen_through &&
+         !(aligned.brightness_correlation < options.min_correlation);
+}
+
+double alignment_score(const AlignedView& aligned) {
+  const double likeness = std::isnan(aligned.brightness_correlation) ? 0 : aligned.brightness_correlation;
+  return aligned.overlap - 2 * aligned.seen_through + likeness;
+}
+
+std::vector<PoseEdge> measure_edges(std::span<const Rigid3> object_from_camera, std::span<const TrackView> parts,
+                                    std::span<const std::pair<int, int>> pairs, const TrackObjectOptions& options) {
+  std::vector<std::optional<PoseEdge>> measured(pairs.size());
+  parallel_for(pairs.size(), options.num_threads, [&](std::size_t p) {
+    measured[p] = measure_edge(object_from_camera, parts, pairs[p].first, pairs[p].second, options);
+  });
+  std::vector<PoseEdge> edges;
+  for (const auto& edge : measured)
+    if (edge) edges.push_back(*edge);
+  return edges;
+}
+
+double median_error_m(std::span<const TrainingView> views, std::span<const PoseEdge> edges) {
+  if (edges.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> errors;
+  for (const PoseEdge& e : edges)
+    errors.push_back(surface_shift_m(views[e.b], pose_of(views[e.a]) * e.a_from_b * pose_of(views[e.b]).inverse()));
+  std::ranges::sort(errors);
+  return errors[errors.size() / 2];
+}
+
+double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops,
+                       const TrackObjectOptions& options) {
+  std::vector<int> used;
+  for (const auto& [a, b] : loops) used.insert(used.end(), {a, b});
+  std::ranges::sort(used);
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Rigid3> poses;
+  for (const int view : used) poses.push_back(pose_of(views[view]));
+  const auto place = [&](int view) { return static_cast<int>(std::ranges::lower_bound(used, view) - used.begin()); };
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [a, b] : loops) pairs.emplace_back(place(a), place(b));
+  std::vector<PoseEdge> edges = measure_edges(poses, make_track_views(views, used, options), pairs, options);
+  for (PoseEdge& edge : edges) {
+    edge.a = used[edge.a];
+    edge.b = used[edge.b];
+  }
+  return median_error_m(views, edges);
+}
+
+}  // namespace resight
