@@ -290,6 +290,8 @@ const Row kRows[] = {
     {"ModelWithoutSequence", kNothing, "model --out out", 2, "--sequence"},
     {"ModelOfMissingSequence", kNothing, "model --sequence nowhere --out out", 2, "nowhere"},
     {"ModelOverData", kNothing, "model --sequence tuw --out full", 2, "full: exists already"},
+    {"ModelOntoNothing", kNothing, "model --sequence tuw --onto nowhere --out out", 2, "nowhere"},
+    {"ModelOntoASequence", kNothing, "model --sequence tuw --onto tuw --out out", 2, "tuw"},
     {"ModelOfTinyViews", kNothing, "model --sequence tuw --out out", 1, "tuw: .*is 64 columns wide"},
     {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
      "nonsense"},

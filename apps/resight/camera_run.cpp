@@ -9,6 +9,8 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/cameras/common_objects.hpp"
+#include "resight/cameras/track_journal.hpp"
+#include "resight/core/hash.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
 
 namespace resight::app {
@@ -38,21 +40,52 @@ std::vector<ObservedObject> observe_objects(const Sequence& sequence, const Mode
   return observed;
 }
 
+PreparedView read_prepared(const Sequence& sequence, int view, int num_threads) {
+  PrepareViewOptions options;
+  options.num_threads = num_threads;
+  return prepare_view(value_or_throw(sequence.read_view(view)), options);
+}
+
+std::string describe_job(const Sequence& sequence, const std::filesystem::path& folder) {
+  std::string names;
+  for (int v = 0; v < sequence.num_views(); ++v) names += sequence.view_name(v) + "\n";
+  return fmt::format("resight {}, {}: {} views, names {:016x}", RESIGHT_VERSION,
+                     std::filesystem::absolute(folder).lexically_normal().string(), sequence.num_views(),
+                     hash_text(names));
+}
+
+// The views that an interrupted run had tracked; how many.
+int restore(ViewTracker& tracker, const Sequence& sequence, const TrackJournal& journal, Progress& progress) {
+  int view = 0;
+  for (const TrackerStep& step : journal.steps()) {
+    std::optional<PreparedView> prepared;
+    if (step.view.is_keyframe) prepared = read_prepared(sequence, view, 1);
+    tracker.restore_view(step, prepared ? &*prepared : nullptr);
+    progress.report(++view, step.view.name + ": tracked before");
+  }
+  return view;
+}
+
 CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& options) {
   if (options.refine && !sequence.has_poses())
     throw InputError("the sequence holds no camera poses to refine (try auto)");
   TrackViewsOptions track;
   track.num_threads = options.num_threads;
   ViewTracker tracker(track);
-  PrepareViewOptions prepare;
-  prepare.num_threads = options.num_threads;
+  std::optional<TrackJournal> journal;
+  if (options.journal && !options.refine)
+    journal = value_or_throw(TrackJournal::open(*options.journal, describe_job(sequence, options.sequence_folder)));
   Progress progress("track", sequence.num_views());
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const PreparedView view = prepare_view(value_or_throw(sequence.read_view(v)), prepare);
+  const int first = journal ? restore(tracker, sequence, *journal, progress) : 0;
+  for (int v = first; v < sequence.num_views(); ++v) {
+    const PreparedView view = read_prepared(sequence, v, options.num_threads);
     if (options.refine) tracker.add_posed_view(view);
     progress.report(v + 1, options.refine ? view.frame.name : describe(tracker.add_view(view)));
+    if (journal) value_or_throw(journal->append(tracker.last_step()));
   }
-  return tracker.finish();
+  CameraTrack tracked = tracker.finish();
+  if (journal) journal->remove();
+  return tracked;
 }
 
 // Of some views of each part, evenly: enough to tell whether parts contradict each other.

@@ -83,6 +83,7 @@ struct SimulateArguments {
 
 struct ModelArguments {
   std::vector<std::filesystem::path> sequences;
+  std::optional<std::filesystem::path> onto;  ///< A model made before, to which the recordings are added.
   std::filesystem::path out;
   int num_threads = 1;
 };

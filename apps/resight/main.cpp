@@ -143,6 +143,7 @@ std::function<void()> add_model(CLI::App& app, ModelArguments& a) {
                    "Recording once around the object (TUW, BOP, TUM and others, detected); again for the object lying "
                    "on another side")
       ->required();
+  command->add_option("--onto", a.onto, "Model folder made before: the recordings are added to its views");
   command->add_option("--out", a.out, "Model folder to write (TUW), for 'resight train'; must not exist")->required();
   add_threads(command, a.num_threads);
   return [&a] { run_model(a); };

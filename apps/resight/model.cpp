@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
+#include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
@@ -38,6 +40,30 @@ void print_track(const std::filesystem::path& folder, const ObjectTrack& track) 
     fmt::print(", does not close\n");
 }
 
+ObjectTrack follow(const std::filesystem::path& folder, const TrackObjectOptions& options) {
+  std::vector<RgbdFrame> frames = read_frames(folder);
+  Result<ObjectTrack> track = [&] {
+    Progress progress("model " + folder_name(folder), static_cast<int>(frames.size()));
+    return track_object(std::move(frames), options,
+                        [&](int done, const std::string& view) { progress.report(done, view); });
+  }();
+  if (!track) throw std::runtime_error(file_error(folder, track.error().message).message);
+  print_track(folder, *track);
+  return std::move(*track);
+}
+
+// The key views of a model that was made before.
+ObjectTrack read_model_views(const std::filesystem::path& folder) {
+  const std::vector<ModelLocation> found = value_or_throw(find_models({folder}));
+  ModelSource source = value_or_throw(read_model(found.front()));
+  if (found.size() > 1 || source.views.empty())
+    throw InputError(
+        file_error(folder, "holds no single model with views (a folder of 'resight model' was expected)").message);
+  ObjectTrack track;
+  track.views = std::move(source.views);
+  return track;
+}
+
 }  // namespace
 
 void run_model(const ModelArguments& arguments) {
@@ -50,22 +76,15 @@ void run_model(const ModelArguments& arguments) {
   BuildModelOptions build_options;
   build_options.num_threads = arguments.num_threads;
 
-  ObjectTrack whole;
-  {
-    Progress progress("model", static_cast<int>(arguments.sequences.size()));
-    for (std::size_t i = 0; i < arguments.sequences.size(); ++i) {
-      const std::filesystem::path& folder = arguments.sequences[i];
-      Result<ObjectTrack> track = track_object(read_frames(folder), track_options);
-      if (!track) throw std::runtime_error(file_error(folder, track.error().message).message);
-      print_track(folder, *track);
-      whole =
-          i == 0 ? std::move(*track) : value_or_fail(join_tracks(std::move(whole), std::move(*track), track_options));
-      progress.report(static_cast<int>(i) + 1, folder_name(folder));
-    }
+  std::optional<ObjectTrack> whole;
+  if (arguments.onto) whole = read_model_views(*arguments.onto);
+  for (const std::filesystem::path& folder : arguments.sequences) {
+    ObjectTrack track = follow(folder, track_options);
+    whole = whole ? value_or_fail(join_tracks(std::move(*whole), std::move(track), track_options)) : std::move(track);
   }
-  ObjectModelBuild build = value_or_fail(build_model(whole.views, build_options));
-  build.report.closure_error_m = whole.closure_error_m;
-  value_or_throw(write_object_model(arguments.out, whole.views, build));
+  ObjectModelBuild build = value_or_fail(build_model(whole->views, build_options));
+  build.report.closure_error_m = whole->closure_error_m;
+  value_or_throw(write_object_model(arguments.out, whole->views, build));
   fmt::print("{}model {}: {}\n", format_report(build.report), folder_name(arguments.out), arguments.out.string());
 }
 

@@ -30,8 +30,10 @@ void run_recognize(const RecognizeArguments& arguments) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   std::optional<PosedSequence> tracked;
   if (!given) {
-    const TrackSequenceOptions options{
-        .refine = arguments.poses == "refine", .library = &library, .num_threads = arguments.num_threads};
+    TrackSequenceOptions options;
+    options.refine = arguments.poses == "refine";
+    options.library = &library;
+    options.num_threads = arguments.num_threads;
     tracked.emplace(take_largest_part(*recorded, track_sequence(*recorded, options).track));
   }
   const Sequence& sequence = tracked ? *tracked : *recorded;

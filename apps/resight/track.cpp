@@ -79,6 +79,8 @@ void run_track(const TrackArguments& arguments) {
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
   const auto [track, objects] = track_sequence(*sequence, {.refine = arguments.poses == "refine",
                                                            .library = library ? &*library : nullptr,
+                                                           .journal = arguments.out.string() + ".partial",
+                                                           .sequence_folder = arguments.sequence,
                                                            .adjust_objects = library.has_value(),
                                                            .num_threads = arguments.num_threads});
   write_parts(arguments, track);

@@ -66,6 +66,8 @@ struct ViewTracker::Impl {
   }
 
   TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask);
+  [[nodiscard]] TrackerStep last_step() const;
+  void restore_view(const TrackerStep& step, const PreparedView* view);
   void add_posed_view(const PreparedView& view);
   CameraTrack finish();
 
@@ -249,6 +251,24 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   return tracked;
 }
 
+TrackerStep ViewTracker::Impl::last_step() const {
+  require(!views.empty(), "last_step(): no view has been added");
+  const int last = static_cast<int>(views.size()) - 1;
+  TrackerStep step{views.back(), {}};
+  for (const PoseEdge& edge : edges)
+    if (edge.b == last) step.edges.push_back(edge);
+  return step;
+}
+
+void ViewTracker::Impl::restore_view(const TrackerStep& step, const PreparedView* view) {
+  require(!step.view.is_keyframe || view != nullptr, "view: must be given for a keyframe");
+  if (step.view.is_keyframe)
+    keyframes.push_back(
+        {static_cast<int>(views.size()), make_alignment_view(*view, options.view), extract(*view, nullptr)});
+  edges.insert(edges.end(), step.edges.begin(), step.edges.end());
+  views.push_back(step.view);
+}
+
 void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   const int number = static_cast<int>(views.size());
   TrackedView tracked;
@@ -403,6 +423,8 @@ ViewTracker::ViewTracker(ViewTracker&&) noexcept = default;
 TrackedView ViewTracker::add_view(const PreparedView& view, const Image<std::uint8_t>* mask) {
   return impl_->add_view(view, mask);
 }
+TrackerStep ViewTracker::last_step() const { return impl_->last_step(); }
+void ViewTracker::restore_view(const TrackerStep& step, const PreparedView* view) { impl_->restore_view(step, view); }
 void ViewTracker::add_posed_view(const PreparedView& view) { impl_->add_posed_view(view); }
 CameraTrack ViewTracker::finish() { return impl_->finish(); }
 

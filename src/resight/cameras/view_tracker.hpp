@@ -44,6 +44,12 @@ struct TrackedView {
   Twist sigma = Twist::Zero();  ///< Standard deviations against the keyframe it was joined to: rad about x, y, z; m.
 };
 
+/// What add_view() brought.
+struct TrackerStep {
+  TrackedView view;
+  std::vector<PoseEdge> edges;  ///< From earlier views to this one.
+};
+
 struct CameraTrack {
   std::vector<TrackedView> views;
   std::vector<PoseEdge> edges;  ///< Between views; those that were used.
@@ -64,6 +70,10 @@ class ViewTracker {
   /// The pose as far as it is known now. A view that cannot be joined to any begins a part of its own; finish() may
   /// still join it. `mask`: of the view's size, non-zero = use.
   TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask = nullptr);
+  /// What the last add_view() brought.
+  [[nodiscard]] TrackerStep last_step() const;
+  /// The next view as an earlier run found it, without a mask. `view`: needed for keyframes only, else it may be null.
+  void restore_view(const TrackerStep& step, const PreparedView* view);
   /// A view of which the pose is known, but not well: finish() refines it. It is a keyframe, in one part with the
   /// others that are given.
   void add_posed_view(const PreparedView& view);

@@ -52,7 +52,8 @@ Rigid3 make_object_frame(const ObjectRegion& region_in_camera) {
 
 class ObjectTracker {
  public:
-  explicit ObjectTracker(const TrackObjectOptions& options) : options_(options) {}
+  ObjectTracker(const TrackObjectOptions& options, const TrackObjectProgress& progress)
+      : options_(options), progress_(progress) {}
 
   Result<ObjectTrack> track(std::vector<RgbdFrame> frames) {
     if (auto done = segment(std::move(frames)); !done) return done.error();
@@ -60,8 +61,11 @@ class ObjectTracker {
     std::iota(all.begin(), all.end(), 0);
     parts_ = make_track_views(track_.views, all, options_);
     track_.views[0].frame.world_from_camera = make_object_frame(first_region_);
-    for (std::size_t i = 1; i < track_.views.size(); ++i)
-      if (auto done = follow(i); !done) return done.error();
+    for (std::size_t i = 0; i < track_.views.size(); ++i) {
+      if (i > 0)
+        if (auto done = follow(i); !done) return done.error();
+      if (progress_) progress_(static_cast<int>(i) + 1, name(i));
+    }
     close_loops();
     refine_on_model(track_.views, options_, options_.num_refinements);
     track_.closure_error_m = measure_closure(track_.views, track_.loops, options_);
@@ -157,6 +161,7 @@ class ObjectTracker {
   }
 
   const TrackObjectOptions& options_;
+  const TrackObjectProgress& progress_;
   ObjectTrack track_;
   ObjectRegion first_region_;
   std::vector<TrackView> parts_;
@@ -187,9 +192,10 @@ void TrackObjectOptions::check() const {
   check_in_range("TrackObjectOptions.num_threads", num_threads, 1, 4096);
 }
 
-Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options) {
+Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options,
+                                 const TrackObjectProgress& progress) {
   options.check();
-  return ObjectTracker(options).track(std::move(frames));
+  return ObjectTracker(options, progress).track(std::move(frames));
 }
 
 }  // namespace resight

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -54,13 +55,17 @@ struct ObjectTrack {
   double closure_error_m = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Called for each view that was followed, in order.
+using TrackObjectProgress = std::function<void(int done, const std::string& view)>;
+
 /// Follows the object (not the background) through a recording of a turntable before a still camera, or of a camera
 /// that is carried around the object: only points of the object count. Each view is aligned to those before it, from
 /// where features, the last motion, or no motion put it; then the way around is closed, all poses are adjusted together
 /// (adjust_pose_graph()) and aligned to the fused whole. Poses of the frames do not count.
 ///
 /// The error says where it failed: no object in the first view, or "lost at view 00037: 11 matches".
-[[nodiscard]] Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options = {});
+[[nodiscard]] Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options = {},
+                                               const TrackObjectProgress& progress = {});
 
 /// Joins a second recording, of the object lying otherwise, to a first: features of both and alignment to the fused
 /// first. Its views are added, in the object frame of the first; all are then aligned to the fused whole. The error

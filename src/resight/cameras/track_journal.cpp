@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/cameras/track_journal.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "resight/core/files.hpp"
+
+namespace resight {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kFormat = "resight track journal 1";
+
+template <typename Matrix>
+ordered_json to_json(const Matrix& m) {
+  ordered_json values = ordered_json::array();
+  for (Eigen::Index i = 0; i < m.size(); ++i) values.push_back(m.data()[i]);
+  return values;
+}
+
+ordered_json pose_json(const Rigid3& pose) {
+  return {{"rotation", to_json(pose.rotation)}, {"translation", to_json(pose.translation)}};
+}
+
+template <typename Matrix>
+void read_matrix(const ordered_json& values, Matrix& m) {
+  if (static_cast<Eigen::Index>(values.size()) != m.size()) throw std::out_of_range("wrong number of values");
+  for (Eigen::Index i = 0; i < m.size(); ++i) m.data()[i] = values.at(static_cast<std::size_t>(i)).get<double>();
+  if (!m.allFinite()) throw std::out_of_range("a value is not finite");
+}
+
+Rigid3 read_pose(const ordered_json& values) {
+  Rigid3 pose;
+  read_matrix(values.at("rotation"), pose.rotation);
+  read_matrix(values.at("translation"), pose.translation);
+  return pose;
+}
+
+std::string to_line(const TrackerStep& step) {
+  const TrackedView& v = step.view;
+  ordered_json edges = ordered_json::array();
+  for (const PoseEdge& e : step.edges)
+    edges.push_back(
+        {{"a", e.a}, {"b", e.b}, {"a_from_b", pose_json(e.a_from_b)}, {"information", to_json(e.information)}});
+  const ordered_json line{{"name", v.name},
+                          {"world_from_camera", pose_json(v.world_from_camera)},
+                          {"part", v.part},
+                          {"is_keyframe", v.is_keyframe},
+                          {"num_matches", v.num_matches},
+                          {"overlap", v.overlap},
+                          {"sigma", to_json(v.sigma)},
+                          {"edges", edges}};
+  return line.dump() + "\n";
+}
+
+// A view may be joined to earlier ones only.
+std::optional<TrackerStep> read_line(const std::string& line, int view) {
+  try {
+    const ordered_json values = ordered_json::parse(line);
+    TrackerStep step;
+    step.view.name = values.at("name").get<std::string>();
+    step.view.world_from_camera = read_pose(values.at("world_from_camera"));
+    step.view.part = values.at("part").get<int>();
+    step.view.is_keyframe = values.at("is_keyframe").get<bool>();
+    step.view.num_matches = values.at("num_matches").get<int>();
+    step.view.overlap = values.at("overlap").get<double>();
+    read_matrix(values.at("sigma"), step.view.sigma);
+    for (const ordered_json& e : values.at("edges")) {
+      PoseEdge edge{e.at("a").get<int>(), e.at("b").get<int>(), read_pose(e.at("a_from_b")), {}};
+      read_matrix(e.at("information"), edge.information);
+      if (edge.a < 0 || edge.a >= view || edge.b != view) return std::nullopt;
+      step.edges.push_back(edge);
+    }
+    if (step.view.part < 0 || step.view.part > view) return std::nullopt;
+    return step;
+  } catch (const ordered_json::exception&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+std::string head_line(const std::string& job) { return ordered_json{{"format", kFormat}, {"job", job}}.dump() + "\n"; }
+
+std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std::string& job) {
+  std::vector<TrackerStep> steps;
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  if (!std::getline(in, line) || line + "\n" != head_line(job)) return steps;
+  while (std::getline(in, line) && !in.eof()) {  // eof: the last line has no end
+    std::optional<TrackerStep> step = read_line(line, static_cast<int>(steps.size()));
+    if (!step) break;
+    steps.push_back(std::move(*step));
+  }
+  return steps;
+}
+
+}  // namespace
+
+Result<TrackJournal> TrackJournal::open(const std::filesystem::path& file, const std::string& job) {
+  TrackJournal journal;
+  journal.file_ = file;
+  journal.steps_ = read_steps(file, job);
+  // Written anew: what could not be read is gone.
+  std::string text = head_line(job);
+  for (const TrackerStep& step : journal.steps_) text += to_line(step);
+  if (auto done = write_file(file, text); !done) return done.error();
+  journal.out_.open(file, std::ios::binary | std::ios::app);
+  if (!journal.out_) return file_error(file, "cannot be written");
+  return journal;
+}
+
+Result<void> TrackJournal::append(const TrackerStep& step) {
+  out_ << to_line(step) << std::flush;
+  if (!out_) return file_error(file_, "cannot be written");
+  return {};
+}
+
+void TrackJournal::remove() {
+  out_.close();
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+}
+
+}  // namespace resight

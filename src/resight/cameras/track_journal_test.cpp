@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/cameras/track_journal.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <optional>
+
+#include "resight/cameras/cameras_test_scenes.hpp"
+#include "resight/core/files.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kViews = 8;
+
+PreparedView make_view(int v) {
+  const double angle = 0.09 * v;
+  return prepare_view(test::render_ball_scene(
+      {}, test::look_at_point({1.2 * std::sin(angle), -1.1 * std::cos(angle), 0.6}, {0, 0.1, 0.05}), 0.001,
+      static_cast<std::uint64_t>(v + 1)));
+}
+
+class TrackJournalTest : public testing::Test {
+ protected:
+  TrackJournalTest() {
+    fs::create_directories(folder_);
+    fs::remove(file_);
+  }
+  ~TrackJournalTest() override { fs::remove_all(folder_); }
+
+  // Tracks views from..to-1 after those that the journal holds.
+  void go_on(ViewTracker& tracker, const std::string& job, int to) const {
+    auto journal = TrackJournal::open(file_, job);
+    ASSERT_TRUE(journal.ok()) << journal.error().message;
+    int view = 0;
+    for (const TrackerStep& step : journal->steps()) {
+      std::optional<PreparedView> prepared;
+      if (step.view.is_keyframe) prepared = make_view(view);
+      tracker.restore_view(step, prepared ? &*prepared : nullptr);
+      ++view;
+    }
+    for (; view < to; ++view) {
+      (void)tracker.add_view(make_view(view));
+      ASSERT_TRUE(journal->append(tracker.last_step()).ok());
+    }
+  }
+  [[nodiscard]] std::size_t num_steps(const std::string& job) const {
+    return TrackJournal::open(file_, job)->steps().size();
+  }
+  void rewrite(const std::function<void(std::string&)>& change) const {
+    std::ifstream in(file_, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    change(text);
+    ASSERT_TRUE(write_file(file_, text).ok());
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("resight_journal_" + std::to_string(::getpid()));
+  fs::path file_ = folder_ / "poses.txt.partial";
+};
+
+TEST_F(TrackJournalTest, AnInterruptedRunEndsAsOneThatWasNot) {
+  ViewTracker whole;
+  for (int v = 0; v < kViews; ++v) (void)whole.add_view(make_view(v));
+  const CameraTrack expected = whole.finish();
+  {
+    ViewTracker interrupted;
+    go_on(interrupted, "job", 5);
+  }
+  ViewTracker tracker;
+  go_on(tracker, "job", kViews);
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.views.size(), expected.views.size());
+  EXPECT_EQ(track.edges.size(), expected.edges.size());
+  for (std::size_t v = 0; v < track.views.size(); ++v) {
+    EXPECT_EQ(track.views[v].world_from_camera.matrix(), expected.views[v].world_from_camera.matrix()) << v;
+    EXPECT_EQ(track.views[v].sigma, expected.views[v].sigma) << v;
+    EXPECT_EQ(track.views[v].is_keyframe, expected.views[v].is_keyframe) << v;
+  }
+}
+
+TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
+  ViewTracker tracker;
+  go_on(tracker, "job", 4);
+  ASSERT_EQ(num_steps("job"), 4U);
+  rewrite([](std::string& text) { text.resize(text.size() - 1); });  // the end of the line is missing
+  EXPECT_EQ(num_steps("job"), 3U);
+  EXPECT_EQ(num_steps("job"), 3U);  // and the rest is kept
+  rewrite([](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; });
+  EXPECT_EQ(num_steps("job"), 2U);
+  rewrite([](std::string& text) { text[text.rfind("\"part\":0") + 7] = '9'; });
+  EXPECT_EQ(num_steps("job"), 1U);
+  EXPECT_EQ(num_steps("another"), 0U);
+  EXPECT_EQ(num_steps("job"), 0U);
+}
+
+TEST_F(TrackJournalTest, IsRemovedInTheEndAndNeedsAFolder) {
+  auto journal = TrackJournal::open(file_, "job");
+  ASSERT_TRUE(journal.ok());
+  EXPECT_FALSE(TrackJournal::open(file_ / "below", "job").ok());  // below a file
+  journal->remove();
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+}  // namespace
+}  // namespace resight
