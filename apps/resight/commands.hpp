@@ -65,6 +65,7 @@ struct TrackArguments {
   std::filesystem::path out;
   std::optional<std::filesystem::path> models;  ///< To join views by common objects.
   std::optional<std::filesystem::path> posed;   ///< Folder for the sequence with its poses.
+  std::optional<std::filesystem::path> fused;   ///< Cloud of all views.
   std::string poses = "auto";
   std::string format = "tuw";  ///< Of the posed sequence.
   int num_threads = 1;

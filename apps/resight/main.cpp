@@ -112,6 +112,7 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
       ->capture_default_str();
   command->add_option("--models", a.models, "Model library: views without overlap are joined by common objects");
   command->add_option("--write-sequence", a.posed, "Folder for the sequence with these poses; must not exist");
+  command->add_option("--fused", a.fused, "Cloud of all views to write (PLY), with a picture of it beside it (PNG)");
   command->add_option("--format", a.format, "Of --write-sequence: tuw or bop")->check(kFormats)->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a] { run_track(a); };

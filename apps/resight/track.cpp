@@ -3,6 +3,7 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
+#include "fused_cloud.hpp"
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/files.hpp"
 #include "resight/io/convert.hpp"
@@ -72,6 +73,7 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
 
 void run_track(const TrackArguments& arguments) {
   value_or_throw(check_writable(arguments.out));
+  if (arguments.fused) value_or_throw(check_writable(*arguments.fused));
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));
@@ -89,6 +91,10 @@ void run_track(const TrackArguments& arguments) {
   fmt::print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(),
              track.edges.size(), track.num_loops, arguments.out.string());
   if (sequence->has_poses()) print_error(*sequence, track);
+  if (arguments.fused) {
+    write_fused_cloud(posed, *arguments.fused, arguments.num_threads);
+    fmt::print("cloud of its views: {}\n", arguments.fused->string());
+  }
   if (!arguments.posed) return;
   const DatasetFormat format = arguments.format == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
   value_or_throw(convert_sequence(posed, *arguments.posed, format));

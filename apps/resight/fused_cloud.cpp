@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fused_cloud.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands.hpp"
+#include "resight/geometry/splat_mesh.hpp"
+#include "resight/io/images.hpp"
+#include "resight/io/ply.hpp"
+#include "resight/reconstruction/integration.hpp"
+#include "resight/simulation/view_renderer.hpp"
+
+namespace resight::app {
+namespace {
+
+constexpr int kMaxViews = 48;
+const Camera kPictureCamera{960, 720, 820, 820, 479.5, 359.5};
+constexpr double kStepBack = 1.35;  // of the distance of the cameras
+
+struct Fused {
+  PointCloud cloud;
+  Rigid3 world_from_picture;
+};
+
+// A camera where those of the views were in the mean, a step back, looking at what they looked at.
+Rigid3 place_picture(const std::vector<Rigid3>& cameras, const std::vector<double>& depths_m) {
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero(), target = eye, up = eye;
+  for (std::size_t v = 0; v < cameras.size(); ++v) {
+    const double share = 1.0 / static_cast<double>(cameras.size());
+    eye += share * cameras[v].translation;
+    target += share * (cameras[v] * Eigen::Vector3d(0, 0, depths_m[v]));
+    up -= share * cameras[v].rotation.col(1);
+  }
+  // Cameras all around: their mean is above what they look at, and not in the way.
+  if ((eye - target).cross(up).norm() < 1e-3) up = cameras[0].rotation.col(2);
+  return look_at(target + kStepBack * (eye - target), target, up);
+}
+
+double median_depth_m(const Image<float>& depth_m) {
+  std::vector<float> depths;
+  for (const float z : depth_m.data())
+    if (!std::isnan(z)) depths.push_back(z);
+  if (depths.empty()) return 1;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  return *middle;
+}
+
+Fused fuse(const Sequence& posed, int num_threads) {
+  PrepareViewOptions prepare;
+  prepare.num_threads = num_threads;
+  IntegrateOptions integrate;
+  VoxelNumbers numbers;
+  std::vector<ViewVoxels> voxels;
+  std::vector<Rigid3> cameras;
+  std::vector<double> depths_m;
+  const int num_views = std::min(posed.num_views(), kMaxViews);
+  for (int k = 0; k < num_views; ++k) {
+    const PreparedView view = prepare_view(value_or_throw(posed.read_view(k * posed.num_views() / num_views)), prepare);
+    cameras.push_back(view.frame.world_from_camera);
+    depths_m.push_back(median_depth_m(view.frame.depth_m));
+    voxels.push_back(reduce_to_voxels(view, numbers, integrate));
+  }
+  std::vector<const ViewVoxels*> pointers;
+  for (const ViewVoxels& v : voxels) pointers.push_back(&v);
+  Reconstruction reconstruction;
+  VoxelMerger().merge(pointers, integrate, reconstruction);
+  return {std::move(reconstruction.cloud_in_world), place_picture(cameras, depths_m)};
+}
+
+Image<Rgb8> draw(const Fused& fused, int num_threads) {
+  RaycastScene scene;
+  SplatMeshOptions splat;
+  splat.max_growth = 1.3;  // lone points before the cameras would hide the rest
+  splat.num_threads = num_threads;
+  scene.add_instance(scene.add_mesh(make_splat_mesh(fused.cloud, splat)), Rigid3::identity());
+  scene.commit();
+  RenderOptions render;
+  render.lighting.ambient = 1;  // the colours hold the light that was there
+  render.lighting.diffuse = 0;
+  render.background = {255, 255, 255};
+  render.num_threads = num_threads;
+  return render_scene(scene, kPictureCamera, fused.world_from_picture, render).color;
+}
+
+}  // namespace
+
+void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads) {
+  const Fused fused = fuse(posed, num_threads);
+  value_or_throw(write_ply(file, fused.cloud));
+  std::filesystem::path picture = file;
+  value_or_throw(write_color(picture.replace_extension(".png"), draw(fused, num_threads)));
+}
+
+}  // namespace resight::app
