@@ -21,6 +21,8 @@ using Eigen::Vector3f;
 constexpr int kMarginPx = 12;          // around the mask: what lies before the background is free there
 constexpr int kNormalRadiusPx = 3;     // normals only tell the slant here: rather smooth than sharp
 constexpr float kSamePointM = 0.004F;  // a vertex is what the pixel shows
+constexpr double kBrightFrom = 0.6;    // of the looks at a vertex, in order of brightness: those that give its colour
+constexpr double kBrightTo = 0.9;
 
 // Inverse variance across the surface, in 1/mm^2.
 double point_weight(const PreparedView& view, std::size_t i, double cosine) {
@@ -56,7 +58,8 @@ FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& o
   return result;
 }
 
-// Mean over the views that see a vertex, those that look straight at it first.
+// What the views show of a vertex where the light falls on it best, those that look straight at it first: as the object
+// turns under a lamp, every side has its turn. Brighter still are gloss and mixtures with the background.
 class VertexPainter {
  public:
   explicit VertexPainter(std::span<const FusionView> views) : views_(views) {
@@ -64,33 +67,46 @@ class VertexPainter {
   }
 
   [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal) const {
+    std::vector<Look> looks;
+    double total = 0;
+    for (std::size_t k = 0; k < views_.size(); ++k)
+      if (const Look l = look(k, p, normal); l.weight > 0) {
+        looks.push_back(l);
+        total += l.weight;
+      }
+    if (looks.empty()) return {128, 128, 128};
+    std::ranges::stable_sort(looks, {}, [](const Look& l) { return l.color.sum(); });
     Vector3d sum = Vector3d::Zero();
-    double weight = 0;
-    for (std::size_t k = 0; k < views_.size(); ++k) {
-      const double w = look(k, p, normal, sum);
-      weight += w;
+    double before = 0;
+    for (const Look& l : looks) {
+      const double after = before + l.weight;
+      const double used = std::min(after, kBrightTo * total) - std::max(before, kBrightFrom * total);
+      if (used > 0) sum += used / ((kBrightTo - kBrightFrom) * total) * l.color;
+      before = after;
     }
-    if (weight <= 0) return {128, 128, 128};
-    const auto round = [&](double x) { return static_cast<std::uint8_t>(std::clamp(x / weight + 0.5, 0.0, 255.0)); };
+    const auto round = [](double x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5, 0.0, 255.0)); };
     return {round(sum.x()), round(sum.y()), round(sum.z())};
   }
 
  private:
-  // Adds the weighted colour that view k shows of the point; the weight.
-  double look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal, Vector3d& sum) const {
+  struct Look {
+    double weight = 0;
+    Vector3d color = Vector3d::Zero();
+  };
+
+  // What view k shows of the point; weight 0 = nothing.
+  [[nodiscard]] Look look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal) const {
     const FusionView& view = views_[k];
     const Vector3f p = camera_from_object_[k] * p_in_object;
-    if (view.depth_m.empty() || p.z() <= 0) return 0;
+    if (view.depth_m.empty() || p.z() <= 0) return {};
     const Eigen::Vector2d pixel = view.camera.project(p.cast<double>());
     const int u = static_cast<int>(std::lround(pixel.x()));
     const int v = static_cast<int>(std::lround(pixel.y()));
-    if (!view.depth_m.contains(u, v) || view.weight(u, v) <= 0) return 0;
-    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return 0;
+    if (!view.depth_m.contains(u, v) || view.weight(u, v) <= 0) return {};
+    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return {};
     const double cosine = static_cast<double>(-(camera_from_object_[k].rotation * normal).dot(p.normalized()));
-    if (cosine < 0.2) return 0;
-    const double weight = std::pow(cosine, 4) / static_cast<double>(p.z() * p.z());
-    sum += weight * sample(view.color, pixel);
-    return weight;
+    if (cosine < 0.2) return {};
+    return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, pixel)};
   }
 
   // Bilinear.
