@@ -15,8 +15,13 @@ void keep_within(const Eigen::ArrayXf& distances_sq, float radius_sq, bool of_al
     std::erase_if(near, [&](int i) { return !(distances_sq[i] < radius_sq); });
     return;
   }
-  for (Eigen::Index i = 0; i < distances_sq.size(); ++i)
-    if (distances_sq[i] < radius_sq) near.push_back(static_cast<int>(i));
+  near.resize(static_cast<std::size_t>(distances_sq.size()));
+  std::size_t num_near = 0;
+  for (Eigen::Index i = 0; i < distances_sq.size(); ++i) {  // Without branches, which would be a guess each.
+    near[num_near] = static_cast<int>(i);
+    num_near += distances_sq[i] < radius_sq ? 1 : 0;
+  }
+  near.resize(num_near);
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of 
 constexpr float kMaxContinuationOffset_m = 0.005F;
 constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
 constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
+constexpr float kMaxGain = 0.25F;  // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
 constexpr float kMinPlane_m = 0.1F;
 constexpr float kPlaneDistance_m = 0.01F;
 constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
 constexpr float kLargerThan = 1.2F;    // As the verification has it: a plane no larger may be the object's own face.
-
-bool faces_camera(const Eigen::Vector3f& p, const Eigen::Vector3f& n) { return -n.dot(p) > kMinFacing * p.norm(); }
+const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
 // Mean distance to the nearest other sample.
 float spacing_of(const std::vector<Eigen::Vector3f>& points) {
@@ -106,6 +106,7 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
 PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
     : view_(view),
       pixels_(view.cloud.width(), view.cloud.height()),
+      oriented_(view.cloud.width(), view.cloud.height()),
       lab_(view.cloud.width(), view.cloud.height()),
       fx_(static_cast<float>(view.frame.camera.fx)),
       fy_(static_cast<float>(view.frame.camera.fy)),
@@ -115,6 +116,8 @@ PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> plane
     for (std::size_t i = begin; i < end; ++i) {
       lab_[i] = to_lab(view.frame.color[i]);
       pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes), chroma(lab_[i])};
+      const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
+      oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
     }
   });
 }
@@ -124,10 +127,6 @@ Image<std::uint8_t> PoseProbe::off_larger_planes(float diameter_m) const {
   for (std::size_t i = 0; i < mask.size(); ++i)
     mask[i] = pixels_[i].plane_extent_m > kLargerThan * diameter_m ? 0 : 255;
   return mask;
-}
-
-bool PoseProbe::is_background(std::size_t pixel, const ProbeModel& model) const {
-  return pixels_[pixel].plane_extent_m > kLargerThan * model.diameter_m;
 }
 
 int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
@@ -143,49 +142,48 @@ float PoseProbe::tolerance_at(float z_m, double tolerance_m, double sigmas) cons
   return static_cast<float>(tolerance_m + sigmas * nguyen_noise(seen_z_m, 0, view_.frame.camera.fx).axial_m);
 }
 
+// No branches in its loops: the compiler makes vector code of them.
 SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object,
-                              const CountSamplesOptions& options) const {
+                              const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
+  const bool has_colors = !model.chroma.empty();
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
+  const float max_plane_m = kLargerThan * model.diameter_m;
   const float tolerance =
       tolerance_at((camera_from_object * model.center).z(), options.tolerance_m, options.tolerance_sigmas);
-  std::size_t i = 0;
-  for (const SampleBlock& block : model.blocks) {
-    const Projected seen = project(block, camera_from_object);
-    for (std::size_t k = 0; k < SampleBlock::kSize; ++k, ++i) {
-      if (seen.faces[k] == 0) continue;
-      ++counts.facing;
-      if (seen.pixel[k] < 0) {
-        ++counts.hidden;
-      } else {
-        const Pixel& pixel = pixels_[static_cast<std::size_t>(seen.pixel[k])];
-        if (std::isnan(pixel.z_m)) continue;
-        if (seen.z_m[k] > pixel.z_m + tolerance) {
-          ++counts.hidden;
-        } else if (seen.z_m[k] < pixel.z_m - tolerance || pixel.plane_extent_m > kLargerThan * model.diameter_m) {
-          ++counts.through;
-        } else {
-          ++counts.confirmed;
-          if (!model.chroma.empty() && (model.chroma[i] - pixel.chroma).squaredNorm() > max_chroma_sq)
-            ++counts.off_color;
-        }
-      }
-      counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4;
-      if (counts.gave_up || counts.facing == options.max_samples) return counts;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const PosedBlock posed = project(model.blocks[b], camera_from_object);
+    std::array<Pixel, SampleBlock::kSize> pixels;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) pixels[k] = pixels_[static_cast<std::size_t>(posed.pixel[k])];
+    const Eigen::Vector2f* chroma = has_colors ? &model.chroma[b * SampleBlock::kSize] : nullptr;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
+      const Pixel& pixel = pixels[k];
+      const float ahead_m = pixel.z_m - posed.samples.z[k];  // NaN: no comparison holds.
+      const int measured = posed.faces[k] & posed.inside[k];
+      const int near = measured & int{std::abs(ahead_m) <= tolerance};
+      const int on_plane = int{pixel.plane_extent_m > max_plane_m};
+      const int confirmed = near & ~on_plane;
+      counts.facing += posed.faces[k];
+      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -tolerance});
+      counts.through += (measured & int{ahead_m > tolerance}) | (near & on_plane);
+      counts.confirmed += confirmed;
+      if (has_colors) counts.off_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
     }
+    const float share_left = 1 - static_cast<float>(counts.facing) / static_cast<float>(options.max_samples);
+    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4 ||
+                     counts.score() < static_cast<float>(min_score) - kMaxGain * std::max(0.0F, share_left);
+    if (counts.gave_up || counts.facing >= options.max_samples) break;
   }
   return counts;
 }
 
-PoseProbe::Projected PoseProbe::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
+PoseProbe::PosedBlock PoseProbe::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
   const Eigen::Matrix3f& r = camera_from_object.rotation;
   const Eigen::Vector3f& t = camera_from_object.translation;
   const auto width = static_cast<float>(lab_.width());
   const auto height = static_cast<float>(lab_.height());
-  std::array<float, SampleBlock::kSize> u;
-  std::array<float, SampleBlock::kSize> v;
-  Projected result;
-  for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {  // No branches: the compiler makes vector code of it.
+  PosedBlock posed;
+  for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
     const float x = r(0, 0) * block.x[k] + r(0, 1) * block.y[k] + r(0, 2) * block.z[k] + t.x();
     const float y = r(1, 0) * block.x[k] + r(1, 1) * block.y[k] + r(1, 2) * block.z[k] + t.y();
     const float z = r(2, 0) * block.x[k] + r(2, 1) * block.y[k] + r(2, 2) * block.z[k] + t.z();
@@ -194,38 +192,65 @@ PoseProbe::Projected PoseProbe::project(const SampleBlock& block, const Rigid3f&
     const float nz = r(2, 0) * block.nx[k] + r(2, 1) * block.ny[k] + r(2, 2) * block.nz[k];
     const float facing = -(nx * x + ny * y + nz * z);
     const float least = kMinFacing * kMinFacing * (x * x + y * y + z * z);
-    result.faces[k] = static_cast<std::uint8_t>((facing > 0) & (facing * facing > least));
     const float inverse_z = 1 / std::max(z, kMinDepth_m);
-    u[k] = fx_ * x * inverse_z + cx_;
-    v[k] = fy_ * y * inverse_z + cy_;
-    const bool inside = (z > kMinDepth_m) & (u[k] >= 0) & (v[k] >= 0) & (u[k] < width) & (v[k] < height);
-    u[k] = inside ? u[k] : -1.0F;
-    result.z_m[k] = z;
+    const float u = fx_ * x * inverse_z + cx_;
+    const float v = fy_ * y * inverse_z + cy_;
+    const bool inside = (z > kMinDepth_m) & (u >= 0) & (v >= 0) & (u < width) & (v < height);
+    posed.faces[k] = int{(facing > 0) & (facing * facing > least)};
+    posed.inside[k] = int{inside};
+    posed.column[k] = static_cast<int>(inside ? u : 0.0F);
+    posed.row[k] = static_cast<int>(inside ? v : 0.0F);
+    posed.pixel[k] = posed.row[k] * lab_.width() + posed.column[k];
+    posed.samples.x[k] = x;
+    posed.samples.y[k] = y;
+    posed.samples.z[k] = z;
+    posed.samples.nx[k] = nx;
+    posed.samples.ny[k] = ny;
+    posed.samples.nz[k] = nz;
   }
-  for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
-    result.pixel[k] = u[k] < 0 ? -1 : static_cast<int>(v[k]) * lab_.width() + static_cast<int>(u[k]);
-  return result;
+  return posed;
+}
+
+StepEquations PoseProbe::linearize(const ProbeModel& model, const Rigid3& camera_from_object,
+                                   double max_distance_m) const {
+  const Rigid3f motion(camera_from_object);
+  const Eigen::Vector3f middle = motion * model.center;
+  const float inverse_distance_sq = static_cast<float>(1 / (max_distance_m * max_distance_m));
+  BlockEquations equations(model.radius_m);
+  for (const SampleBlock& block : model.blocks) {
+    const PosedBlock posed = project(block, motion);
+    const SampleBlock& p = posed.samples;
+    std::array<OrientedPixel, SampleBlock::kSize> pixels;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
+      pixels[k] = oriented_[static_cast<std::size_t>(posed.pixel[k])];
+    PairBlock pairs;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
+      const OrientedPixel& m = pixels[k];
+      const float dx = (static_cast<float>(posed.column[k]) + 0.5F - cx_) / fx_ * m.z_m - p.x[k];
+      const float dy = (static_cast<float>(posed.row[k]) + 0.5F - cy_) / fy_ * m.z_m - p.y[k];
+      const float dz = m.z_m - p.z[k];
+      const float u = 1 - (dx * dx + dy * dy + dz * dz) * inverse_distance_sq;
+      const float dot = m.nx * p.nx[k] + m.ny * p.ny[k] + m.nz * p.nz[k];
+      const bool is_pair = ((posed.faces[k] & posed.inside[k]) != 0) & (u > 0) & (dot >= kMinNormalDot);  // False: NaN.
+      pairs.arm[0][k] = p.x[k] - middle.x();
+      pairs.arm[1][k] = p.y[k] - middle.y();
+      pairs.arm[2][k] = p.z[k] - middle.z();
+      pairs.normal[0][k] = is_pair ? m.nx : 0;
+      pairs.normal[1][k] = is_pair ? m.ny : 0;
+      pairs.normal[2][k] = is_pair ? m.nz : 0;
+      pairs.residual[k] = is_pair ? m.nx * dx + m.ny * dy + m.nz * dz : 0;
+      pairs.weight[k] = is_pair ? u * u : 0;
+    }
+    equations.add(pairs);
+  }
+  return equations.sum();
 }
 
 Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
                          double max_distance_m) const {
   Rigid3 pose = camera_from_object;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const Rigid3f motion(pose);
-    const Eigen::Vector3f middle = motion * model.center;
-    StepEquations equations;
-    for (std::size_t i = 0; i < model.points.size(); ++i) {
-      const Eigen::Vector3f p = motion * model.points[i];
-      const Eigen::Vector3f n = motion.rotation * model.normals[i];
-      if (!faces_camera(p, n)) continue;
-      const int pixel = pixel_of(p);
-      if (pixel < 0 || !view_.cloud.has_normal(static_cast<std::size_t>(pixel))) continue;
-      const Eigen::Vector3f q = view_.cloud.point(static_cast<std::size_t>(pixel));
-      const Eigen::Vector3f m = view_.cloud.normal(static_cast<std::size_t>(pixel));
-      const float u = 1 - (q - p).squaredNorm() / static_cast<float>(max_distance_m * max_distance_m);
-      if (!(u > 0) || m.dot(n) < kMinNormalDot) continue;
-      equations.add((p - middle).cast<double>(), m.cast<double>(), m.dot(q - p), u * u, model.radius_m);
-    }
+    const StepEquations equations = linearize(model, pose, max_distance_m);
     if (equations.num_pairs < kMinPairs || !equations.step(pose, model.center.cast<double>(), model.radius_m)) break;
   }
   return pose;
@@ -236,35 +261,40 @@ PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& c
   const Rigid3f motion(camera_from_object);
   const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
   Confirmed confirmed;
-  for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const Eigen::Vector3f p = motion * model.points[i];
-    const Eigen::Vector3f n = motion.rotation * model.normals[i];
-    if (!faces_camera(p, n)) continue;
-    ++confirmed.facing;
-    const int pixel = pixel_of(p);
-    if (pixel < 0) {
-      ++confirmed.hidden;
-      continue;
-    }
-    const auto at = static_cast<std::size_t>(pixel);
-    confirmed.outline.emplace_back(pixel % lab_.width(), pixel / lab_.width());
-    const float depth = view_.cloud.z[at];
-    if (std::isnan(depth)) continue;
-    if (p.z() > depth + tolerance) {
-      ++confirmed.hidden;
-    } else if (p.z() < depth - tolerance || is_background(at, model) ||
-               (view_.cloud.has_normal(at) && view_.cloud.normal(at).dot(n) < kMinNormalDot)) {
-      ++confirmed.wrong;
-    } else {
-      confirmed.samples.push_back(static_cast<int>(i));
-      confirmed.pixels.push_back(at);
-      confirmed.normals.push_back(n);
-      if (model.linear_light.empty()) continue;
-      confirmed.model_light.push_back(model.linear_light[i]);
-      confirmed.scene_light.push_back(to_linear_light(view_.frame.color[at]));
-    }
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const PosedBlock posed = project(model.blocks[b], motion);
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
+      if (posed.faces[k] != 0) confirm_sample(model, b * SampleBlock::kSize + k, posed, k, tolerance, confirmed);
   }
   return confirmed;
+}
+
+void PoseProbe::confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
+                               float tolerance, Confirmed& confirmed) const {
+  ++confirmed.facing;
+  if (posed.inside[k] == 0) {
+    ++confirmed.hidden;
+    return;
+  }
+  const auto at = static_cast<std::size_t>(posed.pixel[k]);
+  confirmed.outline.emplace_back(posed.column[k], posed.row[k]);
+  const Pixel& pixel = pixels_[at];
+  if (std::isnan(pixel.z_m)) return;
+  const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
+  const float ahead_m = pixel.z_m - posed.samples.z[k];
+  if (ahead_m < -tolerance) {
+    ++confirmed.hidden;
+  } else if (ahead_m > tolerance || pixel.plane_extent_m > kLargerThan * model.diameter_m ||
+             oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
+    ++confirmed.wrong;
+  } else {
+    confirmed.samples.push_back(static_cast<int>(sample));
+    confirmed.pixels.push_back(at);
+    confirmed.normals.push_back(normal);
+    if (model.linear_light.empty()) return;
+    confirmed.model_light.push_back(model.linear_light[sample]);
+    confirmed.scene_light.push_back(to_linear_light(view_.frame.color[at]));
+  }
 }
 
 LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
@@ -277,13 +307,16 @@ LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_
 void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
   const LightFit light = fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
   const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
+  const auto max_exponent = static_cast<float>(-std::log(options.min_inlier_weight));
   std::vector<LabColor> seen;
   std::vector<LabColor> expected;
+  seen.reserve(confirmed.samples.size());
+  expected.reserve(confirmed.samples.size());
   fit.num_explained = 0;
   for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
     expected.push_back(to_lab(light(confirmed.model_light[k], confirmed.normals[k])));
     seen.push_back(lab_[confirmed.pixels[k]]);
-    if (std::exp(-tolerance.exponent(expected[k], seen[k])) > options.min_inlier_weight) ++fit.num_explained;
+    if (tolerance.exponent(expected[k], seen[k]) < max_exponent) ++fit.num_explained;
   }
   fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
 }
@@ -318,14 +351,18 @@ double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& con
 }
 
 PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                         const VerifyOptions& colors) const {
+                         const VerifyOptions& colors, const PoseFit& least) const {
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
   PoseFit fit;
   if (confirmed.samples.empty()) return fit;
-  fit.num_explained = static_cast<int>(confirmed.samples.size());
-  if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
-  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
   const double num_visible = static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong);
+  fit.num_explained = static_cast<int>(confirmed.samples.size());
+  fit.explained_share = fit.num_explained / num_visible;
+  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  if (!fit.reaches(least)) return fit;
+  if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
+  fit.explained_share = fit.num_explained / num_visible;
+  if (!fit.reaches(least)) return fit;
   fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, colors));
   return fit;
 }
@@ -334,6 +371,8 @@ void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance) {
   model.chroma.clear();
   for (const Eigen::Vector3f& color : model.linear_light)
     model.chroma.push_back(chroma(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval())));
+  constexpr std::size_t kSize = SampleBlock::kSize;
+  model.chroma.resize((model.chroma.size() + kSize - 1) / kSize * kSize, Eigen::Vector2f::Zero());
 }
 
 }  // namespace resight

@@ -10,6 +10,7 @@
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/verification/lab_color.hpp"
+#include "resight/verification/point_to_plane.hpp"
 #include "resight/verification/scene_planes.hpp"
 #include "resight/verification/verification.hpp"
 
@@ -28,7 +29,8 @@ struct ProbeModel {
   std::vector<Eigen::Vector3f> normals;
   std::vector<SampleBlock> blocks;            ///< Both again.
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
-  std::vector<Eigen::Vector2f> chroma;        ///< chroma() of the same, under the white balance that was set.
+  std::vector<Eigen::Vector2f> chroma;        ///< chroma() of the same, under the white balance that was set; as many
+                                              ///< as the blocks have places.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   double radius_m = 0;  ///< About the centre.
   float diameter_m = 0;
@@ -39,7 +41,7 @@ struct ProbeModel {
 [[nodiscard]] ProbeModel make_probe_model(const ObjectModel& model, int max_samples);
 
 struct CountSamplesOptions {
-  int max_samples = 40;                ///< That face the camera.
+  int max_samples = 40;                ///< That face the camera: counting stops with the block that has them.
   int max_wrong = 5;                   ///< Beside a quarter of those seen so far: with more, counting stops.
   double tolerance_m = 0.009;          ///< Of the depth, beside...
   double tolerance_sigmas = 3;         ///< ...so many sigmas of the sensor.
@@ -54,7 +56,15 @@ struct SampleCounts {
   int off_color = 0;     ///< of which of another hue.
   int through = 0;       ///< The camera looks through them, or a plane that is larger than the object lies there.
   int hidden = 0;        ///< Behind what was measured, or outside the image.
-  bool gave_up = false;  ///< Too many wrong (off_color, through): the rest was not counted.
+  bool gave_up = false;  ///< Too many wrong (off_color, through), or a score too low: the rest was not counted.
+  /// In [-1, 1): share of the samples that the view confirms, less what speaks against the pose. Hidden ones count
+  /// little.
+  [[nodiscard]] float score() const {
+    constexpr float kHiddenWeight = 0.4F;
+    constexpr float kPrior = 3;
+    return static_cast<float>(confirmed - off_color - through) /
+           (static_cast<float>(confirmed + through) + kHiddenWeight * static_cast<float>(hidden) + kPrior);
+  }
 };
 
 /// How well a pose fits a view.
@@ -64,7 +74,13 @@ struct PoseFit {
   double visible_share = 0;    ///< Not hidden, of those that face the camera.
   double pattern_similarity = 1;
   int num_explained = 0;
+  /// None of its numbers is less.
+  [[nodiscard]] bool reaches(const PoseFit& least) const {
+    return explained_share >= least.explained_share && visible_share >= least.visible_share &&
+           pattern_similarity >= least.pattern_similarity && num_explained >= least.num_explained;
+  }
 };
+inline constexpr PoseFit kAnyFit{.pattern_similarity = -1};
 
 /// Tests poses in one view. The view must outlive it; camera frame.
 class PoseProbe {
@@ -83,18 +99,19 @@ class PoseProbe {
   /// Non-zero where no plane lies that is larger than objects of this diameter: where keypoints may be theirs.
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
-  /// The first test: quick, of rough poses.
+  /// The first test: quick, of rough poses. It gives up on those that will hardly reach `min_score`.
   [[nodiscard]] SampleCounts count(const ProbeModel& model, const Rigid3f& camera_from_object,
-                                   const CountSamplesOptions& options) const;
+                                   const CountSamplesOptions& options, double min_score = -1) const;
   /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
   [[nodiscard]] Rigid3 refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
                               double max_distance_m) const;
   /// The light on the object at a pose that is known to be about right (light_fit.hpp); its chroma is not limited.
   [[nodiscard]] LightFit light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
                                   const LightLimits& limits) const;
-  /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp).
+  /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp). What cannot reach
+  /// `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
   [[nodiscard]] PoseFit judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                              const VerifyOptions& colors) const;
+                              const VerifyOptions& colors, const PoseFit& least = kAnyFit) const;
 
  private:
   // The samples of a pose that depth and normal confirm, and how many they do not.
@@ -109,20 +126,25 @@ class PoseProbe {
     int hidden = 0;
     int wrong = 0;
   };
-  // Eight samples at a pose.
-  struct Projected {
-    std::array<std::uint8_t, SampleBlock::kSize> faces;
-    std::array<float, SampleBlock::kSize> z_m;
-    std::array<int, SampleBlock::kSize> pixel;  // -1: outside the image.
+  // Eight samples at a pose, and the pixels they fall into.
+  struct PosedBlock {
+    SampleBlock samples;                         // Camera frame.
+    std::array<int, SampleBlock::kSize> faces;   // The camera: 1.
+    std::array<int, SampleBlock::kSize> inside;  // The image: 1.
+    std::array<int, SampleBlock::kSize> column;  // Of the pixel; the first if outside.
+    std::array<int, SampleBlock::kSize> row;
+    std::array<int, SampleBlock::kSize> pixel;
   };
-  [[nodiscard]] Projected project(const SampleBlock& block, const Rigid3f& camera_from_object) const;
+  [[nodiscard]] PosedBlock project(const SampleBlock& block, const Rigid3f& camera_from_object) const;
+  [[nodiscard]] StepEquations linearize(const ProbeModel& model, const Rigid3& camera_from_object,
+                                        double max_distance_m) const;
   [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
+  void confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
+                      float tolerance, Confirmed& confirmed) const;
   void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const ProbeModel& model, const Confirmed& confirmed,
                                         const VerifyOptions& options) const;
   [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
-
-  [[nodiscard]] bool is_background(std::size_t pixel, const ProbeModel& model) const;
 
   // What the first test asks of a pixel, in one place.
   struct Pixel {
@@ -130,9 +152,16 @@ class PoseProbe {
     float plane_extent_m = 0;  // Of the plane that it lies on; 0: none.
     Eigen::Vector2f chroma = Eigen::Vector2f::Zero();
   };
+  // And what the refinement asks of it.
+  struct OrientedPixel {
+    float z_m = 0;
+    float nx = 0, ny = 0, nz = 0;  // NaN: no normal.
+    [[nodiscard]] Eigen::Vector3f normal() const { return {nx, ny, nz}; }
+  };
 
   const PreparedView& view_;
   Image<Pixel> pixels_;
+  Image<OrientedPixel> oriented_;
   Image<LabColor> lab_;
   float fx_, fy_, cx_, cy_;  // Of the camera; centres with half a pixel, so that truncation finds the pixel.
 };

@@ -104,6 +104,7 @@ struct ShapeSearch::Impl {
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
     seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(options.max_seeds)));
+    std::sort(seeds.begin(), seeds.end());  // Neighbours look at the same pixels, which are then in the cache.
     std::vector<std::vector<PoseCandidate>> found(seeds.size());
     parallel_for(seeds.size(), options.num_threads,
                  [&](std::size_t s) { found[s] = dipoles.from_seed(static_cast<std::size_t>(seeds[s])); });
@@ -125,15 +126,19 @@ struct ShapeSearch::Impl {
       tried.push_back(start);
       const ProbeModel& model = objects[static_cast<std::size_t>(c.object)];
       const Rigid3 pose = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
-      const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors);
-      if (fit.explained_share < options.min_explained_share || fit.visible_share < options.min_visible_share ||
-          fit.pattern_similarity < options.min_pattern_similarity ||
-          fit.num_explained < kMinExplainedShareOfSamples * static_cast<double>(model.points.size()))
-        continue;
+      const PoseFit least = least_fit(model);
+      const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors, least);
+      if (!fit.reaches(least)) continue;
       const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
       judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
     }
     return judged;
+  }
+
+  [[nodiscard]] PoseFit least_fit(const ProbeModel& model) const {
+    const double num_explained = kMinExplainedShareOfSamples * static_cast<double>(model.points.size());
+    return {options.min_explained_share, options.min_visible_share, options.min_pattern_similarity,
+            static_cast<int>(std::ceil(num_explained))};
   }
 
   [[nodiscard]] std::vector<ShapeCandidate> choose(std::vector<ShapeCandidate> judged) const {

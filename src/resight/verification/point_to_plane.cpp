@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <numeric>
 
 namespace resight {
 namespace {
@@ -42,6 +43,42 @@ bool StepEquations::step(Rigid3& pose, const Eigen::Vector3d& middle, double rad
                   pose.rotation;
   pose.translation = moved_middle + x.tail<3>() - pose.rotation * middle;
   return x.norm() >= kStill;
+}
+
+void BlockEquations::add(const PairBlock& pairs) {
+  std::array<PairBlock::Lanes, kRow> row;
+  std::array<PairBlock::Lanes, kRow> weighted;
+  const auto& [x, y, z] = pairs.arm;
+  const auto& [nx, ny, nz] = pairs.normal;
+  for (std::size_t k = 0; k < PairBlock::kSize; ++k) {
+    row[0][k] = (y[k] * nz[k] - z[k] * ny[k]) * inverse_radius_;
+    row[1][k] = (z[k] * nx[k] - x[k] * nz[k]) * inverse_radius_;
+    row[2][k] = (x[k] * ny[k] - y[k] * nx[k]) * inverse_radius_;
+    row[3][k] = nx[k];
+    row[4][k] = ny[k];
+    row[5][k] = nz[k];
+    row[6][k] = pairs.residual[k];
+    weights_[k] += pairs.weight[k];
+    num_pairs_[k] += pairs.weight[k] > 0 ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < kRow; ++i)
+    for (std::size_t k = 0; k < PairBlock::kSize; ++k) weighted[i][k] = pairs.weight[k] * row[i][k];
+  for (std::size_t i = 0, product = 0; i < kRow; ++i)
+    for (std::size_t j = 0; j <= i; ++j, ++product)
+      for (std::size_t k = 0; k < PairBlock::kSize; ++k) products_[product][k] += weighted[i][k] * row[j][k];
+}
+
+StepEquations BlockEquations::sum() const {
+  const auto total = [](const PairBlock::Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0); };
+  StepEquations result;
+  std::size_t product = 0;
+  for (int i = 0; i < kRow - 1; ++i)
+    for (int j = 0; j <= i; ++j) result.matrix(i, j) = result.matrix(j, i) = total(products_[product++]);
+  for (int j = 0; j < kRow - 1; ++j) result.right[j] = total(products_[product++]);
+  result.sum_residuals_sq = total(products_[product]);
+  result.sum_weights = total(weights_);
+  result.num_pairs = std::accumulate(num_pairs_.begin(), num_pairs_.end(), 0);
+  return result;
 }
 
 }  // namespace resight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 
 #include "resight/geometry/rigid3.hpp"
 
@@ -22,6 +23,31 @@ struct StepEquations {
   void add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight, double radius_m);
   /// Moves the pose, `middle` in the frame of the object. False when it stands still. Needs a pair.
   [[nodiscard]] bool step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const;
+};
+
+/// Eight pairs side by side, for vector instructions. Of weight 0: none, its other numbers finite.
+struct PairBlock {
+  static constexpr int kSize = 8;
+  using Lanes = std::array<float, kSize>;
+  std::array<Lanes, 3> arm;
+  std::array<Lanes, 3> normal;
+  Lanes residual;
+  Lanes weight;
+};
+
+/// Sums up StepEquations by blocks of pairs, in single precision.
+class BlockEquations {
+ public:
+  explicit BlockEquations(double radius_m) : inverse_radius_(static_cast<float>(1 / radius_m)) {}
+  void add(const PairBlock& pairs);
+  [[nodiscard]] StepEquations sum() const;
+
+ private:
+  static constexpr int kRow = 7;  // Turn, shift and residual.
+  float inverse_radius_;
+  std::array<PairBlock::Lanes, kRow*(kRow + 1) / 2> products_{};  // Lower triangle of the rows' products, by rows.
+  PairBlock::Lanes weights_{};
+  std::array<int, PairBlock::kSize> num_pairs_{};
 };
 
 }  // namespace resight
