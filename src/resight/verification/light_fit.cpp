@@ -11,7 +11,7 @@ namespace resight {
 namespace {
 
 constexpr std::size_t kMinPairs = 10;
-constexpr std::size_t kMaxPairs = 400;
+constexpr int kMaxPairs = 400;
 constexpr int kIterations = 5;
 constexpr float kScale =
     0.15F;  // Of the Cauchy weight, in square roots of light: print that does not fit counts little.
@@ -20,61 +20,67 @@ constexpr float kShadingPrior = 0.05F;  // Share of the total weight: normals th
 constexpr float kMinGain = 0.05F;
 constexpr double kVotesForNone = 400;
 
-struct Pair {
-  Eigen::Array3f model;
-  Eigen::Array3f scene;
-  Eigen::Vector3f normal;
-  float base_weight = 1;
-  float weight = 1;
+template <int kColumns>
+using Columns = Eigen::Array<float, Eigen::Dynamic, kColumns, Eigen::ColMajor, kMaxPairs, kColumns>;
+using Column = Columns<1>;
+
+// By columns, for vector code.
+struct Pairs {
+  Columns<3> model;
+  Columns<3> scene;
+  Columns<3> scene_root;
+  Columns<4> normals;  // After a column of ones.
+  Column base_weight;
+  Column weight;
+  Column shade;  // What the shading makes of each.
 };
 
-std::vector<Pair> make_pairs(std::span<const Eigen::Vector3f> model_linear,
-                             std::span<const Eigen::Vector3f> scene_linear, std::span<const Eigen::Vector3f> normals) {
+Pairs make_pairs(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
+                 std::span<const Eigen::Vector3f> normals) {
   const std::size_t step = (model_linear.size() + kMaxPairs - 1) / kMaxPairs;
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < model_linear.size(); i += step) {
-    Pair pair{model_linear[i].array(), scene_linear[i].array(),
-              normals.empty() ? Eigen::Vector3f(Eigen::Vector3f::Zero()) : normals[i]};
-    pair.base_weight = pair.weight = 1 / (kDark + pair.model.mean());
-    pairs.push_back(pair);
+  const auto count = static_cast<Eigen::Index>((model_linear.size() + step - 1) / step);
+  Pairs pairs;
+  pairs.model.resize(count, 3);
+  pairs.scene.resize(count, 3);
+  pairs.normals = Columns<4>::Zero(count, 4);
+  pairs.normals.col(0) = 1;
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t i = static_cast<std::size_t>(row) * step;
+    pairs.model.row(row) = model_linear[i].transpose();
+    pairs.scene.row(row) = scene_linear[i].transpose();
+    if (!normals.empty()) pairs.normals.row(row).tail<3>() = normals[i].transpose();
   }
+  pairs.scene_root = pairs.scene.sqrt();
+  pairs.base_weight = pairs.weight = 1 / (kDark + pairs.model.rowwise().mean());
+  pairs.shade = Column::Ones(count);
   return pairs;
 }
 
 // Gain and veil of one channel: a weighted line through (model, scene), its offset within [0, max_veil].
-std::pair<float, float> fit_channel(const std::vector<Pair>& pairs, const LightFit& fit, int c, float max_veil) {
-  double w = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const Pair& p : pairs) {
-    const double m = p.model[c] * std::exp(fit.shading.dot(p.normal));
-    const double s = p.scene[c];
-    w += p.weight;
-    x += p.weight * m;
-    y += p.weight * s;
-    xx += p.weight * m * m;
-    xy += p.weight * m * s;
-  }
-  const double determinant = w * xx - x * x;
-  double veil = determinant > 1e-9 * w * xx ? (xx * y - x * xy) / determinant : 0;
-  veil = std::clamp<double>(veil, 0, max_veil);
-  const double gain = xx > 0 ? (xy - veil * x) / xx : 1;
-  return {std::max(static_cast<float>(gain), kMinGain), static_cast<float>(veil)};
+std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_veil) {
+  const Column& w = pairs.weight;
+  const Column x = pairs.model.col(c) * pairs.shade;
+  const auto y = pairs.scene.col(c);
+  const float total = w.sum();
+  const float mean_x = (w * x).sum() / total;
+  const float mean_y = (w * y).sum() / total;
+  const float variance = (w * (x - mean_x).square()).sum();
+  const float xx = (w * x.square()).sum();
+  const float slope = (w * (x - mean_x) * y).sum() / variance;
+  const float veil = variance > 1e-9F * xx ? std::clamp(mean_y - slope * mean_x, 0.0F, max_veil) : 0;
+  const float gain = xx > 0 ? (w * x * (y - veil)).sum() / xx : 1;
+  return {std::max(gain, kMinGain), veil};
 }
 
 // Brightness that is left, as a function of the normal. The constant part is left to the gains.
-Eigen::Vector3f fit_shading(const std::vector<Pair>& pairs, const LightFit& fit) {
-  Eigen::Matrix4f normal_matrix = Eigen::Matrix4f::Zero();
-  Eigen::Vector4f right = Eigen::Vector4f::Zero();
-  float total = 0;
-  for (const Pair& p : pairs) {
-    const float expected = (p.model * fit.log_gain.exp()).sum();
-    const float seen = (p.scene - fit.veil).max(0.0F).sum();
-    const float log_ratio = std::clamp(std::log((seen + kDark) / (expected + kDark)), -1.0F, 1.0F);
-    const Eigen::Vector4f row(1, p.normal.x(), p.normal.y(), p.normal.z());
-    normal_matrix += p.weight * row * row.transpose();
-    right += p.weight * log_ratio * row;
-    total += p.weight;
-  }
-  normal_matrix.diagonal().tail<3>().array() += kShadingPrior * total;
+Eigen::Vector3f fit_shading(const Pairs& pairs, const LightFit& fit) {
+  const Column expected = (pairs.model.matrix() * fit.log_gain.exp().matrix()).array();
+  const Column seen = (pairs.scene.rowwise() - fit.veil.transpose()).max(0.0F).rowwise().sum();
+  const Column log_ratio = ((seen + kDark) / (expected + kDark)).log().max(-1.0F).min(1.0F);
+  const Columns<4> weighted = pairs.normals.colwise() * pairs.weight;
+  Eigen::Matrix4f normal_matrix = weighted.matrix().transpose() * pairs.normals.matrix();
+  const Eigen::Vector4f right = weighted.matrix().transpose() * log_ratio.matrix();
+  normal_matrix.diagonal().tail<3>().array() += kShadingPrior * pairs.weight.sum();
   normal_matrix(0, 0) += 1e-6F;
   return normal_matrix.ldlt().solve(right).tail<3>();
 }
@@ -88,12 +94,15 @@ void limit_exposure(LightFit& fit, const LightLimits& limits) {
   if (length > limits.max_log_shading) fit.shading *= static_cast<float>(limits.max_log_shading) / length;
 }
 
-void reweigh(std::vector<Pair>& pairs, const LightFit& fit) {
-  for (Pair& p : pairs) {
-    const Eigen::Array3f expected = fit(p.model.matrix(), p.normal).array();
-    const float error = (expected.max(0.0F).sqrt() - p.scene.sqrt()).square().sum();
-    p.weight = p.base_weight / (1 + error / (3 * kScale * kScale));
+void reweigh(Pairs& pairs, const LightFit& fit) {
+  pairs.shade = (pairs.normals.rightCols<3>().matrix() * fit.shading).array().exp();
+  Column error = Column::Zero(pairs.weight.size());
+  for (int c = 0; c < 3; ++c) {
+    const float gain = std::exp(fit.log_gain[c]);
+    const auto expected = (pairs.model.col(c) * pairs.shade * gain + fit.veil[c]).max(0.0F).min(1.0F);
+    error += (expected.sqrt() - pairs.scene_root.col(c)).square();
   }
+  pairs.weight = pairs.base_weight / (1 + error / (3 * kScale * kScale));
 }
 
 float weighted_median(std::vector<std::pair<float, double>> values) {
@@ -133,12 +142,12 @@ std::vector<Eigen::Vector3f> to_linear_light(std::span<const Rgb8> colors) {
 LightFit fit_light(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
                    std::span<const Eigen::Vector3f> normals, const LightLimits& limits) {
   if (model_linear.size() < kMinPairs) return {};
-  std::vector<Pair> pairs = make_pairs(model_linear, scene_linear, normals);
+  Pairs pairs = make_pairs(model_linear, scene_linear, normals);
   LightFit fit;
   fit.num_pairs = static_cast<int>(model_linear.size());
   for (int i = 0; i < kIterations; ++i) {
     for (int c = 0; c < 3; ++c) {
-      const auto [gain, veil] = fit_channel(pairs, fit, c, static_cast<float>(limits.max_veil));
+      const auto [gain, veil] = fit_channel(pairs, c, static_cast<float>(limits.max_veil));
       fit.log_gain[c] = std::log(gain);
       fit.veil[c] = veil;
     }
