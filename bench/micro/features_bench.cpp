@@ -63,6 +63,16 @@ void IndexSearch(benchmark::State& state) {
 }
 BENCHMARK(IndexSearch)->ArgsProduct({{128, 352}, {8, 16, 32, 64}})->Unit(benchmark::kMillisecond);
 
+/// 2,000 queries against the SHOT descriptors of a single object; argument: exact_below of the index (6,000 of them).
+void IndexSearchOfOneObject(benchmark::State& state) {
+  const MatchingTask& task = matching_task(352);
+  const std::span<const float> object = std::span(task.model).first(std::size_t{6000} * 352);
+  const DescriptorIndex index(object, 352,
+                              {.num_probes = 8, .exact_below = static_cast<int>(state.range(0)), .num_components = 64});
+  for (auto _ : state) benchmark::DoNotOptimize(index.search(task.queries, 3));
+}
+BENCHMARK(IndexSearchOfOneObject)->Arg(1024)->Arg(8192)->Unit(benchmark::kMillisecond);
+
 void IndexExactSearch(benchmark::State& state) {
   const int dimension = static_cast<int>(state.range(0));
   const MatchingTask& task = matching_task(dimension);

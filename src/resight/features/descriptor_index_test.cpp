@@ -96,6 +96,24 @@ TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
   EXPECT_LT(sum_found, 1.05 * sum_truth);
 }
 
+// As many as a single object has, by the options that the recogniser takes for SHOT.
+TEST(DescriptorIndex, ASingleObjectsDescriptorsAreFoundWithoutComparingAll) {
+  constexpr std::size_t kLong = 352;
+  const auto object = make_clustered(3000, kLong, 40, 0.1, 3);
+  const auto queries = make_clustered(200, kLong, 40, 0.1, 4);
+  const DescriptorIndex cells(object, kLong, {.num_probes = 8, .exact_below = 1024, .num_components = 64});
+  const DescriptorIndex exact(object, kLong, {.exact_below = 8192});
+  const auto found = cells.search(queries, 1);
+  const auto truth = exact.search(queries, 1);
+  double sum_found = 0;
+  double sum_truth = 0;
+  for (std::size_t q = 0; q < found.size(); ++q) {
+    sum_found += std::sqrt(found[q].distance_sq);
+    sum_truth += std::sqrt(truth[q].distance_sq);
+  }
+  EXPECT_LT(sum_found, 1.02 * sum_truth);
+}
+
 TEST(DescriptorIndex, AllCellsProbedIsExact) {
   const auto data = make_clustered(4000, kDimension, 40, 0.6, 5);
   const auto queries = make_clustered(200, kDimension, 40, 0.6, 6);

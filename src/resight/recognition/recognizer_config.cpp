@@ -380,6 +380,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.match.shot_neighbors = 3;
     config.match.shot_index.num_components = 64;
     config.match.shot_index.num_probes = 8;
+    config.match.shot_index.exact_below = 1024;  // A single object has thousands.
     return config;
   }
   throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));
