@@ -251,7 +251,8 @@ Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_obje
   Rigid3 pose = camera_from_object;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const StepEquations equations = linearize(model, pose, max_distance_m);
-    if (equations.num_pairs < kMinPairs || !equations.step(pose, model.center.cast<double>(), model.radius_m)) break;
+    if (equations.num_pairs < kMinPairs) break;
+    if (equations.step(pose, model.center.cast<double>(), model.radius_m) < StepEquations::kStill_m) break;
   }
   return pose;
 }

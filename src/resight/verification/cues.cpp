@@ -27,6 +27,14 @@ float angle_of(float dot) {
   return std::sqrt(1 - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - 0.0187293F * x)));
 }
 
+// Whether there is evidence enough to ask for the costs; else why not.
+Verdict judge_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
+    return Verdict::kTooFewVisible;
+  if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return Verdict::kNoSupport;
+  return evidence.pattern_similarity < options.min_pattern_similarity ? Verdict::kOtherPattern : Verdict::kCost;
+}
+
 // A visible model point and a scene point within the inlier distance.
 struct Match {
   int visible;  // Position in ModelVisibility::visible.
@@ -63,14 +71,27 @@ struct CueComputer::Impl {
   // Moves the hypothesis onto the scene before it is judged, and finds what is visible of it there.
   void look(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
             std::span<const std::uint8_t> allowed) {
+    if (options_.refine.max_iterations > 0)
+      place(refine_pose_on_scene(model_, cues_.evidence.world_from_object, roughly_visible(views, allowed),
+                                 correspondences, scene_, options_.refine));
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
-    if (options_.refine.max_iterations == 0) return;
-    const Rigid3 pose = cues_.evidence.world_from_object;
-    const Rigid3 refined =
-        refine_pose_on_scene(model_, pose, visibility_.visible, correspondences, scene_, options_.refine);
-    if (refined.rotation == pose.rotation && refined.translation == pose.translation) return;
-    place(refined);
-    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+  }
+
+  // Of up to two thousand points of the model: enough to refine a pose with.
+  std::vector<int> roughly_visible(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) const {
+    constexpr std::size_t kEnough = 2000;
+    const std::size_t step = points_.size() / kEnough + 1;
+    std::vector<Eigen::Vector3f> points;
+    std::vector<Eigen::Vector3f> normals;
+    for (std::size_t i = 0; i < points_.size(); i += step) {
+      points.push_back(points_[i]);
+      if (!normals_.empty()) normals.push_back(normals_[i]);
+    }
+    VerifyOptions rough = options_;
+    rough.resolution_m *= std::sqrt(static_cast<double>(step));
+    std::vector<int> visible = find_visible_points(points, normals, views, allowed, rough).visible;
+    for (int& i : visible) i *= static_cast<int>(step);
+    return visible;
   }
 
   void count_agreeing(std::span<const Correspondence> correspondences) {
@@ -88,6 +109,8 @@ struct CueComputer::Impl {
     const float inlier_distance = static_cast<float>(options_.inlier_distance_m);
     local_.emplace(scene_.points, scene_.blocks, visible_points,
                    inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
+    if (use_normals_) local_normals_ = local_->select(scene_.normals);
+    if (use_color_) local_lab_ = local_->select(scene_.lab);
     find_matches(*local_);
     fit_light_of_matches(*local_);
   }
@@ -96,15 +119,20 @@ struct CueComputer::Impl {
     cues_.state.assign(points_.size(), ModelPointState::kNotVisible);
     if (local_) {
       adapt_colors(limit_chroma(light_, white_balance, options_.light));
-      compare_patterns(*local_);
+      compare_patterns();
       weigh_matches(*local_);
       classify_model_points();
-      claim_scene_points(*local_);
-      find_clutter(*local_);
-      add_pierced_planes();
     }
     fill_evidence(visibility_.sight.size());
+    cues_.evidence.verdict = judge_alone(cues_.evidence, options_);
+    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*local_);
     return std::move(cues_);
+  }
+
+  void add_costs(const LocalScene& local) {
+    claim_scene_points(local);
+    find_clutter(local);
+    add_pierced_planes();
   }
 
   void find_matches(const LocalScene& local) {
@@ -118,9 +146,8 @@ struct CueComputer::Impl {
   }
 
   // Cosine between the normals of a match; 1 where there are none.
-  float normal_dot(const Match& m, const LocalScene& local) const {
-    return use_normals_ ? normals_[visibility_.visible[m.visible]].dot(scene_.normals[local.scene_index(m.local)])
-                        : 1.0F;
+  float normal_dot(const Match& m) const {
+    return use_normals_ ? normals_[visibility_.visible[m.visible]].dot(local_normals_[m.local]) : 1.0F;
   }
 
   // From each visible point and its nearest scene point of similar normal.
@@ -134,7 +161,7 @@ struct CueComputer::Impl {
       const Match* nearest = nullptr;
       const int v = matches_[i].visible;
       for (; i < matches_.size() && matches_[i].visible == v; ++i)
-        if (normal_dot(matches_[i], local) >= min_dot &&
+        if (normal_dot(matches_[i]) >= min_dot &&
             (nearest == nullptr || matches_[i].distance_sq < nearest->distance_sq))
           nearest = &matches_[i];
       if (nearest == nullptr) continue;
@@ -155,21 +182,21 @@ struct CueComputer::Impl {
       lab_.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
   }
 
-  void compare_patterns(const LocalScene& local) {
+  void compare_patterns() {
     if (!use_color_) return;
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
     for (const Match& m : nearest_) {
       model_colors.push_back(lab_[m.visible]);
-      scene_colors.push_back(scene_.lab[local.scene_index(m.local)]);
+      scene_colors.push_back(local_lab_[m.local]);
     }
     cues_.evidence.pattern_similarity =
         pattern_similarity(model_colors, scene_colors, options_.color_sigma_l / options_.color_sigma_ab);
   }
 
   // -log of the colour similarity.
-  float color_exponent(const Match& m, const LocalScene& local) const {
-    return use_color_ ? colors_.exponent(lab_[m.visible], scene_.lab[local.scene_index(m.local)]) : 0;
+  float color_exponent(const Match& m) const {
+    return use_color_ ? colors_.exponent(lab_[m.visible], local_lab_[m.local]) : 0;
   }
 
   void weigh_matches(const LocalScene& local) {
@@ -180,10 +207,10 @@ struct CueComputer::Impl {
     beside_model_.assign(local.size(), 1);
     fit_exponent_.assign(visibility_.visible.size(), std::numeric_limits<float>::infinity());
     for (const Match& m : matches_) {
-      const float dot = normal_dot(m, local);
+      const float dot = normal_dot(m);
       if (dot <= 0) continue;
       if (dot >= min_dot) beside_model_[m.local] = 0;
-      const float color = color_exponent(m, local);
+      const float color = color_exponent(m);
       if (dot >= min_dot)
         fit_exponent_[m.visible] = std::min(fit_exponent_[m.visible], m.distance_sq / (2 * wide * wide) + color);
       const float upright = 1 - angle_of(dot) * (2 / std::numbers::pi_v<float>);
@@ -361,7 +388,9 @@ struct CueComputer::Impl {
   std::vector<Eigen::Vector3f> points_;
   std::vector<Eigen::Vector3f> normals_;
   ModelVisibility visibility_;
-  std::optional<LocalScene> local_;  // None if nothing is visible.
+  std::optional<LocalScene> local_;             // None if nothing is visible.
+  std::vector<Eigen::Vector3f> local_normals_;  // Of its points.
+  std::vector<LabColor> local_lab_;
   LightFit light_;
   std::vector<Match> matches_;              // Those of one visible point stand side by side.
   std::vector<Match> nearest_;              // Of each visible point that has one of similar normal.

@@ -21,7 +21,7 @@ enum class ModelPointState : std::uint8_t { kNotVisible, kExplained, kOutlier };
 
 /// The cues of one hypothesis, before any choice between hypotheses.
 struct HypothesisCues {
-  HypothesisEvidence evidence;  ///< All but what only the choice decides.
+  HypothesisEvidence evidence;  ///< All but what only the choice decides; verdict kCost: it may enter the choice.
   std::vector<WeightedPoint>
       explained;  ///< Scene points that it explains, weight in (0, 1]; ascending; none that a plane claims.
   std::vector<WeightedPoint> clutter;  ///< Scene points that it leaves unexplained and should not; ascending.
@@ -50,8 +50,8 @@ class CueComputer {
 
   /// As the colours of this hypothesis alone would have it, its chroma not limited.
   [[nodiscard]] const LightFit& light() const;
-  /// The cues, under the white balance that the hypotheses of the scene agree on (LightFit::chroma()). To be called
-  /// once.
+  /// The cues, under the white balance that the hypotheses of the scene agree on (LightFit::chroma()). What has not
+  /// evidence enough has no costs, and explains nothing. To be called once.
   [[nodiscard]] HypothesisCues finish(const Eigen::Array3f& white_balance);
 
  private:

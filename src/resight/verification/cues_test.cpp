@@ -195,6 +195,7 @@ TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
   // The lower half of the box alone is the model: the upper half of its sides is left over.
   SmallCase c;
   c.options.use_planes = false;
+  c.options.min_explained_share = 0;
   const Solid half{Shape::kBox, {0.08, 0.06, 0.05}, c.solid.paint, on_table(0, 0, 0.025, 0.3)};
   const PreparedModel model = prepare_model(make_model("half", half), c.options);
   const HypothesisCues cues =

@@ -27,6 +27,15 @@ class LocalScene {
   /// Index in the whole scene.
   [[nodiscard]] int scene_index(std::size_t local) const { return indices_[local]; }
 
+  /// What the whole scene has per point, of these points: side by side, as they are looked at.
+  template <typename T>
+  [[nodiscard]] std::vector<T> select(const std::vector<T>& of_scene) const {
+    std::vector<T> selected;
+    selected.reserve(indices_.size());
+    for (const int i : indices_) selected.push_back(of_scene[static_cast<std::size_t>(i)]);
+    return selected;
+  }
+
   /// Calls visit(local, distance_sq) for each point within the radius (boundary included), until it returns false.
   template <typename Visit>
   void visit_within(const Eigen::Vector3f& query, float radius_m, Visit&& visit) const {

@@ -3,13 +3,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numeric>
 
 namespace resight {
 namespace {
 
 constexpr double kDamping = 1e-3;  // Share of the mean direction that holds those which nothing else does.
-constexpr double kStill = 1e-4;    // Metres, and radians times the radius.
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -27,12 +27,7 @@ void StepEquations::add(const Eigen::Vector3d& arm, const Eigen::Vector3d& norma
   ++num_pairs;
 }
 
-void StepEquations::add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight,
-                              double radius_m) {
-  for (int axis = 0; axis < 3; ++axis) add(arm, Eigen::Vector3d::Unit(axis), offset[axis], weight, radius_m);
-}
-
-bool StepEquations::step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const {
+double StepEquations::step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const {
   Matrix6 damped = matrix;
   damped.diagonal().array() += kDamping * matrix.trace() / 6;
   const Vector6 x = damped.ldlt().solve(right);
@@ -42,7 +37,7 @@ bool StepEquations::step(Rigid3& pose, const Eigen::Vector3d& middle, double rad
                       .toRotationMatrix() *
                   pose.rotation;
   pose.translation = moved_middle + x.tail<3>() - pose.rotation * middle;
-  return x.norm() >= kStill;
+  return x.norm();
 }
 
 void BlockEquations::add(const PairBlock& pairs) {
@@ -68,7 +63,26 @@ void BlockEquations::add(const PairBlock& pairs) {
       for (std::size_t k = 0; k < PairBlock::kSize; ++k) products_[product][k] += weighted[i][k] * row[j][k];
 }
 
-StepEquations BlockEquations::sum() const {
+void BlockEquations::add(const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, float residual, float weight) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    kept_.arm[i][num_kept_] = arm[static_cast<Eigen::Index>(i)];
+    kept_.normal[i][num_kept_] = normal[static_cast<Eigen::Index>(i)];
+  }
+  kept_.residual[num_kept_] = residual;
+  kept_.weight[num_kept_] = weight;
+  if (++num_kept_ < PairBlock::kSize) return;
+  add(kept_);
+  num_kept_ = 0;
+}
+
+void BlockEquations::add_point(const Eigen::Vector3f& arm, const Eigen::Vector3f& offset, float weight) {
+  for (int axis = 0; axis < 3; ++axis) add(arm, Eigen::Vector3f::Unit(axis), offset[axis], weight);
+}
+
+StepEquations BlockEquations::sum() {
+  std::fill(kept_.weight.begin() + static_cast<std::ptrdiff_t>(num_kept_), kept_.weight.end(), 0.0F);
+  if (num_kept_ > 0) add(kept_);
+  num_kept_ = 0;
   const auto total = [](const PairBlock::Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0); };
   StepEquations result;
   std::size_t product = 0;

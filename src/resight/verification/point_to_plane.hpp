@@ -11,6 +11,7 @@ namespace resight {
 /// points and a shift, both in the frame they are moved in. Turns are scaled to metres by the radius of the points, so
 /// that the damping treats both alike.
 struct StepEquations {
+  static constexpr double kStill_m = 1e-4;  ///< A pose whose steps are shorter stands still.
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   double sum_weights = 0;
@@ -19,10 +20,8 @@ struct StepEquations {
 
   /// `arm`: the point from the middle; `residual`: how far it is to move along `normal`.
   void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight, double radius_m);
-  /// A pair of points that should coincide.
-  void add_point(const Eigen::Vector3d& arm, const Eigen::Vector3d& offset, double weight, double radius_m);
-  /// Moves the pose, `middle` in the frame of the object. False when it stands still. Needs a pair.
-  [[nodiscard]] bool step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const;
+  /// Moves the pose, `middle` in the frame of the object. How far: metres, and radians times the radius. Needs a pair.
+  double step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const;
 };
 
 /// Eight pairs side by side, for vector instructions. Of weight 0: none, its other numbers finite.
@@ -40,7 +39,11 @@ class BlockEquations {
  public:
   explicit BlockEquations(double radius_m) : inverse_radius_(static_cast<float>(1 / radius_m)) {}
   void add(const PairBlock& pairs);
-  [[nodiscard]] StepEquations sum() const;
+  /// One pair as in StepEquations, kept until there are eight.
+  void add(const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, float residual, float weight);
+  /// A pair of points that should coincide.
+  void add_point(const Eigen::Vector3f& arm, const Eigen::Vector3f& offset, float weight);
+  [[nodiscard]] StepEquations sum();
 
  private:
   static constexpr int kRow = 7;  // Turn, shift and residual.
@@ -48,6 +51,8 @@ class BlockEquations {
   std::array<PairBlock::Lanes, kRow*(kRow + 1) / 2> products_{};  // Lower triangle of the rows' products, by rows.
   PairBlock::Lanes weights_{};
   std::array<int, PairBlock::kSize> num_pairs_{};
+  PairBlock kept_{};
+  std::size_t num_kept_ = 0;
 };
 
 }  // namespace resight

@@ -104,17 +104,8 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
   return visible;
 }
 
-// Whether there is evidence enough to enter the choice; else the verdict says why not.
-bool passes_gates(HypothesisEvidence& evidence, const VerifyOptions& options) {
-  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share) {
-    evidence.verdict = Verdict::kTooFewVisible;
-    return false;
-  }
-  evidence.verdict = Verdict::kNoSupport;
-  if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return false;
-  evidence.verdict = Verdict::kOtherPattern;
-  if (evidence.pattern_similarity < options.min_pattern_similarity) return false;
-  evidence.verdict = Verdict::kCost;
+bool may_be_chosen(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  if (evidence.verdict != Verdict::kCost) return false;
   return !options.must_pay_alone || cost_alone(evidence, options) < 0;
 }
 
@@ -297,7 +288,7 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);
-    if (passes_gates(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
+    if (may_be_chosen(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
   drop_repeated(hypotheses, library, options, candidates, result.evidence);

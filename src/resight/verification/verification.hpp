@@ -99,7 +99,8 @@ enum class Verdict : std::uint8_t {
 /// Short lower-case name for reports.
 [[nodiscard]] const char* to_string(Verdict verdict);
 
-/// What speaks for and against one hypothesis.
+/// What speaks for and against one hypothesis. The costs but for the outliers', and explained_scene, are worked out
+/// only of those that have support and the right pattern.
 struct HypothesisEvidence {
   bool accepted = false;
   Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined.

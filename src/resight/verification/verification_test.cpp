@@ -179,7 +179,7 @@ TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
   const Fixture f(one_box(), circle_of_cameras(4));
   const VerifyResult result =
       f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
-               make_library());
+               make_library(), {.min_explained_share = 0.1});
   EXPECT_LT(result.evidence[0].plane_cost, 60);
   EXPECT_GT(result.evidence[1].plane_cost, 300);
   EXPECT_THAT(accepted(result), testing::ElementsAre(0));
@@ -251,7 +251,8 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   ModelLibrary library = make_library();
   const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
   library.objects.push_back(make_model("small", small));
-  VerifyOptions options{.clutter_weight = 6, .continuation_offset_m = 0.005, .use_planes = false};
+  VerifyOptions options{
+      .clutter_weight = 6, .continuation_offset_m = 0.005, .use_planes = false, .min_explained_share = 0};
   const auto clutter = [&](const World& world, const Rigid3& pose) {
     const Fixture f(world, circle_of_cameras(4));
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
@@ -276,8 +277,11 @@ TEST(VerifyHypotheses, APrintThatMatchesRulesOutThatItIsPartOfSomethingLarger) {
   const Fixture f({.solids = {board}}, circle_of_cameras(4));
   Hypothesis hypothesis = make_hypothesis(0, small.world_from_object);
   const auto evidence = [&](double matches) {
-    const VerifyOptions options{
-        .clutter_weight = 6, .continuation_offset_m = 0.005, .continuation_matches = matches, .use_planes = false};
+    const VerifyOptions options{.clutter_weight = 6,
+                                .continuation_offset_m = 0.005,
+                                .continuation_matches = matches,
+                                .refine = {.max_iterations = 0},
+                                .use_planes = false};
     return f.verify({hypothesis}, library, options).evidence[0];
   };
   const double full = evidence(0).clutter_cost;
