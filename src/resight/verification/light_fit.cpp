@@ -19,6 +19,7 @@ constexpr float kDark = 0.05F;          // Dark pairs weigh more, as they do to 
 constexpr float kShadingPrior = 0.05F;  // Share of the total weight: normals that hardly differ tell no shading.
 constexpr float kMinGain = 0.05F;
 constexpr double kVotesForNone = 400;
+constexpr float kDim = 0.1F;  // Light of a channel that tells half as much of its gain as much light does.
 
 template <int kColumns>
 using Columns = Eigen::Array<float, Eigen::Dynamic, kColumns, Eigen::ColMajor, kMaxPairs, kColumns>;
@@ -105,6 +106,11 @@ void reweigh(Pairs& pairs, const LightFit& fit) {
   pairs.weight = pairs.base_weight / (1 + error / (3 * kScale * kScale));
 }
 
+double trust_in_chroma(const LightFit& fit) {
+  const double share = fit.dimmest_light / (fit.dimmest_light + kDim);
+  return share * share;
+}
+
 float weighted_median(std::vector<std::pair<float, double>> values) {
   std::sort(values.begin(), values.end());
   double total = 0;
@@ -145,6 +151,7 @@ LightFit fit_light(std::span<const Eigen::Vector3f> model_linear, std::span<cons
   Pairs pairs = make_pairs(model_linear, scene_linear, normals);
   LightFit fit;
   fit.num_pairs = static_cast<int>(model_linear.size());
+  fit.dimmest_light = pairs.model.colwise().mean().minCoeff();
   for (int i = 0; i < kIterations; ++i) {
     for (int c = 0; c < 3; ++c) {
       const auto [gain, veil] = fit_channel(pairs, c, static_cast<float>(limits.max_veil));
@@ -164,7 +171,7 @@ Eigen::Array3f find_white_balance(std::span<const LightFit> fits, std::span<cons
   for (int c = 0; c < 3; ++c) {
     std::vector<std::pair<float, double>> values{{0.0F, kVotesForNone}};
     for (std::size_t i = 0; i < fits.size(); ++i)
-      if (fits[i].num_pairs > 0) values.emplace_back(fits[i].chroma()[c], votes[i]);
+      if (fits[i].num_pairs > 0) values.emplace_back(fits[i].chroma()[c], votes[i] * trust_in_chroma(fits[i]));
     balance[c] = weighted_median(std::move(values));
   }
   const float most = static_cast<float>(limits.max_log_white_balance);

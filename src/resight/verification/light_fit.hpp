@@ -20,7 +20,8 @@ struct LightFit {
   Eigen::Array3f log_gain = Eigen::Array3f::Zero();
   Eigen::Array3f veil = Eigen::Array3f::Zero();
   Eigen::Vector3f shading = Eigen::Vector3f::Zero();
-  int num_pairs = 0;  ///< That it was fitted to; 0: the identity.
+  int num_pairs = 0;        ///< That it was fitted to; 0: the identity.
+  float dimmest_light = 0;  ///< Of the model in its dimmest channel, mean over the pairs, linear.
 
   [[nodiscard]] Eigen::Vector3f operator()(const Eigen::Vector3f& linear, const Eigen::Vector3f& normal) const {
     return (linear.array() * (log_gain + shading.dot(normal)).exp() + veil).min(1.0F).matrix();
@@ -47,7 +48,8 @@ struct LightLimits {
                                  std::span<const Eigen::Vector3f> normals, const LightLimits& limits);
 
 /// The white balance that the fits of a scene agree on: per channel the median of chroma() by their votes (one each,
-/// not negative), within its limit. A few votes for none are among them: one weak hypothesis alone cannot set it.
+/// not negative), within its limit. The vote of what hardly shines in a channel counts less: a yellow object does not
+/// tell how blue the light is. A few votes for none are among them: one weak hypothesis alone cannot set it.
 [[nodiscard]] Eigen::Array3f find_white_balance(std::span<const LightFit> fits, std::span<const float> votes,
                                                 const LightLimits& limits);
 

@@ -71,8 +71,8 @@ TEST(LimitChroma, AGreenCanIsNoGreyOne) {
 
 TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
   const LightLimits limits;
-  const LightFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100};
-  const LightFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100};
+  const LightFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
+  const LightFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
   const LightFit none;
   const std::vector<LightFit> fits{blue, wrong, none, blue, wrong, wrong};
   const std::vector<float> votes{900, 100, 1e6F, 900, 100, 100};
@@ -82,6 +82,18 @@ TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
   EXPECT_NEAR(find_white_balance(std::vector{wrong}, std::vector{1e4F}, limits).abs().maxCoeff(),
               limits.max_log_white_balance, 1e-6);
   EXPECT_TRUE((find_white_balance({}, {}, limits) == 0).all());
+}
+
+TEST(FindWhiteBalance, AYellowObjectDoesNotTellHowBlueTheLightIs) {
+  const std::vector<Eigen::Vector3f> yellow(100, {0.4F, 0.4F, 0.02F});
+  const std::vector<Eigen::Vector3f> darker(100, {0.4F, 0.4F, 0.005F});
+  const std::vector<Eigen::Vector3f> white(100, {0.4F, 0.4F, 0.4F});
+  const LightLimits limits;
+  const std::vector<LightFit> fits{fit_light(yellow, darker, {}, limits), fit_light(white, white, {}, limits)};
+  EXPECT_GT(fits[0].chroma().abs().maxCoeff(), 0.3F);
+  EXPECT_FLOAT_EQ(fits[1].dimmest_light, 0.4F);
+  const std::vector<float> votes{9000, 900};
+  EXPECT_LT(find_white_balance(fits, votes, limits).abs().maxCoeff(), 0.01F);
 }
 
 TEST(FitLight, OneNormalLeavesTheShadingOpen) {

@@ -73,6 +73,19 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
   return allowed;
 }
 
+// Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are: of each object the hypothesis with
+// the most correspondences votes, however often the object is taken for something like it.
+std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
+  const auto size = [&](int h) { return h < 0 ? 0 : hypotheses[h].correspondences.size(); };
+  std::vector<int> voter(num_models, -1);
+  for (int h = 0; h < static_cast<int>(hypotheses.size()); ++h)
+    if (size(h) > size(voter[hypotheses[h].object])) voter[hypotheses[h].object] = h;
+  std::vector<float> votes(hypotheses.size(), 0.0F);
+  for (const int h : voter)
+    if (h >= 0) votes[h] = static_cast<float>(size(h) * size(h));
+  return votes;
+}
+
 // First the light on the scene from all hypotheses, then what each of them looks like in it.
 std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypotheses,
                                              const std::vector<PreparedModel>& models, const PreparedScene& scene,
@@ -85,12 +98,9 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
                          scene, views, allowed, options);
   });
   std::vector<LightFit> lights;
-  std::vector<float> votes;  // Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are.
-  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    lights.push_back(computers[h]->light());
-    votes.push_back(static_cast<float>(hypotheses[h].correspondences.size() * hypotheses[h].correspondences.size()));
-  }
-  const Eigen::Array3f white_balance = find_white_balance(lights, votes, options.light);
+  for (const std::optional<CueComputer>& computer : computers) lights.push_back(computer->light());
+  const Eigen::Array3f white_balance =
+      find_white_balance(lights, white_balance_votes(hypotheses, models.size()), options.light);
   std::vector<HypothesisCues> cues(hypotheses.size());
   parallel_for(hypotheses.size(), options.num_threads,
                [&](std::size_t h) { cues[h] = computers[h]->finish(white_balance); });
