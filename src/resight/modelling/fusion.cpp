@@ -21,8 +21,6 @@ using Eigen::Vector3f;
 constexpr int kMarginPx = 12;          // around the mask: what lies before the background is free there
 constexpr int kNormalRadiusPx = 3;     // normals only tell the slant here: rather smooth than sharp
 constexpr float kSamePointM = 0.004F;  // a vertex is what the pixel shows
-constexpr double kBrightFrom = 0.6;    // of the looks at a vertex, in order of brightness: those that give its colour
-constexpr double kBrightTo = 0.9;
 
 // Inverse variance across the surface, in 1/mm^2.
 double point_weight(const PreparedView& view, std::size_t i, double cosine) {
@@ -62,7 +60,8 @@ FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& o
 // turns under a lamp, every side has its turn. Brighter still are gloss and mixtures with the background.
 class VertexPainter {
  public:
-  explicit VertexPainter(std::span<const FusionView> views) : views_(views) {
+  VertexPainter(std::span<const FusionView> views, const FuseViewsOptions& options)
+      : views_(views), from_(options.color_from), to_(options.color_to) {
     for (const FusionView& view : views) camera_from_object_.emplace_back(view.camera_from_object);
   }
 
@@ -80,8 +79,8 @@ class VertexPainter {
     double before = 0;
     for (const Look& l : looks) {
       const double after = before + l.weight;
-      const double used = std::min(after, kBrightTo * total) - std::max(before, kBrightFrom * total);
-      if (used > 0) sum += used / ((kBrightTo - kBrightFrom) * total) * l.color;
+      const double used = std::min(after, to_ * total) - std::max(before, from_ * total);
+      if (used > 0) sum += used / ((to_ - from_) * total) * l.color;
       before = after;
     }
     const auto round = [](double x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5, 0.0, 255.0)); };
@@ -127,13 +126,14 @@ class VertexPainter {
   }
 
   std::span<const FusionView> views_;
+  double from_, to_;
   std::vector<Rigid3f> camera_from_object_;
 };
 
-void paint(TriangleMesh& mesh, std::span<const FusionView> views, int num_threads) {
-  const VertexPainter painter(views);
+void paint(TriangleMesh& mesh, std::span<const FusionView> views, const FuseViewsOptions& options) {
+  const VertexPainter painter(views, options);
   mesh.colors.resize(mesh.vertices.size());
-  parallel_for_blocks(mesh.vertices.size(), 1024, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for_blocks(mesh.vertices.size(), 1024, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i]);
   });
 }
@@ -147,6 +147,8 @@ void FuseViewsOptions::check() const {
   check_in_range("FuseViewsOptions.max_incidence_rad", max_incidence_rad, 0.1, 1.5);
   check_not_negative("FuseViewsOptions.min_weight", min_weight);
   check_not_negative("FuseViewsOptions.max_free_share", max_free_share);
+  check_in_range("FuseViewsOptions.color_from", color_from, 0, 0.99);
+  check_in_range("FuseViewsOptions.color_to", color_to, color_from + 0.01, 1);
   check_in_range("FuseViewsOptions.min_part_share", min_part_share, 0, 1);
   check_in_range("FuseViewsOptions.num_threads", num_threads, 1, 4096);
 }
@@ -166,7 +168,7 @@ TriangleMesh fuse_views(std::span<const TrainingView> views, const FuseViewsOpti
                                                     .max_free_share = static_cast<float>(options.max_free_share)});
   mesh = keep_large_parts(mesh, options.min_part_share);
   compute_vertex_normals(mesh);
-  paint(mesh, seen, options.num_threads);
+  paint(mesh, seen, options);
   return mesh;
 }
 

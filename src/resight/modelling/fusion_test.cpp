@@ -60,6 +60,25 @@ TEST(FuseViews, ABallIsClosedRoundAndFacesOutwards) {
   EXPECT_LT(mesh.colors[left - mesh.vertices.begin()].r, 80);
 }
 
+// The same views again, as the lamp turns away and as gloss: three of a kind at each place.
+TEST(FuseViews, ColoursAreThoseOfTheBestLight) {
+  std::vector<TrainingView> views;
+  for (const int grey : {40, 60, 80, 100, 150, 160, 255})
+    for (TrainingView& view : look_at_ball(0.06)) {
+      const auto level = static_cast<std::uint8_t>(grey);
+      std::ranges::fill(view.frame.color.data(), Rgb8{level, level, level});
+      views.push_back(std::move(view));
+    }
+  FuseViewsOptions options;
+  options.voxel_m = 0.003;
+  options.truncation_m = 0.009;
+  options.num_threads = 2;
+  for (const Rgb8 c : fuse_views(views, options).colors) EXPECT_NEAR(c.g, 160, 25);
+  options.color_from = 0;
+  options.color_to = 1;
+  for (const Rgb8 c : fuse_views(views, options).colors) EXPECT_NEAR(c.g, 121, 3);
+}
+
 TEST(FuseViews, WhatAnotherViewLooksThroughIsCutAway) {
   std::vector<TrainingView> views = look_at_ball(0.06);
   // A blob beside the ball, in one view only.

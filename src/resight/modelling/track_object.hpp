@@ -37,8 +37,9 @@ struct TrackObjectOptions {
   int num_refinements = 2;         ///< Rounds of: fuse all views, align each to the whole.
   int num_join_views = 10;         ///< Of a second recording that are tried on the model of the first.
   double min_join_overlap = 0.06;  ///< Of those with that model, in the mean: less, and they cannot be joined.
-  FuseViewsOptions fuse{.voxel_m = 0.002, .truncation_m = 0.006};  ///< Of the model that views are aligned to.
-  int num_threads = 1;                                             ///< Same bits for any value >= 1.
+  /// Of the model that views are aligned to: its colours must be those of the light as it mostly fell.
+  FuseViewsOptions fuse{.voxel_m = 0.002, .truncation_m = 0.006, .color_from = 0, .color_to = 1};
+  int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
 };
 
