@@ -47,6 +47,7 @@ struct RecognizeArguments {
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;
+  std::optional<double> deadline_ms;
   std::uint64_t seed = 1;
   int num_threads = 1;
 };

@@ -90,6 +90,11 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")
       ->check(kSeeds)
       ->capture_default_str();
+  command
+      ->add_option("--deadline-ms", a.deadline_ms,
+                   "The best answer of each view within this time; the results then depend on the machine [default: 0, "
+                   "no deadline]")
+      ->check(CLI::NonNegativeNumber);
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }

@@ -65,6 +65,8 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
     if (v + 1 == sequence.num_views())
       for (ObjectEvent& event : recognizer.finish()) update.events.push_back(std::move(event));
     progress.report(v + 1, describe(update));
+    if (!update.left_out.empty())
+      print_warning(fmt::format("{}: no time for {}", update.view_name, fmt::join(update.left_out, ", ")));
     std::optional<ViewEvaluation> evaluation;
     if (!truth.views.empty())
       evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,

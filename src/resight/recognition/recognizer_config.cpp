@@ -257,10 +257,15 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
 }
 
 std::vector<Field> list_fields(RecognizerConfig& c) {
-  std::vector<Field> fields{{"num_previous_views", &c.num_previous_views}, {"detect_changes", &c.detect_changes},
-                            {"cluster_hypotheses", &c.cluster_hypotheses}, {"clear_tolerance_m", &c.clear_tolerance_m},
-                            {"min_reported_share", &c.min_reported_share}, {"min_carried_share", &c.min_carried_share},
-                            {"remember_objects", &c.remember_objects},     {"skip_planes", &c.skip_planes}};
+  std::vector<Field> fields{{"num_previous_views", &c.num_previous_views},
+                            {"detect_changes", &c.detect_changes},
+                            {"cluster_hypotheses", &c.cluster_hypotheses},
+                            {"clear_tolerance_m", &c.clear_tolerance_m},
+                            {"min_reported_share", &c.min_reported_share},
+                            {"min_carried_share", &c.min_carried_share},
+                            {"remember_objects", &c.remember_objects},
+                            {"skip_planes", &c.skip_planes},
+                            {"deadline_ms", &c.deadline_ms}};
   add_pose_fields(c, fields);
   add_feature_fields(c, fields);
   add_hypothesis_fields(c, fields);
@@ -406,6 +411,7 @@ void RecognizerConfig::check() const {
   check_positive("clear_tolerance_m", clear_tolerance_m);
   check_in_range("min_reported_share", min_reported_share, 0, 1);
   check_in_range("min_carried_share", min_carried_share, 0, 1);
+  check_not_negative("deadline_ms", deadline_ms);
   poses.check();
   prepare.check();
   sift.check();

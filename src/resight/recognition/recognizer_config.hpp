@@ -36,7 +36,9 @@ struct RecognizerConfig {
                                  ///< next views; 0 = all are.
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
-  bool skip_planes = false;       ///< No keypoints on planes larger than the largest object (shape.enabled only).
+  double deadline_ms = 0;  ///< From the moment that a view is handed over; what cannot be done until then is left out,
+                           ///< and the results depend on the machine. 0 = no deadline.
+  bool skip_planes = false;    ///< No keypoints on planes larger than the largest object (shape.enabled only).
   AttentionOptions attention;  ///< Of no effect unless objects are remembered: a view that is not searched needs them.
   CorrectCameraOptions poses;  ///< Of given camera poses (K > 0).
   PrepareViewOptions prepare;

@@ -2,12 +2,15 @@
 #include "resight/recognition/scene_recognizer.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/deadline.hpp"
 #include "resight/recognition/attention.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
@@ -17,6 +20,7 @@
 namespace resight {
 namespace {
 
+constexpr std::size_t kFewHypotheses = 10;
 constexpr std::uint64_t kFirstKnownId = 1ULL << 40;  // Apart: ids of views are the same for all that share a store.
 
 DynamicSceneOptions scene_options(const RecognizerConfig& config) {
@@ -37,14 +41,15 @@ bool remembers(const RecognizerConfig& config) { return config.remember_objects 
 }  // namespace
 
 struct SceneRecognizer::Impl {
-  Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> shared)
+  Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> shared, Clock now)
       : library(models),
         config((settings.check(), std::move(settings))),
         history(models, config.history),
         corrector(correction_options(config)),
         scene(scene_options(config)),
         attention(remembers(config) ? config.attention : AttentionOptions{}),
-        store(std::move(shared)) {
+        store(std::move(shared)),
+        clock(std::move(now)) {
     if (!store) generator.emplace(library, config);
   }
 
@@ -52,6 +57,8 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> view_hypotheses(const PreparedView& view, SceneUpdate& update,
                                                         RecognitionTrace* trace);
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
+  [[nodiscard]] bool is_known(const Hypothesis& hypothesis) const;
+  void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void add_known_objects(std::vector<Hypothesis>& hypotheses);
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
@@ -73,9 +80,14 @@ struct SceneRecognizer::Impl {
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
   std::uint64_t next_known_id = kFirstKnownId;
+  Clock clock;
+  Deadline deadline;                     // of this view
+  double verification_s = 0;             // that of the last view...
+  double verification_of_each_s = 1e-9;  // ...and its share of each hypothesis; at first, next to nothing
 };
 
 SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* trace) {
+  if (config.deadline_ms > 0) deadline = Deadline(1e-3 * config.deadline_ms, clock);
   SceneUpdate update;
   update.view = num_views;
   update.view_name = frame.name;
@@ -118,10 +130,12 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   const ViewHypotheses* found = store ? store->find(update.view) : nullptr;
   if (found == nullptr) {
     if (!generator) generator.emplace(library, config);
-    made = generator->generate(view, update.view, next_hypothesis_id);
+    made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s));
+    if (!made.left_out.empty()) attention.look_at_next();
     found = store ? &store->add(update.view, std::move(made)) : &made;
   }
   update.times.add(found->times);
+  update.left_out = found->left_out;
   for (const auto& c : found->correspondences) update.counts.correspondences += static_cast<int>(c.size());
   update.counts.generated = static_cast<int>(found->hypotheses.size());
   next_hypothesis_id += found->hypotheses.size();
@@ -172,6 +186,29 @@ std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& up
   return merged;
 }
 
+bool SceneRecognizer::Impl::is_known(const Hypothesis& hypothesis) const {
+  return std::ranges::any_of(members_of_cluster.at(hypothesis.id),
+                             [](std::uint64_t id) { return id >= kFirstKnownId; });
+}
+
+// As many as there is time for by the pace of the last view, and a few however late it is: what is known, then those of
+// most correspondences. The others have their turn at the next view.
+void SceneRecognizer::Impl::leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const {
+  const double in_time = deadline.left_s() / verification_of_each_s;
+  const std::size_t num_all = hypotheses.size();
+  if (in_time >= static_cast<double>(num_all)) return;
+  const auto num_known =
+      static_cast<std::size_t>(std::ranges::count_if(hypotheses, [&](const Hypothesis& h) { return is_known(h); }));
+  const std::size_t num_kept =
+      std::min(num_all, std::max({num_known, kFewHypotheses, static_cast<std::size_t>(std::max(0.0, in_time))}));
+  if (num_kept == num_all) return;
+  std::ranges::stable_sort(hypotheses, std::greater<>(),
+                           [&](const Hypothesis& h) { return std::pair(is_known(h), h.correspondences.size()); });
+  hypotheses.resize(num_kept);
+  update.left_out.push_back("verification of " + std::to_string(num_all - num_kept) + " of " + std::to_string(num_all) +
+                            " hypotheses");
+}
+
 // Leaves out the hypotheses that the changes say are not there any more, and returns the presence mask of the others.
 std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothesis>& hypotheses,
                                                              SceneUpdate& update) const {
@@ -202,8 +239,7 @@ bool SceneRecognizer::Impl::doubts_known_object(const std::vector<Hypothesis>& h
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Verdict verdict = evidence[h].verdict;
     if (verdict != Verdict::kNoSupport && verdict != Verdict::kOtherPattern && verdict != Verdict::kCost) continue;
-    const auto& members = members_of_cluster.at(hypotheses[h].id);
-    if (std::ranges::any_of(members, [](std::uint64_t id) { return id >= kFirstKnownId; })) return true;
+    if (is_known(hypotheses[h])) return true;
   }
   return false;
 }
@@ -224,8 +260,10 @@ void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypoth
 }
 
 void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) {
+  leave_out_late(hypotheses, update);
   const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
   const ScopedTimer timer(update.times, "verification");
+  const double start_s = clock();
   const auto& window = scene.window();
   std::vector<VerificationView> views;
   for (const DynamicScene::View& view : window) views.push_back({&view.cleared});
@@ -246,6 +284,9 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     update.detections.push_back(std::move(detection));
   }
   update.counts.accepted = static_cast<int>(update.detections.size());
+  verification_s = clock() - start_s;
+  if (verification_s > 0 && !hypotheses.empty())
+    verification_of_each_s = verification_s / static_cast<double>(hypotheses.size());
   if (doubts_known_object(hypotheses, result.evidence)) attention.look_at_next();
   forget_refuted(hypotheses, result.evidence);
   if (trace == nullptr) return;
@@ -254,8 +295,8 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
 }
 
 SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
-                                 std::shared_ptr<ViewHypothesisStore> store)
-    : impl_(std::make_unique<Impl>(library, std::move(config), std::move(store))) {}
+                                 std::shared_ptr<ViewHypothesisStore> store, Clock clock)
+    : impl_(std::make_unique<Impl>(library, std::move(config), std::move(store), std::move(clock))) {}
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 

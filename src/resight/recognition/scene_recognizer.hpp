@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "resight/core/deadline.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/recognition_trace.hpp"
 #include "resight/recognition/recognizer_config.hpp"
@@ -22,9 +23,10 @@ namespace resight {
 class SceneRecognizer {
  public:
   /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check(). `store`:
-  /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own.
+  /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own. `clock`: tells
+  /// the time for RecognizerConfig::deadline_ms.
   SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
-                  std::shared_ptr<ViewHypothesisStore> store = nullptr);
+                  std::shared_ptr<ViewHypothesisStore> store = nullptr, Clock clock = steady_clock_s);
   ~SceneRecognizer();
   SceneRecognizer(SceneRecognizer&&) noexcept;
 

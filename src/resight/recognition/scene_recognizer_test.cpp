@@ -128,6 +128,56 @@ TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
   for (const SceneUpdate& update : c.run()) EXPECT_EQ(update.counts.merged, 2) << update.view;
 }
 
+TEST(SceneRecognizer, WhatThereIsNoTimeForHasItsTurnAtTheNextView) {
+  OneLook c;
+  ViewHypotheses first = *c.store->find(0);
+  const Hypothesis right = first.hypotheses[0];
+  first.hypotheses.clear();
+  for (int i = 0; i < 13; ++i) {  // All but the last over the empty table.
+    first.hypotheses.push_back(right);
+    first.hypotheses.back().id = static_cast<std::uint64_t>(i);
+    if (i < 12) first.hypotheses.back().world_from_object.translation += Eigen::Vector3d(0, 0.1, 0.1 + 0.1 * i);
+  }
+  c.store->add(0, std::move(first));
+  c.config.deadline_ms = 500;
+  double now_s = 0;
+  int num_calls = 0;  // When the view comes, before its verification, ...
+  SceneRecognizer recognizer(c.library, c.config, c.store, [&] { return now_s += ++num_calls == 2 ? 1 : 0; });
+  const SceneUpdate late = recognizer.add_view(render(c.world, c.cameras[0]).frame);
+  EXPECT_TRUE(late.detections.empty());
+  EXPECT_EQ(late.left_out, std::vector<std::string>{"verification of 3 of 13 hypotheses"});
+  const SceneUpdate in_time = recognizer.add_view(render(c.world, c.cameras[1]).frame);
+  EXPECT_EQ(in_time.detections.size(), 1U);
+  EXPECT_TRUE(in_time.left_out.empty());
+  // What is known is looked at, however late it is.
+  num_calls = 0;
+  EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[2]).frame).detections.size(), 1U);
+}
+
+TEST(SceneRecognizer, ALateViewIsNotSearched) {
+  OneLook c;
+  double now_s = 0;
+  c.config.deadline_ms = 500;
+  SceneRecognizer late(c.library, c.config, nullptr, [&] { return now_s += 1; });
+  const SceneUpdate update = late.add_view(render(c.world, c.cameras[0]).frame);
+  EXPECT_EQ(update.left_out, std::vector<std::string>{"search"});
+  EXPECT_EQ(update.counts.generated, 0);
+  c.config.deadline_ms = 0;
+  SceneRecognizer patient(c.library, c.config, nullptr, [&] { return now_s += 1; });
+  EXPECT_TRUE(patient.add_view(render(c.world, c.cameras[0]).frame).left_out.empty());
+}
+
+TEST(SceneRecognizer, TheShapeSearchIsNotBegunTooLate) {
+  OneLook c;
+  c.config.deadline_ms = 500;
+  int num_calls = 0;
+  // Asked when the view comes, before the search, and before the shape search.
+  SceneRecognizer recognizer(c.library, c.config, nullptr, [&] { return ++num_calls < 3 ? 0.0 : 1.0; });
+  const SceneUpdate update = recognizer.add_view(render(c.world, c.cameras[0]).frame);
+  ASSERT_FALSE(update.left_out.empty());
+  EXPECT_EQ(update.left_out[0], "shape search");
+}
+
 TEST(SceneRecognizer, HypothesesHaveIdsOfTheirOwn) {
   OneLook c;
   SceneRecognizer recognizer(c.library, c.config);

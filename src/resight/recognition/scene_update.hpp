@@ -73,6 +73,7 @@ struct SceneUpdate {
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.
   bool searched = true;  ///< False: nothing new was to be seen, and only what is known was looked at (Attention).
+  std::vector<std::string> left_out;  ///< What there was no time for (RecognizerConfig::deadline_ms), for the reader.
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;
   StageTimes times;

@@ -18,6 +18,7 @@ struct ViewHypotheses {
   FeatureSet shot;                                           ///< Camera frame.
   std::vector<std::vector<Correspondence>> correspondences;  ///< Per object.
   StageTimes times;                                          ///< What it took to make them.
+  std::vector<std::string> left_out;                         ///< Stages that there was no time for.
   Rigid3 world_from_camera;                                  ///< Of the view, with which they were put into the world.
 };
 

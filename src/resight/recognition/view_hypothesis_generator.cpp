@@ -20,9 +20,14 @@ ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, co
     largest_diameter_m_ = std::max(largest_diameter_m_, model.diameter_m);
 }
 
-ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id) const {
+ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id,
+                                                 const Deadline& deadline) const {
   ViewHypotheses made;
   made.world_from_camera = view.frame.world_from_camera;
+  if (deadline.has_passed()) {
+    made.left_out = {"search"};
+    return made;
+  }
   std::optional<SearchedView> searched;
   if (config_.shape.enabled) {
     const ScopedTimer timer(made.times, "planes");
@@ -38,7 +43,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
     made.hypotheses =
         generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, first_id, config_.generate);
   }
-  if (searched) add_from_shape(view, *searched, number, made);
+  if (searched) add_from_shape(view, *searched, number, deadline, made);
   for (std::size_t h = 0; h < made.hypotheses.size(); ++h) made.hypotheses[h].id = first_id + h;
   return made;
 }
@@ -57,9 +62,13 @@ void ViewHypothesisGenerator::extract_features(const PreparedView& view, const S
 }
 
 void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchedView& searched, int number,
-                                             ViewHypotheses& made) const {
+                                             const Deadline& deadline, ViewHypotheses& made) const {
   const ScopedTimer timer(made.times, "shape search");
   drop_chance(searched, made.hypotheses);
+  if (deadline.has_passed()) {
+    made.left_out = {"shape search"};
+    return;
+  }
   for (const ShapeCandidate& candidate : shapes_.search(searched, made.correspondences, made.hypotheses))
     made.hypotheses.push_back(make_hypothesis({candidate.matches, candidate.camera_from_object},
                                               made.correspondences[static_cast<std::size_t>(candidate.object)],

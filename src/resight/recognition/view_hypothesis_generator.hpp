@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "resight/core/deadline.hpp"
 #include "resight/hypotheses/generation.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/recognizer_config.hpp"
@@ -18,12 +19,15 @@ class ViewHypothesisGenerator {
  public:
   ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config);
 
-  /// Of a view with its number in the sequence; ids start at `first_id`.
-  [[nodiscard]] ViewHypotheses generate(const PreparedView& view, int number, std::uint64_t first_id) const;
+  /// Of a view with its number in the sequence; ids start at `first_id`. Neither the search as a whole nor that by
+  /// shape is begun after the deadline.
+  [[nodiscard]] ViewHypotheses generate(const PreparedView& view, int number, std::uint64_t first_id,
+                                        const Deadline& deadline = {}) const;
 
  private:
   void extract_features(const PreparedView& view, const SearchedView* searched, ViewHypotheses& made) const;
-  void add_from_shape(const PreparedView& view, const SearchedView& searched, int number, ViewHypotheses& made) const;
+  void add_from_shape(const PreparedView& view, const SearchedView& searched, int number, const Deadline& deadline,
+                      ViewHypotheses& made) const;
   void drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const;
 
   const RecognizerConfig& config_;

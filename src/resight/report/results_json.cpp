@@ -113,12 +113,14 @@ std::string format_detections_json(const ReportRun& run, const ModelLibrary& lib
     for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
       detections.push_back(detection_json(view, i, library));
     }
-    views.push_back({{"view", view.update.view},
-                     {"name", view.update.view_name},
-                     {"scene_id", view.scene_id},
-                     {"image_id", view.image_id},
-                     {"world_from_camera", pose_json(view.update.world_from_camera)},
-                     {"detections", detections}});
+    Json of_view = {{"view", view.update.view},
+                    {"name", view.update.view_name},
+                    {"scene_id", view.scene_id},
+                    {"image_id", view.image_id},
+                    {"world_from_camera", pose_json(view.update.world_from_camera)},
+                    {"detections", detections}};
+    if (!view.update.left_out.empty()) of_view["left_out"] = view.update.left_out;
+    views.push_back(std::move(of_view));
   }
   Json json = header(run);
   json["views"] = views;

@@ -99,6 +99,14 @@ TEST(FormatDetectionsJson, HoldsAllThatIsKnown) {
   EXPECT_EQ(slab["evidence"][1]["allowed"], false);
   EXPECT_TRUE(slab["evidence"][1]["explained_share"].is_null()) << "NaN";
   EXPECT_FALSE(slab.contains("verdict")) << "no ground truth";
+  EXPECT_FALSE(view.contains("left_out"));
+}
+
+TEST(FormatDetectionsJson, TellsWhatThereWasNoTimeFor) {
+  ReportRun run = make_run();
+  run.views[1].update.left_out = {"shape search"};
+  const json parsed = json::parse(format_detections_json(run, make_library()));
+  EXPECT_EQ(parsed["views"][1]["left_out"], json({"shape search"}));
 }
 
 TEST(FormatChangesJson, HoldsEventsOfAllViewsAndThoseAfterTheLast) {
