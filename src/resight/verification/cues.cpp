@@ -344,14 +344,17 @@ struct CueComputer::Impl {
   // The smaller of the two parts that a plane cuts the model into, over the part of the plane that was seen.
   void add_pierced_planes() {
     const float clearance = static_cast<float>(options_.inlier_distance_m);
+    std::vector<float> distances(points_.size());
     for (const ScenePlane& plane : scene_.planes) {
       if (plane.extent_m <= 1.2F * model_.diameter_m) continue;
+      std::ranges::transform(points_, distances.begin(), [&](const auto& p) { return plane.signed_distance(p); });
+      const auto [lowest, highest] = std::ranges::minmax(distances);
+      if (lowest >= -clearance || highest <= clearance) continue;
       int above = 0;
       int below = 0;
-      for (const Eigen::Vector3f& p : points_) {
-        const float distance = plane.signed_distance(p);
-        if (std::abs(distance) <= clearance || !plane.covers(p)) continue;
-        ++(distance > 0 ? above : below);
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (std::abs(distances[i]) <= clearance || !plane.covers(points_[i])) continue;
+        ++(distances[i] > 0 ? above : below);
       }
       cues_.evidence.plane_cost += std::min(above, below);
     }
