@@ -244,14 +244,16 @@ bool SceneRecognizer::Impl::doubts_known_object(const std::vector<Hypothesis>& h
   return false;
 }
 
-// What was well seen and yet found no support is chance, and is not carried over to the next views.
+// What was well seen and yet found no support, or has another print, is chance, and is not carried over to the next
+// views.
 void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypotheses,
                                            const std::vector<HypothesisEvidence>& evidence) {
   if (config.min_carried_share <= 0) return;
   std::unordered_set<std::uint64_t> refuted;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    if (evidence[h].verdict == Verdict::kTooFewVisible || evidence[h].explained_share >= config.min_carried_share)
-      continue;
+    const Verdict verdict = evidence[h].verdict;
+    if (verdict == Verdict::kTooFewVisible) continue;
+    if (verdict != Verdict::kOtherPattern && evidence[h].explained_share >= config.min_carried_share) continue;
     const auto& members = members_of_cluster.at(hypotheses[h].id);
     refuted.insert(members.begin(), members.end());
   }
