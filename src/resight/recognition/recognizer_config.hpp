@@ -33,7 +33,7 @@ struct RecognizerConfig {
   double min_reported_share = 0;    ///< An object of which the view itself sees less (of the model's points; hidden, or
                                     ///< outside the image) is known to the history, but no detection of this view.
   double min_carried_share = 0;     ///< A hypothesis that is seen, and explains less of itself or has another print, is
-                                 ///< not carried over to the next views; 0 = all are.
+                                    ///< not carried over to the next views; 0 = all are.
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
   double deadline_ms = 0;  ///< From the moment that a view is handed over; what cannot be done until then is left out,
