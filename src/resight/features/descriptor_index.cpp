@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -154,9 +155,11 @@ void DescriptorIndexOptions::check() const {
 }
 
 struct DescriptorIndex::Impl {
-  Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings);
+  Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings,
+       std::vector<const float*> kept);
   void build_cells(const Block& data, const Block& searched, int num_cells);
   [[nodiscard]] Matrix project(const Block& descriptors) const;
+  [[nodiscard]] Matrix project_rows() const;
   void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
             std::vector<BestList>& best) const;
   void search_batch(const Block& queries, int k, DescriptorMatch* results) const;
@@ -167,21 +170,28 @@ struct DescriptorIndex::Impl {
 
   [[nodiscard]] bool is_projected() const { return basis.size() > 0; }
   [[nodiscard]] const Matrix& searched_rows() const { return is_projected() ? components : rows; }
+  // All of a descriptor.
+  [[nodiscard]] Eigen::Map<const Eigen::RowVectorXf> whole_row(Index row) const {
+    return {kept_rows.empty() ? rows.row(row).data() : kept_rows[static_cast<std::size_t>(original[row])], dimension};
+  }
 
   DescriptorIndexOptions options;
-  Matrix rows;                // the descriptors, sorted by cell
-  Eigen::RowVectorXf mean;    // of the descriptors
-  Matrix basis;               // dimension x components; empty: all of a descriptor is compared
-  Matrix components;          // of the rows, if projected
-  std::vector<int> original;  // index of each row in the caller's order
-  Eigen::VectorXf norms_sq;   // of what is searched
-  Matrix centroids;           // empty: exact search
+  Index dimension;
+  Matrix rows;                          // the descriptors, sorted by cell; empty with kept_rows
+  std::vector<const float*> kept_rows;  // the caller's, in the caller's order; empty unless projected
+  Eigen::RowVectorXf mean;              // of the descriptors
+  Matrix basis;                         // dimension x components; empty: all of a descriptor is compared
+  Matrix components;                    // of the rows, if projected
+  std::vector<int> original;            // index of each row in the caller's order
+  Eigen::VectorXf norms_sq;             // of what is searched
+  Matrix centroids;                     // empty: exact search
   Scores centroid_norms_sq;
   std::vector<Index> cell_begin;  // first row of each cell, and the end
 };
 
-DescriptorIndex::Impl::Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings)
-    : options(settings) {
+DescriptorIndex::Impl::Impl(std::span<const float> descriptors, int descriptor_size,
+                            const DescriptorIndexOptions& settings, std::vector<const float*> kept)
+    : options(settings), dimension(descriptor_size) {
   const auto n = static_cast<Index>(descriptors.size()) / dimension;
   const Eigen::Map<const Matrix> data(descriptors.data(), n, dimension);
   const int automatic = static_cast<int>(4 * std::sqrt(static_cast<double>(n)));
@@ -193,8 +203,9 @@ DescriptorIndex::Impl::Impl(std::span<const float> descriptors, int dimension, c
   } else if (options.num_components > 0 && 2 * options.num_components <= dimension) {
     mean = data.colwise().mean();
     basis = principal_components(data, mean, options.num_components);
+    kept_rows = std::move(kept);
     build_cells(data, project(data), num_cells);
-    components = project(rows);
+    components = project_rows();
   } else {
     build_cells(data, data, num_cells);
   }
@@ -213,6 +224,19 @@ Matrix DescriptorIndex::Impl::project(const Block& descriptors) const {
   return projected;
 }
 
+// Block by block as they are sorted: no copy of all whole descriptors.
+Matrix DescriptorIndex::Impl::project_rows() const {
+  const auto n = static_cast<Index>(original.size());
+  Matrix projected(n, basis.cols());
+  parallel_for_blocks(original.size(), kRowsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Index>(begin);
+    Matrix centered(static_cast<Index>(end) - first, dimension);
+    for (Index r = 0; r < centered.rows(); ++r) centered.row(r) = whole_row(first + r) - mean;
+    projected.middleRows(first, centered.rows()).noalias() = centered * basis;
+  });
+  return projected;
+}
+
 void DescriptorIndex::Impl::build_cells(const Block& data, const Block& searched, int num_cells) {
   centroids = cluster_cells(searched, num_cells, options);
   centroid_norms_sq = centroids.rowwise().squaredNorm();
@@ -221,11 +245,11 @@ void DescriptorIndex::Impl::build_cells(const Block& data, const Block& searched
   for (const int c : cell) ++cell_begin[static_cast<std::size_t>(c) + 1];
   std::partial_sum(cell_begin.begin(), cell_begin.end(), cell_begin.begin());
   std::vector<Index> next(cell_begin.begin(), cell_begin.end() - 1);
-  rows.resize(data.rows(), data.cols());
+  if (kept_rows.empty()) rows.resize(data.rows(), data.cols());
   original.resize(cell.size());
   for (std::size_t i = 0; i < cell.size(); ++i) {
     const Index row = next[static_cast<std::size_t>(cell[i])]++;
-    rows.row(row) = data.row(static_cast<Index>(i));
+    if (kept_rows.empty()) rows.row(row) = data.row(static_cast<Index>(i));
     original[static_cast<std::size_t>(row)] = static_cast<int>(i);
   }
 }
@@ -281,7 +305,7 @@ void DescriptorIndex::Impl::scan_cells(const Block& queries, std::vector<BestLis
 void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList>& best) const {
   std::vector<int> all(static_cast<std::size_t>(queries.rows()));
   std::iota(all.begin(), all.end(), 0);
-  scan(queries, all, 0, rows.rows(), best);
+  scan(queries, all, 0, searched_rows().rows(), best);
 }
 
 // Gives the best few of a query their true distances.
@@ -289,7 +313,7 @@ void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, BestLis
                                    DescriptorMatch* results) const {
   auto& entries = best.entries();
   for (DescriptorMatch& entry : entries) {
-    entry.distance_sq = (queries.row(q) - rows.row(entry.index)).squaredNorm();
+    entry.distance_sq = (queries.row(q) - whole_row(entry.index)).squaredNorm();
     entry.index = original[static_cast<std::size_t>(entry.index)];
   }
   std::sort(entries.begin(), entries.end(), BestList::before);
@@ -312,14 +336,16 @@ void DescriptorIndex::Impl::search_batch(const Block& queries, int k, Descriptor
 }
 
 DescriptorIndex::DescriptorIndex(std::span<const float> descriptors, int dimension,
-                                 const DescriptorIndexOptions& options) {
+                                 const DescriptorIndexOptions& options, std::vector<const float*> kept_rows) {
   options.check();
   check_positive("dimension", dimension);
+  require(kept_rows.empty() || kept_rows.size() * static_cast<std::size_t>(dimension) == descriptors.size(),
+          "DescriptorIndex: kept_rows must hold one for each descriptor");
   require(descriptors.size() % static_cast<std::size_t>(dimension) == 0,
           "DescriptorIndex: the number of values is not a multiple of the dimension");
   require(std::all_of(descriptors.begin(), descriptors.end(), [](float x) { return std::isfinite(x); }),
           "DescriptorIndex: a descriptor is not finite");
-  impl_ = std::make_unique<Impl>(descriptors, dimension, options);
+  impl_ = std::make_unique<Impl>(descriptors, dimension, options, std::move(kept_rows));
 }
 DescriptorIndex::~DescriptorIndex() = default;
 DescriptorIndex::DescriptorIndex(DescriptorIndex&&) noexcept = default;
@@ -327,7 +353,7 @@ DescriptorIndex& DescriptorIndex::operator=(DescriptorIndex&&) noexcept = defaul
 
 std::vector<DescriptorMatch> DescriptorIndex::search(std::span<const float> queries, int k) const {
   check_positive("k", k);
-  const Index dimension = impl_->rows.cols();
+  const Index dimension = impl_->dimension;
   require(queries.size() % static_cast<std::size_t>(dimension) == 0,
           "DescriptorIndex::search: the number of values is not a multiple of the dimension");
   require(std::all_of(queries.begin(), queries.end(), [](float x) { return std::isfinite(x); }),
@@ -344,6 +370,6 @@ std::vector<DescriptorMatch> DescriptorIndex::search(std::span<const float> quer
   return results;
 }
 
-std::size_t DescriptorIndex::size() const { return static_cast<std::size_t>(impl_->rows.rows()); }
+std::size_t DescriptorIndex::size() const { return impl_->original.size(); }
 
 }  // namespace resight

@@ -199,5 +199,28 @@ TEST(DescriptorIndex, RefusesNonsense) {
   EXPECT_THROW((void)index.search(std::vector<float>{1, 0, 0}, 1), std::invalid_argument);
 }
 
+TEST(DescriptorIndex, RowsThatTheCallerKeepsNeedNoCopy) {
+  constexpr int kRows = 3000;
+  const std::vector<float> data = make_clustered(kRows, kDimension, 60, 0.3, 1);
+  const std::vector<float> queries = make_clustered(200, kDimension, 60, 0.3, 2);
+  std::vector<const float*> rows;
+  for (int i = 0; i < kRows; ++i) rows.push_back(data.data() + i * kDimension);
+  DescriptorIndexOptions options;
+  options.exact_below = 100;
+  for (const int components : {0, 8}) {  // without components nothing is read there
+    options.num_components = components;
+    const auto copied = DescriptorIndex(data, kDimension, options).search(queries, 3);
+    const DescriptorIndex index(data, kDimension, options, rows);
+    EXPECT_EQ(index.size(), static_cast<std::size_t>(kRows));
+    const auto kept = index.search(queries, 3);
+    for (std::size_t i = 0; i < copied.size(); ++i) {
+      ASSERT_EQ(kept[i].index, copied[i].index);
+      ASSERT_EQ(kept[i].distance_sq, copied[i].distance_sq);
+    }
+  }
+  rows.pop_back();
+  EXPECT_THROW(DescriptorIndex(data, kDimension, options, rows), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace resight

@@ -2,6 +2,7 @@
 #include "resight/hypotheses/generation.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -34,6 +35,10 @@ TypeIndex::TypeIndex(const ModelLibrary& library, FeatureSet ObjectModel::*membe
                      const DescriptorIndexOptions& options)
     : features(member), neighbors(num_neighbors), max_distance(max_l2) {
   std::vector<float> descriptors;
+  std::vector<const float*> rows;
+  std::size_t num_values = 0;
+  for (const ObjectModel& object : library.objects) num_values += (object.*features).descriptors.size();
+  descriptors.reserve(num_values);
   for (std::size_t o = 0; o < library.objects.size(); ++o) {
     const FeatureSet& set = library.objects[o].*features;
     if (set.size() == 0) continue;
@@ -43,9 +48,12 @@ TypeIndex::TypeIndex(const ModelLibrary& library, FeatureSet ObjectModel::*membe
                 set.descriptors.size() == set.size() * static_cast<std::size_t>(set.dimension),
             "ModelFeatureIndex: points, normals and descriptors of an object differ in number");
     descriptors.insert(descriptors.end(), set.descriptors.begin(), set.descriptors.end());
-    for (std::size_t f = 0; f < set.size(); ++f) owners.push_back({static_cast<int>(o), static_cast<int>(f)});
+    for (std::size_t f = 0; f < set.size(); ++f) {
+      owners.push_back({static_cast<int>(o), static_cast<int>(f)});
+      rows.push_back(set.descriptors.data() + f * static_cast<std::size_t>(dimension));
+    }
   }
-  if (dimension > 0) index = std::make_unique<DescriptorIndex>(descriptors, dimension, options);
+  if (dimension > 0) index = std::make_unique<DescriptorIndex>(descriptors, dimension, options, std::move(rows));
 }
 
 void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
