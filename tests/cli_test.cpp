@@ -286,6 +286,8 @@ const Row kRows[] = {
     {"TrackOverData", kNothing, "track --sequence views --out poses.txt --write-sequence full", 2,
      "full: exists already"},
     {"TrackWithoutLibrary", kNothing, "track --sequence views --out poses.txt --models no.resight", 2, "no\\.resight"},
+    {"TrackWithACloudThatIsAPicture", kNothing, "track --sequence views --out poses.txt --fused cloud.png", 2,
+     "cloud\\.png: .*\\.ply"},
     {"TrackOfTinyViews", kNothing, "track --sequence views --out poses.txt", 1, "no two views could be joined"},
     {"RecognizePosesByAnUnknownWay", kNothing, "recognize --models models.resight --sequence views --out out --poses x",
      2, "x .*auto"},

@@ -4,49 +4,17 @@
 # is finished is not computed again, and a lost part is named. Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-fail() {
-  echo "$1"
-  failures=$((failures + 1))
-}
+source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 
-cat >"$work/scene.toml" <<'SCENE'
-name = "small"
-[room]
-enabled = false
-[camera]
-width = 320
-height = 240
-fx = 262.5
-fy = 262.5
-cx = 159.5
-cy = 119.5
-[camera.orbit]
-center_m = [0.0, 0.0, 0.80]
-radius_m = 0.6
-height_m = 0.35
-start_deg = -110
-end_deg = -70
-views = 3
-[[furniture]]
-key = "table"
-kind = "table"
-size_m = [1.0, 0.7, 0.74]
-[[object]]
-model = "cereal_blue"
-on = "table"
-x_m = -0.12
-[[object]]
-model = "tea_box"
-on = "table"
-x_m = 0.15
+{
+  write_scene 3 -110 -70 false
+  cat <<'CHANGE'
 [[change]]
 view = 1
 kind = "remove"
 object = "tea_box"
-SCENE
+CHANGE
+} >"$work/scene.toml"
 
 "$resight" simulate "$work/scene.toml" --out "$work/data" --format bop --seed 1 >/dev/null 2>&1 || fail "simulate failed"
 "$resight" simulate "$work/scene.toml" --out "$work/more" --format bop --seed 2 >/dev/null 2>&1 || fail "simulate failed"

@@ -11,7 +11,7 @@
 #include "resight/cameras/common_objects.hpp"
 #include "resight/cameras/track_journal.hpp"
 #include "resight/core/hash.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/observe_objects.hpp"
 
 namespace resight::app {
 namespace {
@@ -22,22 +22,12 @@ std::string describe(const TrackedView& view) {
   return text;
 }
 
-// What each view shows by itself.
-std::vector<ObservedObject> observe_objects(const Sequence& sequence, const ModelLibrary& library, int num_threads) {
-  RecognizerConfig config = RecognizerConfig::from_preset("default");
-  config.num_previous_views = 0;
-  config.set_num_threads(num_threads);
-  SceneRecognizer recognizer(library, config);
-  std::vector<ObservedObject> observed;
-  Progress progress("common objects", sequence.num_views());
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const SceneUpdate update = recognizer.add_view(value_or_throw(sequence.read_view(v)));
-    const Rigid3 camera_from_world = update.world_from_camera.inverse();
-    for (const Detection& d : update.detections)
-      observed.push_back({v, d.object, camera_from_world * d.world_from_object});
-    progress.report(v + 1, fmt::format("{}: {} objects", update.view_name, update.detections.size()));
-  }
-  return observed;
+std::vector<ObservedObject> observe_with_progress(const Sequence& sequence, const ModelLibrary& library,
+                                                  int num_threads) {
+  Progress progress("objects", sequence.num_views());
+  return value_or_throw(observe_objects(sequence, library, num_threads, [&](int view, const SceneUpdate& update) {
+    progress.report(view + 1, fmt::format("{}: {} objects", update.view_name, update.detections.size()));
+  }));
 }
 
 PreparedView read_prepared(const Sequence& sequence, int view, int num_threads) {
@@ -117,7 +107,7 @@ JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOpti
   CameraTrack track = track_views(sequence, options);
   std::vector<ObservedObject> observed;
   const bool join = options.library != nullptr && track.num_parts > 1;
-  if (join || options.adjust_objects) observed = observe_objects(sequence, *options.library, options.num_threads);
+  if (join || options.adjust_objects) observed = observe_with_progress(sequence, *options.library, options.num_threads);
   if (join) track = join_by_objects(std::move(track), observed, *options.library, read_surfaces(sequence, track));
   if (track.num_parts > 1 && track.num_parts == sequence.num_views())
     throw std::runtime_error("no two views could be joined: nothing tells how their cameras stood to each other");

@@ -45,12 +45,12 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
                    const ModelLibrary& library) {
   std::string text = fmt::format("# objects that stand still in views of {}, adjusted together with the cameras\n",
                                  arguments.sequence.string());
-  text += "# part object tx ty tz qx qy qz qw first_view last_view num_views (world_from_object of the part)\n";
+  text += "# part tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object of the part)\n";
   for (const StaticObject& object : objects)
-    text += fmt::format(
-        "{} {} {} {} {} {}\n", object.part, library.objects[static_cast<std::size_t>(object.object)].name,
-        format_tum_pose(object.world_from_object), track.views[static_cast<std::size_t>(object.views.front())].name,
-        track.views[static_cast<std::size_t>(object.views.back())].name, object.views.size());
+    text += fmt::format("{} {} {} {} {} {}\n", object.part, format_tum_pose(object.world_from_object),
+                        object.views.size(), track.views[static_cast<std::size_t>(object.views.front())].name,
+                        track.views[static_cast<std::size_t>(object.views.back())].name,
+                        library.objects[static_cast<std::size_t>(object.object)].name);
   const std::filesystem::path file =
       arguments.out.parent_path() / (arguments.out.stem().string() + "_objects" + arguments.out.extension().string());
   value_or_throw(write_file(file, text));
@@ -73,7 +73,11 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
 
 void run_track(const TrackArguments& arguments) {
   value_or_throw(check_writable(arguments.out));
-  if (arguments.fused) value_or_throw(check_writable(*arguments.fused));
+  if (arguments.fused) {
+    if (arguments.fused->extension() != ".ply")
+      throw InputError(file_error(*arguments.fused, "is no name of a cloud (.ply was expected)").message);
+    value_or_throw(check_writable(*arguments.fused));
+  }
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));

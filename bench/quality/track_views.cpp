@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera poses from the views alone, against those of the sequence. One line a view, then the trajectory's error.
-// With a library also those after objects and cameras were adjusted together, and how far objects are off before (each
-// sight by itself) and after.
+// With a library (and every view) also those after objects and cameras were adjusted together, and how far objects are
+// off before (each sight by itself) and after.
 //   bench_track_views SEQUENCE [every n-th view] [LIBRARY]
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/observe_objects.hpp"
 
 namespace {
 
@@ -28,21 +28,6 @@ void print_error(const char* name, std::span<const Rigid3> truth, std::span<cons
              1000 * e.rms_m, 1000 * e.max_m, kDegPerRad * e.mean_rad, kDegPerRad * e.max_rad);
 }
 
-// What each view shows by itself.
-std::vector<ObservedObject> observe(const Sequence& sequence, const ModelLibrary& library, int step) {
-  RecognizerConfig config = RecognizerConfig::from_preset("default");
-  config.num_previous_views = 0;
-  config.set_num_threads(2);
-  SceneRecognizer recognizer(library, config);
-  std::vector<ObservedObject> observed;
-  for (int v = 0; v < sequence.num_views(); v += step) {
-    const SceneUpdate update = recognizer.add_view(value_or_exit(sequence.read_view(v)));
-    for (const Detection& d : update.detections)
-      observed.push_back({v / step, d.object, update.world_from_camera.inverse() * d.world_from_object});
-  }
-  return observed;
-}
-
 struct Sight {
   int view = 0;
   int object = -1;
@@ -50,12 +35,12 @@ struct Sight {
 };
 
 // Against the true object of that name nearest to it; those farther than 5 cm are no mistake of the pose.
-void print_object_error(const char* name, const Sequence& sequence, const ModelLibrary& library, int step,
+void print_object_error(const char* name, const Sequence& sequence, const ModelLibrary& library,
                         const std::vector<Sight>& sights) {
   std::vector<double> errors_m, errors_rad;
   for (const Sight& sight : sights) {
     const ObjectModel& model = library.objects[static_cast<std::size_t>(sight.object)];
-    for (const GroundTruthObject& truth : value_or_exit(sequence.read_ground_truth(sight.view * step))) {
+    for (const GroundTruthObject& truth : value_or_exit(sequence.read_ground_truth(sight.view))) {
       const Rigid3& true_pose = truth.camera_from_object;
       const Eigen::Vector3d center = model.center.cast<double>();
       const double off = (true_pose * center - sight.camera_from_object * center).norm();
@@ -75,9 +60,9 @@ void print_object_error(const char* name, const Sequence& sequence, const ModelL
              kDegPerRad * at(errors_rad, 0.95));
 }
 
-void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& library, int step, const CameraTrack& track,
+void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& library, const CameraTrack& track,
                             std::span<const Rigid3> truth) {
-  const std::vector<ObservedObject> observed = observe(sequence, library, step);
+  const std::vector<ObservedObject> observed = value_or_exit(observe_objects(sequence, library, 2));
   std::vector<Sight> before, after;
   const auto [adjusted, objects] = adjust_jointly(track, observed, library);
   for (const StaticObject& object : objects)
@@ -93,8 +78,8 @@ void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& librar
   std::vector<Rigid3> poses;
   for (const TrackedView& view : adjusted.views) poses.push_back(view.world_from_camera);
   print_error(fmt::format("with {} objects", objects.size()).c_str(), truth, poses);
-  print_object_error("objects, one view each", sequence, library, step, before);
-  print_object_error("objects, adjusted", sequence, library, step, after);
+  print_object_error("objects, one view each", sequence, library, before);
+  print_object_error("objects, adjusted", sequence, library, after);
 }
 
 }  // namespace
@@ -138,6 +123,6 @@ int main(int argc, char** argv) {
   fmt::print("{} edges, {} loops; ", track.edges.size(), track.num_loops);
   for (const StageTime& t : times.stages()) fmt::print("{} {:.2f} s  ", t.stage, t.wall_s);
   fmt::print("\n");
-  if (argc > 3) print_joint_adjustment(*sequence, value_or_exit(load_library(argv[3])), step, track, truth);
+  if (argc > 3 && step == 1) print_joint_adjustment(*sequence, value_or_exit(load_library(argv[3])), track, truth);
   return 0;
 }

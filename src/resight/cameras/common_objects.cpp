@@ -2,6 +2,7 @@
 #include "resight/cameras/common_objects.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -157,13 +158,6 @@ class PartJoiner {
   const JoinByObjectsOptions& options_;
 };
 
-Eigen::Matrix<double, 6, 6> information_of(const Candidate& candidate, const JoinByObjectsOptions& options) {
-  Twist diagonal;
-  diagonal << Eigen::Vector3d::Constant(1 / (options.sigma_rad * options.sigma_rad)),
-      Eigen::Vector3d::Constant(1 / (options.sigma_m * options.sigma_m));
-  return static_cast<double>(candidate.agreed.size()) * Eigen::Matrix<double, 6, 6>(diagonal.asDiagonal());
-}
-
 std::span<const ObjectPlace> places_of(const std::vector<ObjectPlace>& places, int part) {
   const auto range = std::ranges::equal_range(places, part, {}, &ObjectPlace::part);
   return {range.begin(), range.end()};
@@ -185,10 +179,11 @@ void merge_parts(CameraTrack& track, const Candidate& join, int view_a, int view
                  const JoinByObjectsOptions& options) {
   for (TrackedView& view : track.views)
     if (view.part == join.part_b) view.world_from_camera = join.a_from_b * view.world_from_camera;
-  track.edges.push_back({view_a, view_b,
-                         track.views[static_cast<std::size_t>(view_a)].world_from_camera.inverse() *
-                             track.views[static_cast<std::size_t>(view_b)].world_from_camera,
-                         information_of(join, options)});
+  track.edges.push_back(
+      {view_a, view_b,
+       track.views[static_cast<std::size_t>(view_a)].world_from_camera.inverse() *
+           track.views[static_cast<std::size_t>(view_b)].world_from_camera,
+       static_cast<double>(join.agreed.size()) * twist_information(options.sigma_rad, options.sigma_m)});
   const std::vector<int> parts = find_connected_parts(track.views.size(), track.edges);
   track.num_parts = 0;
   for (std::size_t v = 0; v < track.views.size(); ++v) {

@@ -8,21 +8,16 @@
 namespace resight {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 // What is left of the information of the turn about an axis of symmetry, which no view can tell.
 constexpr double kFreeShare = 1e-4;
 
 // Of a recognised pose: a small motion of the object in its own frame.
-Matrix6 observation_information(const ObjectModel& model, const AdjustJointlyOptions& options) {
-  Twist diagonal;
-  diagonal << Eigen::Vector3d::Constant(1 / (options.sigma_rad * options.sigma_rad)),
-      Eigen::Vector3d::Constant(1 / (options.sigma_m * options.sigma_m));
+TwistMatrix observation_information(const ObjectModel& model, const AdjustJointlyOptions& options) {
   // The turn is about the centre, not about the origin: a point p moves by turn x (p - centre) + shift.
   const Eigen::Vector3d c = model.center.cast<double>();
-  Matrix6 at_center = Matrix6::Identity();
+  TwistMatrix at_center = TwistMatrix::Identity();
   at_center.bottomLeftCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
-  Matrix6 information = at_center.transpose() * diagonal.asDiagonal() * at_center;
+  TwistMatrix information = at_center.transpose() * twist_information(options.sigma_rad, options.sigma_m) * at_center;
   for (const ObjectSymmetries::Continuous& s : model.symmetries.continuous) {
     Twist free;
     free << s.axis.normalized(), s.offset.cross(s.axis.normalized());
@@ -52,7 +47,7 @@ JointAdjustment adjust_jointly(CameraTrack track, std::span<const ObservedObject
   for (const ObjectPlace& place : find_places(track, observed, library, options.same_place)) {
     if (static_cast<int>(place.observations.size()) < options.min_observations) continue;
     const ObjectModel& model = library.objects[static_cast<std::size_t>(place.object)];
-    const Matrix6 information = observation_information(model, options);
+    const TwistMatrix information = observation_information(model, options);
     StaticObject object{place.object, place.part, place.part_from_object, {}};
     for (const int i : place.observations) {
       const ObservedObject& o = observed[static_cast<std::size_t>(i)];

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "resight/geometry/rigid3.hpp"
 
@@ -9,6 +10,28 @@ namespace resight {
 
 /// A small motion as six numbers: rotation vector (rad), then shift (m).
 using Twist = Eigen::Matrix<double, 6, 1>;
+/// A covariance of twists, or its inverse: an information.
+using TwistMatrix = Eigen::Matrix<double, 6, 6>;
+
+/// Of independent errors, the same along all axes.
+[[nodiscard]] inline TwistMatrix twist_covariance(double sigma_rad, double sigma_m) {
+  Twist variances;
+  variances << Eigen::Vector3d::Constant(sigma_rad * sigma_rad), Eigen::Vector3d::Constant(sigma_m * sigma_m);
+  return variances.asDiagonal();
+}
+[[nodiscard]] inline TwistMatrix twist_information(double sigma_rad, double sigma_m) {
+  return twist_covariance(1 / sigma_rad, 1 / sigma_m);
+}
+
+/// What is left of an information when errors of the sigmas given come on top; `least` of it is taken for granted in
+/// every direction, so that open ones can be inverted.
+[[nodiscard]] inline TwistMatrix limit_information(const TwistMatrix& information, double least, double sigma_rad,
+                                                   double sigma_m) {
+  const TwistMatrix covariance =
+      (information + least * TwistMatrix::Identity()).inverse() + twist_covariance(sigma_rad, sigma_m);
+  const TwistMatrix limited = covariance.inverse();
+  return 0.5 * (limited + limited.transpose());
+}
 
 [[nodiscard]] inline Rigid3 from_twist(const Twist& twist) {
   const Eigen::Vector3d turn = twist.head<3>();

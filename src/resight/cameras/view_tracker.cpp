@@ -12,8 +12,6 @@
 namespace resight {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 // What features alone say of a pose: added to what the surfaces say, where these leave something open.
 constexpr double kFeatureSigma_m = 0.01;
 constexpr double kFeatureSigma_rad = 0.015;
@@ -23,23 +21,15 @@ constexpr double kFloorSigma_rad = 0.003;
 constexpr double kMaxOpenSigma = 0.02;  // m, rad: a direction that is known no better is open.
 constexpr int kNumRounds = 2;           // Of closing loops: the second from adjusted poses.
 
-Matrix6 diagonal(double sigma_rad, double sigma_m, int power) {
-  Twist values;
-  values << Eigen::Vector3d::Constant(std::pow(sigma_rad, power)), Eigen::Vector3d::Constant(std::pow(sigma_m, power));
-  return values.asDiagonal();
-}
-
-Matrix6 feature_information() { return diagonal(kFeatureSigma_rad, kFeatureSigma_m, -2); }
+TwistMatrix feature_information() { return twist_information(kFeatureSigma_rad, kFeatureSigma_m); }
 
 // Of an edge: open directions may be off by much, but no direction is known better than the floor.
-Matrix6 edge_information(const Matrix6& information) {
-  const Matrix6 covariance = (information + 1e-3 * Matrix6::Identity()).inverse();
-  const Matrix6 inverse = (covariance + diagonal(kFloorSigma_rad, kFloorSigma_m, 2)).inverse();
-  return 0.5 * (inverse + inverse.transpose());
+TwistMatrix edge_information(const TwistMatrix& information) {
+  return limit_information(information, 1e-3, kFloorSigma_rad, kFloorSigma_m);
 }
 
-Twist sigma_of(const Matrix6& information) {
-  const Matrix6 regular = information + 1e-6 * Matrix6::Identity();
+Twist sigma_of(const TwistMatrix& information) {
+  const TwistMatrix regular = information + 1e-6 * TwistMatrix::Identity();
   return regular.inverse().diagonal().cwiseMax(0).cwiseSqrt();
 }
 
@@ -54,7 +44,7 @@ struct Join {
   int keyframe = 0;
   AlignedView aligned;  // in the keyframe's part
   int num_matches = -1;
-  Matrix6 information = Matrix6::Zero();
+  TwistMatrix information = TwistMatrix::Zero();
   [[nodiscard]] double score() const { return aligned.overlap - aligned.seen_through; }
 };
 
@@ -281,7 +271,7 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
     const int last = number - 1;
     edges.push_back({last, number,
                      views[static_cast<std::size_t>(last)].world_from_camera.inverse() * tracked.world_from_camera,
-                     diagonal(options.given_sigma_rad, options.given_sigma_m, -2)});
+                     twist_information(options.given_sigma_rad, options.given_sigma_m)});
   } else {
     first_given = views.size();
   }
@@ -293,7 +283,7 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
 std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
   const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
   std::optional<AlignedView> best;
-  Matrix6 information = Matrix6::Zero();
+  TwistMatrix information = TwistMatrix::Zero();
   AlignViewOptions align = options.align;
   align.num_threads = 1;  // pairs are measured side by side
   if (part_of(a) == part_of(b) && judge_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {

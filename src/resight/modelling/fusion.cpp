@@ -65,8 +65,14 @@ class VertexPainter {
     for (const FusionView& view : views) camera_from_object_.emplace_back(view.camera_from_object);
   }
 
-  [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal) const {
-    std::vector<Look> looks;
+  struct Look {
+    double weight = 0;
+    Vector3d color = Vector3d::Zero();
+  };
+
+  // `looks` is overwritten: kept from vertex to vertex for its memory.
+  [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal, std::vector<Look>& looks) const {
+    looks.clear();
     double total = 0;
     for (std::size_t k = 0; k < views_.size(); ++k)
       if (const Look l = look(k, p, normal); l.weight > 0) {
@@ -88,11 +94,6 @@ class VertexPainter {
   }
 
  private:
-  struct Look {
-    double weight = 0;
-    Vector3d color = Vector3d::Zero();
-  };
-
   // What view k shows of the point; weight 0 = nothing.
   [[nodiscard]] Look look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal) const {
     const FusionView& view = views_[k];
@@ -134,7 +135,8 @@ void paint(TriangleMesh& mesh, std::span<const FusionView> views, const FuseView
   const VertexPainter painter(views, options);
   mesh.colors.resize(mesh.vertices.size());
   parallel_for_blocks(mesh.vertices.size(), 1024, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i]);
+    std::vector<VertexPainter::Look> looks;
+    for (std::size_t i = begin; i < end; ++i) mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i], looks);
   });
 }
 

@@ -13,28 +13,18 @@ namespace resight {
 namespace {
 
 using Eigen::Vector3d;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // What the sensor's bias leaves between any two views, however many pixels agree.
 constexpr double kFloorSigmaM = 0.0007;
 constexpr double kFloorSigmaRad = 0.003;
 constexpr int kPixelStep = 9;  // of the surface on which errors are measured
 
-Matrix6 diagonal(double rad, double m) {
-  Twist values;
-  values << Vector3d::Constant(rad), Vector3d::Constant(m);
-  return values.asDiagonal();
+TwistMatrix edge_information(const TwistMatrix& information) {
+  return limit_information(information, 1, kFloorSigmaRad, kFloorSigmaM);
 }
 
-Matrix6 edge_information(const Matrix6& information) {
-  const Matrix6 covariance = (information + Matrix6::Identity()).inverse() +
-                             diagonal(kFloorSigmaRad * kFloorSigmaRad, kFloorSigmaM * kFloorSigmaM);
-  const Matrix6 inverse = covariance.inverse();
-  return 0.5 * (inverse + inverse.transpose());
-}
-
-Matrix6 match_information(const TrackObjectOptions& o) {
-  return diagonal(1 / (o.match_sigma_rad * o.match_sigma_rad), 1 / (o.match_sigma_m * o.match_sigma_m));
+TwistMatrix match_information(const TrackObjectOptions& options) {
+  return twist_information(options.match_sigma_rad, options.match_sigma_m);
 }
 
 const Rigid3& pose_of(const TrainingView& view) { return view.frame.world_from_camera; }

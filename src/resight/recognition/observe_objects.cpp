@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/observe_objects.hpp"
+
+#include "resight/recognition/scene_recognizer.hpp"
+
+namespace resight {
+
+Result<std::vector<ObservedObject>> observe_objects(const Sequence& sequence, const ModelLibrary& library,
+                                                    int num_threads, const ObserveProgress& progress) {
+  RecognizerConfig config = RecognizerConfig::from_preset("default");
+  config.num_previous_views = 0;
+  config.set_num_threads(num_threads);
+  SceneRecognizer recognizer(library, config);
+  std::vector<ObservedObject> observed;
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const Result<RgbdFrame> frame = sequence.read_view(v);
+    if (!frame) return frame.error();
+    const SceneUpdate update = recognizer.add_view(*frame);
+    const Rigid3 camera_from_world = update.world_from_camera.inverse();
+    for (const Detection& d : update.detections)
+      observed.push_back({v, d.object, camera_from_world * d.world_from_object});
+    if (progress) progress(v, update);
+  }
+  return observed;
+}
+
+}  // namespace resight

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "resight/cameras/observed_objects.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/recognition/scene_update.hpp"
+
+namespace resight {
+
+/// Called after each view.
+using ObserveProgress = std::function<void(int view, const SceneUpdate& update)>;
+
+/// What each view of a sequence shows by itself (preset `default`, K = 0): needs no right camera poses. The error names
+/// the view that cannot be read.
+[[nodiscard]] Result<std::vector<ObservedObject>> observe_objects(const Sequence& sequence, const ModelLibrary& library,
+                                                                  int num_threads,
+                                                                  const ObserveProgress& progress = {});
+
+}  // namespace resight
