@@ -102,20 +102,21 @@ std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std
 
 }  // namespace
 
-Result<TrackJournal> TrackJournal::open(const std::filesystem::path& file, const std::string& job) {
-  TrackJournal journal;
-  journal.file_ = file;
-  journal.steps_ = read_steps(file, job);
-  // Written anew: what could not be read is gone.
-  std::string text = head_line(job);
-  for (const TrackerStep& step : journal.steps_) text += to_line(step);
-  if (auto done = write_file(file, text); !done) return done.error();
-  journal.out_.open(file, std::ios::binary | std::ios::app);
-  if (!journal.out_) return file_error(file, "cannot be written");
-  return journal;
+TrackJournal::TrackJournal(std::filesystem::path file, std::string job)
+    : file_(std::move(file)), job_(std::move(job)), steps_(read_steps(file_, job_)) {}
+
+// Written anew: what could not be read is gone.
+Result<void> TrackJournal::begin() {
+  std::string text = head_line(job_);
+  for (const TrackerStep& step : steps_) text += to_line(step);
+  if (auto done = write_file(file_, text); !done) return done;
+  out_.open(file_, std::ios::binary | std::ios::app);
+  return {};
 }
 
 Result<void> TrackJournal::append(const TrackerStep& step) {
+  if (!out_.is_open())
+    if (auto done = begin(); !done) return done;
   out_ << to_line(step) << std::flush;
   if (!out_) return file_error(file_, "cannot be written");
   return {};

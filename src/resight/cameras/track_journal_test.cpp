@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <optional>
+#include <vector>
 
 #include "resight/cameras/cameras_test_scenes.hpp"
 #include "resight/core/files.hpp"
@@ -36,10 +37,9 @@ class TrackJournalTest : public testing::Test {
 
   // Tracks views from..to-1 after those that the journal holds.
   void go_on(ViewTracker& tracker, const std::string& job, int to) const {
-    auto journal = TrackJournal::open(file_, job);
-    ASSERT_TRUE(journal.ok()) << journal.error().message;
+    TrackJournal journal(file_, job);
     int view = 0;
-    for (const TrackerStep& step : journal->steps()) {
+    for (const TrackerStep& step : journal.steps()) {
       std::optional<PreparedView> prepared;
       if (step.view.is_keyframe) prepared = make_view(view);
       tracker.restore_view(step, prepared ? &*prepared : nullptr);
@@ -47,17 +47,13 @@ class TrackJournalTest : public testing::Test {
     }
     for (; view < to; ++view) {
       (void)tracker.add_view(make_view(view));
-      ASSERT_TRUE(journal->append(tracker.last_step()).ok());
+      ASSERT_TRUE(journal.append(tracker.last_step()).ok());
     }
   }
-  [[nodiscard]] std::size_t num_steps(const std::string& job) const {
-    return TrackJournal::open(file_, job)->steps().size();
-  }
-  void rewrite(const std::function<void(std::string&)>& change) const {
+  [[nodiscard]] std::size_t num_steps(const std::string& job) const { return TrackJournal(file_, job).steps().size(); }
+  [[nodiscard]] std::string read() const {
     std::ifstream in(file_, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    change(text);
-    ASSERT_TRUE(write_file(file_, text).ok());
+    return {std::istreambuf_iterator<char>(in), {}};
   }
 
   fs::path folder_ = fs::temp_directory_path() / ("resight_journal_" + std::to_string(::getpid()));
@@ -88,22 +84,32 @@ TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
   ViewTracker tracker;
   go_on(tracker, "job", 4);
   ASSERT_EQ(num_steps("job"), 4U);
-  rewrite([](std::string& text) { text.resize(text.size() - 1); });  // the end of the line is missing
-  EXPECT_EQ(num_steps("job"), 3U);
-  EXPECT_EQ(num_steps("job"), 3U);  // and the rest is kept
-  rewrite([](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; });
-  EXPECT_EQ(num_steps("job"), 2U);
-  rewrite([](std::string& text) { text[text.rfind("\"part\":0") + 7] = '9'; });
-  EXPECT_EQ(num_steps("job"), 1U);
+  const std::string good = read();
+  for (const auto& spoil : std::vector<std::function<void(std::string&)>>{
+           [](std::string& text) { text.resize(text.size() - 1); },  // the end of the line is missing
+           [](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; },
+           [](std::string& text) { text[text.rfind("\"part\":0") + 7] = '9'; }}) {
+    std::string text = good;
+    spoil(text);
+    ASSERT_TRUE(write_file(file_, text).ok());
+    EXPECT_EQ(num_steps("job"), 3U);
+  }
   EXPECT_EQ(num_steps("another"), 0U);
+  ViewTracker other;
+  go_on(other, "another", 1);
   EXPECT_EQ(num_steps("job"), 0U);
+  EXPECT_EQ(num_steps("another"), 1U);
 }
 
-TEST_F(TrackJournalTest, IsRemovedInTheEndAndNeedsAFolder) {
-  auto journal = TrackJournal::open(file_, "job");
-  ASSERT_TRUE(journal.ok());
-  EXPECT_FALSE(TrackJournal::open(file_ / "below", "job").ok());  // below a file
-  journal->remove();
+TEST_F(TrackJournalTest, BeginsWithTheFirstStepAndIsRemovedInTheEnd) {
+  ViewTracker tracker;
+  (void)tracker.add_view(make_view(0));
+  TrackJournal journal(file_, "job");
+  EXPECT_FALSE(fs::exists(file_));
+  ASSERT_TRUE(journal.append(tracker.last_step()).ok());
+  EXPECT_FALSE(TrackJournal(file_ / "below", "job").append(tracker.last_step()).ok());  // below a file
+  EXPECT_EQ(num_steps("job"), 1U);
+  journal.remove();
   EXPECT_FALSE(fs::exists(file_));
 }
 
