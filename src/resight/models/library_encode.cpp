@@ -17,11 +17,12 @@ constexpr std::size_t kMaxPayloadBytes = 2'000'000'000;
 std::size_t estimate_bytes(const FeatureSet& f) {
   return f.descriptors.size() + f.size() * 2 * sizeof(Eigen::Vector3f);
 }
+std::size_t estimate_bytes(const ObjectSymmetries& s) { return s.discrete.size() * 96 + s.continuous.size() * 48; }
 std::size_t estimate_bytes(const ModelLibrary& library) {
   std::size_t bytes = 4096;
   for (const ObjectModel& o : library.objects)
     bytes += 4096 + o.name.size() + o.surface.size() * 27 + estimate_bytes(o.sift) + estimate_bytes(o.shot) +
-             o.symmetries.discrete.size() * 96 + o.symmetries.continuous.size() * 48;
+             estimate_bytes(o.symmetries) + estimate_bytes(o.shape_symmetries);
   return bytes;
 }
 
@@ -57,20 +58,29 @@ schema::Axis to_file(const ObjectSymmetries::Continuous& symmetry) {
           flatbuffers::span<const double, 3>(symmetry.offset.data(), 3)};
 }
 
+struct WrittenSymmetries {
+  Offset<flatbuffers::Vector<const schema::Motion*>> discrete;
+  Offset<flatbuffers::Vector<const schema::Axis*>> continuous;
+};
+
+WrittenSymmetries write(FlatBufferBuilder& builder, const ObjectSymmetries& symmetries) {
+  std::vector<schema::Motion> motions;
+  for (const Rigid3& m : symmetries.discrete) motions.push_back(to_file(m));
+  std::vector<schema::Axis> axes;
+  for (const auto& c : symmetries.continuous) axes.push_back(to_file(c));
+  return {builder.CreateVectorOfStructs(motions), builder.CreateVectorOfStructs(axes)};
+}
+
 Offset<schema::Object> write(FlatBufferBuilder& builder, const ObjectModel& object) {
   const auto name = builder.CreateString(object.name);
   const auto surface = write(builder, object.surface);
   const auto sift = write(builder, object.sift);
   const auto shot = write(builder, object.shot);
-  std::vector<schema::Motion> motions;
-  for (const Rigid3& m : object.symmetries.discrete) motions.push_back(to_file(m));
-  std::vector<schema::Axis> axes;
-  for (const auto& c : object.symmetries.continuous) axes.push_back(to_file(c));
-  const auto discrete = builder.CreateVectorOfStructs(motions);
-  const auto continuous = builder.CreateVectorOfStructs(axes);
+  const auto [discrete, continuous] = write(builder, object.symmetries);
+  const auto [shape_discrete, shape_continuous] = write(builder, object.shape_symmetries);
   const schema::Vec3 center(object.center.x(), object.center.y(), object.center.z());
   return schema::CreateObject(builder, name, object.bop_id, surface, sift, shot, discrete, continuous, &center,
-                              object.diameter_m);
+                              object.diameter_m, shape_discrete, shape_continuous);
 }
 
 }  // namespace

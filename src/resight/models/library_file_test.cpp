@@ -79,6 +79,8 @@ ObjectModel make_object(const std::string& name, int bop_id, Rng& rng) {
   object.shot = make_features(FeatureType::kShot, bop_id == 2 ? 0 : 5, rng);
   object.symmetries.discrete.push_back(Rigid3::from_axis_angle({1, 2, 3}, 0.5) * Rigid3::from_translation({4, 5, 6}));
   object.symmetries.continuous.push_back({.axis = {0, 1, 2}, .offset = {7, 8, 9}});
+  object.shape_symmetries.discrete.push_back(Rigid3::from_axis_angle({3, 1, 2}, 0.7));
+  object.shape_symmetries.continuous.push_back({.axis = {1, 1, 2}, .offset = {1, 8, 9}});
   object.center = random_vector(rng);
   object.diameter_m = 0.25F;
   return object;
@@ -102,6 +104,16 @@ void expect_equal(const FeatureSet& a, const FeatureSet& b) {
   EXPECT_EQ(a.descriptors, b.descriptors);
 }
 
+void expect_equal(const ObjectSymmetries& a, const ObjectSymmetries& b) {
+  ASSERT_EQ(a.discrete.size(), b.discrete.size());
+  for (std::size_t k = 0; k < a.discrete.size(); ++k) EXPECT_EQ(a.discrete[k].matrix(), b.discrete[k].matrix());
+  ASSERT_EQ(a.continuous.size(), b.continuous.size());
+  for (std::size_t k = 0; k < a.continuous.size(); ++k) {
+    EXPECT_EQ(a.continuous[k].axis, b.continuous[k].axis);
+    EXPECT_EQ(a.continuous[k].offset, b.continuous[k].offset);
+  }
+}
+
 void expect_equal(const ModelLibrary& a, const ModelLibrary& b) {
   EXPECT_EQ(a.options_hash, b.options_hash);
   EXPECT_EQ(a.surface_voxel_m, b.surface_voxel_m);
@@ -116,14 +128,8 @@ void expect_equal(const ModelLibrary& a, const ModelLibrary& b) {
     EXPECT_EQ(x.surface.colors, y.surface.colors);
     expect_equal(x.sift, y.sift);
     expect_equal(x.shot, y.shot);
-    ASSERT_EQ(x.symmetries.discrete.size(), y.symmetries.discrete.size());
-    for (std::size_t k = 0; k < x.symmetries.discrete.size(); ++k)
-      EXPECT_EQ(x.symmetries.discrete[k].matrix(), y.symmetries.discrete[k].matrix());
-    ASSERT_EQ(x.symmetries.continuous.size(), y.symmetries.continuous.size());
-    for (std::size_t k = 0; k < x.symmetries.continuous.size(); ++k) {
-      EXPECT_EQ(x.symmetries.continuous[k].axis, y.symmetries.continuous[k].axis);
-      EXPECT_EQ(x.symmetries.continuous[k].offset, y.symmetries.continuous[k].offset);
-    }
+    expect_equal(x.symmetries, y.symmetries);
+    expect_equal(x.shape_symmetries, y.shape_symmetries);
     EXPECT_EQ(x.center, y.center);
     EXPECT_EQ(x.diameter_m, y.diameter_m);
   }
@@ -256,6 +262,8 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].shot.normals.pop_back(); }, "SHOT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.discrete[0].rotation *= 1000; }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].axis.setZero(); }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].shape_symmetries.discrete[0].rotation *= 1000; }, "shape symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous[0].axis.setZero(); }, "shape symmetries"},
       {[&](ModelLibrary& l) { l.objects[0].center.x() = nan; }, "centre"},
       {[&](ModelLibrary& l) { l.objects[0].diameter_m = nan; }, "diameter"},
       {[](ModelLibrary& l) { l.surface_voxel_m = 0; }, "voxel size"},

@@ -64,6 +64,11 @@ ObjectSymmetries find_undeclared(const PointCloud& surface, const TrainOptions& 
   return find_symmetries(surface, symmetry);
 }
 
+ObjectSymmetries find_shape_symmetries(PointCloud surface, const TrainOptions& options) {
+  surface.colors.clear();
+  return find_undeclared(surface, options);
+}
+
 }  // namespace
 
 Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options) {
@@ -74,6 +79,7 @@ Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& 
     model->symmetries = source.symmetries;
   else if (options.find_symmetries)
     model->symmetries = find_undeclared(model->surface, options);
+  if (options.find_symmetries) model->shape_symmetries = find_shape_symmetries(model->surface, options);
   return model;
 }
 

@@ -155,9 +155,21 @@ TEST(TrainObjectFromSource, FindsSymmetriesUnlessTheyAreDeclared) {
   EXPECT_EQ(found->symmetries.discrete.size(), 1U);
   source.symmetries_known = true;
   EXPECT_TRUE(train_object(source, options)->symmetries.none());
+  EXPECT_EQ(train_object(source, options)->shape_symmetries.continuous.size(), 1U);
   source.symmetries_known = false;
   options.find_symmetries = false;
   EXPECT_TRUE(train_object(source, options)->symmetries.none());
+  EXPECT_TRUE(train_object(source, options)->shape_symmetries.none());
+}
+
+TEST(TrainObjectFromSource, FindsWhatOnlyThePrintTellsApart) {
+  ModelSource source;
+  source.name = "soup";
+  source.mesh = make_procedural_object("soup_tomato")->mesh;
+  const Result<ObjectModel> found = train_object(source, make_quick_options());
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_TRUE(found->symmetries.none());
+  EXPECT_EQ(found->shape_symmetries.continuous.size(), 1U);
 }
 
 // Programs and prints say what these are; the sponge is symmetric but for its pores.

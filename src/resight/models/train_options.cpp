@@ -9,7 +9,7 @@ namespace resight {
 namespace {
 
 // Counts up whenever the same options give another result, or the library file changes.
-constexpr int kTrainingVersion = 3;
+constexpr int kTrainingVersion = 4;
 
 // Each options struct is taken apart completely: a field that is added to it does not compile here until it is hashed
 // (or left out on purpose, as numbers of threads are).

@@ -144,6 +144,8 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.min_pattern_similarity", &s.min_pattern_similarity},
                                   {"shape.max_matches", &s.max_matches},
                                   {"shape.match_distance_m", &s.match_distance_m},
+                                  {"shape.turn_step_rad", &s.turn_step_rad},
+                                  {"shape.max_turns", &s.max_turns},
                                   {"shape.min_visible_share", &s.min_visible_share},
                                   {"shape.max_hypotheses", &s.max_hypotheses},
                                   {"shape.min_feature_share", &s.min_feature_share},
@@ -223,6 +225,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.refine_max_normal_angle_rad", &v.refine.max_normal_angle_rad},
                                   {"verify.refine_max_step_m", &v.refine.max_step_m},
                                   {"verify.refine_correspondence_weight", &v.refine.correspondence_weight},
+                                  {"verify.turn_step_rad", &v.turn_step_rad},
                                   {"verify.merge_distance_m", &v.merge_distance_m},
                                   {"verify.merge_rotation_rad", &v.merge_rotation_rad},
                                   {"verify.use_planes", &v.use_planes},
@@ -242,7 +245,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.max_inlier_angle_rad", &v.max_inlier_angle_rad},
                                   {"verify.newest_view_decides", &v.newest_view_decides},
                                   {"verify.continuation_offset_m", &v.continuation_offset_m},
-                                  {"verify.continuation_matches", &v.continuation_matches},
+                                  {"verify.continuation_contrast", &v.continuation_contrast},
                                   {"verify.max_seen_through_share", &v.max_seen_through_share},
                                   {"verify.max_moves", &v.max_moves},
                                   {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
@@ -368,7 +371,10 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.min_pattern_similarity = 0.57;  // ...but its print stays its own.
     config.verify.clutter_weight = 6;
     config.verify.continuation_offset_m = 0.005;
-    config.verify.continuation_matches = 20;
+    config.verify.continuation_contrast = 2;
+    config.verify.turn_step_rad = 0.1745;  // 10 deg.
+    config.shape.turn_step_rad = 0.1745;
+    config.prepare.normals.window_radius_px = 4;  // 20 deg off with 2, 6 with 4 (bench_baselines).
     config.verify.newest_view_decides = true;
     config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...

@@ -27,8 +27,9 @@ void keep_within(const Eigen::ArrayXf& distances_sq, float radius_sq, bool of_al
 }  // namespace
 
 DipoleSearch::DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
-                           const DipoleTable& table, const ShapeSearchOptions& options)
-    : scene_(scene), probe_(probe), objects_(objects), table_(table), options_(options) {
+                           const DipoleTable& table, std::span<const int> max_entries,
+                           const ShapeSearchOptions& options)
+    : scene_(scene), probe_(probe), objects_(objects), table_(table), max_entries_(max_entries), options_(options) {
   coordinates_.resize(static_cast<Eigen::Index>(scene.size()), 3);
   for (std::size_t i = 0; i < scene.size(); ++i)
     coordinates_.row(static_cast<Eigen::Index>(i)) = scene.points[i].transpose().array();
@@ -71,7 +72,7 @@ void DipoleSearch::try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCand
     std::size_t end = begin;
     while (end < entries.size() && entries[end].object == entries[begin].object) ++end;
     const auto count = static_cast<std::uint32_t>(end - begin);
-    const auto tries = std::min(count, static_cast<std::uint32_t>(options_.max_entries));
+    const auto tries = std::min(count, static_cast<std::uint32_t>(max_entries_[entries[begin].object]));
     for (std::uint32_t t = 0; t < tries; ++t)
       try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.chroma_at(first),
                 probe_.chroma_at(second), found);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "resight/core/random.hpp"
@@ -14,7 +15,7 @@ namespace resight {
 class DipoleSearch {
  public:
   DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
-               const DipoleTable& table, const ShapeSearchOptions& options);
+               const DipoleTable& table, std::span<const int> max_entries, const ShapeSearchOptions& options);
 
   /// Poses that pass the first test, of dipoles from one scene point to others around it.
   [[nodiscard]] std::vector<PoseCandidate> from_seed(std::size_t seed) const;
@@ -29,6 +30,7 @@ class DipoleSearch {
   const PoseProbe& probe_;
   const std::vector<ProbeModel>& objects_;
   const DipoleTable& table_;
+  std::span<const int> max_entries_;
   const ShapeSearchOptions& options_;
   Eigen::Array<float, Eigen::Dynamic, 3> coordinates_;  // of the scene
 };

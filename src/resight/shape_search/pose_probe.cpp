@@ -351,16 +351,26 @@ double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& con
   return num_cells * static_cast<double>(kCellSpacings * kCellSpacings);
 }
 
+PoseFit PoseProbe::shape_fit(const Confirmed& confirmed) {
+  PoseFit fit;
+  if (confirmed.samples.empty()) return fit;
+  fit.num_explained = static_cast<int>(confirmed.samples.size());
+  fit.explained_share = static_cast<double>(fit.num_explained) / (fit.num_explained + confirmed.wrong);
+  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  return fit;
+}
+
+bool PoseProbe::fits_in_shape(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                              const PoseFit& least) const {
+  return shape_fit(confirm(model, camera_from_object, tolerance_m)).reaches(least);
+}
+
 PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
                          const VerifyOptions& colors, const PoseFit& least) const {
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
-  PoseFit fit;
-  if (confirmed.samples.empty()) return fit;
+  PoseFit fit = shape_fit(confirmed);
+  if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
   const double num_visible = static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong);
-  fit.num_explained = static_cast<int>(confirmed.samples.size());
-  fit.explained_share = fit.num_explained / num_visible;
-  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
-  if (!fit.reaches(least)) return fit;
   if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;

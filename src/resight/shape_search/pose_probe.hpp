@@ -108,6 +108,9 @@ class PoseProbe {
   /// The light on the object at a pose that is known to be about right (light_fit.hpp); its chroma is not limited.
   [[nodiscard]] LightFit light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
                                   const LightLimits& limits) const;
+  /// Whether the last test, without colours and what goes on beyond the object, would reach `least`.
+  [[nodiscard]] bool fits_in_shape(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                                   const PoseFit& least) const;
   /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp). What cannot reach
   /// `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
   [[nodiscard]] PoseFit judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
@@ -141,6 +144,7 @@ class PoseProbe {
   [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
   void confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
                       float tolerance, Confirmed& confirmed) const;
+  [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
   void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const ProbeModel& model, const Confirmed& confirmed,
                                         const VerifyOptions& options) const;

@@ -11,6 +11,7 @@
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/symmetry.hpp"
+#include "resight/models/shape_turns.hpp"
 #include "resight/shape_search/dipole_search.hpp"
 #include "resight/shape_search/match_pairs.hpp"
 
@@ -22,7 +23,10 @@ constexpr double kMaxLengthShare = 0.8;   // ...and longer ones are seldom seen 
 constexpr double kMaxLength_m = 1;        // Whatever a library says of its objects: the table grows with it.
 constexpr double kMinExplainedShareOfSamples = 0.1;
 constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
-constexpr int kMaxPerPlace = 2;        // so many are left to the verification.
+constexpr int kMaxPerPlace = 2;        // so many are left to the verification...
+constexpr int kMaxRoundPerPlace = 1;   // ...which finds the turn of what is round by itself.
+
+constexpr int kAlikeEntries = 4;  // Of what is round, more dipoles than these differ by a turn only.
 
 Rigid3 to_double(const Rigid3f& motion) {
   return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
@@ -39,6 +43,10 @@ struct ShapeSearch::Impl {
   Impl(const ModelLibrary& models, const ShapeSearchOptions& settings, const VerifyOptions& color_settings)
       : library(models), options((settings.check(), settings)), colors(color_settings) {
     objects.resize(library.objects.size());
+    turns.resize(library.objects.size());
+    if (options.turn_step_rad > 0)
+      for (std::size_t o = 0; o < objects.size(); ++o)
+        turns[o] = shape_turns(library.objects[o], options.turn_step_rad);
     parallel_for(objects.size(), options.num_threads,
                  [&](std::size_t o) { objects[o] = make_probe_model(library.objects[o], options.max_model_samples); });
     std::vector<DipoleTable::Samples> samples;
@@ -76,7 +84,8 @@ struct ShapeSearch::Impl {
     const PoseProbe& probe = view.probe;
     if (!view.samples.points.has_normals()) return {};
     const std::vector<ProbeModel> balanced = balance(probe, from_features);
-    std::vector<std::vector<PoseCandidate>> of_object = find_candidates(view.samples.points, probe, balanced);
+    std::vector<std::vector<PoseCandidate>> of_object =
+        find_candidates(view.samples.points, probe, without_colors_of_round_shapes(balanced));
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
     parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
       if (!matches.empty()) {
@@ -85,7 +94,7 @@ struct ShapeSearch::Impl {
       }
       std::stable_sort(of_object[o].begin(), of_object[o].end(),
                        [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
-      judged[o] = choose(judge(of_object[o], probe));
+      judged[o] = choose(judge(of_object[o], balanced[o], probe));
       if (matches.empty()) return;
       for (ShapeCandidate& c : judged[o])
         c.matches = agreeing_matches(matches[o], c.camera_from_object, options.match_distance_m);
@@ -99,7 +108,11 @@ struct ShapeSearch::Impl {
                                                                         const std::vector<ProbeModel>& balanced) const {
     std::vector<std::vector<PoseCandidate>> of_object(objects.size());
     if (table.size() == 0) return of_object;
-    const DipoleSearch dipoles(scene, probe, balanced, table, options);
+    std::vector<int> max_entries;
+    for (std::size_t o = 0; o < objects.size(); ++o)
+      max_entries.push_back(is_round_in_shape(o) ? std::max(1, options.max_entries / kAlikeEntries)
+                                                 : options.max_entries);
+    const DipoleSearch dipoles(scene, probe, balanced, table, max_entries, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
@@ -113,24 +126,59 @@ struct ShapeSearch::Impl {
     return of_object;
   }
 
+  // A few turns are found one by one. Of many, a pair of points hardly ever gives the right one.
+  [[nodiscard]] bool is_round_in_shape(std::size_t object) const {
+    constexpr std::size_t kMany = 12;
+    return turns[object].size() > kMany;
+  }
+
+  [[nodiscard]] std::vector<ProbeModel> without_colors_of_round_shapes(std::vector<ProbeModel> models) const {
+    for (std::size_t o = 0; o < models.size(); ++o)
+      if (is_round_in_shape(o)) models[o].chroma.clear();
+    return models;
+  }
+
+  // The pose, or the turns of it with most samples of the right hue.
+  [[nodiscard]] std::vector<Rigid3> turns_of(std::size_t object, const Rigid3& pose, const ProbeModel& balanced,
+                                             const PoseProbe& probe) const {
+    if (!is_round_in_shape(object)) return {pose};
+    CountSamplesOptions all = options.coarse;
+    all.max_samples = all.max_wrong = static_cast<int>(balanced.points.size());
+    std::vector<std::pair<float, Rigid3>> scored;
+    for (const Rigid3& turn : turns[object])
+      scored.emplace_back(probe.count(balanced, Rigid3f(pose * turn), all).score(), pose * turn);
+    std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Rigid3> best;
+    for (std::size_t t = 0; t < std::min(scored.size(), static_cast<std::size_t>(options.max_turns)); ++t)
+      best.push_back(scored[t].second);
+    return best;
+  }
+
   // The best by the first test, no two alike, refined; those that hold.
   [[nodiscard]] std::vector<ShapeCandidate> judge(const std::vector<PoseCandidate>& candidates,
-                                                  const PoseProbe& probe) const {
+                                                  const ProbeModel& balanced, const PoseProbe& probe) const {
     std::vector<ShapeCandidate> judged;
     std::vector<Rigid3> tried;
     for (const PoseCandidate& c : candidates) {
       if (static_cast<int>(tried.size()) == options.max_refined) break;
       const Rigid3 start = to_double(c.camera_from_object);
-      if (std::any_of(tried.begin(), tried.end(), [&](const Rigid3& other) { return is_same(c.object, start, other); }))
+      const auto object = static_cast<std::size_t>(c.object);
+      const ObjectModel& sought = library.objects[object];
+      const ObjectSymmetries& symmetries = is_round_in_shape(object) ? sought.shape_symmetries : sought.symmetries;
+      if (std::any_of(tried.begin(), tried.end(),
+                      [&](const Rigid3& other) { return is_same(c.object, start, other, symmetries); }))
         continue;
       tried.push_back(start);
-      const ProbeModel& model = objects[static_cast<std::size_t>(c.object)];
-      const Rigid3 pose = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
+      const ProbeModel& model = objects[object];
+      const Rigid3 refined = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
       const PoseFit least = least_fit(model);
-      const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors, least);
-      if (!fit.reaches(least)) continue;
-      const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
-      judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
+      if (!probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
+      for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
+        const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors, least);
+        if (!fit.reaches(least)) continue;
+        const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
+        judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
+      }
     }
     return judged;
   }
@@ -150,10 +198,12 @@ struct ShapeSearch::Impl {
       int num_here = 0;
       bool repeated = false;
       for (const ShapeCandidate& other : kept) {
-        repeated = repeated || is_same(c.object, c.camera_from_object, other.camera_from_object);
+        repeated = repeated || is_same(c.object, c.camera_from_object, other.camera_from_object,
+                                       library.objects[static_cast<std::size_t>(c.object)].symmetries);
         num_here += distance_m(c.object, c.camera_from_object, other.camera_from_object) < kSamePlace_m ? 1 : 0;
       }
-      if (!repeated && num_here < kMaxPerPlace) kept.push_back(c);
+      const int most = is_round_in_shape(static_cast<std::size_t>(c.object)) ? kMaxRoundPerPlace : kMaxPerPlace;
+      if (!repeated && num_here < most) kept.push_back(c);
     }
     return kept;
   }
@@ -163,16 +213,16 @@ struct ShapeSearch::Impl {
     return (a * center - b * center).norm();
   }
 
-  [[nodiscard]] bool is_same(int object, const Rigid3& a, const Rigid3& b) const {
+  [[nodiscard]] bool is_same(int object, const Rigid3& a, const Rigid3& b, const ObjectSymmetries& symmetries) const {
     return distance_m(object, a, b) < options.same_place_m &&
-           symmetric_rotation_distance_rad(a, b, library.objects[static_cast<std::size_t>(object)].symmetries) <
-               options.same_rotation_rad;
+           symmetric_rotation_distance_rad(a, b, symmetries) < options.same_rotation_rad;
   }
 
   const ModelLibrary& library;
   ShapeSearchOptions options;
   VerifyOptions colors;
   std::vector<ProbeModel> objects;
+  std::vector<std::vector<Rigid3>> turns;  // shape_turns() of each.
   DipoleTable table;
 };
 
@@ -193,6 +243,8 @@ void ShapeSearchOptions::check() const {
   check_in_range("ShapeSearchOptions.min_explained_share", min_explained_share, 0, 1);
   check_in_range("ShapeSearchOptions.min_pattern_similarity", min_pattern_similarity, -1, 1);
   check_in_range("ShapeSearchOptions.min_visible_share", min_visible_share, 0, 1);
+  check_in_range("ShapeSearchOptions.turn_step_rad", turn_step_rad, 0, std::numbers::pi);
+  check_positive("ShapeSearchOptions.max_turns", max_turns);
   check_not_negative("ShapeSearchOptions.max_hypotheses", max_hypotheses);
   check_in_range("ShapeSearchOptions.min_feature_share", min_feature_share, 0, 1);
   check_not_negative("ShapeSearchOptions.same_place_m", same_place_m);

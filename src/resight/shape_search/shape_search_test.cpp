@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight {
@@ -47,6 +49,27 @@ TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
     ++object;
   }
   EXPECT_EQ(best_of(found, 2), nullptr);
+}
+
+// Shape finds the can, and leaves its turn to the print: a pair of points alone hardly ever gives both.
+TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
+  const Paint paint = [](const Eigen::Vector3d& p) {
+    const double angle = std::atan2(p.y(), p.x());
+    return angle < -1.5 ? Rgb8{200, 40, 40} : angle < 0.3 ? Rgb8{230, 220, 200} : Rgb8{50, 80, 180};
+  };
+  const Solid can{Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0.05, 0, 0.06, 2.2)};
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = Eigen::Vector3d::UnitZ()});
+  const PreparedView view = prepare_view(render({.solids = {can}}, circle_of_cameras(3)[1]).frame);
+  ShapeSearchOptions options;
+  options.turn_step_rad = 0.1745;
+  options.max_seeds = 50;  // Few pairs of points: by chance alone the turn is hardly found.
+  const ShapeSearch search(library, options);
+  const auto found = search.search(SearchedView(view, options));
+  ASSERT_FALSE(found.empty());
+  const Rigid3 pose = view.frame.world_from_camera * found[0].camera_from_object;
+  EXPECT_LT((pose.translation - can.world_from_object.translation).norm(), 0.006);
+  EXPECT_LT(rotation_angle_rad(pose.rotation, can.world_from_object.rotation), 0.2);
 }
 
 TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {

@@ -10,6 +10,7 @@
 #include "resight/verification/local_scene.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/pose_refinement.hpp"
+#include "resight/verification/print_turn.hpp"
 
 namespace resight {
 namespace {
@@ -75,6 +76,22 @@ struct CueComputer::Impl {
       place(refine_pose_on_scene(model_, cues_.evidence.world_from_object, roughly_visible(views, allowed),
                                  correspondences, scene_, options_.refine));
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+    compare_with_scene();
+    const Rigid3 turn = find_turn();
+    if (turn.rotation.isIdentity()) return;
+    place(cues_.evidence.world_from_object * turn);
+    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+    compare_with_scene();
+  }
+
+  // To where the print of the model fits that of the scene, about what the shape leaves free.
+  Rigid3 find_turn() const {
+    if (model_.turns.size() < 2 || !local_ || !use_color_) return Rigid3::identity();
+    const Rigid3f object_from_world(cues_.evidence.world_from_object.inverse());
+    std::vector<ExplainedPoint> explained;
+    for (const Match& m : nearest_)
+      explained.push_back({object_from_world * local_->point(static_cast<std::size_t>(m.local)), local_lab_[m.local]});
+    return find_print_turn(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
   }
 
   // Of up to two thousand points of the model: enough to refine a pose with.
@@ -102,6 +119,9 @@ struct CueComputer::Impl {
   }
 
   void compare_with_scene() {
+    local_.reset();
+    matches_.clear();
+    nearest_.clear();
     if (visibility_.visible.empty()) return;
     std::vector<Eigen::Vector3f> visible_points;
     visible_points.reserve(visibility_.visible.size());
@@ -184,14 +204,19 @@ struct CueComputer::Impl {
 
   void compare_patterns() {
     if (!use_color_) return;
+    std::vector<LabColor> print;  // Of the model, in no light: what is plain has no contrast for being round.
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
     for (const Match& m : nearest_) {
+      print.push_back(model_.lab[visibility_.visible[m.visible]]);
       model_colors.push_back(lab_[m.visible]);
       scene_colors.push_back(local_lab_[m.local]);
     }
-    cues_.evidence.pattern_similarity =
-        pattern_similarity(model_colors, scene_colors, options_.color_sigma_l / options_.color_sigma_ab);
+    const double chroma_weight = options_.color_sigma_l / options_.color_sigma_ab;
+    const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
+    cues_.evidence.pattern_similarity = match.similarity;
+    cues_.evidence.shared_contrast =
+        std::min(match.shared_contrast, match_patterns(print, print, chroma_weight).shared_contrast);
   }
 
   // -log of the colour similarity.
@@ -287,10 +312,9 @@ struct CueComputer::Impl {
                                   return !goes_on;
                                 });
     if (!goes_on) return 0;
-    const double doubt = options_.continuation_matches > 0
-                             ? 1 / (1 + cues_.evidence.num_correspondences / options_.continuation_matches)
-                             : 1;
-    return static_cast<float>(options_.clutter_weight * doubt);
+    const double print =
+        options_.continuation_contrast > 0 ? cues_.evidence.shared_contrast / options_.continuation_contrast : 0;
+    return static_cast<float>(options_.clutter_weight / (1 + print * print));
   }
 
   // Cost of leaving q unexplained beside the explained points around it.
@@ -411,7 +435,6 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
     : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
   impl_->look(correspondences, views, allowed);
   impl_->count_agreeing(correspondences);
-  impl_->compare_with_scene();
 }
 CueComputer::~CueComputer() = default;
 CueComputer::CueComputer(CueComputer&&) noexcept = default;

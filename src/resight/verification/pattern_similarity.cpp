@@ -2,6 +2,7 @@
 #include "resight/verification/pattern_similarity.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "resight/core/check.hpp"
 
@@ -16,9 +17,9 @@ Eigen::Vector3d weighted(const LabColor& color, double chroma_weight) {
 
 }  // namespace
 
-double pattern_similarity(std::span<const LabColor> a, std::span<const LabColor> b, double chroma_weight) {
-  require(a.size() == b.size(), "pattern_similarity: the patterns differ in size");
-  if (a.empty()) return 1;
+PatternMatch match_patterns(std::span<const LabColor> a, std::span<const LabColor> b, double chroma_weight) {
+  require(a.size() == b.size(), "match_patterns: the patterns differ in size");
+  if (a.empty()) return {};
   Eigen::Vector3d mean_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_b = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -36,7 +37,12 @@ double pattern_similarity(std::span<const LabColor> a, std::span<const LabColor>
     variances += x.squaredNorm() + y.squaredNorm();
     covariance += x.dot(y);
   }
-  return (2 * covariance / n + kNoiseVariance) / (variances / n + kNoiseVariance);
+  return {(2 * covariance / n + kNoiseVariance) / (variances / n + kNoiseVariance),
+          std::max(0.0, covariance / n / kNoiseVariance)};
+}
+
+double pattern_similarity(std::span<const LabColor> a, std::span<const LabColor> b, double chroma_weight) {
+  return match_patterns(a, b, chroma_weight).similarity;
 }
 
 }  // namespace resight

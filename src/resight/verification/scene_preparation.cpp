@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "resight/geometry/triangle_mesh.hpp"
+#include "resight/models/shape_turns.hpp"
 
 namespace resight {
 namespace {
@@ -82,7 +83,11 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
 PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
   PointCloud thinned = voxel_downsample(model.surface, options.resolution_m);
   PreparedModel prepared;
-  if (options.use_color && thinned.has_colors()) prepared.linear_light = to_linear_light(thinned.colors);
+  if (options.use_color && thinned.has_colors()) {
+    prepared.linear_light = to_linear_light(thinned.colors);
+    for (const Eigen::Vector3f& light : prepared.linear_light) prepared.lab.push_back(to_lab(light));
+    if (options.turn_step_rad > 0) prepared.turns = shape_turns(model, options.turn_step_rad);
+  }
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
   prepared.center = centroid(prepared.points);

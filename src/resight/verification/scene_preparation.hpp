@@ -44,6 +44,8 @@ struct PreparedModel {
   std::vector<Eigen::Vector3f> points;               ///< Thinned to resolution_m.
   std::vector<Eigen::Vector3f> normals;              ///< Empty or as long as points.
   std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
+  std::vector<LabColor> lab;                         ///< The same.
+  std::vector<Rigid3> turns;                         ///< shape_turns(): by shape alone, these poses are one.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };

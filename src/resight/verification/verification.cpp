@@ -240,13 +240,14 @@ void VerifyOptions::check() const {
   check_in_range(name("clutter_weight"), clutter_weight, 0, 1000);
   check_in_range(name("near_clutter_weight"), near_clutter_weight, 0, 1000);
   check_not_negative(name("continuation_offset_m"), continuation_offset_m);
-  check_not_negative(name("continuation_matches"), continuation_matches);
+  check_not_negative(name("continuation_contrast"), continuation_contrast);
   check_in_range(name("occupancy_weight"), occupancy_weight, 0, 1e6);
   check_positive(name("occupancy_voxel_m"), occupancy_voxel_m);
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
   check_positive(name("color_sigma_l"), color_sigma_l);
   check_positive(name("color_sigma_ab"), color_sigma_ab);
   refine.check();
+  check_in_range(name("turn_step_rad"), turn_step_rad, 0, std::numbers::pi);
   check_not_negative(name("merge_distance_m"), merge_distance_m);
   check_in_range(name("merge_rotation_rad"), merge_rotation_rad, 0, std::numbers::pi);
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);

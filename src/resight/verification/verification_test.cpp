@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 
 #include "resight/core/random.hpp"
@@ -270,34 +271,66 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
 }
 
-TEST(VerifyHypotheses, APrintThatMatchesRulesOutThatItIsPartOfSomethingLarger) {
-  const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
-  const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
-  const ModelLibrary library{.objects = {make_model("small", small)}};
-  const Fixture f({.solids = {board}}, circle_of_cameras(4));
-  Hypothesis hypothesis = make_hypothesis(0, small.world_from_object);
-  const auto evidence = [&](double matches) {
+TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
+  const auto evidence = [](const Paint& paint, double contrast) {
+    const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, paint, on_table(0, 0, 0.04)};
+    const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, paint, on_table(0, 0, 0.04)};
+    const ModelLibrary library{.objects = {make_model("small", small)}};
+    const Fixture f({.solids = {board}}, circle_of_cameras(4));
     const VerifyOptions options{.clutter_weight = 6,
                                 .continuation_offset_m = 0.005,
-                                .continuation_matches = matches,
+                                .continuation_contrast = contrast,
                                 .refine = {.max_iterations = 0},
                                 .use_planes = false};
-    return f.verify({hypothesis}, library, options).evidence[0];
+    return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
   };
-  const double full = evidence(0).clutter_cost;
+  const Paint yellow = plain({180, 170, 60});
+  const double full = evidence(yellow, 0).clutter_cost;
   EXPECT_GT(full, 100);
-  EXPECT_EQ(evidence(10).num_correspondences, 0);
-  EXPECT_EQ(evidence(10).clutter_cost, full);
-  for (std::size_t i = 0; i < 30; ++i) {
-    Correspondence c;
-    c.model_point = library.objects[0].surface.points[i];
-    c.scene_point = Rigid3f(small.world_from_object) * c.model_point;
-    if (i >= 10) c.scene_point.z() += 0.1F;  // These do not agree with the pose.
-    hypothesis.correspondences.push_back(c);
+  EXPECT_LT(evidence(yellow, 0.5).shared_contrast, 0.01);
+  EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
+  const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
+  const double full_of_printed = evidence(printed, 0).clutter_cost;
+  EXPECT_GT(full_of_printed, 100);
+  const HypothesisEvidence e = evidence(printed, 0.5);
+  EXPECT_GT(e.shared_contrast, 0.5);
+  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_contrast / 0.5, 2)), 1e-2 * full_of_printed);
+}
+
+// Painted all round, so that each turn looks different.
+Solid printed_can() {
+  const Paint paint = [](const Eigen::Vector3d& p) {
+    const double angle = std::atan2(p.y(), p.x());
+    return angle < -1.5 ? Rgb8{200, 40, 40} : angle < 0.3 ? Rgb8{230, 220, 200} : Rgb8{50, 80, 180};
+  };
+  return {Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0, 0, 0.06, 0.4)};
+}
+
+TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
+  const Solid can = printed_can();
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
+  const auto angle_left_deg = [&](double turned_deg, double step_rad) {
+    const Rigid3 pose = can.world_from_object * Rigid3::from_axis_angle(kZ, turned_deg / 57.29578);
+    const VerifyResult result = f.verify({make_hypothesis(0, pose)}, library, {.turn_step_rad = step_rad});
+    return 57.29578 * rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation);
+  };
+  for (const double turned_deg : {-100.0, 37.0, 170.0}) {
+    EXPECT_NEAR(angle_left_deg(turned_deg, 0), std::abs(turned_deg), 5) << turned_deg;  // Shape says nothing of it.
+    EXPECT_LT(angle_left_deg(turned_deg, 0.1745), 12) << turned_deg;
   }
-  EXPECT_EQ(evidence(10).num_correspondences, 10);
-  EXPECT_NEAR(evidence(10).clutter_cost, 0.5 * full, 1e-3 * full);
-  EXPECT_EQ(evidence(0).clutter_cost, full);
+  EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
+}
+
+TEST(VerifyHypotheses, APlainCanIsNotTurned) {
+  Solid can = printed_can();
+  can.paint = plain({150, 150, 160});
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});  // As if its own had been overlooked.
+  const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
+  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
 TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "resight/geometry/rigid3.hpp"
+#include "resight/verification/lab_color.hpp"
+
+namespace resight {
+
+struct PreparedModel;
+
+/// A surface point of the scene that a pose explains: where it lies in the object frame, and its colour.
+struct ExplainedPoint {
+  Eigen::Vector3f p_in_object = Eigen::Vector3f::Zero();
+  LabColor color;
+};
+
+/// The turn of PreparedModel::turns (object_from_turned: the better pose is world_from_object * turn) under which the
+/// print of the model is most like the scene's: depth alone says nothing about it. The identity, unless another is
+/// clearly better.
+[[nodiscard]] Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points,
+                                     double chroma_weight);
+
+}  // namespace resight
