@@ -4,6 +4,7 @@
 
 #include "contest.hpp"
 #include "found_objects.hpp"
+#include "pcl/pcl_votes.hpp"
 #include "plain_points.hpp"
 #include "stages.hpp"
 
@@ -22,21 +23,29 @@ double group_ours(const StageInput& input, Posed& found) {
   });
 }
 
-double group_peer(const StageInput& input, Posed& found) {
-  const GroupCorrespondencesOptions& options = input.config.generate.grouping;
+/// The correspondences of one object, side by side.
+struct Pairs {
+  std::vector<Eigen::Vector3f> model, scene;
+  std::vector<float> distances;
+};
+
+Pairs pairs_of(const std::vector<Correspondence>& correspondences) {
+  Pairs pairs;
+  for (const Correspondence& c : correspondences) {
+    pairs.model.push_back(c.model_point);
+    pairs.scene.push_back(c.scene_point);
+    pairs.distances.push_back(c.distance_sq);
+  }
+  return pairs;
+}
+
+// `group`: what a peer makes of the pairs of one object.
+template <typename Group>
+double group_peer(const StageInput& input, Posed& found, Group&& group) {
   double cpu_s = 0;
   found.clear();
   for (std::size_t o = 0; o < input.correspondences.size(); ++o) {
-    std::vector<Eigen::Vector3f> model, scene;
-    std::vector<float> distances;
-    for (const Correspondence& c : input.correspondences[o]) {
-      model.push_back(c.model_point);
-      scene.push_back(c.scene_point);
-      distances.push_back(c.distance_sq);
-    }
-    const auto poses =
-        pcl_peers::group_correspondences(to_plain(model), to_plain(scene), distances,
-                                         static_cast<float>(options.max_distance_difference_m), options.min_group_size);
+    const auto poses = group(pairs_of(input.correspondences[o]), input.library.objects[o]);
     cpu_s += poses.cpu_s;
     for (const pcl_peers::Pose& pose : poses.value) found.push_back({static_cast<int>(o), from_plain(pose)});
   }
@@ -48,11 +57,27 @@ double group_peer(const StageInput& input, Posed& found) {
 void compare_grouping(const StageInput& input) {
   std::size_t num_correspondences = 0;
   for (const auto& of_object : input.correspondences) num_correspondences += of_object.size();
-  Posed ours, peer;
+  const GroupCorrespondencesOptions& options = input.config.generate.grouping;
+  const auto consistency_m = static_cast<float>(options.max_distance_difference_m);
+  const ShotOptions& shot = input.config.shot;
+  const PointCloud surface = voxel_downsample(to_point_cloud(input.view.cloud, nullptr, true), shot.support_voxel_m);
+  const auto by_consistency = [&](const Pairs& pairs, const ObjectModel&) {
+    return pcl_peers::group_correspondences(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,
+                                            consistency_m, options.min_group_size);
+  };
+  const auto by_votes = [&](const Pairs& pairs, const ObjectModel& model) {
+    const PointCloud thinned = voxel_downsample(model.surface, shot.support_voxel_m);
+    return pcl_peers::group_by_votes(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,
+                                     to_plain(thinned.points), to_plain(surface.points),
+                                     static_cast<float>(shot.support_radius_m), consistency_m, options.min_group_size);
+  };
+  Posed ours, consistent, voted;
   compare(fmt::format("grouping of {} correspondences", num_correspondences),
           {{"resight", [&] { return group_ours(input, ours); }, [&] { return rate_proposals(input, ours); }},
-           {"PCL GeometricConsistencyGrouping", [&] { return group_peer(input, peer); },
-            [&] { return rate_proposals(input, peer); }}});
+           {"PCL GeometricConsistencyGrouping", [&] { return group_peer(input, consistent, by_consistency); },
+            [&] { return rate_proposals(input, consistent); }},
+           {"PCL Hough3DGrouping", [&] { return group_peer(input, voted, by_votes); },
+            [&] { return rate_proposals(input, voted); }}});
 }
 
 }  // namespace resight::bench

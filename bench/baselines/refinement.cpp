@@ -21,7 +21,6 @@ constexpr int kNumStarts = 10;  // An object.
 constexpr double kShift_m = 0.01;
 constexpr double kTurn_rad = 8 * std::numbers::pi / 180;
 constexpr double kMinVisibleShare = 0.3;
-constexpr int kPeerIterations = 30;
 
 struct Start {
   std::size_t object = 0;  // Of the library.
@@ -100,9 +99,10 @@ double refine_ours(const RefinementContest& contest, std::vector<Rigid3>& refine
 }
 
 double refine_peer(const RefinementContest& contest, pcl_peers::IcpKind kind, std::vector<Rigid3>& refined) {
-  const auto max_distance_m = static_cast<float>(contest.input.config.verify.refine.max_distance_m);
-  const auto result = pcl_peers::refine_poses({to_plain(contest.scene.points), to_plain(contest.scene.normals)},
-                                              contest.tasks, kind, max_distance_m, kPeerIterations);
+  const RefinePoseOptions& options = contest.input.config.verify.refine;
+  const auto result =
+      pcl_peers::refine_poses({to_plain(contest.scene.points), to_plain(contest.scene.normals)}, contest.tasks, kind,
+                              static_cast<float>(options.max_distance_m), options.max_iterations);
   refined.clear();
   for (const pcl_peers::Pose& pose : result.value) refined.push_back(from_plain(pose));
   return result.cpu_s;
@@ -149,14 +149,13 @@ void compare_refinement(const StageInput& input) {
   std::vector<Rigid3> ours, to_point, to_plane, untouched;
   for (const Start& start : contest.starts) untouched.push_back(start.start);
   compare(
-      fmt::format("refinement of {} poses", contest.starts.size()),
+      fmt::format("refinement of {} poses, {}", untouched.size(), rate(contest, untouched)),
       {{"resight", [&] { return refine_ours(contest, ours); }, [&] { return rate(contest, ours); }},
        {"PCL IterativeClosestPoint", [&] { return refine_peer(contest, pcl_peers::IcpKind::kPointToPoint, to_point); },
         [&] { return rate(contest, to_point); }},
        {"PCL IterativeClosestPointWithNormals",
         [&] { return refine_peer(contest, pcl_peers::IcpKind::kPointToPlane, to_plane); },
-        [&] { return rate(contest, to_plane); }},
-       {"(the start)", [] { return 0.0; }, [&] { return rate(contest, untouched); }}});
+        [&] { return rate(contest, to_plane); }}});
 }
 
 }  // namespace resight::bench

@@ -26,10 +26,13 @@ struct ShotTask {
   Rigid3 world_from_camera;
 };
 
-ShotTask make_task(const PreparedView& view, const ShotOptions& options) {
+// The keypoints of the view as it is, and its surface with normals from windows of this radius.
+ShotTask make_task(const PreparedView& view, const ShotOptions& options, int normals_radius_px) {
   const FeatureSet features = extract_shot(view, options);
+  OrganizedCloud cloud = view.cloud;
+  compute_normals(cloud, {.window_radius_px = normals_radius_px});
   ShotTask task;
-  task.support = voxel_downsample(to_point_cloud(view.cloud, nullptr, true), options.support_voxel_m);
+  task.support = voxel_downsample(to_point_cloud(cloud, nullptr, true), options.support_voxel_m);
   task.keypoints.points = features.points;
   task.keypoints.normals = features.normals;
   task.world_from_camera = view.frame.world_from_camera;
@@ -90,14 +93,22 @@ std::string rate(const Described& view, const Described& before, std::size_t num
 
 void compare_shot(const StageInput& input) {
   ShotOptions options = input.config.shot;
-  const ShotTask task = make_task(input.view, options);
-  const ShotTask task_before = make_task(input.before, options);
+  const int radius_px = input.config.prepare.normals.window_radius_px;
+  const ShotTask task = make_task(input.view, options, radius_px);
+  const ShotTask before = make_task(input.before, options, radius_px);
+  const ShotTask smooth_task = make_task(input.view, options, 2 * radius_px);
+  const ShotTask smooth_before = make_task(input.before, options, 2 * radius_px);
+  const std::size_t num_keypoints = task.keypoints.size();
   options.min_surface_variation = 0;  // Flat ones are out already.
-  Described ours, peer;
-  compare("SHOT, 4 cm", {{"resight", [&] { return (ours = describe_ours(task, options)).cpu_s; },
-                          [&] { return rate(ours, describe_ours(task_before, options), task.keypoints.size()); }},
-                         {"PCL SHOTEstimationOMP", [&] { return (peer = describe_peer(task, options)).cpu_s; },
-                          [&] { return rate(peer, describe_peer(task_before, options), task.keypoints.size()); }}});
+  Described ours, smooth, peer;
+  compare(fmt::format("SHOT, {:.0f} cm", 1e2 * options.support_radius_m),
+          {{"resight", [&] { return (ours = describe_ours(task, options)).cpu_s; },
+            [&] { return rate(ours, describe_ours(before, options), num_keypoints); }},
+           {"PCL SHOTEstimationOMP", [&] { return (peer = describe_peer(task, options)).cpu_s; },
+            [&] { return rate(peer, describe_peer(before, options), num_keypoints); }},
+           {fmt::format("resight, normals of {0} x {0} px", 4 * radius_px + 1),
+            [&] { return (smooth = describe_ours(smooth_task, options)).cpu_s; },
+            [&] { return rate(smooth, describe_ours(smooth_before, options), num_keypoints); }}});
 }
 
 }  // namespace resight::bench
