@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian 12 packages that resight is built from. Says one line and leaves apt alone when all are there.
-#   scripts/setup.sh            what the library and the program need
-#   scripts/setup.sh --tests    and what only the tests need
-#   scripts/setup.sh --bench    and what only the benchmarks need
+#   scripts/setup.sh              what the library and the program need
+#   scripts/setup.sh --tests      and what only the tests need
+#   scripts/setup.sh --bench      and what only the benchmarks need
+#   scripts/setup.sh --baselines  and PCL (hundreds of packages, 1 to 2 GB), which only bench_baselines uses
 set -euo pipefail
 
 packages=(
@@ -18,7 +19,8 @@ for option in "$@"; do
   case "$option" in
     --tests) packages+=(libgtest-dev libgmock-dev clang-format) ;;
     --bench) packages+=(libbenchmark-dev) ;;
-    *) echo "setup.sh: unknown option '$option' (expected --tests or --bench)" >&2; exit 2 ;;
+    --baselines) packages+=(libpcl-dev libopencv-flann-dev) ;;
+    *) echo "setup.sh: unknown option '$option' (expected --tests, --bench or --baselines)" >&2; exit 2 ;;
   esac
 done
 

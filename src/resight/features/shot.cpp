@@ -8,6 +8,7 @@
 #include "resight/features/shot_frame.hpp"
 #include "resight/features/shot_histogram.hpp"
 #include "resight/features/support_grid.hpp"
+#include "resight/features/uniform_sampling.hpp"
 
 namespace resight {
 namespace {
@@ -63,30 +64,6 @@ std::vector<Described> describe_in_blocks(const PointCloud& support, const Point
             block.keypoints.push_back(static_cast<int>(i));
       });
   return blocks;
-}
-
-/// Of the points in each cube of side `spacing_m` the one nearest to its centre (ties: the first), in order of the
-/// cubes' first points.
-std::vector<int> sample_uniformly(const PointCloud& cloud, double spacing_m) {
-  const auto inverse_size = static_cast<float>(1.0 / spacing_m);
-  VoxelMap cubes(cloud.size() / 4);
-  std::vector<int> nearest;
-  std::vector<float> nearest_sq;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3f& p = cloud.points[i];
-    const Eigen::Vector3i index = voxel_index(p, inverse_size);
-    const Eigen::Vector3f center = (index.cast<float>().array() + 0.5F) * static_cast<float>(spacing_m);
-    const float distance_sq = (p - center).squaredNorm();
-    const auto cube = static_cast<std::size_t>(cubes.insert(voxel_key(index.x(), index.y(), index.z())));
-    if (cube == nearest.size()) {
-      nearest.push_back(static_cast<int>(i));
-      nearest_sq.push_back(distance_sq);
-    } else if (distance_sq < nearest_sq[cube]) {
-      nearest[cube] = static_cast<int>(i);
-      nearest_sq[cube] = distance_sq;
-    }
-  }
-  return nearest;
 }
 
 /// The points with normals (within the mask), thinned.
@@ -151,7 +128,7 @@ FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, co
   require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
           "extract_shot: the mask has not the camera's size");
   const PointCloud support = support_of_view(view, options, mask);
-  std::vector<int> indices = sample_uniformly(support, options.keypoint_spacing_m);
+  std::vector<int> indices = sample_uniformly(support.points, options.keypoint_spacing_m);
   if (options.max_keypoint_depth_m > 0)
     std::erase_if(indices, [&](int i) { return support.points[i].z() > options.max_keypoint_depth_m; });
   std::vector<double> noise_variance_sq_m;

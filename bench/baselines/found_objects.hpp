@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "resight/evaluation/match_detections.hpp"
+#include "stage_input.hpp"
+
+namespace resight::bench {
+
+struct PosedObject {
+  int object = -1;  ///< Index into the library.
+  Rigid3 camera_from_object;
+};
+
+/// How many of the true objects have one of these poses within 5 cm and 30 deg, and how many of the poses are right.
+/// Without truth: how many there are.
+[[nodiscard]] std::string rate_proposals(const StageInput& input, const std::vector<PosedObject>& posed);
+
+/// Precision and recall of detections, one to one. Without truth: how many there are.
+[[nodiscard]] std::string rate_detections(const StageInput& input, const std::vector<PosedObject>& posed);
+
+}  // namespace resight::bench

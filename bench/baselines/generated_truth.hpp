@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/simulation/simulation.hpp"
+#include "stage_input.hpp"
+
+namespace resight::bench {
+
+/// What the generated scene says of its view number `view`; what changed, beside the view number `other`.
+[[nodiscard]] ViewTruth truth_of_view(const Simulation& simulation, const SimulatedView& rendered, int view, int other);
+
+}  // namespace resight::bench

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#define RESIGHT_PCL_PEER __attribute__((visibility("default")))
+
+/// The stages of recognition as PCL does them, behind plain numbers. PCL is built for the compiler's own instruction
+/// set, for which Eigen aligns its types otherwise than for ours: nothing of Eigen or PCL may cross this line.
+///
+/// Points are x, y, z one after the other, metres, NaN = no measurement. All on one thread. `cpu_s` is the time of
+/// PCL's own calls, its search trees included where nothing else is said; the copies into its types are not.
+namespace resight::bench::pcl_peers {
+
+template <typename T>
+struct Timed {
+  T value;
+  double cpu_s = 0;
+};
+
+using Points = std::span<const float>;
+/// A rigid motion: three rows of four.
+using Pose = std::array<float, 12>;
+
+/// An image of points, row by row.
+struct OrganizedPoints {
+  Points xyz;
+  int width = 0;
+  int height = 0;
+};
+
+struct OrientedPoints {
+  Points xyz;
+  Points normals;
+};
+
+/// pcl::VoxelGrid: the mean of each cube.
+RESIGHT_PCL_PEER Timed<std::vector<float>> voxel_grid(Points points, float leaf_m);
+/// pcl::UniformSampling: the point nearest to the centre of each cube.
+RESIGHT_PCL_PEER Timed<std::vector<float>> uniform_sampling(Points points, float spacing_m);
+
+enum class NeighborSearch : std::uint8_t { kKdTree, kOrganized };
+/// pcl::NormalEstimationOMP over all neighbours within the radius; one normal a pixel, turned to the camera.
+RESIGHT_PCL_PEER Timed<std::vector<float>> normals_by_radius(OrganizedPoints view, float radius_m,
+                                                             NeighborSearch search);
+
+enum class IntegralImageMethod : std::uint8_t { kCovariance, kAverageGradient };
+/// pcl::IntegralImageNormalEstimation.
+RESIGHT_PCL_PEER Timed<std::vector<float>> normals_by_integral_image(OrganizedPoints view, IntegralImageMethod method,
+                                                                     float max_depth_change, float window_px);
+
+/// pcl::SHOTEstimationOMP: 352 numbers a keypoint, all NaN where it has no descriptor.
+RESIGHT_PCL_PEER Timed<std::vector<float>> describe_shot(Points keypoints, OrientedPoints support, float radius_m);
+
+struct NearestShot {
+  std::vector<int> indices;  ///< One a query.
+  double build_cpu_s = 0;
+};
+/// pcl::KdTreeFLANN over SHOT descriptors; the time is that of the search alone.
+RESIGHT_PCL_PEER Timed<NearestShot> nearest_shot(std::span<const float> indexed, std::span<const float> queries);
+
+/// pcl::GeometricConsistencyGrouping of the correspondences of one object, model_xyz[i] with scene_xyz[i]; poses
+/// scene_from_object.
+RESIGHT_PCL_PEER Timed<std::vector<Pose>> group_correspondences(Points model_xyz, Points scene_xyz,
+                                                                std::span<const float> distances, float consistency_m,
+                                                                int min_group_size);
+
+struct VerifyOptions {
+  float resolution_m = 0.005F;
+  float inlier_distance_m = 0.01F;
+  float occlusion_margin_m = 0.01F;
+  float clutter_radius_m = 0.03F;
+  float clutter_regularizer = 5.0F;
+  float regularizer = 3.0F;
+  float normal_radius_m = 0.02F;
+};
+/// pcl::GlobalHypothesesVerification in one view of f = 525 px with the middle of the image as its centre (it knows no
+/// other). `models`: each hypothesis' surface at its pose, camera frame. Whether each is accepted.
+RESIGHT_PCL_PEER Timed<std::vector<std::uint8_t>> verify_hypotheses(OrganizedPoints view,
+                                                                    std::span<const std::vector<float>> models,
+                                                                    const VerifyOptions& options);
+
+/// What is moved, and where it starts: scene_from_object.
+struct RefinementTask {
+  std::vector<float> xyz;
+  std::vector<float> normals;
+  Pose start;
+};
+enum class IcpKind : std::uint8_t { kPointToPoint, kPointToPlane };
+/// pcl::IterativeClosestPoint(WithNormals) of each task onto the scene, whose search tree stands before the clock runs.
+RESIGHT_PCL_PEER Timed<std::vector<Pose>> refine_poses(OrientedPoints scene, std::span<const RefinementTask> tasks,
+                                                       IcpKind kind, float max_distance_m, int max_iterations);
+
+/// pcl::getPointCloudDifference: indices of the points of `a` that have none of `b` within the tolerance.
+RESIGHT_PCL_PEER Timed<std::vector<int>> point_cloud_difference(Points a, Points b, float tolerance_m);
+/// pcl::octree::OctreePointCloudChangeDetector: indices of the points of `a` in voxels that `b` leaves empty.
+RESIGHT_PCL_PEER Timed<std::vector<int>> octree_difference(Points a, Points b, float voxel_m);
+
+}  // namespace resight::bench::pcl_peers

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "pcl_peers.hpp"
+
+namespace resight::bench::pcl_peers {
+
+/// pcl::Hough3DGrouping of the correspondences of one object, model_xyz[i] with scene_xyz[i]; poses scene_from_object.
+/// It votes by a local frame of each keypoint: SHOT's, over these surfaces, found before the clock runs (descriptors
+/// have them). Correspondences without both frames are left out.
+RESIGHT_PCL_PEER Timed<std::vector<Pose>> group_by_votes(Points model_xyz, Points scene_xyz,
+                                                         std::span<const float> distances, Points model_surface,
+                                                         Points scene_surface, float frame_radius_m, float bin_m,
+                                                         int min_group_size);
+
+}  // namespace resight::bench::pcl_peers
