@@ -71,10 +71,9 @@ bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
   return symmetry.axis.allFinite() && symmetry.offset.allFinite() && symmetry.axis.norm() > 0;
 }
 
-// None where nothing is stored.
 template <typename Stored, typename Value>
 bool read_all(const flatbuffers::Vector<const Stored*>* stored, std::vector<Value>& values) {
-  if (stored == nullptr) return true;
+  if (stored == nullptr) return false;
   for (const Stored* s : *stored)
     if (!read(*s, values.emplace_back())) return false;
   return true;
@@ -91,8 +90,10 @@ std::string read(const schema::Object& stored, ObjectModel& object) {
   if (!read(stored.shot(), FeatureType::kShot, 352, object.shot)) return "SHOT features";
   if (!read_all(stored.discrete_symmetries(), object.symmetries.discrete)) return "symmetries";
   if (!read_all(stored.continuous_symmetries(), object.symmetries.continuous)) return "symmetries";
-  if (!read_all(stored.discrete_shape_symmetries(), object.shape_symmetries.discrete)) return "shape symmetries";
-  if (!read_all(stored.continuous_shape_symmetries(), object.shape_symmetries.continuous)) return "shape symmetries";
+  const auto* discrete = stored.discrete_shape_symmetries();
+  const auto* continuous = stored.continuous_shape_symmetries();
+  if (discrete != nullptr && !read_all(discrete, object.shape_symmetries.discrete)) return "shape symmetries";
+  if (continuous != nullptr && !read_all(continuous, object.shape_symmetries.continuous)) return "shape symmetries";
   if (stored.center() == nullptr) return "centre";
   object.center = {stored.center()->x(), stored.center()->y(), stored.center()->z()};
   object.diameter_m = stored.diameter_m();

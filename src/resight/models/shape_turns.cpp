@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "resight/geometry/symmetry.hpp"
+
 namespace resight {
 
 std::vector<Rigid3> shape_turns(const ObjectModel& model, double max_step_rad) {

@@ -79,7 +79,8 @@ Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& 
     model->symmetries = source.symmetries;
   else if (options.find_symmetries)
     model->symmetries = find_undeclared(model->surface, options);
-  if (options.find_symmetries) model->shape_symmetries = find_shape_symmetries(model->surface, options);
+  if (options.find_symmetries && model->surface.has_colors())
+    model->shape_symmetries = find_shape_symmetries(model->surface, options);
   return model;
 }
 

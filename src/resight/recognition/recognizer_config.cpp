@@ -374,7 +374,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.continuation_contrast = 2;
     config.verify.turn_step_rad = 0.1745;  // 10 deg.
     config.shape.turn_step_rad = 0.1745;
-    config.prepare.normals.window_radius_px = 4;  // 20 deg off with 2, 6 with 4 (bench_baselines).
+    config.prepare.normals.window_radius_px = 4;  // On things at a metre 6 deg off; 20 with 2.
     config.verify.newest_view_decides = true;
     config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...

@@ -14,6 +14,7 @@ namespace resight {
 /// Dipoles of one view, and the poses they stand for. All arguments must outlive it; camera frame.
 class DipoleSearch {
  public:
+  /// `max_entries`: of each object, per dipole (in place of options.max_entries).
   DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
                const DipoleTable& table, std::span<const int> max_entries, const ShapeSearchOptions& options);
 

@@ -370,7 +370,7 @@ PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_obje
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
   PoseFit fit = shape_fit(confirmed);
   if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
-  const double num_visible = static_cast<double>(confirmed.samples.size()) + static_cast<double>(confirmed.wrong);
+  const double num_visible = fit.num_explained + confirmed.wrong;
   if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;

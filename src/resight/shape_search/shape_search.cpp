@@ -26,7 +26,7 @@ constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only 
 constexpr int kMaxPerPlace = 2;        // so many are left to the verification...
 constexpr int kMaxRoundPerPlace = 1;   // ...which finds the turn of what is round by itself.
 
-constexpr int kAlikeEntries = 4;  // Of what is round, more dipoles than these differ by a turn only.
+constexpr int kAlikeEntries = 4;  // Of what is round, so many entries differ by a turn only: fewer are tried.
 
 Rigid3 to_double(const Rigid3f& motion) {
   return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
@@ -172,7 +172,7 @@ struct ShapeSearch::Impl {
       const ProbeModel& model = objects[object];
       const Rigid3 refined = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
       const PoseFit least = least_fit(model);
-      if (!probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
+      if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
       for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
         const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors, least);
         if (!fit.reaches(least)) continue;

@@ -18,23 +18,26 @@ namespace resight {
 struct ShapeSearchOptions {
   bool enabled = false;
   SampleSceneOptions scene{};
-  int max_model_samples = 300;       ///< Of the surface of each object.
-  int max_seeds = 1000;              ///< Scene points that dipoles start from.
-  int pairs_per_seed = 20;           ///< Dipoles from each.
-  int max_entries = 32;              ///< Of each object tried per dipole, drawn at random if its bin holds more.
-  CountSamplesOptions coarse{};      ///< First test of a pose.
-  double min_coarse_score = 0.2;     ///< Of 1: all samples confirmed.
-  int max_matches = 300;             ///< Of each object, the best, of which two fix a pose; 0: none.
-  double match_distance_m = 0.015;   ///< Matches nearer than this agree with a pose.
-  int max_refined = 120;             ///< Poses per object that are refined and judged, the best by the first test.
-  int refine_iterations = 6;         ///< Of projective ICP.
-  double refine_distance_m = 0.02;   ///< Pairs of it that are farther apart do not count.
-  double tolerance_m = 0.005;        ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
-  double min_explained_share = 0.6;  ///< Of the samples that are not hidden.
+  int max_model_samples = 300;      ///< Of the surface of each object.
+  int max_seeds = 1000;             ///< Scene points that dipoles start from.
+  int pairs_per_seed = 20;          ///< Dipoles from each.
+  int max_entries = 32;             ///< Of each object tried per dipole, drawn at random if its bin holds more; of what
+                                    ///< is turned a quarter.
+  CountSamplesOptions coarse{};     ///< First test of a pose.
+  double min_coarse_score = 0.2;    ///< Of 1: all samples confirmed.
+  int max_matches = 300;            ///< Of each object, the best, of which two fix a pose; 0: none.
+  double match_distance_m = 0.015;  ///< Matches nearer than this agree with a pose.
+  int max_refined = 120;            ///< Poses per object that are refined and judged, the best by the first test.
+  int refine_iterations = 6;        ///< Of projective ICP.
+  double refine_distance_m = 0.02;  ///< Pairs of it that are farther apart do not count.
+  double tolerance_m = 0.005;       ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
+  double min_explained_share = 0.6;     ///< Of the samples that are not hidden.
   double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
   double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
-  double turn_step_rad = 0;  ///< If positive, what is round in shape but not in print (a can) is sought by its shape
-                             ///< alone, and then turned about its axis in such steps to where its print fits best.
+  double turn_step_rad = 0;  ///< If positive, what is round in shape but not in print (a can; more than 12 turns) is
+                             ///< sought by its shape alone, and then turned about its axis in such steps to where its
+                             ///< print fits best. One pose a place is kept: to be used with
+                             ///< VerifyOptions::turn_step_rad.
   int max_turns = 8;         ///< Of them so many are judged: those with most samples of the right hue.
   int max_hypotheses = 3;    ///< Per object.
   double min_feature_share = 0.4;   ///< Hypotheses from features that explain less of themselves in their own view

@@ -77,8 +77,11 @@ TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
 }
 
 TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
-  const PlainThings c;
+  PlainThings c;
+  c.library.objects[0].shape_symmetries.continuous.push_back(
+      {.axis = Eigen::Vector3d::UnitZ()});  // So that it is turned.
   ShapeSearchOptions options;
+  options.turn_step_rad = 0.1745;
   options.max_seeds = 300;
   const auto serial = ShapeSearch(c.library, options).search(c.searched);
   options.num_threads = 4;

@@ -122,6 +122,7 @@ struct CueComputer::Impl {
     local_.reset();
     matches_.clear();
     nearest_.clear();
+    light_ = {};
     if (visibility_.visible.empty()) return;
     std::vector<Eigen::Vector3f> visible_points;
     visible_points.reserve(visibility_.visible.size());

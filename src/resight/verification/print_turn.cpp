@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/print_turn.hpp"
 
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/scene_preparation.hpp"
 
@@ -30,7 +29,6 @@ double likeness(std::span<const LabColor> model, std::span<const LabColor> scene
 Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points, double chroma_weight) {
   Rigid3 best = Rigid3::identity();
   if (model.turns.size() < 2 || points.size() < kMinPoints) return best;
-  const KdTree tree(model.points);
   const std::size_t step = (points.size() + kMaxPoints - 1) / kMaxPoints;
   std::vector<LabColor> seen;
   for (std::size_t i = 0; i < points.size(); i += step) seen.push_back(points[i].color);
@@ -39,7 +37,7 @@ Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoin
   for (const Rigid3& turn : model.turns) {
     const Rigid3f turned_from_object(turn.inverse());
     for (std::size_t k = 0; k < seen.size(); ++k) {
-      const int nearest = tree.nearest(turned_from_object * points[k * step].p_in_object).index;
+      const int nearest = model.tree->nearest(turned_from_object * points[k * step].p_in_object).index;
       expected[k] = model.lab[static_cast<std::size_t>(nearest)];
     }
     const double found = likeness(expected, seen, chroma_weight);

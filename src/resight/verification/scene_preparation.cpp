@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/models/shape_turns.hpp"
 
@@ -85,11 +86,12 @@ PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& optio
   PreparedModel prepared;
   if (options.use_color && thinned.has_colors()) {
     prepared.linear_light = to_linear_light(thinned.colors);
-    for (const Eigen::Vector3f& light : prepared.linear_light) prepared.lab.push_back(to_lab(light));
+    prepared.lab = to_lab(prepared.linear_light);
     if (options.turn_step_rad > 0) prepared.turns = shape_turns(model, options.turn_step_rad);
   }
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
+  if (prepared.turns.size() > 1) prepared.tree = std::make_shared<const KdTree>(prepared.points);
   prepared.center = centroid(prepared.points);
   prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);
   return prepared;

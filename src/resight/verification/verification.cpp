@@ -119,11 +119,11 @@ bool may_be_chosen(const HypothesisEvidence& evidence, const VerifyOptions& opti
   return !options.must_pay_alone || cost_alone(evidence, options) < 0;
 }
 
-// Hypotheses of one object that refinement has brought together are one: that with most correspondences stays. Which
-// of them explains a few points more is chance.
+// Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
+// stays. Which of them explains a few points more is chance.
 void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
                    std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
-  if (options.refine.max_iterations == 0) return;
+  if (options.refine.max_iterations == 0 && options.turn_step_rad == 0) return;
   std::vector<int> by_support = candidates;
   std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
     return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();

@@ -33,8 +33,8 @@ struct VerifyOptions {
       1.0;  ///< Of one in no segment, times (1 - d^2/r^2) max(0, n_p n_q); in another segment: none.
   double continuation_offset_m = 0;  ///< If positive, only points that continue the surface count as unexplained: this
                                      ///< near the tangent plane of an explained one, of like normal and colour.
-  double continuation_contrast = 0;  ///< ...and count half if the prints share so much contrast (and less with more;
-                                     ///< PatternMatch::shared_contrast): a print rules out that it is a part of
+  double continuation_contrast = 0;  ///< ...and count 1 / (1 + (c / this)^2) if the prints share contrast c
+                                     ///< (PatternMatch::shared_contrast): a print rules out that it is a part of
                                      ///< something larger. 0: full in any case.
   double occupancy_weight = 2.0;     ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
@@ -44,8 +44,8 @@ struct VerifyOptions {
   double color_sigma_ab = 0.2;  ///< ...and of a/128, b/128.
   LightLimits light{};          ///< What the light may do to the colours of the model.
   RefinePoseOptions refine{};   ///< Before it is judged, each hypothesis is moved onto the scene.
-  double turn_step_rad = 0;  ///< If positive, a refined pose is turned about what its shape leaves free (a can's axis),
-                             ///< in such steps, to where the print fits best; 0 leaves it as it is.
+  double turn_step_rad = 0;  ///< If positive, a refined pose is turned about what its shape leaves free (a can's axis,
+                             ///< in such steps; a box's half turns) to where the print fits best; 0: it stays.
   double merge_distance_m = 0.01;        ///< Refined hypotheses of one object nearer than this (at its centre)...
   double merge_rotation_rad = 0.174533;  ///< ...and this (over its symmetries) are one.
   bool use_planes = true;
@@ -106,7 +106,7 @@ enum class Verdict : std::uint8_t {
 /// only of those that have support and the right pattern.
 struct HypothesisEvidence {
   bool accepted = false;
-  Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined.
+  Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined and turned.
   double score = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
                      ///< each weighted by how well; steep ones count little.
   double visible_share = 0;     ///< Visible / all model points.
@@ -121,7 +121,8 @@ struct HypothesisEvidence {
   double explained_share =
       0;  ///< Inliers / visible points, steep ones counting steep_weight: what min_explained_share tests.
   double pattern_similarity = 1;  ///< Of the model's colours and the scene's (pattern_similarity.hpp).
-  double shared_contrast = 0;     ///< Of both patterns: how much print there is to be alike.
+  double shared_contrast = 0;     ///< PatternMatch::shared_contrast of both, but no more than the model's own print
+                                  ///< has in even light.
   double clutter_cost = 0;        ///< Alone: unexplained rest of the segments that it explains in part.
   double plane_cost = 0;          ///< Points of planes that it claims, and model points on the far side of a plane.
   double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
