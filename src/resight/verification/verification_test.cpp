@@ -324,13 +324,18 @@ TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
 }
 
 TEST(VerifyHypotheses, APlainCanIsNotTurned) {
-  Solid can = printed_can();
-  can.paint = plain({150, 150, 160});
-  ModelLibrary library{.objects = {make_model("can", can)}};
-  can.paint = [](const Eigen::Vector3d& p) {  // The scene has some noise, of which one turn fits a little better.
-    const auto grey = static_cast<std::uint8_t>(150 + 10 * std::sin(7e3 * p.x() + 5e3 * p.y() + 3e3 * p.z()));
-    return Rgb8{grey, grey, static_cast<std::uint8_t>(grey + 10)};
+  // Scan and scene each have stains of their own, of which some turn fits a little better.
+  const auto stained = [](double frequency) -> Paint {
+    return [=](const Eigen::Vector3d& p) {
+      const double stain = std::sin(frequency * p.x() + 40 * p.z()) * std::cos(1.3 * frequency * p.y());
+      const auto grey = static_cast<std::uint8_t>(150 + 15 * stain);
+      return Rgb8{grey, grey, static_cast<std::uint8_t>(grey + 10)};
+    };
   };
+  Solid can = printed_can();
+  can.paint = stained(90);
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  can.paint = stained(120);
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});  // As if its own had been overlooked.
   const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
   const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
