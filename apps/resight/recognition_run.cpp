@@ -75,6 +75,9 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
     run.views.back().scene_id = sequence.scene_id();
     run.views.back().image_id = sequence.image_id(v);
   }
+  std::vector<std::vector<ObjectEvent>*> events;
+  for (ViewRecord& view : run.views) events.push_back(&view.update.events);
+  drop_replaced(events);
   run.peak_memory_bytes = peak_memory_bytes();
   return run;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/evaluation/evaluate_sequence.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -59,7 +61,10 @@ class SequenceEvaluator {
 
   EvaluatedRun finish() {
     keep_changes(recognizer_.finish());
-    if (sights_) run_.events = score_events(*truth_.changes, sights_->sights(), changes_, library_, options_.match);
+    std::vector<ObjectEvent>* const all[] = {&changes_};
+    drop_replaced(all);
+    if (sights_)
+      run_.events = score_events(*truth_.changes, sights_->sights(), reported_changes(), library_, options_.match);
     return std::move(run_);
   }
 
@@ -77,10 +82,15 @@ class SequenceEvaluator {
   }
 
   void keep_changes(const std::vector<ObjectEvent>& events) {
-    for (const ObjectEvent& e : events)
-      if (is_change(e.kind))
-        changes_.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
-                            e.world_from_object_before, e.world_from_object_after});
+    std::ranges::copy_if(events, std::back_inserter(changes_), [](const ObjectEvent& e) { return is_change(e.kind); });
+  }
+
+  [[nodiscard]] std::vector<ReportedChange> reported_changes() const {
+    std::vector<ReportedChange> changes;
+    for (const ObjectEvent& e : changes_)
+      changes.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
+                         e.world_from_object_before, e.world_from_object_after});
+    return changes;
   }
 
   const SequenceTruth& truth_;
@@ -90,7 +100,7 @@ class SequenceEvaluator {
   bool has_changes_;
   std::optional<ChangePointScorer> points_;
   std::optional<ChangeSightFinder> sights_;
-  std::vector<ReportedChange> changes_;
+  std::vector<ObjectEvent> changes_;
   EvaluatedRun run_;
 };
 

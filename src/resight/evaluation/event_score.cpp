@@ -39,6 +39,12 @@ class Matcher {
     return !a || is_within(compare_poses(*a, *b, model), options_);
   }
 
+  [[nodiscard]] bool same_change(const TrueChange& t, const ReportedChange& r) const {
+    return t.object == r.object && t.kind == r.kind &&
+           same_place(t.object, t.world_from_object_before, r.world_from_object_before) &&
+           same_place(t.object, t.world_from_object_after, r.world_from_object_after);
+  }
+
   // Each report takes the earliest true one that fits; calls hit(true, report) for each pair that counts.
   template <typename Truth, typename Report, typename Fits, typename Counts, typename Hit>
   static RecognitionScore match(const std::vector<Truth>& truths, const std::vector<Report>& reports, Fits&& fits,
@@ -75,12 +81,27 @@ class Matcher {
   const MatchDetectionsOptions& options_;
 };
 
+// A change, and what the views show of it.
 struct TrueEvent : TrueChange {
   ChangeSight sight;
-  [[nodiscard]] bool counts() const {
-    return (!world_from_object_before || sight.before_view >= 0) && (!world_from_object_after || sight.after_view >= 0);
+  [[nodiscard]] bool shows_departure() const {
+    return world_from_object_before && sight.was_seen && sight.before_view >= 0;
   }
-  [[nodiscard]] int known_since() const { return std::max(sight.before_view, sight.after_view); }
+  // What comes where no view looked before may have been there.
+  [[nodiscard]] bool shows_arrival() const {
+    return world_from_object_after && sight.after_view >= 0 && (sight.place_was_seen || shows_departure());
+  }
+  [[nodiscard]] bool counts() const { return shows_departure() || shows_arrival(); }
+  [[nodiscard]] TrueChange as_shown() const {
+    TrueChange shown = *this;
+    if (kind != ObjectEventKind::kMoved || shows_departure() == shows_arrival()) return shown;
+    shown.kind = shows_departure() ? ObjectEventKind::kRemoved : ObjectEventKind::kAdded;
+    (shows_departure() ? shown.world_from_object_after : shown.world_from_object_before).reset();
+    return shown;
+  }
+  [[nodiscard]] int known_since() const {
+    return std::max(shows_departure() ? sight.before_view : -1, shows_arrival() ? sight.after_view : -1);
+  }
 };
 
 }  // namespace
@@ -89,28 +110,37 @@ ChangeSightFinder::ChangeSightFinder(const ModelLibrary& library, const Sequence
                                      const MatchDetectionsOptions& options)
     : library_(library), truth_(truth), options_(options) {
   require(truth.changes.has_value(), "ChangeSightFinder: the truth holds no changes");
-  sights_.resize(truth.changes->size());
+  sights_.resize(truth.changes->size(), {-1, -1, false, false});
 }
 
 void ChangeSightFinder::add_view(const RgbdFrame& frame) {
   for (std::size_t i = 0; i < sights_.size(); ++i) {
     const TrueChange& change = (*truth_.changes)[i];
     const int object = library_.find(change.object);
-    if (object < 0 || !change.known || change.view > view_) continue;
+    if (object < 0 || !change.known) continue;
     const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
+    const std::optional<Rigid3>& before = change.world_from_object_before;
+    const std::optional<Rigid3>& after = change.world_from_object_after;
     ChangeSight& sight = sights_[i];
-    if (change.world_from_object_before && sight.before_view < 0 &&
-        looks_at(frame, *change.world_from_object_before, model))
-      sight.before_view = view_;
-    if (!change.world_from_object_after || sight.after_view >= 0) continue;
-    for (const GroundTruthObject& truth : truth_.views.at(static_cast<std::size_t>(view_)).objects)
-      if (truth.object == change.object && !(truth.visible_share < options_.min_visible_share) &&
-          is_within(
-              compare_poses(frame.world_from_camera * truth.camera_from_object, *change.world_from_object_after, model),
-              options_))
-        sight.after_view = view_;
+    if (change.view > view_) {
+      sight.was_seen = sight.was_seen || (before && shows(frame, change.object, *before, model));
+      sight.place_was_seen = sight.place_was_seen || (after && looks_at(frame, *after, model));
+      continue;
+    }
+    if (before && sight.before_view < 0 && looks_at(frame, *before, model)) sight.before_view = view_;
+    if (after && sight.after_view < 0 && shows(frame, change.object, *after, model)) sight.after_view = view_;
   }
   ++view_;
+}
+
+bool ChangeSightFinder::shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
+                              const ObjectModel& model) const {
+  const std::vector<GroundTruthObject>& objects = truth_.views.at(static_cast<std::size_t>(view_)).objects;
+  return std::ranges::any_of(objects, [&](const GroundTruthObject& truth) {
+    return truth.object == object && !(truth.visible_share < options_.min_visible_share) &&
+           is_within(compare_poses(frame.world_from_camera * truth.camera_from_object, world_from_object, model),
+                     options_);
+  });
 }
 
 EventScore& EventScore::operator+=(const EventScore& other) {
@@ -132,9 +162,9 @@ EventScore score_events(std::span<const TrueChange> changes, std::span<const Cha
     if (!c.known || library.find(c.object) < 0) continue;
     truths.push_back({c, sights[i]});
     if (c.world_from_object_before)
-      true_departures.push_back({c.view, c.object, *c.world_from_object_before, sights[i].before_view >= 0});
+      true_departures.push_back({c.view, c.object, *c.world_from_object_before, truths.back().shows_departure()});
     if (c.world_from_object_after)
-      true_arrivals.push_back({c.view, c.object, *c.world_from_object_after, sights[i].after_view >= 0});
+      true_arrivals.push_back({c.view, c.object, *c.world_from_object_after, truths.back().shows_arrival()});
   }
   std::vector<ReportedChange> events;
   for (const ReportedChange& r : reported) {
@@ -152,9 +182,7 @@ EventScore score_events(std::span<const TrueChange> changes, std::span<const Cha
   score.events = Matcher::match(
       truths, events,
       [&](const TrueEvent& t, const ReportedChange& r) {
-        return t.object == r.object && t.kind == r.kind &&
-               matcher.same_place(t.object, t.world_from_object_before, r.world_from_object_before) &&
-               matcher.same_place(t.object, t.world_from_object_after, r.world_from_object_after);
+        return matcher.same_change(t, r) || matcher.same_change(t.as_shown(), r);
       },
       [](const TrueEvent& t) { return t.counts(); },
       [&](const TrueEvent& t, const ReportedChange& r) {

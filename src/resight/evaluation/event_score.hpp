@@ -19,11 +19,13 @@ struct ReportedChange {
   std::optional<Rigid3> world_from_object_after;
 };
 
-/// Since when each change could be known; -1 = never.
+/// What the views show of a change, and since when; -1 = never.
 struct ChangeSight {
   int before_view = -1;  ///< First view, from the change on, that looks at the place left: its centre is in the image
                          ///< and not hidden.
   int after_view = -1;   ///< First view, from the change on, with the object visible at its new place.
+  bool was_seen = true;  ///< A view before the change had the object visible at the place left.
+  bool place_was_seen = true;  ///< A view before the change looked at the new place.
 };
 
 /// Finds the sight of each change, view by view (in order). The views up to the last one added count.
@@ -36,6 +38,9 @@ class ChangeSightFinder {
   [[nodiscard]] const std::vector<ChangeSight>& sights() const { return sights_; }
 
  private:
+  [[nodiscard]] bool shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
+                           const ObjectModel& model) const;
+
   const ModelLibrary& library_;
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
@@ -52,8 +57,9 @@ struct EventScore {
 };
 
 /// Scores the reported changes against the true ones of known objects. Pairs are chosen in the order of their views,
-/// one to one; a report before the change is wrong. Changes that no view could show (see ChangeSight) are neither hits
-/// nor misses, nor are reports of them.
+/// one to one; a report before the change is wrong. A move of which the views show only one side (see ChangeSight) is
+/// to them a removal or an addition, and right as that, too. Changes that no view shows are neither hits nor misses,
+/// nor are reports of them.
 [[nodiscard]] EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeSight> sights,
                                       std::span<const ReportedChange> reported, const ModelLibrary& library,
                                       const MatchDetectionsOptions& options = {});

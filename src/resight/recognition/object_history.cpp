@@ -2,6 +2,7 @@
 #include "resight/recognition/object_history.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "resight/core/check.hpp"
@@ -19,32 +20,10 @@ double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3
 
 // What only earlier views saw is no news.
 bool is_seen_now(const Detection& detection, double min_share) {
-  return detection.views.empty() || detection.views.back().visible_share >= min_share;
+  return detection.views.empty() || detection.views.back().confirmed_share() >= min_share;
 }
 
 }  // namespace
-
-std::string to_string(ObjectEventKind kind) {
-  switch (kind) {
-    case ObjectEventKind::kFound:
-      return "found";
-    case ObjectEventKind::kAdded:
-      return "added";
-    case ObjectEventKind::kMoved:
-      return "moved";
-    case ObjectEventKind::kRemoved:
-      return "removed";
-    case ObjectEventKind::kStillThere:
-      return "still_there";
-    case ObjectEventKind::kNotSeen:
-      return "not_seen";
-  }
-  return "unknown";
-}
-
-bool is_change(ObjectEventKind kind) {
-  return kind == ObjectEventKind::kAdded || kind == ObjectEventKind::kMoved || kind == ObjectEventKind::kRemoved;
-}
 
 void ObjectHistoryOptions::check() const {
   check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
@@ -53,23 +32,26 @@ void ObjectHistoryOptions::check() const {
   check_in_range("ObjectHistoryOptions.min_new_share", min_new_share, 0, 1);
   check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
   presence.check();
+  memory.check();
 }
 
 ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
-    : library_(library), options_(std::move(options)) {
+    : library_(library), options_(std::move(options)), memory_(options_.memory) {
   options_.check();
 }
 
 std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
-                                               std::span<const RgbdFrame* const> earlier, bool use_evidence) {
+                                               bool use_evidence) {
   std::vector<ObjectEvent> events;
   std::vector<int> track_of(detections.size(), kUnmatched);
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
   for (std::size_t d = 0; d < detections.size(); ++d)
     if (track_of[d] == kUnmatched && is_seen_now(detections[d], options_.min_new_share))
-      place_new(detections[d], view, current, earlier, use_evidence, events);
+      place_new(detections[d], view, current, use_evidence, events);
   confirm_removals(view, events);
+  std::erase_if(tracks_, [](const Track& track) { return track.state == State::kJoined; });
+  if (use_evidence) memory_.add(view, current);
   return events;
 }
 
@@ -106,9 +88,10 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
                                   std::vector<ObjectEvent>& events) const {
   detection.track = track.id;
   events.push_back({ObjectEventKind::kStillThere, track.object, track.id, view, track.world_from_object,
-                    detection.world_from_object, detection.score});
+                    detection.world_from_object, detection.score, std::nullopt});
   track.world_from_object = detection.world_from_object;
   track.last_view = view;
+  if (is_seen_now(detection, options_.min_new_share)) track.seen_view = view;
   track.state = State::kPresent;
 }
 
@@ -126,6 +109,7 @@ int ObjectHistory::find_displaced(const Track& track, std::span<const Detection>
 
 void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                                        const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events) {
+  std::vector<std::size_t> left;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
     const bool seen = std::find(track_of.begin(), track_of.end(), static_cast<int>(t)) != track_of.end();
@@ -140,25 +124,65 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
       track.state = State::kLeaving;
       track.left_view = view;
       track.confidence = displaced != kUnmatched ? 1.0 : presence.gone_share;
+      if (displaced == kUnmatched) left.push_back(t);
     } else if (displaced != kUnmatched) {
       track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
       keep_in_place(track, detections[static_cast<std::size_t>(displaced)], view, events);
     } else {
-      events.push_back(
-          {ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt, 0.0});
+      events.push_back({ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt,
+                        0.0, std::nullopt});
     }
+  }
+  for (const std::size_t t : left) {
+    Track* added = tracks_[t].state == State::kLeaving ? find_added_since(tracks_[t]) : nullptr;
+    if (added != nullptr) join(tracks_[t], *added, view, detections, events);
   }
 }
 
-// The nearest old place of this kind of object that is seen free; one that is leaving goes before one long gone.
-ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection) {
+// The nearest one of its kind that was added after a view last saw this one.
+ObjectHistory::Track* ObjectHistory::find_added_since(const Track& left) {
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(left.object)];
+  Track* nearest = nullptr;
+  double nearest_m = 0;
+  for (Track& track : tracks_) {
+    const bool is_there = track.state == State::kPresent || track.state == State::kLeaving;
+    if (track.object != left.object || !is_there || !track.was_added || track.since_view <= left.seen_view) continue;
+    const double distance_m = center_distance_m(model, track.world_from_object, left.world_from_object);
+    if (nearest != nullptr && distance_m >= nearest_m) continue;
+    nearest = &track;
+    nearest_m = distance_m;
+  }
+  return nearest;
+}
+
+// What left its place is what was added elsewhere: one track, the older one, and one event.
+void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detection>& detections,
+                         std::vector<ObjectEvent>& events) {
+  std::erase_if(events, [&](const ObjectEvent& e) { return e.track == added.id; });
+  for (Detection& d : detections)
+    if (d.track == added.id) d.track = left.id;
+  events.push_back({ObjectEventKind::kMoved, left.object, left.id, view, left.world_from_object,
+                    added.world_from_object, left.confidence,
+                    ReplacedEvent{ObjectEventKind::kAdded, added.id, added.since_view}});
+  left = [&] {
+    Track joined = added;
+    joined.id = left.id;
+    joined.was_added = false;
+    return joined;
+  }();
+  added.state = State::kJoined;
+}
+
+// The nearest old place of this kind of object that is seen free, and one that it can have come from right away, which
+// it cannot if its new place was seen free as well since then; one that is leaving goes before one long gone.
+ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::optional<int> last_free_view) {
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
   Track* left = nullptr;
   for (Track& track : tracks_) {
-    if (track.object != detection.object || track.state == State::kPresent) continue;
+    if (track.object != detection.object || (track.state != State::kLeaving && track.state != State::kGone)) continue;
     const auto rank = [&](const Track& t) {
-      return std::pair(t.state == State::kGone,
-                       center_distance_m(model, t.world_from_object, detection.world_from_object));
+      return std::tuple(last_free_view && *last_free_view >= t.left_view, t.state == State::kGone,
+                        center_distance_m(model, t.world_from_object, detection.world_from_object));
     };
     if (left == nullptr || rank(track) < rank(*left)) left = &track;
   }
@@ -180,50 +204,63 @@ ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detectio
   return is_seen ? nullptr : only;
 }
 
-void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& current,
-                              std::span<const RgbdFrame* const> earlier, bool use_evidence,
+ObjectHistory::Track& ObjectHistory::new_track(int object) {
+  Track track;
+  track.id = next_id_++;
+  track.object = object;
+  return tracks_.emplace_back(track);
+}
+
+void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                               std::vector<ObjectEvent>& events) {
   constexpr double kOutOfSightConfidence = 0.5;
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
-  Track* from = find_left(detection);
-  double left_confidence = from != nullptr && from->state == State::kLeaving ? from->confidence : 0;
-  bool was_free = false;
-  if (left_confidence == 0 && use_evidence) {
-    was_free = std::any_of(earlier.begin(), earlier.end(), [&](const RgbdFrame* frame) {
-      return assess_presence(model.surface, detection.world_from_object, *frame, options_.presence).is_gone;
-    });
-    Track* out_of_sight = was_free ? find_out_of_sight(detection, current) : nullptr;
-    if (out_of_sight != nullptr) {
-      from = out_of_sight;
-      left_confidence = kOutOfSightConfidence;
-      std::erase_if(events, [&](const ObjectEvent& e) { return e.track == from->id; });  // It was called not seen.
-    }
+  const PointCloud& surface = library_.objects[static_cast<std::size_t>(detection.object)].surface;
+  const std::optional<int> last_free_view =
+      use_evidence ? memory_.last_seen_free(surface, detection.world_from_object, options_.presence) : std::nullopt;
+  ObjectEvent event{last_free_view ? ObjectEventKind::kAdded : ObjectEventKind::kFound,
+                    detection.object,
+                    -1,
+                    view,
+                    std::nullopt,
+                    detection.world_from_object,
+                    detection.score,
+                    std::nullopt};
+  const auto tell_move = [&](const Track& from, double confidence) {
+    event.kind = ObjectEventKind::kMoved;
+    event.world_from_object_before = from.world_from_object;
+    event.confidence = std::min(confidence, detection.score);
+  };
+  Track* from = find_left(detection, last_free_view);
+  if (from != nullptr && !(last_free_view && *last_free_view >= from->left_view)) {
+    tell_move(*from, from->confidence);
+    if (from->state == State::kGone) event.replaces = {ObjectEventKind::kRemoved, from->id, from->left_view};
+  } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, current) : nullptr; hidden != nullptr) {
+    tell_move(*hidden, kOutOfSightConfidence);
+    std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id; });  // It was called not seen.
+    from = hidden;
+  } else if (from != nullptr && from->state == State::kLeaving) {
+    remove(*from, events);  // It was away before it was put here.
   }
-  if (from == nullptr) {
-    tracks_.push_back({});
-    from = &tracks_.back();
-    from->id = static_cast<int>(tracks_.size()) - 1;
-    from->object = detection.object;
-  }
-  if (left_confidence > 0)
-    events.push_back({ObjectEventKind::kMoved, detection.object, from->id, view, from->world_from_object,
-                      detection.world_from_object, std::min(left_confidence, detection.score)});
-  else
-    events.push_back({was_free ? ObjectEventKind::kAdded : ObjectEventKind::kFound, detection.object, from->id, view,
-                      std::nullopt, detection.world_from_object, detection.score});
+  if (from == nullptr) from = &new_track(detection.object);
+  event.track = from->id;
+  events.push_back(event);
   from->world_from_object = detection.world_from_object;
-  from->last_view = view;
+  from->last_view = from->seen_view = from->since_view = view;
+  from->was_added = event.kind == ObjectEventKind::kAdded;
   from->state = State::kPresent;
   detection.track = from->id;
 }
 
+void ObjectHistory::remove(Track& track, std::vector<ObjectEvent>& events) const {
+  track.state = State::kGone;
+  events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
+                    std::nullopt, track.confidence, std::nullopt});
+}
+
 void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events) {
-  for (Track& track : tracks_) {
-    if (track.state != State::kLeaving || view - track.left_view < options_.confirm_removal_views) continue;
-    track.state = State::kGone;
-    events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
-                      std::nullopt, track.confidence});
-  }
+  for (Track& track : tracks_)
+    if (track.state == State::kLeaving && view - track.left_view >= options_.confirm_removal_views)
+      remove(track, events);
 }
 
 std::vector<KnownObject> ObjectHistory::known_objects() const {
@@ -235,12 +272,8 @@ std::vector<KnownObject> ObjectHistory::known_objects() const {
 
 std::vector<ObjectEvent> ObjectHistory::finish() {
   std::vector<ObjectEvent> events;
-  for (Track& track : tracks_) {
-    if (track.state != State::kLeaving) continue;
-    track.state = State::kGone;
-    events.push_back({ObjectEventKind::kRemoved, track.object, track.id, track.left_view, track.world_from_object,
-                      std::nullopt, track.confidence});
-  }
+  for (Track& track : tracks_)
+    if (track.state == State::kLeaving) remove(track, events);
   return events;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "resight/models/object_model.hpp"
+#include "resight/recognition/depth_memory.hpp"
 #include "resight/recognition/object_presence.hpp"
 #include "resight/recognition/scene_update.hpp"
 
@@ -14,10 +16,11 @@ struct ObjectHistoryOptions {
   double same_rotation_rad = 0.349;       ///< 20 deg, over the object's symmetries.
   double min_displaced_gone_share = 0.2;  ///< An object recognised within its old place has moved if at least so much
                                           ///< of that is seen free; with less it is only seen better, or worse.
-  double min_new_share = 0;  ///< What the view itself sees less of (of the model's points) is not new in it.
+  double min_new_share = 0;  ///< What the view itself confirms less of (of the model's points) is not new in it.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
   PresenceOptions presence;
+  DepthMemoryOptions memory;
   void check() const;
 };
 
@@ -29,33 +32,39 @@ struct KnownObject {
 };
 
 /// Remembers which object was where, and tells what happened to it. Memory grows with the number of objects, not of
-/// views.
+/// views. What is told of a view is what is known by then; a later view may tell better (ObjectEvent::replaces).
 class ObjectHistory {
  public:
   explicit ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options = {});
 
-  /// Takes over the detections of a view (gives each its track) and returns one event per track concerned. `current` is
-  /// the view's frame, `earlier` are raw frames of views before it: what they see at a place decides between added and
-  /// found, moved and found. What is new where it was free before has moved if it is the only one known of its kind and
-  /// its old place has been seen free, or is out of sight. Without change detection (`use_evidence` false) no free
-  /// space is looked for: nothing is called added or removed.
+  /// Takes over the detections of a view (gives each its track) and returns one event per track concerned. What is new
+  /// at a place is
+  /// - moved, if one of its kind has left its place and was not missing from both while both were seen free; also, at a
+  ///   place that was free before, if the only one known of its kind is out of sight,
+  /// - else added, if an earlier view saw the place free,
+  /// - else found.
+  /// What leaves a place after one of its kind was added elsewhere has moved there. `current` is the view's frame.
+  /// Without change detection (`use_evidence` false) no free space is looked for: nothing is called added or removed.
   [[nodiscard]] std::vector<ObjectEvent> update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
-                                                std::span<const RgbdFrame* const> earlier, bool use_evidence);
+                                                bool use_evidence);
   /// Removals that still wait for confirmation; to be called after the last view.
   [[nodiscard]] std::vector<ObjectEvent> finish();
   /// What is known to be there, by track; whether the last view saw it or not.
   [[nodiscard]] std::vector<KnownObject> known_objects() const;
 
  private:
-  enum class State { kPresent, kLeaving, kGone };
+  enum class State { kPresent, kLeaving, kGone, kJoined };
   struct Track {
     int id = 0;
     int object = -1;
     Rigid3 world_from_object;
     int last_view = -1;  // that it was recognised with
     State state = State::kPresent;
-    int left_view = -1;     // first view that saw its place free
-    double confidence = 0;  // of that
+    int seen_view = -1;      // likewise, and saw itself
+    int since_view = -1;     // that it was first recognised with at its place
+    bool was_added = false;  // and told to be added there
+    int left_view = -1;      // first view that saw its place free
+    double confidence = 0;   // of that
   };
 
   [[nodiscard]] bool same_place(const Track& track, const Detection& detection) const;
@@ -66,15 +75,21 @@ class ObjectHistory {
                                    std::span<const int> track_of) const;
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
-  [[nodiscard]] Track* find_left(const Detection& detection);
+  [[nodiscard]] Track* find_added_since(const Track& left);
+  void join(Track& left, Track& added, int view, std::vector<Detection>& detections, std::vector<ObjectEvent>& events);
+  [[nodiscard]] Track* find_left(const Detection& detection, std::optional<int> last_free_view);
   [[nodiscard]] Track* find_out_of_sight(const Detection& detection, const RgbdFrame& current);
-  void place_new(Detection& detection, int view, const RgbdFrame& current, std::span<const RgbdFrame* const> earlier,
-                 bool use_evidence, std::vector<ObjectEvent>& events);
+  Track& new_track(int object);
+  void place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
+                 std::vector<ObjectEvent>& events);
   void confirm_removals(int view, std::vector<ObjectEvent>& events);
+  void remove(Track& track, std::vector<ObjectEvent>& events) const;
 
   const ModelLibrary& library_;
   ObjectHistoryOptions options_;
+  DepthMemory memory_;
   std::vector<Track> tracks_;
+  int next_id_ = 0;
 };
 
 }  // namespace resight

@@ -34,11 +34,7 @@ class ObjectHistoryTest : public ::testing::Test {
       detection.score = 0.9;
       detections_.push_back(detection);
     }
-    std::vector<const RgbdFrame*> earlier;
-    for (const RgbdFrame& f : frames_) earlier.push_back(&f);
-    auto events = history_->update(static_cast<int>(frames_.size()), detections_, frame, earlier, use_evidence);
-    frames_.push_back(frame);
-    return events;
+    return history_->update(view_++, detections_, frame, use_evidence);
   }
   static std::vector<ObjectEventKind> kinds(const std::vector<ObjectEvent>& events) {
     std::vector<ObjectEventKind> result;
@@ -49,7 +45,7 @@ class ObjectHistoryTest : public ::testing::Test {
   ModelLibrary library_;
   std::unique_ptr<ObjectHistory> history_;
   std::vector<Detection> detections_;
-  std::vector<RgbdFrame> frames_;
+  int view_ = 0;
   const Rigid3 left_ = plate_at(-0.3, 0, 1);
   const Rigid3 right_ = plate_at(0.3, 0, 1);
 };
@@ -183,7 +179,7 @@ TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
   detections_[1].object = 1;
   detections_[1].world_from_object = right_;
   detections_[1].views.push_back({0, true, 0.03F, 1.0F});
-  const auto events = history_->update(0, detections_, see_plates({right_}), {}, true);
+  const auto events = history_->update(0, detections_, see_plates({right_}), true);
   ASSERT_EQ(kinds(events), (std::vector{K::kFound}));
   EXPECT_EQ(events[0].object, 1);
   EXPECT_EQ(detections_[0].track, -1);

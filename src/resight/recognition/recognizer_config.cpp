@@ -193,6 +193,8 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.presence_min_seen_points", &c.history.presence.min_seen_points},
                                   {"history.presence_min_seen_share", &c.history.presence.min_seen_share},
                                   {"history.presence_min_gone_share", &c.history.presence.min_gone_share},
+                                  {"history.memory_max_views", &c.history.memory.max_views},
+                                  {"history.memory_step_px", &c.history.memory.step_px},
                               });
 }
 
@@ -379,8 +381,8 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
-    config.min_reported_share = 0.02;
-    config.history.min_new_share = 0.02;
+    config.min_reported_share = 0.01;
+    config.history.min_new_share = 0.01;
     config.remember_objects = true;
     config.poses.enabled = true;
     config.min_carried_share = 0.8;

@@ -30,10 +30,10 @@ struct RecognizerConfig {
   bool detect_changes = true;       ///< Off: the static world of the paper's baseline.
   bool cluster_hypotheses = true;   ///< Off: Tables II and III without clustering.
   double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
-  double min_reported_share = 0;    ///< An object of which the view itself sees less (of the model's points; hidden, or
-                                    ///< outside the image) is known to the history, but no detection of this view.
-  double min_carried_share = 0;     ///< A hypothesis that is seen, and explains less of itself or has another print, is
-                                    ///< not carried over to the next views; 0 = all are.
+  double min_reported_share = 0;  ///< An object of which the view itself confirms less (of the model's points; hidden,
+                                  ///< or outside the image) is known to the history, but no detection of this view.
+  double min_carried_share = 0;   ///< A hypothesis that is seen, and explains less of itself or has another print, is
+                                  ///< not carried over to the next views; 0 = all are.
   bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
                                   ///< for K views (K > 0).
   double deadline_ms = 0;  ///< From the moment that a view is handed over; what cannot be done until then is left out,

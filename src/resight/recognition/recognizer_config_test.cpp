@@ -112,7 +112,8 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
       {"verify",
        num_fields<VerifyOptions>() - 2 - kThreads + num_fields<LightLimits>() + num_fields<RefinePoseOptions>()},
-      {"history", num_fields<ObjectHistoryOptions>() - 1 + num_fields<PresenceOptions>()}};
+      {"history",
+       num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthMemoryOptions>()}};
   std::map<std::string, int> found;
   for (const auto& [name, value] : RecognizerConfig{}.to_settings())
     ++found[name.substr(0, name.find('.') == std::string::npos ? 0 : name.find('.'))];

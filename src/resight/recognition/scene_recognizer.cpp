@@ -114,12 +114,9 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   verify(merge_and_cluster(update, trace), update, trace);
 
   const ScopedTimer timer(update.times, "history");
-  const auto& window = scene.window();
-  std::vector<const RgbdFrame*> earlier;
-  for (std::size_t v = 0; v + 1 < window.size(); ++v) earlier.push_back(&window[v].raw);
-  update.events = history.update(update.view, update.detections, window.back().raw, earlier, config.detect_changes);
+  update.events = history.update(update.view, update.detections, scene.window().back().raw, config.detect_changes);
   std::erase_if(update.detections,
-                [&](const Detection& d) { return d.views.back().visible_share < config.min_reported_share; });
+                [&](const Detection& d) { return d.views.back().confirmed_share() < config.min_reported_share; });
   return update;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "resight/changes/change_detector.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/geometry/rigid3.hpp"
+#include "resight/recognition/object_event.hpp"
 #include "resight/verification/pose_uncertainty.hpp"
 
 namespace resight {
@@ -18,6 +18,8 @@ struct DetectionViewEvidence {
   bool allowed = true;         ///< False: the change detection excludes it (the object was not there yet, or had left).
   double visible_share = 0;    ///< Of the model's points.
   double explained_share = 0;  ///< Of the visible ones.
+  /// Of the model's points: what the view itself sees and explains.
+  [[nodiscard]] double confirmed_share() const { return visible_share * explained_share; }
 };
 
 /// An object recognised in the scene as it stands at a view.
@@ -30,29 +32,6 @@ struct Detection {
   double score = 0;          ///< In [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
-};
-
-enum class ObjectEventKind : std::uint8_t {
-  kFound,       ///< Recognised for the first time; nothing tells since when it has been there.
-  kAdded,       ///< Recognised where an earlier view saw free space.
-  kMoved,       ///< Recognised at a new place, its old place seen free.
-  kRemoved,     ///< Its place seen free, and not recognised elsewhere.
-  kStillThere,  ///< Recognised where it was.
-  kNotSeen,     ///< Not recognised, and nothing says that it has left.
-};
-[[nodiscard]] std::string to_string(ObjectEventKind kind);
-/// Added, moved or removed: a change of the scene, unlike the other kinds.
-[[nodiscard]] bool is_change(ObjectEventKind kind);
-
-/// What happened to one object of the history at a view.
-struct ObjectEvent {
-  ObjectEventKind kind = ObjectEventKind::kFound;
-  int object = -1;
-  int track = -1;
-  int view = 0;
-  std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
-  std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
-  double confidence = 0;                           ///< In [0, 1].
 };
 
 /// Numbers of hypotheses on their way through a view.

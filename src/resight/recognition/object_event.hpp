@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "resight/geometry/rigid3.hpp"
+
+namespace resight {
+
+enum class ObjectEventKind : std::uint8_t {
+  kFound,       ///< Recognised for the first time; nothing tells since when it has been there.
+  kAdded,       ///< Recognised where an earlier view saw free space.
+  kMoved,       ///< Recognised at a new place, its old place seen free.
+  kRemoved,     ///< Its place seen free, and not recognised elsewhere.
+  kStillThere,  ///< Recognised where it was.
+  kNotSeen,     ///< Not recognised, and nothing says that it has left.
+};
+[[nodiscard]] std::string to_string(ObjectEventKind kind);
+/// Added, moved or removed: a change of the scene, unlike the other kinds.
+[[nodiscard]] bool is_change(ObjectEventKind kind);
+
+/// An event told before that turned out to be part of another: what was removed here turns up there, and has moved.
+struct ReplacedEvent {
+  ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved or kAdded.
+  int track = -1;
+  int view = 0;
+};
+
+/// What happened to one object of the history at a view.
+struct ObjectEvent {
+  ObjectEventKind kind = ObjectEventKind::kFound;
+  int object = -1;
+  int track = -1;
+  int view = 0;
+  std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
+  std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
+  double confidence = 0;                           ///< In [0, 1].
+  std::optional<ReplacedEvent> replaces;           ///< kMoved only.
+};
+
+/// Leaves of a run, given as the events of each of its views, what is known in the end: drops each event that another
+/// one replaces.
+void drop_replaced(std::span<std::vector<ObjectEvent>* const> events_of_views);
+
+}  // namespace resight
