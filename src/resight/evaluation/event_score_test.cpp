@@ -56,11 +56,33 @@ TEST(EventScore, TooEarlyElsewhereOrTwiceIsWrong) {
       (RecognitionScore{1, 1, 0}));
 }
 
+TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
+  const ReportedChange as_removal{5, Kind::kRemoved, "mug", at(0), {}};
+  const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, at(0.3)};
+  const ReportedChange as_move{5, Kind::kMoved, "mug", at(0), at(0.3)};
+  const ChangeSight only_left{4, -1};
+  EXPECT_EQ(score({kMove}, {only_left}, {as_removal}).events, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(score({kMove}, {only_left}, {as_addition}).events, (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(score({kMove}, {only_left}, {}).arrivals, (RecognitionScore{0, 0, 0}));
+  const ChangeSight never_seen_before{4, 5, false};
+  const EventScore s = score({kMove}, {never_seen_before}, {as_addition});
+  EXPECT_EQ(s.events, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(s.departures, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(s.delays, (std::vector<int>{0})) << "the view of the place left tells nothing";
+}
+
 TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
-  const ChangeSight never{-1, 5};
-  EXPECT_EQ(score({kMove}, {never}, {}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kMove}, {never}, {}).arrivals, (RecognitionScore{0, 0, 1}));
-  EXPECT_EQ(score({kMove}, {never}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+  const ChangeSight nothing{-1, -1};
+  EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
+  EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).departures, (RecognitionScore{0, 0, 0}));
+  const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
+  EXPECT_EQ(score({addition}, {{-1, 5}}, {}).events, (RecognitionScore{0, 0, 1}));
+  const ChangeSight first_look{-1, 5, true, false};  // It may have been there.
+  EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({addition}, {first_look}, {}).arrivals, (RecognitionScore{0, 0, 0}));
 }
 
 TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
@@ -92,9 +114,17 @@ TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
   truth.views[1].objects = truth.views[2].objects = {arrived};
   arrived.visible_share = 0.5;
   truth.views[3].objects = {arrived};
+  GroundTruthObject before = arrived;
+  before.camera_from_object = at(0);
+  before.visible_share = 0.5;
+  truth.views[0].objects = {before};
   ChangeSightFinder finder(library, truth);
-  finder.add_view(frame_with_wall(2.0F));  // before the change: does not count
+  EXPECT_FALSE(finder.sights()[0].was_seen);
+  EXPECT_FALSE(finder.sights()[0].place_was_seen);
+  finder.add_view(frame_with_wall(2.0F));  // before the change
   EXPECT_EQ(finder.sights()[0].before_view, -1);
+  EXPECT_TRUE(finder.sights()[0].was_seen);
+  EXPECT_TRUE(finder.sights()[0].place_was_seen);
   finder.add_view(frame_with_wall(0.7F));  // something stands before the place
   EXPECT_EQ(finder.sights()[0].before_view, -1);
   finder.add_view(frame_with_wall(2.0F));
@@ -103,6 +133,22 @@ TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
   finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
   EXPECT_EQ(finder.sights()[0].before_view, 2);
   EXPECT_EQ(finder.sights()[0].after_view, 3);
+}
+
+TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(1);
+  GroundTruthObject hidden;
+  hidden.object = "mug";
+  hidden.camera_from_object = at(0);
+  hidden.visible_share = 0.02;
+  truth.views[0].objects = {hidden};
+  ChangeSightFinder finder(library, truth);
+  finder.add_view(frame_with_wall(0.7F));
+  EXPECT_FALSE(finder.sights()[0].was_seen);
+  EXPECT_FALSE(finder.sights()[0].place_was_seen);
 }
 
 }  // namespace

@@ -36,6 +36,11 @@ class ObjectHistoryTest : public ::testing::Test {
     }
     return history_->update(view_++, detections_, frame, use_evidence);
   }
+  static void hide_right_half(RgbdFrame& frame) {
+    for (int v = 0; v < frame.depth_m.height(); ++v)
+      for (int u = frame.depth_m.width() / 2; u < frame.depth_m.width(); ++u)
+        frame.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  }
   static std::vector<ObjectEventKind> kinds(const std::vector<ObjectEvent>& events) {
     std::vector<ObjectEventKind> result;
     for (const ObjectEvent& e : events) result.push_back(e.kind);
@@ -95,6 +100,70 @@ TEST_F(ObjectHistoryTest, AMoveRecognisedOneViewLateIsStillAMove) {
   view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(view({}, see_plates({right_})).empty());
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kMoved}));
+}
+
+TEST_F(ObjectHistoryTest, AMoveFoundAfterItsRemovalWasToldReplacesIt) {
+  view({{0, left_}}, see_plates({left_}));
+  RgbdFrame left_is_free = see_plates({});
+  hide_right_half(left_is_free);  // Where it is now no view sees.
+  view({}, left_is_free);
+  const auto removal = view({}, left_is_free);
+  ASSERT_EQ(kinds(removal), (std::vector{K::kRemoved}));
+  const auto events = view({{0, right_}}, see_plates({right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
+  ASSERT_TRUE(events[0].replaces);
+  EXPECT_EQ(events[0].replaces->kind, K::kRemoved);
+  EXPECT_EQ(events[0].replaces->track, removal[0].track);
+  EXPECT_EQ(events[0].replaces->view, removal[0].view);
+}
+
+TEST_F(ObjectHistoryTest, WhatWasAwayInBetweenWasRemovedAndAdded) {
+  view({{0, left_}}, see_plates({left_}));
+  EXPECT_TRUE(view({}, see_plates({})).empty());  // Free are both places.
+  const auto events = view({{0, right_}}, see_plates({right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kRemoved, K::kAdded}));
+  EXPECT_EQ(events[0].view, 1);
+  EXPECT_EQ(events[1].view, 2);
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
+  view({{0, left_}}, see_plates({left_}));
+  // Something else stands at the old place: it is neither free nor out of sight.
+  ASSERT_EQ(kinds(view({{0, right_}}, see_plates({left_, right_}))), (std::vector{K::kNotSeen, K::kAdded}));
+  const int added = detections_[0].track;
+  const auto events = view({{0, right_}}, see_plates({right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
+  EXPECT_EQ(events[0].track, 0);
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_after->translation.x(), 0.3);
+  ASSERT_TRUE(events[0].replaces);
+  EXPECT_EQ(events[0].replaces->kind, K::kAdded);
+  EXPECT_EQ(events[0].replaces->track, added);
+  EXPECT_EQ(events[0].replaces->view, 1);
+  EXPECT_EQ(detections_[0].track, 0) << "the older track goes on";
+  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+TEST_F(ObjectHistoryTest, WhatMovesOnAsItsOldPlaceIsSeenHasMovedTwice) {
+  const Rigid3 third = plate_at(0, 0.25, 1);
+  view({{0, left_}}, see_plates({left_}));
+  view({{0, right_}}, see_plates({left_, right_}));
+  const auto events = view({{0, third}}, see_plates({third}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved, K::kMoved}));
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_after->translation.x(), 0.3);
+  EXPECT_DOUBLE_EQ(events[1].world_from_object_before->translation.x(), 0.3);
+  EXPECT_DOUBLE_EQ(events[1].world_from_object_after->translation.x(), 0.0);
+}
+
+TEST_F(ObjectHistoryTest, OneThatWasSeenAfterTheOtherWasAddedIsAnother) {
+  view({{0, left_}}, see_plates({left_}));
+  view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
+  view({{0, right_}}, see_plates({right_}));
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere, K::kRemoved}));
 }
 
 TEST_F(ObjectHistoryTest, RemovedIsReportedOnceWithTheViewThatSawIt) {
