@@ -22,6 +22,8 @@ void AttentionOptions::check() const {
   check_in_range("AttentionOptions.max_turn_rad", max_turn_rad, 0, std::numbers::pi);
   check_in_range("AttentionOptions.max_distance_ratio", max_distance_ratio, 1, 1000);
   check_positive("AttentionOptions.max_depth_m", max_depth_m);
+  check_not_negative("AttentionOptions.object_look_every", object_look_every);
+  check_positive("AttentionOptions.object_min_views", object_min_views);
 }
 
 Attention::Attention(const AttentionOptions& options) : options_((options.check(), options)) {}

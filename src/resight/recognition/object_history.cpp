@@ -266,7 +266,8 @@ void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events)
 std::vector<KnownObject> ObjectHistory::known_objects() const {
   std::vector<KnownObject> known;
   for (const Track& track : tracks_)
-    if (track.state == State::kPresent) known.push_back({track.object, track.world_from_object, track.last_view});
+    if (track.state == State::kPresent)
+      known.push_back({track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
   return known;
 }
 

@@ -28,7 +28,9 @@ struct ObjectHistoryOptions {
 struct KnownObject {
   int object = -1;
   Rigid3 world_from_object;
-  int last_view = -1;  ///< That it was recognised with.
+  int last_view = -1;   ///< That it was recognised with.
+  int seen_view = -1;   ///< Likewise, and that confirmed it itself.
+  int since_view = -1;  ///< That it was first recognised with at its place.
 };
 
 /// Remembers which object was where, and tells what happened to it. Memory grows with the number of objects, not of

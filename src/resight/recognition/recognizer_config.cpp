@@ -162,6 +162,8 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"attention.max_turn_rad", &c.attention.max_turn_rad},
                                   {"attention.max_distance_ratio", &c.attention.max_distance_ratio},
                                   {"attention.max_depth_m", &c.attention.max_depth_m},
+                                  {"attention.object_look_every", &c.attention.object_look_every},
+                                  {"attention.object_min_views", &c.attention.object_min_views},
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
                                   {"changes.tolerance_sigmas", &c.changes.tolerance_sigmas},
                                   {"changes.voxel_m", &c.changes.voxel_m},
@@ -388,6 +390,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.poses.enabled = true;
     config.min_carried_share = 0.8;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
+    config.attention.object_look_every = 4;
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;

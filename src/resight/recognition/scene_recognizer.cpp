@@ -12,6 +12,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/deadline.hpp"
 #include "resight/recognition/attention.hpp"
+#include "resight/recognition/explained_pixels.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
@@ -35,9 +36,6 @@ CorrectCameraOptions correction_options(const RecognizerConfig& config) {
   return options;
 }
 
-// Single views stand for themselves.
-bool remembers(const RecognizerConfig& config) { return config.remember_objects && config.num_previous_views > 0; }
-
 }  // namespace
 
 struct SceneRecognizer::Impl {
@@ -47,7 +45,7 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         corrector(correction_options(config)),
         scene(scene_options(config)),
-        attention(remembers(config) ? config.attention : AttentionOptions{}),
+        attention(config.remembers() ? config.attention : AttentionOptions{}),
         store(std::move(shared)),
         clock(std::move(now)) {
     if (!store) generator.emplace(library, config);
@@ -59,7 +57,9 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] bool is_known(const Hypothesis& hypothesis) const;
   void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
-  void add_known_objects(std::vector<Hypothesis>& hypotheses);
+  [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
+  [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, SceneUpdate& update);
+  [[nodiscard]] std::vector<std::uint8_t> presence_of(const std::vector<Hypothesis>& hypotheses) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] bool doubts_known_object(const std::vector<Hypothesis>& hypotheses,
@@ -127,7 +127,8 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   const ViewHypotheses* found = store ? store->find(update.view) : nullptr;
   if (found == nullptr) {
     if (!generator) generator.emplace(library, config);
-    made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s));
+    const Image<std::uint8_t> explained = explained_pixels(view.frame, update);
+    made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s), explained);
     if (!made.left_out.empty()) attention.look_at_next();
     found = store ? &store->add(update.view, std::move(made)) : &made;
   }
@@ -147,8 +148,8 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   return same_pose ? found->hypotheses : move_hypotheses(*found, pose);
 }
 
-void SceneRecognizer::Impl::add_known_objects(std::vector<Hypothesis>& hypotheses) {
-  if (!remembers(config)) return;
+std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
+  std::vector<Hypothesis> hypotheses;
   for (const KnownObject& known : history.known_objects()) {
     Hypothesis hypothesis;
     hypothesis.id = next_known_id++;
@@ -158,6 +159,25 @@ void SceneRecognizer::Impl::add_known_objects(std::vector<Hypothesis>& hypothese
     hypothesis.origin_views = {known.last_view};
     hypotheses.push_back(std::move(hypothesis));
   }
+  return hypotheses;
+}
+
+// Those of known objects that need no search in this view: the last one confirmed them, no change is near them, and
+// their turn has not come.
+Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& frame, SceneUpdate& update) {
+  if (!config.leaves_out_explained()) return {};
+  const ScopedTimer timer(update.times, "attention");
+  const std::vector<KnownObject> known = history.known_objects();
+  const std::vector<std::uint8_t> present = presence_of(known_hypotheses());
+  const std::size_t now = (scene.window().size() - 1) * known.size();
+  std::vector<KnownObject> confirmed;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const int age = update.view - known[i].since_view;
+    const bool is_due = age < config.attention.object_min_views || age % config.attention.object_look_every == 0;
+    if (!is_due && known[i].seen_view + 1 == update.view && (present.empty() || present[now + i] != 0))
+      confirmed.push_back(known[i]);
+  }
+  return find_explained_pixels(frame, confirmed, library, config.history.presence);
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
@@ -165,7 +185,10 @@ std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& up
   const ScopedTimer timer(update.times, "cluster");
   std::vector<Hypothesis> merged;
   for (const auto& of_view : hypotheses_of_view) merged.insert(merged.end(), of_view.begin(), of_view.end());
-  add_known_objects(merged);
+  if (config.remembers()) {
+    const std::vector<Hypothesis> known = known_hypotheses();
+    merged.insert(merged.end(), known.begin(), known.end());
+  }
   update.counts.merged = static_cast<int>(merged.size());
   if (trace != nullptr) trace->merged = merged;
   members_of_cluster.clear();
@@ -206,17 +229,22 @@ void SceneRecognizer::Impl::leave_out_late(std::vector<Hypothesis>& hypotheses, 
                             " hypotheses");
 }
 
+// By view of the window and hypothesis; empty without change detection.
+std::vector<std::uint8_t> SceneRecognizer::Impl::presence_of(const std::vector<Hypothesis>& hypotheses) const {
+  if (!config.detect_changes) return {};
+  std::vector<ViewChanges> changes;
+  for (const DynamicScene::View& view : scene.window())
+    changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
+  return compute_presence_mask(hypotheses, library, changes, config.removal, config.verify.num_threads);
+}
+
 // Leaves out the hypotheses that the changes say are not there any more, and returns the presence mask of the others.
 std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothesis>& hypotheses,
                                                              SceneUpdate& update) const {
   if (!config.detect_changes) return {};
   const ScopedTimer timer(update.times, "presence");
   const auto& window = scene.window();
-  std::vector<ViewChanges> changes;
-  for (const DynamicScene::View& view : window)
-    changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
-  const std::vector<std::uint8_t> mask =
-      compute_presence_mask(hypotheses, library, changes, config.removal, config.verify.num_threads);
+  const std::vector<std::uint8_t> mask = presence_of(hypotheses);
   const std::size_t num_all = hypotheses.size();
   const std::size_t now = (window.size() - 1) * num_all;
   std::vector<std::uint8_t> kept_mask;

@@ -46,8 +46,9 @@ std::string generation_settings(const RecognizerConfig& config) {
     return std::ranges::any_of(sections, [&](std::string_view s) { return name.starts_with(s); });
   };
   std::string text;
+  const bool all_count = config.leaves_out_explained();  // What is known comes from all stages.
   for (const auto& [name, value] : config.to_settings())
-    if (!starts_with_one_of(name, kLaterSections) || starts_with_one_of(name, kColors))
+    if (all_count || !starts_with_one_of(name, kLaterSections) || starts_with_one_of(name, kColors))
       text += name + "=" + value + "\n";
   return text;
 }

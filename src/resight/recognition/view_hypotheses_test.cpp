@@ -34,6 +34,20 @@ TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
     EXPECT_NE(generation_settings(*changed), text);
 }
 
+// Where a view is searched then depends on what is known, and that on all settings.
+TEST(GenerationSettings, AreAllSettingsWhereWhatIsKnownIsNotSearchedFor) {
+  RecognizerConfig base = RecognizerConfig::from_preset("default");
+  base.attention.object_look_every = 4;
+  RecognizerConfig other = base;
+  other.num_previous_views = base.num_previous_views + 1;
+  EXPECT_NE(generation_settings(other), generation_settings(base));
+  other = base;
+  other.verify.outlier_weight *= 2;
+  EXPECT_NE(generation_settings(other), generation_settings(base));
+  base.attention.object_look_every = other.attention.object_look_every = 0;
+  EXPECT_EQ(generation_settings(other), generation_settings(base));
+}
+
 TEST(ViewHypothesisStore, GivesBackWhatItWasGiven) {
   ViewHypothesisStore store;
   EXPECT_EQ(store.find(3), nullptr);

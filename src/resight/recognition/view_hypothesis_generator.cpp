@@ -21,7 +21,7 @@ ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, co
 }
 
 ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int number, std::uint64_t first_id,
-                                                 const Deadline& deadline) const {
+                                                 const Deadline& deadline, const Image<std::uint8_t>& explained) const {
   ViewHypotheses made;
   made.world_from_camera = view.frame.world_from_camera;
   if (deadline.has_passed()) {
@@ -31,9 +31,9 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
   std::optional<SearchedView> searched;
   if (config_.shape.enabled) {
     const ScopedTimer timer(made.times, "planes");
-    searched.emplace(view, config_.shape);
+    searched.emplace(view, config_.shape, explained);
   }
-  extract_features(view, searched ? &*searched : nullptr, made);
+  extract_features(view, searched ? &*searched : nullptr, explained, made);
   {
     const ScopedTimer timer(made.times, "match");
     made.correspondences = index_.match(made.sift, made.shot);
@@ -49,10 +49,15 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
 }
 
 void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchedView* searched,
-                                               ViewHypotheses& made) const {
-  Image<std::uint8_t> off_planes;
-  if (searched != nullptr && config_.skip_planes) off_planes = searched->probe.off_larger_planes(largest_diameter_m_);
-  const Image<std::uint8_t>* mask = off_planes.size() > 0 ? &off_planes : nullptr;
+                                               const Image<std::uint8_t>& explained, ViewHypotheses& made) const {
+  Image<std::uint8_t> where;
+  if (searched != nullptr && config_.skip_planes) where = searched->probe.off_larger_planes(largest_diameter_m_);
+  if (explained.size() > 0) {
+    if (where.size() == 0) where = Image<std::uint8_t>(explained.width(), explained.height(), 255);
+    for (std::size_t i = 0; i < explained.size(); ++i)
+      if (explained[i] != 0) where[i] = 0;
+  }
+  const Image<std::uint8_t>* mask = where.size() > 0 ? &where : nullptr;
   {
     const ScopedTimer timer(made.times, "sift");
     made.sift = extract_sift(view, config_.sift, mask);

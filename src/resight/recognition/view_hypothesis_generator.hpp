@@ -19,13 +19,15 @@ class ViewHypothesisGenerator {
  public:
   ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config);
 
-  /// Of a view with its number in the sequence; ids start at `first_id`. Neither the search as a whole nor that by
-  /// shape is begun after the deadline.
+  /// Of a view with its number in the sequence; ids start at `first_id`. Where `explained` is not 0 nothing is searched
+  /// (as large as the view; empty: everywhere is). Neither the search as a whole nor that by shape is begun after the
+  /// deadline.
   [[nodiscard]] ViewHypotheses generate(const PreparedView& view, int number, std::uint64_t first_id,
-                                        const Deadline& deadline = {}) const;
+                                        const Deadline& deadline = {}, const Image<std::uint8_t>& explained = {}) const;
 
  private:
-  void extract_features(const PreparedView& view, const SearchedView* searched, ViewHypotheses& made) const;
+  void extract_features(const PreparedView& view, const SearchedView* searched, const Image<std::uint8_t>& explained,
+                        ViewHypotheses& made) const;
   void add_from_shape(const PreparedView& view, const SearchedView& searched, int number, const Deadline& deadline,
                       ViewHypotheses& made) const;
   void drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const;

@@ -37,6 +37,20 @@ SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
   return options;
 }
 
+PointCloud without_explained(const PointCloud& points, const Camera& camera, const Image<std::uint8_t>& explained) {
+  PointCloud searched;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d pixel = camera.project(points.points[i].cast<double>());
+    if (camera.contains(pixel) &&
+        explained(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))) != 0)
+      continue;
+    searched.points.push_back(points.points[i]);
+    if (points.has_normals()) searched.normals.push_back(points.normals[i]);
+    if (points.has_colors()) searched.colors.push_back(points.colors[i]);
+  }
+  return searched;
+}
+
 }  // namespace
 
 struct ShapeSearch::Impl {
@@ -84,8 +98,7 @@ struct ShapeSearch::Impl {
     const PoseProbe& probe = view.probe;
     if (!view.samples.points.has_normals()) return {};
     const std::vector<ProbeModel> balanced = balance(probe, from_features);
-    std::vector<std::vector<PoseCandidate>> of_object =
-        find_candidates(view.samples.points, probe, without_colors_of_round_shapes(balanced));
+    std::vector<std::vector<PoseCandidate>> of_object = find_candidates(view, without_colors_of_round_shapes(balanced));
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
     parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
       if (!matches.empty()) {
@@ -104,19 +117,21 @@ struct ShapeSearch::Impl {
     return result;
   }
 
-  [[nodiscard]] std::vector<std::vector<PoseCandidate>> find_candidates(const PointCloud& scene, const PoseProbe& probe,
+  [[nodiscard]] std::vector<std::vector<PoseCandidate>> find_candidates(const SearchedView& view,
                                                                         const std::vector<ProbeModel>& balanced) const {
+    const PointCloud& scene = view.samples.points;
     std::vector<std::vector<PoseCandidate>> of_object(objects.size());
     if (table.size() == 0) return of_object;
     std::vector<int> max_entries;
     for (std::size_t o = 0; o < objects.size(); ++o)
       max_entries.push_back(is_round_in_shape(o) ? std::max(1, options.max_entries / kAlikeEntries)
                                                  : options.max_entries);
-    const DipoleSearch dipoles(scene, probe, balanced, table, max_entries, options);
+    const DipoleSearch dipoles(scene, view.probe, balanced, table, max_entries, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
-    seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(options.max_seeds)));
+    const auto max_seeds = static_cast<std::size_t>(view.searched_share * options.max_seeds);
+    seeds.resize(std::min(seeds.size(), max_seeds));
     std::sort(seeds.begin(), seeds.end());  // Neighbours look at the same pixels, which are then in the cache.
     std::vector<std::vector<PoseCandidate>> found(seeds.size());
     parallel_for(seeds.size(), options.num_threads,
@@ -252,9 +267,15 @@ void ShapeSearchOptions::check() const {
   check_positive("ShapeSearchOptions.num_threads", num_threads);
 }
 
-SearchedView::SearchedView(const PreparedView& view, const ShapeSearchOptions& options)
+SearchedView::SearchedView(const PreparedView& view, const ShapeSearchOptions& options,
+                           const Image<std::uint8_t>& explained)
     : samples(sample_scene(view, with_threads(options.scene, options.num_threads))),
-      probe(view, samples.planes, options.num_threads) {}
+      probe(view, samples.planes, options.num_threads) {
+  if (explained.size() == 0 || samples.points.empty()) return;
+  PointCloud searched = without_explained(samples.points, view.frame.camera, explained);
+  searched_share = static_cast<double>(searched.size()) / static_cast<double>(samples.points.size());
+  samples.points = std::move(searched);
+}
 
 ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors)
     : impl_(std::make_unique<Impl>(library, options, colors)) {}

@@ -51,9 +51,11 @@ struct ShapeSearchOptions {
 
 /// A view made ready for the search. It must outlive what is asked of it, and the PreparedView must outlive it.
 struct SearchedView {
-  SearchedView(const PreparedView& view, const ShapeSearchOptions& options);
+  /// Where `explained` (as large as the view; empty: nowhere) is not 0 nothing is searched, but poses are tried there.
+  SearchedView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
   SceneSamples samples;
   PoseProbe probe;
+  double searched_share = 1;  ///< Of the samples: those not explained, and so many of the seeds.
 };
 
 /// A pose found by shape.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/explained_pixels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace resight {
+namespace {
+
+constexpr double kMaxGoneShare = 0.1;
+constexpr double kPointRadius_m = 0.0015;  // Surfaces of models are sampled about 2 mm apart.
+
+class Marker {
+ public:
+  Marker(const RgbdFrame& frame, float tolerance_m)
+      : frame_(frame), tolerance_m_(tolerance_m), mask_(frame.camera.width, frame.camera.height, 0) {}
+
+  void mark(const PointCloud& surface, const Rigid3f& camera_from_object) {
+    for (std::size_t i = 0; i < surface.size(); ++i) {
+      const Eigen::Vector3f p = camera_from_object * surface.points[i];
+      if (p.z() > 0 && (camera_from_object.rotation * surface.normals[i]).dot(p) < 0) mark_around(p);
+    }
+  }
+  [[nodiscard]] Image<std::uint8_t> take() { return std::move(mask_); }
+
+ private:
+  void mark_around(const Eigen::Vector3f& p) {
+    const Eigen::Vector2d pixel = frame_.camera.project(p.cast<double>());
+    if (!frame_.camera.contains(pixel)) return;
+    const int radius = 1 + static_cast<int>(kPointRadius_m * frame_.camera.fx / static_cast<double>(p.z()));
+    const int u = static_cast<int>(std::lround(pixel.x()));
+    const int v = static_cast<int>(std::lround(pixel.y()));
+    for (int y = std::max(0, v - radius); y <= std::min(frame_.camera.height - 1, v + radius); ++y)
+      for (int x = std::max(0, u - radius); x <= std::min(frame_.camera.width - 1, u + radius); ++x)
+        if (std::abs(frame_.depth_m(x, y) - p.z()) < tolerance_m_) mask_(x, y) = 255;  // false for NaN
+  }
+
+  const RgbdFrame& frame_;
+  float tolerance_m_;
+  Image<std::uint8_t> mask_;
+};
+
+}  // namespace
+
+Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const KnownObject> known,
+                                          const ModelLibrary& library, const PresenceOptions& presence) {
+  Marker marker(frame, static_cast<float>(presence.depth_margin_m));
+  for (const KnownObject& object : known) {
+    const PointCloud& surface = library.objects[static_cast<std::size_t>(object.object)].surface;
+    const ObjectPresence seen = assess_presence(surface, object.world_from_object, frame, presence);
+    if (!seen.is_informative || seen.gone_share > kMaxGoneShare) continue;
+    marker.mark(surface, Rigid3f(frame.world_from_camera.inverse() * object.world_from_object));
+  }
+  return marker.take();
+}
+
+}  // namespace resight
