@@ -51,8 +51,7 @@ TEST_F(FindExplainedPixels, WhatStandsBeforeItIsNotExplained) {
   const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<KnownObject>{{0, kLeft, 0}}, library_);
   EXPECT_GT(count(mask), 0);
   for (int v = 0; v < mask.height(); ++v)
-    for (int u = 0; u < mask.width(); ++u)
-      EXPECT_FALSE(frame.depth_m(u, v) < 0.9F && mask(u, v) != 0) << u << " " << v;
+    for (int u = 0; u < mask.width(); ++u) EXPECT_FALSE(frame.depth_m(u, v) < 0.9F && mask(u, v) != 0) << u << " " << v;
 }
 
 }  // namespace
