@@ -66,6 +66,9 @@ std::vector<SceneUpdate> recognize(const std::string& preset, int num_previous_v
     updates.push_back(recognizer.add_view(world().views[v].frame, trace));
   }
   for (ObjectEvent& event : recognizer.finish()) updates.back().events.push_back(std::move(event));
+  std::vector<std::vector<ObjectEvent>*> events;
+  for (SceneUpdate& update : updates) events.push_back(&update.events);
+  drop_replaced(events);
   return updates;
 }
 
@@ -159,6 +162,30 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
                          [](const auto& goal) {
                            return goal.param.preset == "default" ? std::string("best") : std::string("chd");
                          });
+
+// Attention within a view: of the third view on, a confirmed object gives no keypoints but in one of four views.
+TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
+  constexpr std::size_t kViews = 3;
+  RecognizerConfig config = RecognizerConfig::from_preset("default");
+  config.attention.object_look_every = 0;
+  config.attention.max_unseen_share = 0;  // Each view is searched.
+  config.set_num_threads(kThreads);
+  SceneRecognizer everywhere(world().library, config);
+  config.attention.object_look_every = 4;
+  SceneRecognizer attentive(world().library, config);
+  for (std::size_t v = 0; v < kViews; ++v) {
+    RecognitionTrace all, less;
+    const SceneUpdate a = everywhere.add_view(world().views[v].frame, &all);
+    const SceneUpdate b = attentive.add_view(world().views[v].frame, &less);
+    EXPECT_EQ(a.detections.size(), b.detections.size()) << v;
+    if (v + 1 < kViews) {
+      EXPECT_EQ(all.shot.size(), less.shot.size()) << v;
+    } else {
+      EXPECT_LT(2 * less.sift.size(), all.sift.size()) << "most of the print is on known objects";
+      EXPECT_LT(less.shot.size(), all.shot.size());
+    }
+  }
+}
 
 TEST(Pipeline, OneAndTwoThreadsGiveTheSameBytes) {
   constexpr std::size_t kViews = 5;

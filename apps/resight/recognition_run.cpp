@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/evaluation/ghosts.hpp"
+#include "resight/recognition/object_event.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
 
 namespace resight::app {

@@ -9,6 +9,7 @@
 #include "resight/core/check.hpp"
 #include "resight/evaluation/loss.hpp"
 #include "resight/evaluation/score_view.hpp"
+#include "resight/recognition/object_event.hpp"
 
 namespace resight {
 namespace {

@@ -92,12 +92,20 @@ struct TrueEvent : TrueChange {
     return world_from_object_after && sight.after_view >= 0 && (sight.place_was_seen || shows_departure());
   }
   [[nodiscard]] bool counts() const { return shows_departure() || shows_arrival(); }
-  [[nodiscard]] TrueChange as_shown() const {
-    TrueChange shown = *this;
-    if (kind != ObjectEventKind::kMoved || shows_departure() == shows_arrival()) return shown;
-    shown.kind = shows_departure() ? ObjectEventKind::kRemoved : ObjectEventKind::kAdded;
-    (shows_departure() ? shown.world_from_object_after : shown.world_from_object_before).reset();
-    return shown;
+  // Of a move only one side; other changes as they are.
+  [[nodiscard]] TrueChange departure() const {
+    TrueChange side = *this;
+    if (kind != ObjectEventKind::kMoved) return side;
+    side.kind = ObjectEventKind::kRemoved;
+    side.world_from_object_after.reset();
+    return side;
+  }
+  [[nodiscard]] TrueChange arrival() const {
+    TrueChange side = *this;
+    if (kind != ObjectEventKind::kMoved) return side;
+    side.kind = ObjectEventKind::kAdded;
+    side.world_from_object_before.reset();
+    return side;
   }
   [[nodiscard]] int known_since() const {
     return std::max(shows_departure() ? sight.before_view : -1, shows_arrival() ? sight.after_view : -1);
@@ -111,6 +119,7 @@ ChangeSightFinder::ChangeSightFinder(const ModelLibrary& library, const Sequence
     : library_(library), truth_(truth), options_(options) {
   require(truth.changes.has_value(), "ChangeSightFinder: the truth holds no changes");
   sights_.resize(truth.changes->size(), {-1, -1, false, false});
+  for (const TrueChange& change : *truth.changes) stands_since_.push_back(find_arrival_before(change));
 }
 
 void ChangeSightFinder::add_view(const RgbdFrame& frame) {
@@ -123,7 +132,8 @@ void ChangeSightFinder::add_view(const RgbdFrame& frame) {
     const std::optional<Rigid3>& after = change.world_from_object_after;
     ChangeSight& sight = sights_[i];
     if (change.view > view_) {
-      sight.was_seen = sight.was_seen || (before && shows(frame, change.object, *before, model));
+      sight.was_seen =
+          sight.was_seen || (before && view_ >= stands_since_[i] && shows(frame, change.object, *before, model));
       sight.place_was_seen = sight.place_was_seen || (after && looks_at(frame, *after, model));
       continue;
     }
@@ -131,6 +141,19 @@ void ChangeSightFinder::add_view(const RgbdFrame& frame) {
     if (after && sight.after_view < 0 && shows(frame, change.object, *after, model)) sight.after_view = view_;
   }
   ++view_;
+}
+
+// The last change that brought the object to where it leaves; 0 if it was there from the first view on.
+int ChangeSightFinder::find_arrival_before(const TrueChange& change) const {
+  const int object = library_.find(change.object);
+  if (object < 0 || !change.world_from_object_before) return 0;
+  const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
+  int since = 0;
+  for (const TrueChange& other : *truth_.changes)
+    if (other.object == change.object && other.view < change.view && other.world_from_object_after &&
+        is_within(compare_poses(*other.world_from_object_after, *change.world_from_object_before, model), options_))
+      since = std::max(since, other.view);
+  return since;
 }
 
 bool ChangeSightFinder::shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
@@ -182,7 +205,8 @@ EventScore score_events(std::span<const TrueChange> changes, std::span<const Cha
   score.events = Matcher::match(
       truths, events,
       [&](const TrueEvent& t, const ReportedChange& r) {
-        return matcher.same_change(t, r) || matcher.same_change(t.as_shown(), r);
+        return matcher.same_change(t, r) || (!t.shows_arrival() && matcher.same_change(t.departure(), r)) ||
+               (!t.shows_departure() && matcher.same_change(t.arrival(), r));
       },
       [](const TrueEvent& t) { return t.counts(); },
       [&](const TrueEvent& t, const ReportedChange& r) {

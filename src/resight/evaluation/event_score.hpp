@@ -24,7 +24,7 @@ struct ChangeSight {
   int before_view = -1;  ///< First view, from the change on, that looks at the place left: its centre is in the image
                          ///< and not hidden.
   int after_view = -1;   ///< First view, from the change on, with the object visible at its new place.
-  bool was_seen = true;  ///< A view before the change had the object visible at the place left.
+  bool was_seen = true;  ///< A view before the change, since it came there, had the object visible at the place left.
   bool place_was_seen = true;  ///< A view before the change looked at the new place.
 };
 
@@ -40,11 +40,13 @@ class ChangeSightFinder {
  private:
   [[nodiscard]] bool shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
                            const ObjectModel& model) const;
+  [[nodiscard]] int find_arrival_before(const TrueChange& change) const;
 
   const ModelLibrary& library_;
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
   std::vector<ChangeSight> sights_;
+  std::vector<int> stands_since_;  // by change: the first view with the object at the place that it leaves
   int view_ = 0;
 };
 

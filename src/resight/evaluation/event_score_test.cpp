@@ -76,6 +76,9 @@ TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   const ChangeSight nothing{-1, -1};
   EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+  const ChangeSight came_unseen{-1, 5, false, false};
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", at(0), {}}}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).departures, (RecognitionScore{0, 0, 0}));
   const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
@@ -133,6 +136,27 @@ TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
   finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
   EXPECT_EQ(finder.sights()[0].before_view, 2);
   EXPECT_EQ(finder.sights()[0].after_view, 3);
+}
+
+// It was seen there once, left, and came back unseen: that it leaves again no view can tell.
+TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
+                                          {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
+                                          {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
+  truth.views.resize(5);
+  GroundTruthObject seen;
+  seen.object = "mug";
+  seen.camera_from_object = at(0);
+  seen.visible_share = 0.5;
+  truth.views[0].objects = {seen};
+  seen.visible_share = 0.02;
+  truth.views[2].objects = truth.views[3].objects = {seen};
+  ChangeSightFinder finder(library, truth);
+  for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
+  EXPECT_TRUE(finder.sights()[0].was_seen);
+  EXPECT_FALSE(finder.sights()[2].was_seen);
 }
 
 TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {

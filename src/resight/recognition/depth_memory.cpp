@@ -29,7 +29,7 @@ RgbdFrame thin_out(const RgbdFrame& frame, int step_px) {
 
 void DepthMemoryOptions::check() const {
   check_not_negative("DepthMemoryOptions.max_views", max_views);
-  check_positive("DepthMemoryOptions.step_px", step_px);
+  check_in_range("DepthMemoryOptions.step_px", step_px, 1, 64);
 }
 
 DepthMemory::DepthMemory(DepthMemoryOptions options) : options_(options) { options_.check(); }

@@ -24,6 +24,9 @@ class DepthMemory {
   [[nodiscard]] std::optional<int> last_seen_free(const PointCloud& surface_in_object, const Rigid3& world_from_object,
                                                   const PresenceOptions& presence = {}) const;
 
+  /// Whether that view, or an older one, is still remembered.
+  [[nodiscard]] bool reaches_back_to(int view) const { return !views_.empty() && views_.front().number <= view; }
+
  private:
   struct View {
     int number = 0;

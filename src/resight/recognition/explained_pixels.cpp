@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace resight {
 namespace {
 
 constexpr double kMaxGoneShare = 0.1;
+constexpr float kMinDepth_m = 0.1F;
 constexpr double kPointRadius_m = 0.0015;  // Surfaces of models are sampled about 2 mm apart.
 
 class Marker {
@@ -18,7 +20,7 @@ class Marker {
   void mark(const PointCloud& surface, const Rigid3f& camera_from_object) {
     for (std::size_t i = 0; i < surface.size(); ++i) {
       const Eigen::Vector3f p = camera_from_object * surface.points[i];
-      if (p.z() > 0 && (camera_from_object.rotation * surface.normals[i]).dot(p) < 0) mark_around(p);
+      if (p.z() > kMinDepth_m && (camera_from_object.rotation * surface.normals[i]).dot(p) < 0) mark_around(p);
     }
   }
   [[nodiscard]] Image<std::uint8_t> take() { return std::move(mask_); }

@@ -95,21 +95,26 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
   track.state = State::kPresent;
 }
 
-// Two bodies of one kind cannot overlap: a detection inside the old place is the same object.
+// Two bodies of one kind cannot overlap: the nearest free detection inside the old place is the same object.
 int ObjectHistory::find_displaced(const Track& track, std::span<const Detection> detections,
                                   std::span<const int> track_of) const {
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
+  int nearest = kUnmatched;
+  double nearest_m = 0.5 * model.diameter_m;
   for (std::size_t d = 0; d < detections.size(); ++d) {
     if (track_of[d] != kUnmatched || detections[d].object != track.object) continue;
-    if (center_distance_m(model, track.world_from_object, detections[d].world_from_object) < 0.5 * model.diameter_m)
-      return static_cast<int>(d);
+    const double distance_m = center_distance_m(model, track.world_from_object, detections[d].world_from_object);
+    if (distance_m >= nearest_m) continue;
+    nearest = static_cast<int>(d);
+    nearest_m = distance_m;
   }
-  return kUnmatched;
+  return nearest;
 }
 
 void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                                        const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events) {
   std::vector<std::size_t> left;
+  std::vector<int> taken = track_of;  // and by tracks that have moved there, which place_new() will see to
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
     const bool seen = std::find(track_of.begin(), track_of.end(), static_cast<int>(t)) != track_of.end();
@@ -118,13 +123,17 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
         use_evidence ? assess_presence(library_.objects[static_cast<std::size_t>(track.object)].surface,
                                        track.world_from_object, current, options_.presence)
                      : ObjectPresence{};
-    const int displaced = find_displaced(track, detections, track_of);
-    const bool has_moved = !use_evidence || presence.gone_share >= options_.min_displaced_gone_share;
-    if (presence.is_gone || (displaced != kUnmatched && has_moved)) {
+    const int displaced = find_displaced(track, detections, taken);
+    if (displaced != kUnmatched) taken[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
+    const bool is_free =
+        !use_evidence || (presence.is_informative && presence.gone_share >= options_.min_displaced_gone_share);
+    const bool has_moved = displaced != kUnmatched && is_free &&
+                           is_seen_now(detections[static_cast<std::size_t>(displaced)], options_.min_new_share);
+    if (presence.is_gone || has_moved) {
       track.state = State::kLeaving;
       track.left_view = view;
-      track.confidence = displaced != kUnmatched ? 1.0 : presence.gone_share;
-      if (displaced == kUnmatched) left.push_back(t);
+      track.confidence = has_moved ? 1.0 : presence.gone_share;
+      if (!has_moved) left.push_back(t);
     } else if (displaced != kUnmatched) {
       track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
       keep_in_place(track, detections[static_cast<std::size_t>(displaced)], view, events);
@@ -190,14 +199,14 @@ ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::
 }
 
 // The only known object of this kind, if the view does not see its place: what is new elsewhere is likely that one.
-ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, const RgbdFrame& current) {
+ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current) {
   Track* only = nullptr;
   for (Track& track : tracks_) {
     if (track.object != detection.object || track.state != State::kPresent) continue;
     if (only != nullptr) return nullptr;
     only = &track;
   }
-  if (only == nullptr) return nullptr;
+  if (only == nullptr || only->last_view == view) return nullptr;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(only->object)];
   const bool is_seen =
       assess_presence(model.surface, only->world_from_object, current, options_.presence).is_informative;
@@ -231,10 +240,15 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
     event.confidence = std::min(confidence, detection.score);
   };
   Track* from = find_left(detection, last_free_view);
-  if (from != nullptr && !(last_free_view && *last_free_view >= from->left_view)) {
+  const bool was_away = from != nullptr && last_free_view && *last_free_view >= from->left_view;
+  // Whether the new place was free since a time that is forgotten nobody knows.
+  const bool is_recent =
+      from != nullptr && (from->state == State::kLeaving || memory_.reaches_back_to(from->left_view));
+  if (from != nullptr && is_recent && !was_away) {
     tell_move(*from, from->confidence);
     if (from->state == State::kGone) event.replaces = {ObjectEventKind::kRemoved, from->id, from->left_view};
-  } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, current) : nullptr; hidden != nullptr) {
+  } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, view, current) : nullptr;
+             hidden != nullptr) {
     tell_move(*hidden, kOutOfSightConfidence);
     std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id; });  // It was called not seen.
     from = hidden;
@@ -267,7 +281,8 @@ std::vector<KnownObject> ObjectHistory::known_objects() const {
   std::vector<KnownObject> known;
   for (const Track& track : tracks_)
     if (track.state == State::kPresent)
-      known.push_back({track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
+      known.push_back(
+          {track.id, track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
   return known;
 }
 

@@ -26,6 +26,7 @@ struct ObjectHistoryOptions {
 
 /// An object that was not seen to leave its place.
 struct KnownObject {
+  int track = -1;
   int object = -1;
   Rigid3 world_from_object;
   int last_view = -1;   ///< That it was recognised with.
@@ -39,10 +40,11 @@ class ObjectHistory {
  public:
   explicit ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options = {});
 
-  /// Takes over the detections of a view (gives each its track) and returns one event per track concerned. What is new
-  /// at a place is
-  /// - moved, if one of its kind has left its place and was not missing from both while both were seen free; also, at a
-  ///   place that was free before, if the only one known of its kind is out of sight,
+  /// Takes over the detections of a view (gives each that the view confirms its track) and returns the events of the
+  /// tracks concerned. What is new at a place is
+  /// - moved, if one of its kind has left its place, as far back as the memory reaches, and was not missing from both
+  ///   while both were seen free; also, at a place that was free before, if the only one known of its kind is out of
+  ///   sight,
   /// - else added, if an earlier view saw the place free,
   /// - else found.
   /// What leaves a place after one of its kind was added elsewhere has moved there. `current` is the view's frame.
@@ -80,7 +82,7 @@ class ObjectHistory {
   [[nodiscard]] Track* find_added_since(const Track& left);
   void join(Track& left, Track& added, int view, std::vector<Detection>& detections, std::vector<ObjectEvent>& events);
   [[nodiscard]] Track* find_left(const Detection& detection, std::optional<int> last_free_view);
-  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, const RgbdFrame& current);
+  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current);
   Track& new_track(int object);
   void place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                  std::vector<ObjectEvent>& events);

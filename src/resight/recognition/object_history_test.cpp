@@ -159,6 +159,55 @@ TEST_F(ObjectHistoryTest, WhatMovesOnAsItsOldPlaceIsSeenHasMovedTwice) {
   EXPECT_DOUBLE_EQ(events[1].world_from_object_after->translation.x(), 0.0);
 }
 
+TEST_F(ObjectHistoryTest, WhatThisViewRecognisesInItsPlaceIsNotTheNewOne) {
+  view({{0, left_}}, see_plates({left_}));
+  RgbdFrame left_is_hidden = see_plates({right_});
+  for (int v = 0; v < left_is_hidden.depth_m.height(); ++v)
+    for (int u = 0; u < left_is_hidden.depth_m.width() / 2; ++u)
+      left_is_hidden.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(kinds(view({{0, left_}, {0, right_}}, left_is_hidden)), (std::vector{K::kStillThere, K::kAdded}));
+  EXPECT_NE(detections_[0].track, detections_[1].track);
+}
+
+TEST_F(ObjectHistoryTest, AShiftThatTheViewDoesNotConfirmIsNoMove) {
+  ObjectHistoryOptions options;
+  options.min_new_share = 0.02;
+  history_ = std::make_unique<ObjectHistory>(library_, options);
+  view({{0, left_}}, see_plates({left_}));
+  detections_[0].world_from_object = plate_at(-0.24, 0, 1);
+  detections_[0].views.push_back({1, true, 0.5F, 0.01F});
+  // A third of the old place is free, the rest as it was.
+  EXPECT_EQ(kinds(history_->update(view_++, detections_, see_plates({plate_at(-0.24, 0, 1)}), true)),
+            (std::vector{K::kStillThere}));
+  EXPECT_TRUE(history_->finish().empty());
+}
+
+TEST_F(ObjectHistoryTest, OneDetectionTakesThePlaceOfOneTrackOnly) {
+  // Two on top of each other, as far as plates go; the one detection left lies within half a diameter of both.
+  const Rigid3 upper = plate_at(-0.3, -0.04, 1);
+  const Rigid3 lower = plate_at(-0.3, 0.04, 1);
+  view({{0, upper}, {0, lower}}, see_plates({upper, lower}));
+  const Rigid3 shifted = plate_at(-0.24, 0, 1);
+  view({{0, shifted}}, see_plates({shifted}));
+  const std::vector<KnownObject> known = history_->known_objects();
+  EXPECT_EQ(std::ranges::count(known, shifted.translation.x(),
+                               [](const KnownObject& k) { return k.world_from_object.translation.x(); }),
+            1);
+  EXPECT_EQ(known.size(), 2U) << "the other was not seen to leave";
+}
+
+TEST_F(ObjectHistoryTest, WhatWasRemovedBeforeTheMemoryBeginsHasNotMoved) {
+  ObjectHistoryOptions options;
+  options.memory.max_views = 2;
+  history_ = std::make_unique<ObjectHistory>(library_, options);
+  view({{0, left_}}, see_plates({left_}));
+  RgbdFrame left_is_free = see_plates({});
+  hide_right_half(left_is_free);
+  for (int i = 0; i < 2; ++i) view({}, left_is_free);
+  for (int i = 0; i < 2; ++i) view({}, see_nothing());
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kFound}));
+}
+
 TEST_F(ObjectHistoryTest, OneThatWasSeenAfterTheOtherWasAddedIsAnother) {
   view({{0, left_}}, see_plates({left_}));
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
@@ -244,7 +293,7 @@ TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
   detections_.resize(2);
   detections_[0].object = 0;
   detections_[0].world_from_object = left_;
-  detections_[0].views.push_back({0, true, 0.01F, 1.0F});
+  detections_[0].views.push_back({0, true, 0.5F, 0.01F});  // Seen, but not confirmed.
   detections_[1].object = 1;
   detections_[1].world_from_object = right_;
   detections_[1].views.push_back({0, true, 0.03F, 1.0F});

@@ -64,7 +64,7 @@ struct RecognizerConfig {
   /// Single views stand for themselves.
   [[nodiscard]] bool remembers() const { return remember_objects && num_previous_views > 0; }
   /// Whether what is known decides where a view is searched (AttentionOptions::object_look_every).
-  [[nodiscard]] bool leaves_out_explained() const { return remembers() && attention.object_look_every > 0; }
+  [[nodiscard]] bool leaves_out_explained() const { return remembers() && attention.object_look_every > 1; }
   void check() const;
   /// Every field as "section.name" and its value as text, in order: what summary.json keeps of a run.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;

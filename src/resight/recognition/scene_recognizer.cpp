@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -58,7 +59,7 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] bool is_known(const Hypothesis& hypothesis) const;
   void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
-  [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, SceneUpdate& update);
+  [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, int number, StageTimes& times);
   [[nodiscard]] std::vector<std::uint8_t> presence_of(const std::vector<Hypothesis>& hypotheses) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
@@ -76,7 +77,8 @@ struct SceneRecognizer::Impl {
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
-      members_of_cluster;  // ids by the seed's id; this view's
+      members_of_cluster;            // ids by the seed's id; this view's
+  std::map<int, int> look_of_track;  // the last view that was searched where a known object is
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
   std::uint64_t next_known_id = kFirstKnownId;
@@ -127,8 +129,10 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   const ViewHypotheses* found = store ? store->find(update.view) : nullptr;
   if (found == nullptr) {
     if (!generator) generator.emplace(library, config);
-    const Image<std::uint8_t> explained = explained_pixels(view.frame, update);
+    StageTimes times;
+    const Image<std::uint8_t> explained = explained_pixels(view.frame, update.view, times);
     made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s), explained);
+    made.times.add(times);
     if (!made.left_out.empty()) attention.look_at_next();
     found = store ? &store->add(update.view, std::move(made)) : &made;
   }
@@ -163,20 +167,27 @@ std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
 }
 
 // Those of known objects that need no search in this view: the last one confirmed them, no change is near them, and
-// their turn has not come.
-Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& frame, SceneUpdate& update) {
+// they were searched for not long ago.
+Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& frame, int number, StageTimes& times) {
   if (!config.leaves_out_explained()) return {};
-  const ScopedTimer timer(update.times, "attention");
+  const ScopedTimer timer(times, "attention");
   const std::vector<KnownObject> known = history.known_objects();
   const std::vector<std::uint8_t> present = presence_of(known_hypotheses());
   const std::size_t now = (scene.window().size() - 1) * known.size();
   std::vector<KnownObject> confirmed;
+  std::map<int, int> looks;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    const int age = update.view - known[i].since_view;
-    const bool is_due = age < config.attention.object_min_views || age % config.attention.object_look_every == 0;
-    if (!is_due && known[i].seen_view + 1 == update.view && (present.empty() || present[now + i] != 0))
+    const auto last = look_of_track.find(known[i].track);
+    const bool is_due = number - known[i].since_view < config.attention.object_min_views ||
+                        last == look_of_track.end() || number - last->second >= config.attention.object_look_every;
+    if (is_due || known[i].seen_view + 1 != number || (!present.empty() && present[now + i] == 0)) {
+      looks[known[i].track] = number;
+    } else {
+      looks[known[i].track] = last->second;
       confirmed.push_back(known[i]);
+    }
   }
+  look_of_track = std::move(looks);
   return find_explained_pixels(frame, confirmed, library, config.history.presence);
 }
 

@@ -11,7 +11,7 @@
 
 namespace resight {
 
-/// What recognition takes from one view alone, before it looks at other views.
+/// What recognition takes from one view, before it looks at other views (but for where it needs no search).
 struct ViewHypotheses {
   std::vector<Hypothesis> hypotheses;                        ///< World frame; ids in the order of the sequence.
   FeatureSet sift;                                           ///< Camera frame.
@@ -26,8 +26,8 @@ struct ViewHypotheses {
 [[nodiscard]] std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera);
 
 /// Keeps the hypotheses of each view for several recognisers that are shown the same sequence with the same library and
-/// the same generation_settings(): they do not depend on K, nor on what comes after. The first recogniser makes them,
-/// the others take them, times included. Not thread-safe.
+/// the same generation_settings(), on which alone they depend. The first recogniser makes them, the others take them,
+/// times included. Not thread-safe.
 class ViewHypothesisStore {
  public:
   /// Null if there is none yet.
@@ -43,7 +43,8 @@ class ViewHypothesisStore {
   std::map<int, ViewHypotheses> of_view_;
 };
 
-/// All settings that the hypotheses of a single view depend on, as one text: equal texts, equal hypotheses.
+/// All settings that the hypotheses of a view depend on, as one text: equal texts, equal hypotheses. Neither K nor what
+/// follows the hypotheses is among them, unless what is known decides where a view is searched.
 [[nodiscard]] std::string generation_settings(const RecognizerConfig& config);
 
 }  // namespace resight

@@ -130,7 +130,7 @@ struct ShapeSearch::Impl {
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
-    const auto max_seeds = static_cast<std::size_t>(view.searched_share * options.max_seeds);
+    const auto max_seeds = static_cast<std::size_t>(std::ceil(view.searched_share * options.max_seeds));
     seeds.resize(std::min(seeds.size(), max_seeds));
     std::sort(seeds.begin(), seeds.end());  // Neighbours look at the same pixels, which are then in the cache.
     std::vector<std::vector<PoseCandidate>> found(seeds.size());

@@ -51,6 +51,25 @@ TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
   EXPECT_EQ(best_of(found, 2), nullptr);
 }
 
+TEST(ShapeSearch, WhatIsExplainedIsNotSearched) {
+  const PlainThings c;
+  const Camera& camera = c.view.frame.camera;
+  Image<std::uint8_t> explained(camera.width, camera.height, 0);
+  const Eigen::Vector2d center =
+      camera.project(c.view.frame.world_from_camera.inverse() * c.box.world_from_object.translation);
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u)
+      if ((Eigen::Vector2d(u, v) - center).norm() < 0.09 * camera.fx / 0.8) explained(u, v) = 255;
+  const SearchedView but_the_box(c.view, {}, explained);
+  EXPECT_LT(but_the_box.searched_share, 0.9);
+  EXPECT_LT(but_the_box.samples.points.size(), c.searched.samples.points.size());
+  const auto found = ShapeSearch(c.library, {}).search(but_the_box);
+  EXPECT_EQ(best_of(found, 0), nullptr);
+  EXPECT_NE(best_of(found, 1), nullptr);
+  const Image<std::uint8_t> all(camera.width, camera.height, 255);
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchedView(c.view, {}, all)).empty());
+}
+
 // Shape finds the can, and leaves its turn to the print: a pair of points alone hardly ever gives both.
 TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
   const Paint paint = [](const Eigen::Vector3d& p) {
