@@ -381,7 +381,6 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.prepare.normals.window_radius_px = 4;  // On things at a metre 6 deg off; 20 with 2.
     config.verify.newest_view_decides = true;
     config.verify.plane_spacing_m = 0.01;
-    config.verify.light.max_veil = 0.04;          // More turns white paper into cardboard.
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.01;
@@ -390,7 +389,6 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.poses.enabled = true;
     config.min_carried_share = 0.8;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
-    config.attention.object_look_every = 4;
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;
