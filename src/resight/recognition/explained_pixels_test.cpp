@@ -10,13 +10,12 @@
 namespace resight {
 namespace {
 
+using test::kLeft;
+using test::kRight;
 using test::make_plate;
 using test::plate_at;
 using test::see_nothing;
 using test::see_plates;
-
-const Rigid3 kLeft = plate_at(-0.3, 0, 1);
-const Rigid3 kRight = plate_at(0.3, 0, 1);
 
 class FindExplainedPixels : public ::testing::Test {
  protected:

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "resight/recognition/square_world_test_util.hpp"
 
 namespace resight {
 namespace {
 
+using test::hide_columns;
 using test::make_plate;
 using test::plate_at;
 using test::see_nothing;
@@ -36,10 +36,9 @@ class ObjectHistoryTest : public ::testing::Test {
     }
     return history_->update(view_++, detections_, frame, use_evidence);
   }
+  static void hide_left_half(RgbdFrame& frame) { hide_columns(frame, 0, frame.depth_m.width() / 2); }
   static void hide_right_half(RgbdFrame& frame) {
-    for (int v = 0; v < frame.depth_m.height(); ++v)
-      for (int u = frame.depth_m.width() / 2; u < frame.depth_m.width(); ++u)
-        frame.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+    hide_columns(frame, frame.depth_m.width() / 2, frame.depth_m.width());
   }
   static std::vector<ObjectEventKind> kinds(const std::vector<ObjectEvent>& events) {
     std::vector<ObjectEventKind> result;
@@ -162,9 +161,7 @@ TEST_F(ObjectHistoryTest, WhatMovesOnAsItsOldPlaceIsSeenHasMovedTwice) {
 TEST_F(ObjectHistoryTest, WhatThisViewRecognisesInItsPlaceIsNotTheNewOne) {
   view({{0, left_}}, see_plates({left_}));
   RgbdFrame left_is_hidden = see_plates({right_});
-  for (int v = 0; v < left_is_hidden.depth_m.height(); ++v)
-    for (int u = 0; u < left_is_hidden.depth_m.width() / 2; ++u)
-      left_is_hidden.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  hide_left_half(left_is_hidden);
   EXPECT_EQ(kinds(view({{0, left_}, {0, right_}}, left_is_hidden)), (std::vector{K::kStillThere, K::kAdded}));
   EXPECT_NE(detections_[0].track, detections_[1].track);
 }
@@ -275,9 +272,7 @@ TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
 TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
   view({{0, left_}}, see_plates({left_}));
   RgbdFrame only_right = see_plates({right_});
-  const int width = only_right.depth_m.width();
-  for (int v = 0; v < only_right.depth_m.height(); ++v)
-    for (int u = 0; u < width / 2; ++u) only_right.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  hide_left_half(only_right);
   const auto events = view({{0, right_}}, only_right);
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_EQ(detections_[0].track, 0);
@@ -307,9 +302,7 @@ TEST_F(ObjectHistoryTest, OfTwoOfAKindNoneIsTakenForANewOne) {
   const Rigid3 third = plate_at(0, 0.2, 1);
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   RgbdFrame without_left = see_plates({right_, third});
-  for (int v = 0; v < without_left.depth_m.height(); ++v)
-    for (int u = 0; u < without_left.depth_m.width() / 3; ++u)
-      without_left.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+  hide_columns(without_left, 0, without_left.depth_m.width() / 3);
   const auto seen = kinds(view({{0, right_}, {0, third}}, without_left));
   EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kAdded), 1);
   EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kMoved), 0);

@@ -31,6 +31,9 @@ inline ObjectModel make_plate(const std::string& name) {
 }
 
 inline Rigid3 plate_at(double x, double y, double z) { return Rigid3::from_translation({x, y, z}); }
+/// Side by side, each in its half of the image.
+inline const Rigid3 kLeft = plate_at(-0.3, 0, 1);
+inline const Rigid3 kRight = plate_at(0.3, 0, 1);
 
 /// What the camera at the origin sees of plates at the given poses.
 inline RgbdFrame see_plates(const std::vector<Rigid3>& plates) {
@@ -54,10 +57,16 @@ inline RgbdFrame see_plates(const std::vector<Rigid3>& plates) {
   return frame;
 }
 
+/// Takes the returns from the columns [begin, end).
+inline void hide_columns(RgbdFrame& frame, int begin, int end) {
+  for (int v = 0; v < frame.depth_m.height(); ++v)
+    for (int u = begin; u < end; ++u) frame.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+}
+
 /// The same view without a single return.
 inline RgbdFrame see_nothing() {
   RgbdFrame frame = see_plates({});
-  for (float& z : frame.depth_m.data()) z = std::numeric_limits<float>::quiet_NaN();
+  hide_columns(frame, 0, frame.depth_m.width());
   return frame;
 }
 
