@@ -251,6 +251,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.continuation_offset_m", &v.continuation_offset_m},
                                   {"verify.continuation_contrast", &v.continuation_contrast},
                                   {"verify.max_seen_through_share", &v.max_seen_through_share},
+                                  {"verify.max_absent_share", &v.max_absent_share},
                                   {"verify.max_moves", &v.max_moves},
                                   {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
                                   {"verify.min_shared_points", &v.min_shared_points},
@@ -270,6 +271,7 @@ std::vector<Field> list_fields(RecognizerConfig& c) {
                             {"clear_tolerance_m", &c.clear_tolerance_m},
                             {"min_reported_share", &c.min_reported_share},
                             {"min_carried_share", &c.min_carried_share},
+                            {"judge_absent", &c.judge_absent},
                             {"remember_objects", &c.remember_objects},
                             {"skip_planes", &c.skip_planes},
                             {"deadline_ms", &c.deadline_ms}};

@@ -255,9 +255,13 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
   if (!config.detect_changes) return {};
   const ScopedTimer timer(update.times, "presence");
   const auto& window = scene.window();
-  const std::vector<std::uint8_t> mask = presence_of(hypotheses);
+  std::vector<std::uint8_t> mask = presence_of(hypotheses);
   const std::size_t num_all = hypotheses.size();
   const std::size_t now = (window.size() - 1) * num_all;
+  if (config.judge_absent) {
+    std::fill(mask.begin() + static_cast<std::ptrdiff_t>(now), mask.end(), 1);
+    return mask;
+  }
   std::vector<std::uint8_t> kept_mask;
   for (std::size_t v = 0; v < window.size(); ++v)
     for (std::size_t h = 0; h < num_all; ++h)

@@ -23,13 +23,14 @@ std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rig
 
 std::string generation_settings(const RecognizerConfig& config) {
   // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 17> kLaterSections{"preset",
+  constexpr std::array<std::string_view, 18> kLaterSections{"preset",
                                                             "num_previous_views",
                                                             "detect_changes",
                                                             "cluster_hypotheses",
                                                             "clear_tolerance_m",
                                                             "min_reported_share",
                                                             "min_carried_share",
+                                                            "judge_absent",
                                                             "remember_objects",
                                                             "poses.",
                                                             "attention.",

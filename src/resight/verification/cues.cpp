@@ -72,16 +72,40 @@ struct CueComputer::Impl {
   // Moves the hypothesis onto the scene before it is judged, and finds what is visible of it there.
   void look(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
             std::span<const std::uint8_t> allowed) {
+    Rigid3 pose = cues_.evidence.world_from_object;
     if (options_.refine.max_iterations > 0)
-      place(refine_pose_on_scene(model_, cues_.evidence.world_from_object, roughly_visible(views, allowed),
-                                 correspondences, scene_, options_.refine));
-    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
-    compare_with_scene();
+      pose = refine_pose_on_scene(model_, pose, roughly_visible(views, allowed), correspondences, scene_,
+                                  options_.refine);
+    look_at(pose, views, allowed);
     const Rigid3 turn = find_turn();
     if (turn.rotation.isIdentity()) return;
-    place(cues_.evidence.world_from_object * turn);
+    const double fit = color_fit();
+    look_at(pose * turn, views, allowed);
+    if (color_fit() <= fit) look_at(pose, views, allowed);
+  }
+
+  void look_at(const Rigid3& world_from_object, std::span<const DepthView> views,
+               std::span<const std::uint8_t> allowed) {
+    place(world_from_object);
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
     compare_with_scene();
+  }
+
+  // How well the colours agree where model and scene meet, as patterns and one by one, in the light of this alone.
+  double color_fit() const {
+    if (nearest_.empty()) return 0;
+    const LightFit light = limit_chroma(light_, Eigen::Array3f::Zero(), options_.light);
+    std::vector<LabColor> model_colors;
+    std::vector<LabColor> scene_colors;
+    double sum = 0;
+    for (const Match& m : nearest_) {
+      const int i = visibility_.visible[m.visible];
+      model_colors.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
+      scene_colors.push_back(local_lab_[m.local]);
+      sum += std::exp(-colors_.exponent(model_colors.back(), scene_colors.back()));
+    }
+    return sum / static_cast<double>(visibility_.visible.size()) +
+           pattern_similarity(model_colors, scene_colors, options_.color_sigma_l / options_.color_sigma_ab);
   }
 
   // To where the print of the model fits that of the scene, about what the shape leaves free.

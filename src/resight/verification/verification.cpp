@@ -271,6 +271,7 @@ void VerifyOptions::check() const {
   check_in_range(name("min_inlier_weight"), min_inlier_weight, 0, 1);
   check_in_range(name("max_inlier_angle_rad"), max_inlier_angle_rad, 0, std::numbers::pi / 2);
   check_in_range(name("max_seen_through_share"), max_seen_through_share, 0, 1);
+  check_in_range(name("max_absent_share"), max_absent_share, 0, 1);
   check_not_negative(name("max_moves"), max_moves);
   check_in_range(name("max_exact_hypotheses"), max_exact_hypotheses, 0, 20);
   check_not_negative(name("min_shared_points"), min_shared_points);

@@ -68,6 +68,8 @@ struct VerifyOptions {
                                      ///< older views saw: things come and go. Instead of the share that follows.
   double max_seen_through_share = 0.5;  ///< A point that more of the views seeing it look through is an outlier,
                                         ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
+  double max_absent_share = 1;          ///< A view that looks through more of the model than this, while newer ones
+                                        ///< do not, is of before it came: it and older ones say nothing. 1 turns it off.
   int max_moves = 5000;                 ///< Accepted moves of the local search, per component: a budget in steps.
   int max_exact_hypotheses = 12;        ///< Components up to this size (at most 20) are solved exactly.
   int min_shared_points = 10;           ///< Replace moves: pairs sharing more explained points than this (V4R: 10).

@@ -135,6 +135,42 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
   return result;
 }
 
+namespace {
+
+// Whether a view looks through most of what it could see of the model.
+bool looks_through(std::span<const Sight> sight, const VerifyOptions& options) {
+  const auto through = std::ranges::count(sight, Sight::kSeenThrough);
+  const auto seen = through + std::ranges::count(sight, Sight::kConsistent);
+  return seen >= options.min_visible_points &&
+         static_cast<double>(through) > options.max_absent_share * static_cast<double>(seen);
+}
+
+// What the views see of each model point, from the newest view back.
+struct Seen {
+  explicit Seen(std::size_t num_points)
+      : best_facing(num_points, -1), num_views(num_points, 0), num_through(num_points, 0), newest(num_points) {}
+
+  void add(std::span<const Sight> sight, std::span<const Projected> projected) {
+    for (std::size_t i = 0; i < sight.size(); ++i) {
+      if (sight[i] == Sight::kHidden) continue;
+      if (num_views[i]++ == 0) newest[i] = sight[i];
+      num_through[i] += sight[i] == Sight::kSeenThrough ? 1 : 0;
+      best_facing[i] = std::max(best_facing[i], projected[i].facing);
+    }
+  }
+  // Most of what was seen of it so far, and enough of it.
+  [[nodiscard]] bool is_there(const VerifyOptions& options) const {
+    return std::ranges::count(newest, Sight::kConsistent) >= options.min_visible_points && !looks_through(newest, options);
+  }
+
+  std::vector<float> best_facing;
+  std::vector<int> num_views;
+  std::vector<int> num_through;
+  std::vector<Sight> newest;  // Of the newest view that sees it.
+};
+
+}  // namespace
+
 ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                                     std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                                     const VerifyOptions& options) {
@@ -143,32 +179,25 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
   ModelVisibility result;
   result.sight.resize(views.size());
   std::vector<Projected> projected(points.size());
-  std::vector<float> best_facing(points.size(), -1);
-  std::vector<int> num_views(points.size(), 0);
-  std::vector<int> num_through(points.size(), 0);
-  std::vector<std::uint8_t> newest_through(points.size(), 0);
-  for (std::size_t v = 0; v < views.size(); ++v) {
+  std::vector<Sight> sight(points.size());
+  Seen seen(points.size());
+  for (std::size_t v = views.size(); v-- > 0;) {
     if (allowed[v] == 0) continue;
     project_model(points, normals, views[v], projected);
     const SelfOcclusion self(projected, static_cast<float>(views[v].camera.fx),
                              static_cast<float>(options.resolution_m));
-    result.sight[v].resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Sight sight = look_at(projected[i], views[v], self, margin, min_facing);
-      result.sight[v][i] = sight;
-      if (sight == Sight::kHidden) continue;
-      ++num_views[i];
-      newest_through[i] = sight == Sight::kSeenThrough ? 1 : 0;
-      num_through[i] += newest_through[i];
-      best_facing[i] = std::max(best_facing[i], projected[i].facing);
-    }
+    for (std::size_t i = 0; i < points.size(); ++i) sight[i] = look_at(projected[i], views[v], self, margin, min_facing);
+    if (looks_through(sight, options) && seen.is_there(options)) break;  // It came since.
+    seen.add(sight, projected);
+    result.sight[v] = sight;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (num_views[i] == 0) continue;
+    if (seen.num_views[i] == 0) continue;
     result.visible.push_back(static_cast<int>(i));
-    result.facing.push_back(best_facing[i]);
-    const bool through = options.newest_view_decides ? newest_through[i] != 0
-                                                     : num_through[i] > options.max_seen_through_share * num_views[i];
+    result.facing.push_back(seen.best_facing[i]);
+    const bool through = options.newest_view_decides
+                             ? seen.newest[i] == Sight::kSeenThrough
+                             : seen.num_through[i] > options.max_seen_through_share * seen.num_views[i];
     result.seen_through.push_back(through ? 1 : 0);
   }
   return result;
