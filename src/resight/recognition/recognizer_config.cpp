@@ -250,6 +250,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.newest_view_decides", &v.newest_view_decides},
                                   {"verify.continuation_offset_m", &v.continuation_offset_m},
                                   {"verify.continuation_contrast", &v.continuation_contrast},
+                                  {"verify.clutter_sigmas", &v.clutter_sigmas},
                                   {"verify.max_seen_through_share", &v.max_seen_through_share},
                                   {"verify.max_absent_share", &v.max_absent_share},
                                   {"verify.max_moves", &v.max_moves},
@@ -259,6 +260,10 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.min_visible_share", &v.min_visible_share},
                                   {"verify.min_explained_share", &v.min_explained_share},
                                   {"verify.min_pattern_similarity", &v.min_pattern_similarity},
+                                  {"verify.plain_max_shared_contrast", &v.plain.max_shared_contrast},
+                                  {"verify.plain_min_explained_share", &v.plain.min_explained_share},
+                                  {"verify.plain_min_pattern_similarity", &v.plain.min_pattern_similarity},
+                                  {"verify.plain_min_gain", &v.plain.min_gain},
                                   {"verify.must_pay_alone", &v.must_pay_alone},
                                   {"verify.seed", &v.seed},
                               });
@@ -382,6 +387,9 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.shape.turn_step_rad = 0.1745;
     config.prepare.normals.window_radius_px = 4;  // On things at a metre 6 deg off; 20 with 2.
     config.verify.newest_view_decides = true;
+    config.verify.max_absent_share = 0.6;
+    config.verify.clutter_sigmas = 3;
+    config.verify.plain.max_shared_contrast = 1;
     config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
@@ -390,6 +398,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.remember_objects = true;
     config.poses.enabled = true;
     config.min_carried_share = 0.8;
+    config.judge_absent = true;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
     config.skip_planes = true;
     config.shape.enabled = true;

@@ -110,8 +110,8 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"changes", num_fields<DetectChangesOptions>() - kThreads - 1},  // the voxels are those of integrate
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
-      {"verify",
-       num_fields<VerifyOptions>() - 2 - kThreads + num_fields<LightLimits>() + num_fields<RefinePoseOptions>()},
+      {"verify", num_fields<VerifyOptions>() - 3 - kThreads + num_fields<LightLimits>() +
+                     num_fields<RefinePoseOptions>() + num_fields<PlainOptions>()},
       {"history",
        num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthMemoryOptions>()}};
   std::map<std::string, int> found;

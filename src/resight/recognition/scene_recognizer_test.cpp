@@ -91,6 +91,26 @@ TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
   EXPECT_EQ(last.events[0].kind, ObjectEventKind::kRemoved);
 }
 
+TEST(SceneRecognizer, WhatANeighborTakesWithItIsJudgedByTheNewestView) {
+  OneLook c;
+  c.config.remember_objects = false;
+  c.config.min_carried_share = 0;  // Within the sleeve little of the box is seen.
+  const World with_box = c.world;
+  Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, a little wider.
+  sleeve.size_m += Eigen::Vector3d(0.03, 0.03, -0.05);
+  sleeve.paint = plain({90, 90, 90});
+  World with_sleeve = with_box;
+  with_sleeve.solids.push_back(sleeve);
+  for (const bool judge : {true, false}) {
+    c.config.judge_absent = judge;
+    SceneRecognizer recognizer(c.library, c.config, c.store);
+    recognizer.add_view(render(with_sleeve, c.cameras[0]).frame);
+    recognizer.add_view(render(with_sleeve, c.cameras[1]).frame);
+    EXPECT_EQ(recognizer.add_view(render(with_box, c.cameras[2]).frame).detections.size(), judge ? 1U : 0U);
+    EXPECT_TRUE(recognizer.add_view(render({}, c.cameras[3]).frame).detections.empty());
+  }
+}
+
 TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
   OneLook c;
   const Eigen::Vector3d eye = c.cameras[0].translation;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "resight/sensor/noise_model.hpp"
+#include "resight/verification/acceptance.hpp"
 #include "resight/verification/local_scene.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/pose_refinement.hpp"
@@ -26,14 +28,6 @@ const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
 float angle_of(float dot) {
   const float x = std::min(dot, 1.0F);
   return std::sqrt(1 - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - 0.0187293F * x)));
-}
-
-// Whether there is evidence enough to ask for the costs; else why not.
-Verdict judge_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
-    return Verdict::kTooFewVisible;
-  if (evidence.num_explained == 0 || evidence.explained_share < options.min_explained_share) return Verdict::kNoSupport;
-  return evidence.pattern_similarity < options.min_pattern_similarity ? Verdict::kOtherPattern : Verdict::kCost;
 }
 
 // A visible model point and a scene point within the inlier distance.
@@ -74,8 +68,8 @@ struct CueComputer::Impl {
             std::span<const std::uint8_t> allowed) {
     Rigid3 pose = cues_.evidence.world_from_object;
     if (options_.refine.max_iterations > 0)
-      pose = refine_pose_on_scene(model_, pose, roughly_visible(views, allowed), correspondences, scene_,
-                                  options_.refine);
+      pose =
+          refine_pose_on_scene(model_, pose, roughly_visible(views, allowed), correspondences, scene_, options_.refine);
     look_at(pose, views, allowed);
     const Rigid3 turn = find_turn();
     if (turn.rotation.isIdentity()) return;
@@ -88,7 +82,20 @@ struct CueComputer::Impl {
                std::span<const std::uint8_t> allowed) {
     place(world_from_object);
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
+    depth_noise_m_ = largest_depth_noise(views);
     compare_with_scene();
+  }
+
+  // Of the views that see it where it is, that of the farthest.
+  float largest_depth_noise(std::span<const DepthView> views) const {
+    const Eigen::Vector3d center = cues_.evidence.world_from_object * model_.center.cast<double>().eval();
+    double largest_m = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      if (std::ranges::find(visibility_.sight[v], Sight::kConsistent) == visibility_.sight[v].end()) continue;
+      const double depth_m = (views[v].world_from_camera.inverse() * center).z();
+      largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
+    }
+    return static_cast<float>(largest_m);
   }
 
   // How well the colours agree where model and scene meet, as patterns and one by one, in the light of this alone.
@@ -169,7 +176,7 @@ struct CueComputer::Impl {
       classify_model_points();
     }
     fill_evidence(visibility_.sight.size());
-    cues_.evidence.verdict = judge_alone(cues_.evidence, options_);
+    cues_.evidence.verdict = judge_evidence(cues_.evidence, options_);
     if (cues_.evidence.verdict == Verdict::kCost) add_costs(*local_);
     return std::move(cues_);
   }
@@ -268,6 +275,23 @@ struct CueComputer::Impl {
       scene_weight_[m.local] =
           std::max(scene_weight_[m.local], upright * std::exp(-m.distance_sq / (2 * t * t) - color));
     }
+    excuse_noise(local);
+  }
+
+  // What lies in front of the model or behind its face by no more than the noise of the views is no rest of a surface.
+  void excuse_noise(const LocalScene& local) {
+    const float clutter_sigmas = static_cast<float>(options_.clutter_sigmas);
+    const float reach_m = std::min(clutter_sigmas * depth_noise_m_, static_cast<float>(options_.clutter_radius_m));
+    if (!use_normals_ || reach_m <= static_cast<float>(options_.inlier_distance_m)) return;
+    const float beside_sq = static_cast<float>(options_.resolution_m * options_.resolution_m);
+    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
+    for (const int i : visibility_.visible)
+      local.visit_within(points_[i], reach_m, [&](std::size_t q, float distance_sq) {
+        const float along = normals_[i].dot(local.point(q) - points_[i]);
+        if (distance_sq - along * along <= beside_sq && normals_[i].dot(local_normals_[q]) >= min_dot)
+          beside_model_[q] = 0;
+        return true;
+      });
   }
 
   void classify_model_points() {
@@ -440,6 +464,7 @@ struct CueComputer::Impl {
   std::vector<Eigen::Vector3f> points_;
   std::vector<Eigen::Vector3f> normals_;
   ModelVisibility visibility_;
+  float depth_noise_m_ = 0;
   std::optional<LocalScene> local_;             // None if nothing is visible.
   std::vector<Eigen::Vector3f> local_normals_;  // Of its points.
   std::vector<LabColor> local_lab_;

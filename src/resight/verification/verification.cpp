@@ -9,6 +9,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/symmetry.hpp"
+#include "resight/verification/acceptance.hpp"
 #include "resight/verification/cues.hpp"
 #include "resight/verification/selection_search.hpp"
 
@@ -112,11 +113,6 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
   for (std::size_t i = 0; i < cues.state.size(); ++i)
     if (cues.state[i] != ModelPointState::kNotVisible) visible.push_back(static_cast<int>(i));
   return visible;
-}
-
-bool may_be_chosen(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  if (evidence.verdict != Verdict::kCost) return false;
-  return !options.must_pay_alone || cost_alone(evidence, options) < 0;
 }
 
 // Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
@@ -241,6 +237,7 @@ void VerifyOptions::check() const {
   check_in_range(name("near_clutter_weight"), near_clutter_weight, 0, 1000);
   check_not_negative(name("continuation_offset_m"), continuation_offset_m);
   check_not_negative(name("continuation_contrast"), continuation_contrast);
+  check_not_negative(name("clutter_sigmas"), clutter_sigmas);
   check_in_range(name("occupancy_weight"), occupancy_weight, 0, 1e6);
   check_positive(name("occupancy_voxel_m"), occupancy_voxel_m);
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
@@ -279,6 +276,10 @@ void VerifyOptions::check() const {
   check_in_range(name("min_visible_share"), min_visible_share, 0, 1);
   check_in_range(name("min_explained_share"), min_explained_share, 0, 1);
   check_in_range(name("min_pattern_similarity"), min_pattern_similarity, -1, 1);
+  check_not_negative(name("plain.max_shared_contrast"), plain.max_shared_contrast);
+  check_in_range(name("plain.min_explained_share"), plain.min_explained_share, 0, 1);
+  check_in_range(name("plain.min_pattern_similarity"), plain.min_pattern_similarity, -1, 1);
+  check_in_range(name("plain.min_gain"), plain.min_gain, 0, 1);
   check_positive(name("num_threads"), num_threads);
 }
 
@@ -300,7 +301,7 @@ VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const Mod
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);
-    if (may_be_chosen(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
+    if (pays_alone(result.evidence[h], options)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
   drop_repeated(hypotheses, library, options, candidates, result.evidence);

@@ -19,6 +19,15 @@ enum class DuplicityRule : std::uint8_t {
   kAllWeights,  ///< All weights, the largest included (V4R's mode 2): such a point is worse than an unexplained one.
 };
 
+/// What is asked of a hypothesis that shares no contrast with the scene: many things are as plain as it is. For one
+/// that shares some, the values lie between these and those asked of all.
+struct PlainOptions {
+  double max_shared_contrast = 0;  ///< From this shared contrast on nothing more is asked; 0: of none.
+  double min_explained_share = 0.7;
+  double min_pattern_similarity = 0.7;
+  double min_gain = 0.2;  ///< That it explains more than it costs, alone, as a share of what it explains.
+};
+
 /// Options of the global verification (paper [11], as in V4R's GO3D; reference values from there).
 struct VerifyOptions {
   double resolution_m = 0.005;       ///< Models and scene are thinned to this.
@@ -36,7 +45,9 @@ struct VerifyOptions {
   double continuation_contrast = 0;  ///< ...and count 1 / (1 + (c / this)^2) if the prints share contrast c
                                      ///< (PatternMatch::shared_contrast): a print rules out that it is a part of
                                      ///< something larger. 0: full in any case.
-  double occupancy_weight = 2.0;     ///< Voxels filled by two objects.
+  double clutter_sigmas = 0;      ///< ...and not what lies in front of the model or behind it, within so many standard
+                                  ///< deviations of the depth: of things far away, noise.
+  double occupancy_weight = 2.0;  ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
   bool use_color = true;
@@ -69,15 +80,16 @@ struct VerifyOptions {
   double max_seen_through_share = 0.5;  ///< A point that more of the views seeing it look through is an outlier,
                                         ///< whatever the reconstruction says; 1 turns it off (V4R has no such test).
   double max_absent_share = 1;          ///< A view that looks through more of the model than this, while newer ones
-                                        ///< do not, is of before it came: it and older ones say nothing. 1 turns it off.
-  int max_moves = 5000;                 ///< Accepted moves of the local search, per component: a budget in steps.
-  int max_exact_hypotheses = 12;        ///< Components up to this size (at most 20) are solved exactly.
-  int min_shared_points = 10;           ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
-  int min_visible_points = 20;          ///< Fewer visible model points: no evidence, rejected.
-  double min_visible_share = 0.1;       ///< As later V4R: less of the model visible is rejected...
-  double min_explained_share = 0.7;     ///< ...and less of the visible points explained too. 0 turns either off.
+                                ///< do not, is of before it came: it and older ones say nothing. 1 turns it off.
+  int max_moves = 5000;                ///< Accepted moves of the local search, per component: a budget in steps.
+  int max_exact_hypotheses = 12;       ///< Components up to this size (at most 20) are solved exactly.
+  int min_shared_points = 10;          ///< Replace moves: pairs sharing more explained points than this (V4R: 10).
+  int min_visible_points = 20;         ///< Fewer visible model points: no evidence, rejected.
+  double min_visible_share = 0.1;      ///< As later V4R: less of the model visible is rejected...
+  double min_explained_share = 0.7;    ///< ...and less of the visible points explained too. 0 turns either off.
   double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
                                        ///< -1 turns it off.
+  PlainOptions plain{};
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;

@@ -248,6 +248,54 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
   EXPECT_TRUE(accepts(gone, {}));
 }
 
+TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
+  // They look through what the newest view cannot see: the far sides of the box.
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
+  const std::vector<Rigid3> cameras = circle_of_cameras(3);
+  const auto evidence = [&](const std::vector<World>& worlds, double max_absent_share) {
+    std::vector<PreparedView> views;
+    for (std::size_t v = 0; v < 3; ++v) views.push_back(render(worlds[v], cameras[v]));
+    const VerifyOptions options{.newest_view_decides = true, .max_absent_share = max_absent_share};
+    return verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options).evidence[0];
+  };
+  const HypothesisEvidence came = evidence({{}, {}, one_box()}, 0.6);
+  EXPECT_TRUE(came.accepted);
+  EXPECT_GT(came.explained_share, 0.95);
+  EXPECT_EQ(came.visible_share_per_view[0], 0);
+  EXPECT_EQ(came.visible_share_per_view[1], 0);
+  EXPECT_EQ(evidence({{}, {}, one_box()}, 1).verdict, Verdict::kNoSupport);
+  // What came and went: the newest view looks through it, and nothing excuses that.
+  const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
+  EXPECT_FALSE(gone.accepted);
+  EXPECT_GT(gone.visible_share_per_view[2], 0.1);
+  EXPECT_EQ(gone.visible_share_per_view[0] > 0, true);
+}
+
+TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
+  // The box is measured at its place and up to 14 mm too near.
+  const auto clutter = [](double distance_m, double clutter_sigmas) {
+    const Rigid3 camera = look_at({distance_m, 0, 0.1}, {0, 0, 0.05});
+    const Rigid3 pose = on_table(0, 0, 0.07);
+    const Fixture f({.solids = {placed(make_box(), pose)}, .has_table = false}, {camera});
+    const Eigen::Vector3f towards = (camera.translation - pose.translation).normalized().cast<float>();
+    PointCloud scene = f.scene;
+    for (std::size_t i = 0; i < f.scene.size(); ++i) scene.points[i] += 0.0035F * static_cast<float>(i % 5) * towards;
+    const VerifyOptions options{.inlier_distance_m = 0.01,
+                                .clutter_weight = 6,
+                                .continuation_offset_m = 0.005,
+                                .clutter_sigmas = clutter_sigmas,
+                                .refine = {.max_iterations = 0},
+                                .use_planes = false};
+    const std::vector<VerificationView> refs = references(f.views);
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, pose)};
+    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].clutter_cost;
+  };
+  EXPECT_GT(clutter(2.2, 0), 100);
+  EXPECT_LT(clutter(2.2, 3), 0.2 * clutter(2.2, 0));
+  EXPECT_GT(clutter(0.8, 0), 100);
+  EXPECT_EQ(clutter(0.8, 3), clutter(0.8, 0));  // 14 mm are more than noise there.
+}
+
 TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   ModelLibrary library = make_library();
   const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
@@ -321,6 +369,28 @@ TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
     EXPECT_LT(angle_left_deg(turned_deg, 0.1745), 12) << turned_deg;
   }
   EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
+}
+
+TEST(VerifyHypotheses, NoTurnToAWorseFit) {
+  // In blue light the yellowish side looks as blue as the other; its print is its own.
+  const auto painted = [](double blue) -> Paint {
+    return [=](const Eigen::Vector3d& p) {
+      const bool front = p.x() > 0;
+      const bool dark = std::fmod(std::abs(p.z()) + (front ? 0.0 : 0.0015), 0.02) < 0.01;
+      const double grey = dark ? 130 : 170;
+      return Rgb8{static_cast<std::uint8_t>(grey * (front ? 1 : 0.8) / blue), static_cast<std::uint8_t>(grey),
+                  static_cast<std::uint8_t>(grey * (front ? 0.8 : 1) * blue)};
+    };
+  };
+  Solid can = printed_can();
+  can.world_from_object = on_table(0, 0, 0.06);
+  can.paint = painted(1);
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  can.paint = painted(1.7);
+  const Fixture f({.solids = {can}}, {look_at({0.8, 0, 0.4}, {0, 0, 0.05})});
+  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
 TEST(VerifyHypotheses, APlainCanIsNotTurned) {

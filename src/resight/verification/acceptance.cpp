@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/acceptance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/verification/selection_cost.hpp"
+
+namespace resight {
+namespace {
+
+// 1 for what shares no contrast with the scene, 0 from max_shared_contrast on.
+double plainness(const HypothesisEvidence& evidence, const PlainOptions& plain) {
+  if (plain.max_shared_contrast <= 0) return 0;
+  return std::clamp(1 - evidence.shared_contrast / plain.max_shared_contrast, 0.0, 1.0);
+}
+
+}  // namespace
+
+Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  const double plain = plainness(evidence, options.plain);
+  const double min_explained = std::lerp(options.min_explained_share, options.plain.min_explained_share, plain);
+  const double min_similarity = std::lerp(options.min_pattern_similarity, options.plain.min_pattern_similarity, plain);
+  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
+    return Verdict::kTooFewVisible;
+  if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;
+  return evidence.pattern_similarity < min_similarity ? Verdict::kOtherPattern : Verdict::kCost;
+}
+
+bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+  if (evidence.verdict != Verdict::kCost) return false;
+  if (!options.must_pay_alone) return true;
+  const double min_gain = plainness(evidence, options.plain) * options.plain.min_gain * evidence.explained_scene;
+  return cost_alone(evidence, options) < -min_gain;
+}
+
+}  // namespace resight

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/verification/verification.hpp"
+
+namespace resight {
+
+/// Whether the evidence is enough to ask for the costs (kCost), or else why not. Of what shares no contrast with the
+/// scene more is asked (PlainOptions).
+[[nodiscard]] Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options);
+
+/// Whether it may enter the choice: its verdict is kCost, and if must_pay_alone, it explains more than it costs.
+[[nodiscard]] bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options);
+
+}  // namespace resight

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/acceptance.hpp"
+
+#include <gtest/gtest.h>
+
+namespace resight {
+namespace {
+
+HypothesisEvidence good_evidence() {
+  HypothesisEvidence e;
+  e.num_visible = 500;
+  e.visible_share = 0.4;
+  e.num_explained = 450;
+  e.explained_share = 0.9;
+  e.pattern_similarity = 0.9;
+  e.shared_contrast = 3;
+  e.explained_scene = 500;
+  e.outlier_cost = 50;
+  e.verdict = Verdict::kCost;
+  return e;
+}
+
+VerifyOptions options() {
+  VerifyOptions o;
+  o.min_explained_share = 0.6;
+  o.min_pattern_similarity = 0.5;
+  o.must_pay_alone = true;
+  o.plain = {.max_shared_contrast = 1, .min_explained_share = 0.8, .min_pattern_similarity = 0.7, .min_gain = 0.2};
+  return o;
+}
+
+Verdict judge(double HypothesisEvidence::*field, double value, double shared_contrast) {
+  HypothesisEvidence e = good_evidence();
+  e.shared_contrast = shared_contrast;
+  e.*field = value;
+  return judge_evidence(e, options());
+}
+
+TEST(Acceptance, EachLimitHasItsVerdict) {
+  EXPECT_EQ(judge_evidence(good_evidence(), options()), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::visible_share, 0.09, 3), Verdict::kTooFewVisible);
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.59, 3), Verdict::kNoSupport);
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.61, 3), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.49, 3), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.51, 3), Verdict::kCost);
+  HypothesisEvidence few = good_evidence();
+  few.num_visible = 19;
+  EXPECT_EQ(judge_evidence(few, options()), Verdict::kTooFewVisible);
+}
+
+TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.79, 0), Verdict::kNoSupport);
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.81, 0), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.69, 0), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.71, 0), Verdict::kCost);
+  // Half as much more of what shares half the contrast.
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.69, 0.5), Verdict::kNoSupport);
+  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.71, 0.5), Verdict::kCost);
+}
+
+TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
+  HypothesisEvidence e = good_evidence();
+  const auto pays = [&](double clutter, double shared_contrast, const VerifyOptions& o) {
+    e.clutter_cost = clutter;
+    e.shared_contrast = shared_contrast;
+    return pays_alone(e, o);
+  };
+  // 500 explained, 50 of outliers: plain things may cost 350 more, printed ones 450.
+  EXPECT_TRUE(pays(345, 0, options()));
+  EXPECT_FALSE(pays(355, 0, options()));
+  EXPECT_TRUE(pays(445, 1, options()));
+  EXPECT_FALSE(pays(455, 1, options()));
+  VerifyOptions any = options();
+  any.must_pay_alone = false;
+  EXPECT_TRUE(pays(455, 0, any));
+  e.verdict = Verdict::kNoSupport;
+  EXPECT_FALSE(pays(0, 3, any));
+}
+
+TEST(Acceptance, WithoutPlainOptionsNothingMoreIsAsked) {
+  VerifyOptions o = options();
+  o.plain.max_shared_contrast = 0;
+  HypothesisEvidence e = good_evidence();
+  e.shared_contrast = 0;
+  e.explained_share = 0.61;
+  e.pattern_similarity = 0.51;
+  EXPECT_EQ(judge_evidence(e, o), Verdict::kCost);
+  e.clutter_cost = 445;
+  EXPECT_TRUE(pays_alone(e, o));
+}
+
+}  // namespace
+}  // namespace resight
