@@ -262,7 +262,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.min_pattern_similarity", &v.min_pattern_similarity},
                                   {"verify.plain_max_shared_contrast", &v.plain.max_shared_contrast},
                                   {"verify.plain_min_explained_share", &v.plain.min_explained_share},
-                                  {"verify.plain_min_pattern_similarity", &v.plain.min_pattern_similarity},
+                                  {"verify.min_shared_print", &v.min_shared_print},
                                   {"verify.plain_min_gain", &v.plain.min_gain},
                                   {"verify.must_pay_alone", &v.must_pay_alone},
                                   {"verify.seed", &v.seed},
@@ -375,11 +375,12 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.inlier_distance_m = 0.01;       // Poses are refined.
-    config.verify.color_sigma_l = 0.45;           // What lies in a shadow is darker than the light fit has it...
-    config.verify.color_sigma_ab = 0.17;          // ...but not of another hue.
-    config.verify.min_explained_share = 0.6;      // A third of an object may lie in a hard shadow...
-    config.verify.min_pattern_similarity = 0.57;  // ...but its print stays its own.
+    config.verify.inlier_distance_m = 0.01;      // Poses are refined.
+    config.verify.color_sigma_l = 0.45;          // What lies in a shadow is darker than the light fit has it...
+    config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
+    config.verify.min_explained_share = 0.5;     // Half of an object may lie in a hard shadow...
+    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own.
+    config.verify.min_visible_share = 0.05;
     config.verify.clutter_weight = 6;
     config.verify.continuation_offset_m = 0.005;
     config.verify.continuation_contrast = 2;
@@ -390,6 +391,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.max_absent_share = 0.6;
     config.verify.clutter_sigmas = 3;
     config.verify.plain.max_shared_contrast = 1;
+    config.verify.min_shared_print = 0.08;
     config.verify.plane_spacing_m = 0.01;
     config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.

@@ -9,6 +9,8 @@
 namespace resight {
 namespace {
 
+constexpr double kPrintContrast = 1;
+
 // 1 for what shares no contrast with the scene, 0 from max_shared_contrast on.
 double plainness(const HypothesisEvidence& evidence, const PlainOptions& plain) {
   if (plain.max_shared_contrast <= 0) return 0;
@@ -20,11 +22,13 @@ double plainness(const HypothesisEvidence& evidence, const PlainOptions& plain) 
 Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options) {
   const double plain = plainness(evidence, options.plain);
   const double min_explained = std::lerp(options.min_explained_share, options.plain.min_explained_share, plain);
-  const double min_similarity = std::lerp(options.min_pattern_similarity, options.plain.min_pattern_similarity, plain);
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
     return Verdict::kTooFewVisible;
   if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;
-  return evidence.pattern_similarity < min_similarity ? Verdict::kOtherPattern : Verdict::kCost;
+  const bool lacks_print = evidence.print_contrast >= kPrintContrast &&
+                           evidence.shared_contrast < options.min_shared_print * evidence.print_contrast;
+  return lacks_print || evidence.pattern_similarity < options.min_pattern_similarity ? Verdict::kOtherPattern
+                                                                                     : Verdict::kCost;
 }
 
 bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {

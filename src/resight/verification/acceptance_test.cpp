@@ -25,7 +25,8 @@ VerifyOptions options() {
   o.min_explained_share = 0.6;
   o.min_pattern_similarity = 0.5;
   o.must_pay_alone = true;
-  o.plain = {.max_shared_contrast = 1, .min_explained_share = 0.8, .min_pattern_similarity = 0.7, .min_gain = 0.2};
+  o.min_shared_print = 0.1;
+  o.plain = {.max_shared_contrast = 1, .min_explained_share = 0.8, .min_gain = 0.2};
   return o;
 }
 
@@ -51,11 +52,15 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
 TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.79, 0), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.81, 0), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.69, 0), Verdict::kOtherPattern);
-  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.71, 0), Verdict::kCost);
   // Half as much more of what shares half the contrast.
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.69, 0.5), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.71, 0.5), Verdict::kCost);
+}
+
+TEST(Acceptance, APrintThatTheSceneDoesNotShareIsAnother) {
+  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 4, 0.39), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 4, 0.41), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
 }
 
 TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {

@@ -247,8 +247,8 @@ struct CueComputer::Impl {
     const double chroma_weight = options_.color_sigma_l / options_.color_sigma_ab;
     const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
     cues_.evidence.pattern_similarity = match.similarity;
-    cues_.evidence.shared_contrast =
-        std::min(match.shared_contrast, match_patterns(print, print, chroma_weight).shared_contrast);
+    cues_.evidence.print_contrast = match_patterns(print, print, chroma_weight).shared_contrast;
+    cues_.evidence.shared_contrast = std::min(match.shared_contrast, cues_.evidence.print_contrast);
   }
 
   // -log of the colour similarity.

@@ -24,7 +24,6 @@ enum class DuplicityRule : std::uint8_t {
 struct PlainOptions {
   double max_shared_contrast = 0;  ///< From this shared contrast on nothing more is asked; 0: of none.
   double min_explained_share = 0.7;
-  double min_pattern_similarity = 0.7;
   double min_gain = 0.2;  ///< That it explains more than it costs, alone, as a share of what it explains.
 };
 
@@ -89,6 +88,8 @@ struct VerifyOptions {
   double min_explained_share = 0.7;    ///< ...and less of the visible points explained too. 0 turns either off.
   double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
                                        ///< -1 turns it off.
+  double min_shared_print = 0;  ///< A model with a print (print_contrast of 1 or more) of which the scene shares less
+                                ///< than this is not what is seen.
   PlainOptions plain{};
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
@@ -137,6 +138,8 @@ struct HypothesisEvidence {
   double pattern_similarity = 1;  ///< Of the model's colours and the scene's (pattern_similarity.hpp).
   double shared_contrast = 0;     ///< PatternMatch::shared_contrast of both, but no more than the model's own print
                                   ///< has in even light.
+  double print_contrast = 0;      ///< Of the model's own print in even light, where it is visible: at most so much can
+                                  ///< be shared.
   double clutter_cost = 0;        ///< Alone: unexplained rest of the segments that it explains in part.
   double plane_cost = 0;          ///< Points of planes that it claims, and model points on the far side of a plane.
   double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.

@@ -160,7 +160,8 @@ struct Seen {
   }
   // Most of what was seen of it so far, and enough of it.
   [[nodiscard]] bool is_there(const VerifyOptions& options) const {
-    return std::ranges::count(newest, Sight::kConsistent) >= options.min_visible_points && !looks_through(newest, options);
+    return std::ranges::count(newest, Sight::kConsistent) >= options.min_visible_points &&
+           !looks_through(newest, options);
   }
 
   std::vector<float> best_facing;
@@ -186,7 +187,8 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
     project_model(points, normals, views[v], projected);
     const SelfOcclusion self(projected, static_cast<float>(views[v].camera.fx),
                              static_cast<float>(options.resolution_m));
-    for (std::size_t i = 0; i < points.size(); ++i) sight[i] = look_at(projected[i], views[v], self, margin, min_facing);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      sight[i] = look_at(projected[i], views[v], self, margin, min_facing);
     if (looks_through(sight, options) && seen.is_there(options)) break;  // It came since.
     seen.add(sight, projected);
     result.sight[v] = sight;
