@@ -15,7 +15,7 @@ enum class LossStage : std::uint8_t {
   kNoGroup,       ///< Right correspondences, but no hypothesis of this object near it.
   kWrongPose,     ///< A hypothesis at the place, but turned or shifted too much.
   kClusteredOut,  ///< A right hypothesis that clustering merged into a wrong one.
-  kCalledAbsent,  ///< A right hypothesis that the changes excluded.
+  kCalledAbsent,  ///< A right hypothesis that the changes excluded; with judge_absent, one that was accepted elsewhere.
   kRefinedAway,   ///< A right hypothesis that the verification's refinement moved out of tolerance.
   kRejected,      ///< A right hypothesis that the verification rejected.
 };

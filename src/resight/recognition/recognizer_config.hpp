@@ -30,7 +30,7 @@ struct RecognizerConfig {
   bool detect_changes = true;       ///< Off: the static world of the paper's baseline.
   bool cluster_hypotheses = true;   ///< Off: Tables II and III without clustering.
   double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
-  bool judge_absent = false;  ///< What the changes say is gone is not dropped, but judged by the newest view alone.
+  bool judge_absent = false;      ///< What the changes say is gone is not dropped, but judged by the newest view alone.
   double min_reported_share = 0;  ///< An object of which the view itself confirms less (of the model's points; hidden,
                                   ///< or outside the image) is known to the history, but no detection of this view.
   double min_carried_share = 0;   ///< A hypothesis that is seen, and explains less of itself or has another print, is

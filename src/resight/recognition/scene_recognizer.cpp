@@ -249,7 +249,8 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::presence_of(const std::vector<H
   return compute_presence_mask(hypotheses, library, changes, config.removal, config.verify.num_threads);
 }
 
-// Leaves out the hypotheses that the changes say are not there any more, and returns the presence mask of the others.
+// Leaves out the hypotheses that the changes say are not there any more, and returns the presence mask of the others;
+// or, with judge_absent, leaves them to the newest view.
 std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothesis>& hypotheses,
                                                              SceneUpdate& update) const {
   if (!config.detect_changes) return {};
@@ -259,7 +260,11 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothe
   const std::size_t num_all = hypotheses.size();
   const std::size_t now = (window.size() - 1) * num_all;
   if (config.judge_absent) {
-    std::fill(mask.begin() + static_cast<std::ptrdiff_t>(now), mask.end(), 1);
+    for (std::size_t h = 0; h < num_all; ++h) {
+      if (mask[now + h] != 0) continue;
+      for (std::size_t v = 0; v + 1 < window.size(); ++v) mask[v * num_all + h] = 0;
+      mask[now + h] = 1;
+    }
     return mask;
   }
   std::vector<std::uint8_t> kept_mask;

@@ -21,7 +21,8 @@ double plainness(const HypothesisEvidence& evidence, const PlainOptions& plain) 
 
 Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options) {
   const double plain = plainness(evidence, options.plain);
-  const double min_explained = std::lerp(options.min_explained_share, options.plain.min_explained_share, plain);
+  const double min_explained = std::lerp(
+      options.min_explained_share, std::max(options.min_explained_share, options.plain.min_explained_share), plain);
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
     return Verdict::kTooFewVisible;
   if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;

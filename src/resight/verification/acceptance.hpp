@@ -8,7 +8,8 @@ namespace resight {
 /// scene more is asked (PlainOptions).
 [[nodiscard]] Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options);
 
-/// Whether it may enter the choice: its verdict is kCost, and if must_pay_alone, it explains more than it costs.
+/// Whether it may enter the choice: its verdict is kCost, and if must_pay_alone, it explains more than it costs; what
+/// is plain, by PlainOptions::min_gain.
 [[nodiscard]] bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options);
 
 }  // namespace resight

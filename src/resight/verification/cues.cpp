@@ -82,7 +82,7 @@ struct CueComputer::Impl {
                std::span<const std::uint8_t> allowed) {
     place(world_from_object);
     visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
-    depth_noise_m_ = largest_depth_noise(views);
+    depth_noise_m_ = options_.clutter_sigmas > 0 ? largest_depth_noise(views) : 0;
     compare_with_scene();
   }
 
@@ -93,12 +93,13 @@ struct CueComputer::Impl {
     for (std::size_t v = 0; v < views.size(); ++v) {
       if (std::ranges::find(visibility_.sight[v], Sight::kConsistent) == visibility_.sight[v].end()) continue;
       const double depth_m = (views[v].world_from_camera.inverse() * center).z();
-      largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
+      if (depth_m > 0) largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
     }
     return static_cast<float>(largest_m);
   }
 
-  // How well the colours agree where model and scene meet, as patterns and one by one, in the light of this alone.
+  // How well the colours agree where model and scene meet: as patterns, and one by one. What the scene's white balance
+  // is the other hypotheses have still to say; until then there is none.
   double color_fit() const {
     if (nearest_.empty()) return 0;
     const LightFit light = limit_chroma(light_, Eigen::Array3f::Zero(), options_.light);
@@ -137,6 +138,7 @@ struct CueComputer::Impl {
     }
     VerifyOptions rough = options_;
     rough.resolution_m *= std::sqrt(static_cast<double>(step));
+    rough.min_visible_points /= static_cast<int>(step);
     std::vector<int> visible = find_visible_points(points, normals, views, allowed, rough).visible;
     for (int& i : visible) i *= static_cast<int>(step);
     return visible;
@@ -183,6 +185,7 @@ struct CueComputer::Impl {
 
   void add_costs(const LocalScene& local) {
     claim_scene_points(local);
+    excuse_noise(local);
     find_clutter(local);
     add_pierced_planes();
   }
@@ -275,14 +278,15 @@ struct CueComputer::Impl {
       scene_weight_[m.local] =
           std::max(scene_weight_[m.local], upright * std::exp(-m.distance_sq / (2 * t * t) - color));
     }
-    excuse_noise(local);
   }
 
   // What lies in front of the model or behind its face by no more than the noise of the views is no rest of a surface.
   void excuse_noise(const LocalScene& local) {
     const float clutter_sigmas = static_cast<float>(options_.clutter_sigmas);
     const float reach_m = std::min(clutter_sigmas * depth_noise_m_, static_cast<float>(options_.clutter_radius_m));
-    if (!use_normals_ || reach_m <= static_cast<float>(options_.inlier_distance_m)) return;
+    if (!use_normals_ || options_.continuation_offset_m <= 0 ||
+        reach_m <= static_cast<float>(options_.inlier_distance_m))
+      return;
     const float beside_sq = static_cast<float>(options_.resolution_m * options_.resolution_m);
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
     for (const int i : visibility_.visible)
@@ -473,7 +477,8 @@ struct CueComputer::Impl {
   std::vector<Match> nearest_;              // Of each visible point that has one of similar normal.
   std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
-  std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near.
+  std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near,
+                                            // nor as near as noise explains.
   std::vector<float> fit_exponent_;         // Per visible point: -log of its best fit.
   HypothesisCues cues_;
 };

@@ -19,12 +19,13 @@ enum class DuplicityRule : std::uint8_t {
   kAllWeights,  ///< All weights, the largest included (V4R's mode 2): such a point is worse than an unexplained one.
 };
 
-/// What is asked of a hypothesis that shares no contrast with the scene: many things are as plain as it is. For one
-/// that shares some, the values lie between these and those asked of all.
+/// What is asked of a hypothesis that shares no contrast with the scene, or is compared without colours: many things
+/// have its shape. For one that shares some contrast, the limits lie between these and those for all.
 struct PlainOptions {
   double max_shared_contrast = 0;  ///< From this shared contrast on nothing more is asked; 0: of none.
   double min_explained_share = 0.7;
-  double min_gain = 0.2;  ///< That it explains more than it costs, alone, as a share of what it explains.
+  double min_gain =
+      0.2;  ///< With must_pay_alone: that it explains more than it costs, alone, as a share of what it explains.
 };
 
 /// Options of the global verification (paper [11], as in V4R's GO3D; reference values from there).
@@ -44,8 +45,9 @@ struct VerifyOptions {
   double continuation_contrast = 0;  ///< ...and count 1 / (1 + (c / this)^2) if the prints share contrast c
                                      ///< (PatternMatch::shared_contrast): a print rules out that it is a part of
                                      ///< something larger. 0: full in any case.
-  double clutter_sigmas = 0;      ///< ...and not what lies in front of the model or behind it, within so many standard
-                                  ///< deviations of the depth: of things far away, noise.
+  double clutter_sigmas = 0;  ///< ...and not what lies in front of the model or behind it, along its normal, within so
+                              ///< many standard deviations of the depth where they exceed inlier_distance_m (and up to
+                              ///< clutter_radius_m): of things far away, noise. With continuation_offset_m only.
   double occupancy_weight = 2.0;  ///< Voxels filled by two objects.
   double occupancy_voxel_m = 0.005;
   double hypothesis_penalty = 0.0;
@@ -88,8 +90,8 @@ struct VerifyOptions {
   double min_explained_share = 0.7;    ///< ...and less of the visible points explained too. 0 turns either off.
   double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
                                        ///< -1 turns it off.
-  double min_shared_print = 0;  ///< A model with a print (print_contrast of 1 or more) of which the scene shares less
-                                ///< than this is not what is seen.
+  double min_shared_print = 0;  ///< A model with a print (print_contrast of 1 or more) is another if the scene shares
+                                ///< less than this part of it.
   PlainOptions plain{};
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
@@ -108,10 +110,10 @@ enum class Verdict : std::uint8_t {
   kAccepted,
   kTooFewVisible,  ///< min_visible_points or min_visible_share not reached: hidden, outside, or the mask allows no
                    ///< view.
-  kNoSupport,      ///< Less than min_explained_share of the visible points is explained.
-  kOtherPattern,   ///< Less than min_pattern_similarity.
+  kNoSupport,      ///< Less than min_explained_share (plain.min_explained_share) of the visible points is explained.
+  kOtherPattern,   ///< Less than min_pattern_similarity, or than min_shared_print.
   kOutvoted,       ///< Pays off alone, but not beside `outvoted_by`.
-  kCost,           ///< Costs more than it explains even alone (outliers, clutter, planes).
+  kCost,  ///< Costs more than it explains even alone (outliers, clutter, planes); what is plain, nearly as much.
 };
 
 /// Short lower-case name for reports.
@@ -130,7 +132,8 @@ struct HypothesisEvidence {
   int num_correspondences = 0;  ///< Of the hypothesis, within inlier_distance_m at the pose.
   double explained_scene = 0;   ///< Sum of weights of the scene points it explains, without those of a plane.
   double outlier_cost = 0;
-  std::vector<float> visible_share_per_view;    ///< One per view; 0 where the presence mask excludes it.
+  std::vector<float> visible_share_per_view;    ///< One per view; 0 where the presence mask excludes it, and before
+                                                ///< it came (max_absent_share).
   std::vector<float> explained_share_per_view;  ///< Of the visible points in that view, those with an inlier and not
                                                 ///< looked through by that view.
   double explained_share =

@@ -268,7 +268,7 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
   EXPECT_FALSE(gone.accepted);
   EXPECT_GT(gone.visible_share_per_view[2], 0.1);
-  EXPECT_EQ(gone.visible_share_per_view[0] > 0, true);
+  EXPECT_GT(gone.visible_share_per_view[0], 0);
 }
 
 TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
@@ -379,7 +379,7 @@ TEST(VerifyHypotheses, NoTurnToAWorseFit) {
       const bool dark = std::fmod(std::abs(p.z()) + (front ? 0.0 : 0.0015), 0.02) < 0.01;
       const double grey = dark ? 130 : 170;
       return Rgb8{static_cast<std::uint8_t>(grey * (front ? 1 : 0.8) / blue), static_cast<std::uint8_t>(grey),
-                  static_cast<std::uint8_t>(grey * (front ? 0.8 : 1) * blue)};
+                  static_cast<std::uint8_t>(std::min(255.0, grey * (front ? 0.8 : 1) * blue))};
     };
   };
   Solid can = printed_can();

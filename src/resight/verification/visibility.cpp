@@ -160,7 +160,7 @@ struct Seen {
   }
   // Most of what was seen of it so far, and enough of it.
   [[nodiscard]] bool is_there(const VerifyOptions& options) const {
-    return std::ranges::count(newest, Sight::kConsistent) >= options.min_visible_points &&
+    return std::ranges::count(newest, Sight::kConsistent) >= std::max(1, options.min_visible_points) &&
            !looks_through(newest, options);
   }
 

@@ -31,18 +31,20 @@ enum class Sight : std::uint8_t {
 };
 
 struct ModelVisibility {
-  std::vector<std::vector<Sight>> sight;  ///< Per view (empty where not allowed) and model point.
-  std::vector<int> visible;               ///< Points not hidden in at least one view, ascending.
+  std::vector<std::vector<Sight>>
+      sight;                 ///< Per view (empty where not allowed, and of before it came) and model point.
+  std::vector<int> visible;  ///< Points not hidden in at least one view, ascending.
   std::vector<float>
       facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
   std::vector<std::uint8_t> seen_through;  ///< Per entry of `visible`: the newest of those views looks through it, or
                                            ///< more than max_seen_through_share of them do.
 };
 
-/// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). `allowed`:
-/// one per view. V4R's GO3D without its gaps: intrinsics of the view instead of f = 525, and the model hides its own
-/// far parts (back faces by their normals, the rest by a z-buffer of the model, whose cells are as wide as the spacing
-/// of its points).
+/// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). Views from
+/// the oldest to the newest; `allowed`: one per view. A view that looks through more than max_absent_share of what it
+/// could see, while newer ones see the model where it is, is of before it came: it and older ones do not count. V4R's
+/// GO3D without its gaps: intrinsics of the view instead of f = 525, and the model hides its own far parts (back faces
+/// by their normals, the rest by a z-buffer of the model, whose cells are as wide as the spacing of its points).
 [[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
                                                   std::span<const Eigen::Vector3f> normals_in_world,
                                                   std::span<const DepthView> views,
