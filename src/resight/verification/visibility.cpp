@@ -116,27 +116,6 @@ float median_of_neighbors(const Image<float>& depth, int u, int v) {
   return values[count / 2];
 }
 
-}  // namespace
-
-Image<float> fill_small_holes(const Image<float>& depth_m) {
-  Image<float> filled = depth_m;
-  for (int v = 0; v < depth_m.height(); ++v)
-    for (int u = 0; u < depth_m.width(); ++u)
-      if (std::isnan(depth_m(u, v))) filled(u, v) = median_of_neighbors(depth_m, u, v);
-  return filled;
-}
-
-std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads) {
-  std::vector<DepthView> result(views.size());
-  parallel_for(views.size(), num_threads, [&](std::size_t i) {
-    const PreparedView& view = *views[i].view;
-    result[i] = {view.frame.camera, view.frame.world_from_camera, fill_small_holes(view.cloud.z)};
-  });
-  return result;
-}
-
-namespace {
-
 // Whether a view looks through most of what it could see of the model.
 bool looks_through(std::span<const Sight> sight, const VerifyOptions& options) {
   const auto through = std::ranges::count(sight, Sight::kSeenThrough);
@@ -171,6 +150,23 @@ struct Seen {
 };
 
 }  // namespace
+
+Image<float> fill_small_holes(const Image<float>& depth_m) {
+  Image<float> filled = depth_m;
+  for (int v = 0; v < depth_m.height(); ++v)
+    for (int u = 0; u < depth_m.width(); ++u)
+      if (std::isnan(depth_m(u, v))) filled(u, v) = median_of_neighbors(depth_m, u, v);
+  return filled;
+}
+
+std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads) {
+  std::vector<DepthView> result(views.size());
+  parallel_for(views.size(), num_threads, [&](std::size_t i) {
+    const PreparedView& view = *views[i].view;
+    result[i] = {view.frame.camera, view.frame.world_from_camera, fill_small_holes(view.cloud.z)};
+  });
+  return result;
+}
 
 ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                                     std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
