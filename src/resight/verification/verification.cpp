@@ -237,7 +237,7 @@ void VerifyOptions::check() const {
   check_in_range(name("near_clutter_weight"), near_clutter_weight, 0, 1000);
   check_not_negative(name("continuation_offset_m"), continuation_offset_m);
   check_not_negative(name("continuation_contrast"), continuation_contrast);
-  check_not_negative(name("clutter_sigmas"), clutter_sigmas);
+  check_in_range(name("clutter_sigmas"), clutter_sigmas, 0, 1000);
   check_in_range(name("occupancy_weight"), occupancy_weight, 0, 1e6);
   check_positive(name("occupancy_voxel_m"), occupancy_voxel_m);
   check_in_range(name("hypothesis_penalty"), hypothesis_penalty, 0, 1e9);
