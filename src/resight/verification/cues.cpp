@@ -7,9 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "resight/sensor/noise_model.hpp"
 #include "resight/verification/acceptance.hpp"
-#include "resight/verification/local_scene.hpp"
+#include "resight/verification/model_look.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/pose_refinement.hpp"
 #include "resight/verification/print_turn.hpp"
@@ -30,118 +29,47 @@ float angle_of(float dot) {
   return std::sqrt(1 - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - 0.0187293F * x)));
 }
 
-// A visible model point and a scene point within the inlier distance.
-struct Match {
-  int visible;  // Position in ModelVisibility::visible.
-  int local;    // Index into the LocalScene.
-  float distance_sq;
-};
-
 }  // namespace
 
 // Works out the cues of one hypothesis step by step. Everything in the world frame.
 struct CueComputer::Impl {
-  Impl(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+  Impl(const PreparedModel& model, const Rigid3& world_from_object, std::span<const Correspondence> correspondences,
+       const PreparedScene& scene, std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
        const VerifyOptions& options)
       : model_(model),
         scene_(scene),
         options_(options),
         colors_(options.color_sigma_l, options.color_sigma_ab),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
-        use_color_(!model.linear_light.empty() && !scene.linear_light.empty()) {
-    place(world_from_object);
+        use_color_(!model.linear_light.empty() && !scene.linear_light.empty()),
+        look_(model, refined(world_from_object, correspondences, views, allowed), scene, views, allowed, options) {
+    turn(views, allowed);
+    cues_.evidence.world_from_object = look_.world_from_object;
+    count_agreeing(correspondences);
   }
 
-  void place(const Rigid3& world_from_object) {
-    cues_.evidence.world_from_object = world_from_object;
-    const Rigid3f motion(world_from_object);
-    points_.clear();
-    normals_.clear();
-    points_.reserve(model_.points.size());
-    normals_.reserve(model_.normals.size());
-    for (const Eigen::Vector3f& p : model_.points) points_.push_back(motion * p);
-    for (const Eigen::Vector3f& n : model_.normals) normals_.push_back(motion.rotation * n);
+  // A hypothesis is moved onto the scene before it is judged.
+  Rigid3 refined(const Rigid3& pose, std::span<const Correspondence> correspondences, std::span<const DepthView> views,
+                 std::span<const std::uint8_t> allowed) const {
+    if (options_.refine.max_iterations == 0) return pose;
+    return refine_pose_on_scene(model_, pose, find_roughly_visible(model_, pose, views, allowed, options_),
+                                correspondences, scene_, options_.refine);
   }
 
-  // Moves the hypothesis onto the scene before it is judged, and finds what is visible of it there.
-  void look(std::span<const Correspondence> correspondences, std::span<const DepthView> views,
-            std::span<const std::uint8_t> allowed) {
-    Rigid3 pose = cues_.evidence.world_from_object;
-    if (options_.refine.max_iterations > 0)
-      pose =
-          refine_pose_on_scene(model_, pose, roughly_visible(views, allowed), correspondences, scene_, options_.refine);
-    look_at(pose, views, allowed);
-    const Rigid3 turn = find_turn();
-    if (turn.rotation.isIdentity()) return;
-    const double fit = color_fit();
-    look_at(pose * turn, views, allowed);
-    if (color_fit() <= fit) look_at(pose, views, allowed);
-  }
-
-  void look_at(const Rigid3& world_from_object, std::span<const DepthView> views,
-               std::span<const std::uint8_t> allowed) {
-    place(world_from_object);
-    visibility_ = find_visible_points(points_, normals_, views, allowed, options_);
-    depth_noise_m_ = options_.clutter_sigmas > 0 ? largest_depth_noise(views) : 0;
-    compare_with_scene();
-  }
-
-  // Of the views that see it where it is, that of the farthest.
-  float largest_depth_noise(std::span<const DepthView> views) const {
-    const Eigen::Vector3d center = cues_.evidence.world_from_object * model_.center.cast<double>().eval();
-    double largest_m = 0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-      if (std::ranges::find(visibility_.sight[v], Sight::kConsistent) == visibility_.sight[v].end()) continue;
-      const double depth_m = (views[v].world_from_camera.inverse() * center).z();
-      if (depth_m > 0) largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
-    }
-    return static_cast<float>(largest_m);
-  }
-
-  // How well the colours agree where model and scene meet: as patterns, and one by one. What the scene's white balance
-  // is the other hypotheses have still to say; until then there is none.
-  double color_fit() const {
-    if (nearest_.empty()) return 0;
-    const LightFit light = limit_chroma(light_, Eigen::Array3f::Zero(), options_.light);
-    std::vector<LabColor> model_colors;
-    std::vector<LabColor> scene_colors;
-    double sum = 0;
-    for (const Match& m : nearest_) {
-      const int i = visibility_.visible[m.visible];
-      model_colors.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
-      scene_colors.push_back(local_lab_[m.local]);
-      sum += std::exp(-colors_.exponent(model_colors.back(), scene_colors.back()));
-    }
-    return sum / static_cast<double>(visibility_.visible.size()) +
-           pattern_similarity(model_colors, scene_colors, options_.color_sigma_l / options_.color_sigma_ab);
-  }
-
-  // To where the print of the model fits that of the scene, about what the shape leaves free.
-  Rigid3 find_turn() const {
-    if (model_.turns.size() < 2 || !local_ || !use_color_) return Rigid3::identity();
-    const Rigid3f object_from_world(cues_.evidence.world_from_object.inverse());
+  // To where the print of the model fits that of the scene, about what the shape leaves free; but what has no support
+  // has none there either.
+  void turn(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
+    if (model_.turns.size() < 2 || !look_.local || !use_color_) return;
+    if (look_.supported_share() < options_.min_explained_share) return;
+    const Rigid3f object_from_world(look_.world_from_object.inverse());
     std::vector<ExplainedPoint> explained;
-    for (const Match& m : nearest_)
-      explained.push_back({object_from_world * local_->point(static_cast<std::size_t>(m.local)), local_lab_[m.local]});
-    return find_print_turn(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
-  }
-
-  // Of up to two thousand points of the model: enough to refine a pose with.
-  std::vector<int> roughly_visible(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) const {
-    constexpr std::size_t kEnough = 2000;
-    const std::size_t step = points_.size() / kEnough + 1;
-    std::vector<Eigen::Vector3f> points;
-    std::vector<Eigen::Vector3f> normals;
-    for (std::size_t i = 0; i < points_.size(); i += step) {
-      points.push_back(points_[i]);
-      if (!normals_.empty()) normals.push_back(normals_[i]);
-    }
-    VerifyOptions rough = options_;
-    rough.resolution_m *= std::sqrt(static_cast<double>(step));
-    rough.min_visible_points /= static_cast<int>(step);
-    std::vector<int> visible = find_visible_points(points, normals, views, allowed, rough).visible;
-    for (int& i : visible) i *= static_cast<int>(step);
-    return visible;
+    for (const PointMatch& m : look_.nearest)
+      explained.push_back({object_from_world * look_.local->point(static_cast<std::size_t>(m.local)),
+                           look_.local_lab[static_cast<std::size_t>(m.local)]});
+    const Rigid3 turn = find_print_turn(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
+    if (turn.rotation.isIdentity()) return;
+    ModelLook turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
+    if (turned.color_fit() > look_.color_fit()) look_ = std::move(turned);
   }
 
   void count_agreeing(std::span<const Correspondence> correspondences) {
@@ -151,35 +79,17 @@ struct CueComputer::Impl {
         ++cues_.evidence.num_correspondences;
   }
 
-  void compare_with_scene() {
-    local_.reset();
-    matches_.clear();
-    nearest_.clear();
-    light_ = {};
-    if (visibility_.visible.empty()) return;
-    std::vector<Eigen::Vector3f> visible_points;
-    visible_points.reserve(visibility_.visible.size());
-    for (const int i : visibility_.visible) visible_points.push_back(points_[i]);
-    const float inlier_distance = static_cast<float>(options_.inlier_distance_m);
-    local_.emplace(scene_.points, scene_.blocks, visible_points,
-                   inlier_distance + static_cast<float>(options_.clutter_radius_m), inlier_distance);
-    if (use_normals_) local_normals_ = local_->select(scene_.normals);
-    if (use_color_) local_lab_ = local_->select(scene_.lab);
-    find_matches(*local_);
-    fit_light_of_matches(*local_);
-  }
-
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
-    cues_.state.assign(points_.size(), ModelPointState::kNotVisible);
-    if (local_) {
-      adapt_colors(limit_chroma(light_, white_balance, options_.light));
+    cues_.state.assign(look_.points.size(), ModelPointState::kNotVisible);
+    if (look_.local) {
+      adapt_colors(limit_chroma(look_.light, white_balance, options_.light));
       compare_patterns();
-      weigh_matches(*local_);
+      weigh_matches(*look_.local);
       classify_model_points();
     }
-    fill_evidence(visibility_.sight.size());
+    fill_evidence(look_.visibility.sight.size());
     cues_.evidence.verdict = judge_evidence(cues_.evidence, options_);
-    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*local_);
+    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*look_.local);
     return std::move(cues_);
   }
 
@@ -190,51 +100,12 @@ struct CueComputer::Impl {
     add_pierced_planes();
   }
 
-  void find_matches(const LocalScene& local) {
-    matches_.reserve(visibility_.visible.size() * 24);
-    for (std::size_t v = 0; v < visibility_.visible.size(); ++v)
-      local.visit_within(points_[visibility_.visible[v]], static_cast<float>(options_.inlier_distance_m),
-                         [&](std::size_t q, float distance_sq) {
-                           matches_.push_back({static_cast<int>(v), static_cast<int>(q), distance_sq});
-                           return true;
-                         });
-  }
-
-  // Cosine between the normals of a match; 1 where there are none.
-  float normal_dot(const Match& m) const {
-    return use_normals_ ? normals_[visibility_.visible[m.visible]].dot(local_normals_[m.local]) : 1.0F;
-  }
-
-  // From each visible point and its nearest scene point of similar normal.
-  void fit_light_of_matches(const LocalScene& local) {
-    if (!use_color_) return;
-    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
-    std::vector<Eigen::Vector3f> model_light;
-    std::vector<Eigen::Vector3f> scene_light;
-    std::vector<Eigen::Vector3f> normals;
-    for (std::size_t i = 0; i < matches_.size();) {
-      const Match* nearest = nullptr;
-      const int v = matches_[i].visible;
-      for (; i < matches_.size() && matches_[i].visible == v; ++i)
-        if (normal_dot(matches_[i]) >= min_dot &&
-            (nearest == nullptr || matches_[i].distance_sq < nearest->distance_sq))
-          nearest = &matches_[i];
-      if (nearest == nullptr) continue;
-      nearest_.push_back(*nearest);
-      const int point = visibility_.visible[v];
-      model_light.push_back(model_.linear_light[point]);
-      scene_light.push_back(scene_.linear_light[local.scene_index(nearest->local)]);
-      if (!normals_.empty()) normals.push_back(normals_[point]);
-    }
-    light_ = fit_light(model_light, scene_light, normals, options_.light);
-  }
-
   // The model's colours under the light of the scene.
   void adapt_colors(const LightFit& light) {
     if (!use_color_) return;
-    lab_.reserve(visibility_.visible.size());
-    for (const int i : visibility_.visible)
-      lab_.push_back(to_lab(light(model_.linear_light[i], normals_.empty() ? kNoNormal : normals_[i])));
+    lab_.reserve(look_.visibility.visible.size());
+    for (const int i : look_.visibility.visible)
+      lab_.push_back(to_lab(light(model_.linear_light[i], look_.normals.empty() ? kNoNormal : look_.normals[i])));
   }
 
   void compare_patterns() {
@@ -242,10 +113,10 @@ struct CueComputer::Impl {
     std::vector<LabColor> print;  // Of the model, in no light: what is plain has no contrast for being round.
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
-    for (const Match& m : nearest_) {
-      print.push_back(model_.lab[visibility_.visible[m.visible]]);
+    for (const PointMatch& m : look_.nearest) {
+      print.push_back(model_.lab[look_.visibility.visible[m.visible]]);
       model_colors.push_back(lab_[m.visible]);
-      scene_colors.push_back(local_lab_[m.local]);
+      scene_colors.push_back(look_.local_lab[m.local]);
     }
     const double chroma_weight = options_.color_sigma_l / options_.color_sigma_ab;
     const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
@@ -255,8 +126,8 @@ struct CueComputer::Impl {
   }
 
   // -log of the colour similarity.
-  float color_exponent(const Match& m) const {
-    return use_color_ ? colors_.exponent(lab_[m.visible], local_lab_[m.local]) : 0;
+  float color_exponent(const PointMatch& m) const {
+    return use_color_ ? colors_.exponent(lab_[m.visible], look_.local_lab[m.local]) : 0;
   }
 
   void weigh_matches(const LocalScene& local) {
@@ -265,9 +136,9 @@ struct CueComputer::Impl {
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
     scene_weight_.assign(local.size(), 0);
     beside_model_.assign(local.size(), 1);
-    fit_exponent_.assign(visibility_.visible.size(), std::numeric_limits<float>::infinity());
-    for (const Match& m : matches_) {
-      const float dot = normal_dot(m);
+    fit_exponent_.assign(look_.visibility.visible.size(), std::numeric_limits<float>::infinity());
+    for (const PointMatch& m : look_.matches) {
+      const float dot = look_.normal_dot(m);
       if (dot <= 0) continue;
       if (dot >= min_dot) beside_model_[m.local] = 0;
       const float color = color_exponent(m);
@@ -283,16 +154,16 @@ struct CueComputer::Impl {
   // What lies in front of the model or behind its face by no more than the noise of the views is no rest of a surface.
   void excuse_noise(const LocalScene& local) {
     const float clutter_sigmas = static_cast<float>(options_.clutter_sigmas);
-    const float reach_m = std::min(clutter_sigmas * depth_noise_m_, static_cast<float>(options_.clutter_radius_m));
+    const float reach_m = std::min(clutter_sigmas * look_.depth_noise_m, static_cast<float>(options_.clutter_radius_m));
     if (!use_normals_ || options_.continuation_offset_m <= 0 ||
         reach_m <= static_cast<float>(options_.inlier_distance_m))
       return;
     const float beside_sq = static_cast<float>(options_.resolution_m * options_.resolution_m);
     const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
-    for (const int i : visibility_.visible)
-      local.visit_within(points_[i], reach_m, [&](std::size_t q, float distance_sq) {
-        const float along = normals_[i].dot(local.point(q) - points_[i]);
-        if (distance_sq - along * along <= beside_sq && normals_[i].dot(local_normals_[q]) >= min_dot)
+    for (const int i : look_.visibility.visible)
+      local.visit_within(look_.points[i], reach_m, [&](std::size_t q, float distance_sq) {
+        const float along = look_.normals[i].dot(local.point(q) - look_.points[i]);
+        if (distance_sq - along * along <= beside_sq && look_.normals[i].dot(look_.local_normals[q]) >= min_dot)
           beside_model_[q] = 0;
         return true;
       });
@@ -303,10 +174,10 @@ struct CueComputer::Impl {
     double sum_weight = 0;
     double sum_explained = 0;
     double sum_fit = 0;
-    for (std::size_t v = 0; v < visibility_.visible.size(); ++v) {
-      const double weight = visibility_.facing[v] < steep_cosine ? options_.steep_weight : 1.0;
+    for (std::size_t v = 0; v < look_.visibility.visible.size(); ++v) {
+      const double weight = look_.visibility.facing[v] < steep_cosine ? options_.steep_weight : 1.0;
       const double fit = std::exp(-static_cast<double>(fit_exponent_[v]));
-      const bool explained = fit > options_.min_inlier_weight && visibility_.seen_through[v] == 0;
+      const bool explained = fit > options_.min_inlier_weight && look_.visibility.seen_through[v] == 0;
       sum_weight += weight;
       if (explained) {
         ++cues_.evidence.num_explained;
@@ -315,7 +186,7 @@ struct CueComputer::Impl {
       } else {
         cues_.evidence.outlier_cost += options_.outlier_weight * weight;
       }
-      cues_.state[visibility_.visible[v]] = explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
+      cues_.state[look_.visibility.visible[v]] = explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
     }
     if (sum_weight > 0) {
       cues_.evidence.explained_share = sum_explained / sum_weight;
@@ -421,16 +292,16 @@ struct CueComputer::Impl {
   // The smaller of the two parts that a plane cuts the model into, over the part of the plane that was seen.
   void add_pierced_planes() {
     const float clearance = static_cast<float>(options_.inlier_distance_m);
-    std::vector<float> distances(points_.size());
+    std::vector<float> distances(look_.points.size());
     for (const ScenePlane& plane : scene_.planes) {
       if (plane.extent_m <= 1.2F * model_.diameter_m) continue;
-      std::ranges::transform(points_, distances.begin(), [&](const auto& p) { return plane.signed_distance(p); });
+      std::ranges::transform(look_.points, distances.begin(), [&](const auto& p) { return plane.signed_distance(p); });
       const auto [lowest, highest] = std::ranges::minmax(distances);
       if (lowest >= -clearance || highest <= clearance) continue;
       int above = 0;
       int below = 0;
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (std::abs(distances[i]) <= clearance || !plane.covers(points_[i])) continue;
+      for (std::size_t i = 0; i < look_.points.size(); ++i) {
+        if (std::abs(distances[i]) <= clearance || !plane.covers(look_.points[i])) continue;
         ++(distances[i] > 0 ? above : below);
       }
       cues_.evidence.plane_cost += std::min(above, below);
@@ -439,22 +310,22 @@ struct CueComputer::Impl {
 
   void fill_evidence(std::size_t num_views) {
     HypothesisEvidence& evidence = cues_.evidence;
-    evidence.num_visible = static_cast<int>(visibility_.visible.size());
+    evidence.num_visible = static_cast<int>(look_.visibility.visible.size());
     evidence.visible_share =
-        points_.empty() ? 0 : static_cast<double>(evidence.num_visible) / static_cast<double>(points_.size());
+        look_.points.empty() ? 0 : static_cast<double>(evidence.num_visible) / static_cast<double>(look_.points.size());
     evidence.visible_share_per_view.assign(num_views, 0);
     evidence.explained_share_per_view.assign(num_views, 0);
     for (std::size_t view = 0; view < num_views; ++view) {
       int visible = 0;
       int explained = 0;
-      for (std::size_t i = 0; i < visibility_.sight[view].size(); ++i) {
-        const Sight sight = visibility_.sight[view][i];
+      for (std::size_t i = 0; i < look_.visibility.sight[view].size(); ++i) {
+        const Sight sight = look_.visibility.sight[view][i];
         if (sight == Sight::kHidden) continue;
         ++visible;
         if (sight == Sight::kConsistent && cues_.state[i] == ModelPointState::kExplained) ++explained;
       }
       if (visible == 0) continue;
-      evidence.visible_share_per_view[view] = static_cast<float>(visible) / static_cast<float>(points_.size());
+      evidence.visible_share_per_view[view] = static_cast<float>(visible) / static_cast<float>(look_.points.size());
       evidence.explained_share_per_view[view] = static_cast<float>(explained) / static_cast<float>(visible);
     }
   }
@@ -465,16 +336,7 @@ struct CueComputer::Impl {
   ColorTolerance colors_;
   bool use_normals_;
   bool use_color_;
-  std::vector<Eigen::Vector3f> points_;
-  std::vector<Eigen::Vector3f> normals_;
-  ModelVisibility visibility_;
-  float depth_noise_m_ = 0;
-  std::optional<LocalScene> local_;             // None if nothing is visible.
-  std::vector<Eigen::Vector3f> local_normals_;  // Of its points.
-  std::vector<LabColor> local_lab_;
-  LightFit light_;
-  std::vector<Match> matches_;              // Those of one visible point stand side by side.
-  std::vector<Match> nearest_;              // Of each visible point that has one of similar normal.
+  ModelLook look_;
   std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
   std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near,
@@ -487,14 +349,11 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
                          std::span<const Correspondence> correspondences, const PreparedScene& scene,
                          std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                          const VerifyOptions& options)
-    : impl_(std::make_unique<Impl>(model, world_from_object, scene, options)) {
-  impl_->look(correspondences, views, allowed);
-  impl_->count_agreeing(correspondences);
-}
+    : impl_(std::make_unique<Impl>(model, world_from_object, correspondences, scene, views, allowed, options)) {}
 CueComputer::~CueComputer() = default;
 CueComputer::CueComputer(CueComputer&&) noexcept = default;
 
-const LightFit& CueComputer::light() const { return impl_->light_; }
+const LightFit& CueComputer::light() const { return impl_->look_.light; }
 HypothesisCues CueComputer::finish(const Eigen::Array3f& white_balance) { return impl_->finish(white_balance); }
 
 }  // namespace resight

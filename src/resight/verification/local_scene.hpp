@@ -11,8 +11,8 @@
 
 namespace resight {
 
-/// The scene points around one hypothesis on a dense grid: neighbours by a few contiguous runs instead of hash
-/// look-ups.
+/// The scene points around one hypothesis (or those of a model) on a dense grid: neighbours by a few contiguous runs
+/// instead of hash look-ups.
 class LocalScene {
  public:
   /// The points in the box around `around` widened by `margin_m`. Queries must lie in that box.
@@ -35,6 +35,9 @@ class LocalScene {
     for (const int i : indices_) selected.push_back(of_scene[static_cast<std::size_t>(i)]);
     return selected;
   }
+
+  /// The nearest point, -1 if there is none within some metres: fast where it is nearer than a few cells.
+  [[nodiscard]] int nearest(const Eigen::Vector3f& query) const;
 
   /// Calls visit(local, distance_sq) for each point within the radius (boundary included), until it returns false.
   template <typename Visit>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/models/shape_turns.hpp"
 
@@ -91,7 +90,10 @@ PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& optio
   }
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
-  if (prepared.turns.size() > 1) prepared.tree = std::make_shared<const KdTree>(prepared.points);
+  if (prepared.turns.size() > 1)
+    prepared.grid = std::make_shared<const LocalScene>(prepared.points, BlockGrid(prepared.points, kBlock_m),
+                                                       prepared.points, static_cast<float>(options.inlier_distance_m),
+                                                       static_cast<float>(options.resolution_m));
   prepared.center = centroid(prepared.points);
   prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);
   return prepared;

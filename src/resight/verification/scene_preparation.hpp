@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/verification/block_grid.hpp"
 #include "resight/verification/lab_color.hpp"
+#include "resight/verification/local_scene.hpp"
 #include "resight/verification/scene_planes.hpp"
 #include "resight/verification/verification.hpp"
 
@@ -48,7 +48,7 @@ struct PreparedModel {
   std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
   std::vector<LabColor> lab;                         ///< The same.
   std::vector<Rigid3> turns;                         ///< shape_turns(): by shape alone, these poses are one.
-  std::shared_ptr<const KdTree> tree;                ///< Of the points, if there are turns.
+  std::shared_ptr<const LocalScene> grid;            ///< Of the points, if there are turns.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };
