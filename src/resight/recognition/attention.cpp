@@ -24,6 +24,7 @@ void AttentionOptions::check() const {
   check_positive("AttentionOptions.max_depth_m", max_depth_m);
   check_not_negative("AttentionOptions.object_look_every", object_look_every);
   check_positive("AttentionOptions.object_min_views", object_min_views);
+  check_in_range("AttentionOptions.min_sure_share", min_sure_share, 0, 1);
 }
 
 Attention::Attention(const AttentionOptions& options) : options_((options.check(), options)) {}

@@ -164,6 +164,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"attention.max_depth_m", &c.attention.max_depth_m},
                                   {"attention.object_look_every", &c.attention.object_look_every},
                                   {"attention.object_min_views", &c.attention.object_min_views},
+                                  {"attention.min_sure_share", &c.attention.min_sure_share},
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
                                   {"changes.tolerance_sigmas", &c.changes.tolerance_sigmas},
                                   {"changes.voxel_m", &c.changes.voxel_m},
@@ -402,6 +403,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.min_carried_share = 0.8;
     config.judge_absent = true;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
+    config.attention.object_look_every = 4;
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;

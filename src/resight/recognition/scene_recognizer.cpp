@@ -14,6 +14,7 @@
 #include "resight/core/deadline.hpp"
 #include "resight/recognition/attention.hpp"
 #include "resight/recognition/explained_pixels.hpp"
+#include "resight/recognition/held_correspondences.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
@@ -46,6 +47,7 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         corrector(correction_options(config)),
         scene(scene_options(config)),
+        held(static_cast<std::size_t>(config.num_previous_views) + 1),
         attention(config.remembers() ? config.attention : AttentionOptions{}),
         store(std::move(shared)),
         clock(std::move(now)) {
@@ -60,6 +62,8 @@ struct SceneRecognizer::Impl {
   void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
   [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, int number, StageTimes& times);
+  [[nodiscard]] bool needs_search(const KnownObject& known, int number, double depth_m) const;
+  void remember_search(const SceneUpdate& update);
   [[nodiscard]] std::vector<std::uint8_t> presence_of(const std::vector<Hypothesis>& hypotheses) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
@@ -73,12 +77,18 @@ struct SceneRecognizer::Impl {
   ObjectHistory history;
   CameraCorrector corrector;
   DynamicScene scene;
+  HeldCorrespondences held;  // used only where not each view is searched everywhere
   Attention attention;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
-      members_of_cluster;            // ids by the seed's id; this view's
-  std::map<int, int> look_of_track;  // the last view that was searched where a known object is
+      members_of_cluster;  // ids by the seed's id; this view's
+  struct Look {
+    int view = -1;                // the last that was searched where a known object is
+    double depth_m = 0;           // of its centre, the least of such views
+    double explained_share = -1;  // of the object, by the last view
+  };
+  std::map<int, Look> look_of_track;  // of what is known
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
   std::uint64_t next_known_id = kFirstKnownId;
@@ -117,6 +127,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
 
   const ScopedTimer timer(update.times, "history");
   update.events = history.update(update.view, update.detections, scene.window().back().raw, config.detect_changes);
+  if (config.leaves_out_explained()) remember_search(update);
   std::erase_if(update.detections,
                 [&](const Detection& d) { return d.views.back().confirmed_share() < config.min_reported_share; });
   return update;
@@ -161,34 +172,63 @@ std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
     hypothesis.world_from_object = known.world_from_object;
     hypothesis.origin_view = known.last_view;
     hypothesis.origin_views = {known.last_view};
+    hypothesis.correspondences = held.of_views(known.track, known.since_view, scene.window().front().number);
     hypotheses.push_back(std::move(hypothesis));
   }
   return hypotheses;
 }
 
-// Those of known objects that need no search in this view: the last one confirmed them, no change is near them, and
-// they were searched for not long ago.
+// Whether there is something to be won: it is new at its place, was not searched for lately, is nearer than ever
+// before, or was not all that the last view showed there.
+bool SceneRecognizer::Impl::needs_search(const KnownObject& known, int number, double depth_m) const {
+  const AttentionOptions& options = config.attention;
+  const auto last = look_of_track.find(known.track);
+  return last == look_of_track.end() || number - known.since_view < options.object_min_views ||
+         number - last->second.view >= options.object_look_every || known.seen_view + 1 != number ||
+         last->second.explained_share < options.min_sure_share ||
+         depth_m * options.max_distance_ratio < last->second.depth_m;
+}
+
+// Those of known objects that need no search in this view, and that no change is near to.
 Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& frame, int number, StageTimes& times) {
   if (!config.leaves_out_explained()) return {};
   const ScopedTimer timer(times, "attention");
   const std::vector<KnownObject> known = history.known_objects();
   const std::vector<std::uint8_t> present = presence_of(known_hypotheses());
   const std::size_t now = (scene.window().size() - 1) * known.size();
+  const Rigid3 camera_from_world = frame.world_from_camera.inverse();
   std::vector<KnownObject> confirmed;
-  std::map<int, int> looks;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    const auto last = look_of_track.find(known[i].track);
-    const bool is_due = number - known[i].since_view < config.attention.object_min_views ||
-                        last == look_of_track.end() || number - last->second >= config.attention.object_look_every;
-    if (is_due || known[i].seen_view + 1 != number || (!present.empty() && present[now + i] == 0)) {
-      looks[known[i].track] = number;
-    } else {
-      looks[known[i].track] = last->second;
+    const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(known[i].object)].center.cast<double>();
+    const double depth_m = (camera_from_world * (known[i].world_from_object * center)).z();
+    if (!needs_search(known[i], number, depth_m) && (present.empty() || present[now + i] != 0)) {
       confirmed.push_back(known[i]);
+      continue;
     }
+    Look& look = look_of_track[known[i].track];
+    look.depth_m = look.view < 0 ? depth_m : std::min(look.depth_m, depth_m);
+    look.view = number;
   }
-  look_of_track = std::move(looks);
   return find_explained_pixels(frame, confirmed, library, config.history.presence);
+}
+
+// What this view's search found for the objects that are now known, and how sure of them it leaves us.
+void SceneRecognizer::Impl::remember_search(const SceneUpdate& update) {
+  std::vector<int> tracks;
+  for (const KnownObject& known : history.known_objects()) tracks.push_back(known.track);
+  held.keep_only(tracks);
+  std::erase_if(look_of_track,
+                [&](const auto& entry) { return std::ranges::find(tracks, entry.first) == tracks.end(); });
+  for (const Detection& detection : update.detections) {
+    if (detection.track < 0) continue;
+    look_of_track[detection.track].explained_share = detection.views.back().explained_share;
+    const std::vector<std::uint64_t>& members = members_of_cluster.at(detection.hypothesis_id);
+    std::vector<Correspondence> found;
+    for (const Hypothesis& h : hypotheses_of_view.back())
+      if (std::ranges::find(members, h.id) != members.end())
+        found.insert(found.end(), h.correspondences.begin(), h.correspondences.end());
+    if (!found.empty()) held.add(detection.track, update.view, std::move(found));
+  }
 }
 
 // Paper Sec. III-A, Eq. (1). Hypotheses live in the world frame: carrying them over is collecting them.
