@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "resight/changes/cell_grid.hpp"
-#include "resight/changes/difference.hpp"
 #include "resight/core/check.hpp"
 
 namespace resight {
@@ -90,14 +89,17 @@ void RemovalSupportOptions::check() const {
   check_not_negative("RemovalSupportOptions.min_support_points", min_support_points);
 }
 
-int count_removal_support(const PointCloud& surface_in_world, const PointCloud& removed_in_world,
-                          std::span<const std::vector<int>> clusters, const RemovalSupportOptions& options) {
+int count_removal_support(const ProximityGrid& surface_in_object, const Rigid3& object_from_world,
+                          const PointCloud& removed_in_world, std::span<const std::vector<int>> clusters,
+                          const RemovalSupportOptions& options) {
   options.check();
-  const ProximityGrid surface(surface_in_world.points, options.model_distance_m);
+  const Rigid3f motion(object_from_world);
   std::size_t support = 0;
   for (const std::vector<int>& cluster : clusters) {
     std::size_t on_surface = 0;
-    for (const int i : cluster) on_surface += surface.any_within(removed_in_world.points[i]) ? 1U : 0U;
+    for (const int i : cluster)
+      on_surface +=
+          surface_in_object.any_within(motion * removed_in_world.points[i], options.model_distance_m) ? 1U : 0U;
     const double overlap = static_cast<double>(on_surface) / static_cast<double>(cluster.size());
     if (overlap > options.min_overlap) support += cluster.size();
   }
@@ -109,7 +111,8 @@ int count_removal_support(const PointCloud& surface_in_world, const PointCloud& 
   options.check();
   if (surface_in_world.empty() || removed_in_world.empty()) return 0;
   const auto clusters = cluster_points(removed_in_world.points, options.cluster_distance_m, options.min_cluster_points);
-  return count_removal_support(surface_in_world, removed_in_world, clusters, options);
+  return count_removal_support(ProximityGrid(surface_in_world.points, options.model_distance_m), Rigid3::identity(),
+                               removed_in_world, clusters, options);
 }
 
 }  // namespace resight

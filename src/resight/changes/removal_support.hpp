@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "resight/changes/difference.hpp"
 #include "resight/geometry/point_cloud.hpp"
+#include "resight/geometry/rigid3.hpp"
 
 namespace resight {
 
@@ -26,10 +28,10 @@ struct RemovalSupportOptions {
 [[nodiscard]] int count_removal_support(const PointCloud& surface_in_world, const PointCloud& removed_in_world,
                                         const RemovalSupportOptions& options = {});
 
-/// The same for clusters that stand already (cluster_points() with the options' distance and size): for many objects
-/// against one set of removed points.
-[[nodiscard]] int count_removal_support(const PointCloud& surface_in_world, const PointCloud& removed_in_world,
-                                        std::span<const std::vector<int>> clusters,
+/// The same for clusters that stand already (cluster_points() with the options' distance and size) and for the surface
+/// of the object in its own frame, on a grid of model_distance_m: for many poses against one set of removed points.
+[[nodiscard]] int count_removal_support(const ProximityGrid& surface_in_object, const Rigid3& object_from_world,
+                                        const PointCloud& removed_in_world, std::span<const std::vector<int>> clusters,
                                         const RemovalSupportOptions& options = {});
 
 }  // namespace resight

@@ -110,7 +110,8 @@ TEST(CountRemovalSupport, ClustersThatStandGiveTheSame) {
   const auto clusters = cluster_points(removed.points, options.cluster_distance_m, options.min_cluster_points);
   ASSERT_EQ(clusters.size(), 2U);
   EXPECT_GT(count_removal_support(surface, removed, options), 0);
-  EXPECT_EQ(count_removal_support(surface, removed, clusters, options),
+  EXPECT_EQ(count_removal_support(ProximityGrid(surface.points, options.model_distance_m), Rigid3::identity(), removed,
+                                  clusters, options),
             count_removal_support(surface, removed, options));
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 
 #include "resight/core/parallel.hpp"
 
@@ -10,6 +11,12 @@ namespace resight {
 namespace {
 
 enum class PlaceEvent : std::uint8_t { kNone, kRemoved, kAppeared };
+
+// Holds all of a hypothesis, and what is near to it.
+struct Ball {
+  Eigen::Vector3f center;
+  float radius_m = 0;
+};
 
 // The clusters of the points that a view found removed, or novel: made once for all hypotheses.
 class ChangedPoints {
@@ -24,14 +31,20 @@ class ChangedPoints {
     }
   }
 
-  // Most changes are far from most hypotheses: a look at the bounding sphere leaves few clusters.
-  [[nodiscard]] int support(const PointCloud& surface_in_world, const Eigen::Vector3f& center, float radius_m,
-                            const RemovalSupportOptions& options) const {
-    std::vector<std::vector<int>> near;
+  // Most changes are far from most hypotheses.
+  [[nodiscard]] std::vector<std::vector<int>> near(const Ball& ball) const {
+    std::vector<std::vector<int>> found;
     for (std::size_t c = 0; c < clusters_.size(); ++c)
-      if (boxes_[c].squaredExteriorDistance(center) <= radius_m * radius_m) near.push_back(clusters_[c]);
-    return near.empty() ? 0 : count_removal_support(surface_in_world, *in_world_, near, options);
+      if (boxes_[c].squaredExteriorDistance(ball.center) <= ball.radius_m * ball.radius_m)
+        found.push_back(clusters_[c]);
+    return found;
   }
+  [[nodiscard]] bool any_near(const Ball& ball) const {
+    return std::ranges::any_of(boxes_, [&](const Eigen::AlignedBox3f& box) {
+      return box.squaredExteriorDistance(ball.center) <= ball.radius_m * ball.radius_m;
+    });
+  }
+  [[nodiscard]] const PointCloud& in_world() const { return *in_world_; }
 
  private:
   const PointCloud* in_world_ = nullptr;
@@ -56,11 +69,28 @@ std::vector<ClusteredChanges> cluster_changes(std::span<const ViewChanges> windo
   return clustered;
 }
 
-PlaceEvent find_event(const Hypothesis& hypothesis, const ClusteredChanges& changes, const PointCloud& surface_in_world,
-                      const Eigen::Vector3f& center, float radius_m, const RemovalSupportOptions& options) {
-  const int removed = changes.removed.support(surface_in_world, center, radius_m, options);
-  const int novel = changes.novel.support(surface_in_world, center, radius_m, options);
-  const bool is_removed = removed > options.min_support_points && hypothesis.origin_view < changes.view;
+bool any_near(const Ball& ball, const std::vector<ClusteredChanges>& changes) {
+  return std::ranges::any_of(
+      changes, [&](const ClusteredChanges& c) { return c.removed.any_near(ball) || c.novel.any_near(ball); });
+}
+
+// A hypothesis that changes are near to, and the surface of its object.
+struct Place {
+  const Hypothesis& hypothesis;
+  const ProximityGrid& surface_in_object;
+  Ball ball;
+  Rigid3 object_from_world;
+};
+
+PlaceEvent find_event(const Place& place, const ClusteredChanges& changes, const RemovalSupportOptions& options) {
+  const auto support = [&](const ChangedPoints& points) {
+    const std::vector<std::vector<int>> near = points.near(place.ball);
+    if (near.empty()) return 0;
+    return count_removal_support(place.surface_in_object, place.object_from_world, points.in_world(), near, options);
+  };
+  const int removed = support(changes.removed);
+  const int novel = support(changes.novel);
+  const bool is_removed = removed > options.min_support_points && place.hypothesis.origin_view < changes.view;
   const bool is_novel = novel > options.min_support_points;
   if (is_novel && (!is_removed || novel >= removed)) return PlaceEvent::kAppeared;
   return is_removed ? PlaceEvent::kRemoved : PlaceEvent::kNone;
@@ -85,15 +115,29 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
   std::vector<std::uint8_t> mask(window.size() * hypotheses.size(), 1);
   if (hypotheses.empty()) return mask;
   const std::vector<ClusteredChanges> clustered = cluster_changes(window, options, num_threads);
-  parallel_for(hypotheses.size(), num_threads, [&](std::size_t h) {
-    const ObjectModel& model = library.objects[static_cast<std::size_t>(hypotheses[h].object)];
-    const PointCloud surface_in_world = transform(hypotheses[h].world_from_object, model.surface);
-    const Eigen::Vector3f center = Rigid3f(hypotheses[h].world_from_object) * model.center;
+  std::vector<Ball> balls;
+  std::vector<std::uint8_t> changed(hypotheses.size(), 0);
+  std::vector<std::unique_ptr<const ProximityGrid>> surfaces(library.objects.size());
+  std::vector<std::uint8_t> needed(library.objects.size(), 0);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    const auto object = static_cast<std::size_t>(hypotheses[h].object);
+    const ObjectModel& model = library.objects[object];
     // The diameter bounds the distance of every surface point from the centroid.
-    const float radius_m = model.diameter_m + static_cast<float>(options.model_distance_m);
+    balls.push_back({Rigid3f(hypotheses[h].world_from_object) * model.center,
+                     model.diameter_m + static_cast<float>(options.model_distance_m)});
+    changed[h] = any_near(balls[h], clustered) ? 1 : 0;
+    needed[object] |= changed[h];
+  }
+  parallel_for(surfaces.size(), num_threads, [&](std::size_t o) {
+    if (needed[o] != 0)
+      surfaces[o] = std::make_unique<const ProximityGrid>(library.objects[o].surface.points, options.model_distance_m);
+  });
+  parallel_for(hypotheses.size(), num_threads, [&](std::size_t h) {
+    if (changed[h] == 0) return;
+    const Place place{hypotheses[h], *surfaces[static_cast<std::size_t>(hypotheses[h].object)], balls[h],
+                      hypotheses[h].world_from_object.inverse()};
     std::vector<PlaceEvent> events;
-    for (const ClusteredChanges& changes : clustered)
-      events.push_back(find_event(hypotheses[h], changes, surface_in_world, center, radius_m, options));
+    for (const ClusteredChanges& changes : clustered) events.push_back(find_event(place, changes, options));
     fill_mask(events, h, hypotheses.size(), mask);
   });
   return mask;
