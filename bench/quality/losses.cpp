@@ -22,15 +22,16 @@ using namespace resight;
 
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
-      "  {} score {:.2f} visible {} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} matches {} | scene "
+      "  {} score {:.2f} visible {} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} newest {:.2f} matches {} "
+      "| scene "
       "{:.0f} outlier "
       "{:.0f} clutter "
       "{:.0f} plane "
       "{:.0f} alone "
       "{:.0f}\n",
       to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_contrast,
-      e.print_contrast, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost, e.plane_cost,
-      e.cost_alone);
+      e.print_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
+      e.plane_cost, e.cost_alone);
   if (e.accepted) return;
   fmt::print("    visible and explained per view:");
   for (std::size_t v = 0; v < e.visible_share_per_view.size(); ++v)

@@ -120,22 +120,6 @@ std::vector<Correspondence> without_repeats(const std::vector<Correspondence>& p
   return result;
 }
 
-// The member's correspondences with the model side moved by the symmetry that turns its pose into the equivalent one:
-// equivalent_pose * moved point = world_from_object * point.
-void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
-                            const Rigid3& equivalent_pose, bool symmetric) {
-  if (!symmetric) {
-    pool.insert(pool.end(), hypothesis.correspondences.begin(), hypothesis.correspondences.end());
-    return;
-  }
-  const Rigid3 object_from_object = equivalent_pose.inverse() * hypothesis.world_from_object;
-  for (Correspondence c : hypothesis.correspondences) {
-    c.model_point = (object_from_object * c.model_point.cast<double>().eval()).cast<float>();
-    c.model_normal = (object_from_object.rotation * c.model_normal.cast<double>()).cast<float>();
-    pool.push_back(c);
-  }
-}
-
 void append_views(std::vector<int>& views, const Hypothesis& hypothesis) {
   if (hypothesis.origin_views.empty())
     views.push_back(hypothesis.origin_view);
@@ -152,7 +136,7 @@ Hypothesis merge(const Cluster& cluster, std::span<const Hypothesis> hypotheses,
   std::vector<Correspondence> pool = std::move(merged.correspondences);
   for (auto member = cluster.begin() + 1; member != cluster.end(); ++member) {
     const Hypothesis& hypothesis = at(hypotheses, member->index);
-    append_correspondences(pool, hypothesis, member->equivalent_pose, !object.symmetries.none());
+    append_correspondences(pool, hypothesis, member->equivalent_pose);
     append_views(merged.origin_views, hypothesis);
     merged.origin_view = std::max(merged.origin_view, hypothesis.origin_view);
   }
@@ -178,6 +162,21 @@ void ClusterHypothesesOptions::check() const {
   check_in_range("ClusterHypothesesOptions.max_rotation_rad", max_rotation_rad, 1e-9, std::numbers::pi);
   check_positive("ClusterHypothesesOptions.num_threads", num_threads);
   pose.check();
+}
+
+void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
+                            const Rigid3& equivalent_pose) {
+  if (equivalent_pose.rotation == hypothesis.world_from_object.rotation &&
+      equivalent_pose.translation == hypothesis.world_from_object.translation) {
+    pool.insert(pool.end(), hypothesis.correspondences.begin(), hypothesis.correspondences.end());
+    return;
+  }
+  const Rigid3 object_from_object = equivalent_pose.inverse() * hypothesis.world_from_object;
+  for (Correspondence c : hypothesis.correspondences) {
+    c.model_point = (object_from_object * c.model_point.cast<double>().eval()).cast<float>();
+    c.model_normal = (object_from_object.rotation * c.model_normal.cast<double>()).cast<float>();
+    pool.push_back(c);
+  }
 }
 
 bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, double max_rotation_rad,

@@ -41,6 +41,11 @@ struct ClusterResult {
 [[nodiscard]] ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
                                                const ClusterHypothesesOptions& options = {});
 
+/// Adds the hypothesis' correspondences, the model side moved by the symmetry that turns its pose into the equivalent
+/// one: equivalent_pose * moved point = world_from_object * point.
+void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
+                            const Rigid3& equivalent_pose);
+
 /// The rotation part of Eq. (1) for two rotations of one frame: below `max_rotation_rad` in the sense of `test`.
 [[nodiscard]] bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, double max_rotation_rad,
                                       RotationTest test);

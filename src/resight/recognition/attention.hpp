@@ -12,13 +12,12 @@ struct AttentionOptions {
                                     ///< searched as it is seen now; 0 = every view is searched.
   int full_look_every = 10;         ///< But of so many views at least one is.
   double max_turn_rad = 0.26;       ///< Seen from farther aside than this, a surface is worth another search...
-  double max_distance_ratio = 1.2;  ///< ...as it is from so much nearer.
+  double max_distance_ratio = 1.2;  ///< ...as it is from so much nearer; and so is a known object.
   double max_depth_m = 2.0;         ///< Surfaces farther away do not count.
   int object_look_every = 0;    ///< What is known, and seen where it was, is searched for again when so many views have
                                 ///< passed since it was last; 0 or 1 = in each.
   int object_min_views = 2;     ///< But in each of so many views from the first at its place on...
-  double min_sure_share = 0.9;  ///< ...and if the last view did not explain so much of what it saw of it. (And if it is
-                                ///< nearer than ever, by max_distance_ratio.)
+  double min_sure_share = 0.9;  ///< ...and if the last view did not explain so much of what it saw of it.
   void check() const;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/geometry/symmetry.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 
 namespace resight {
@@ -13,13 +14,19 @@ namespace resight {
 /// pose in the views in which it is not searched for. World frame. Memory grows with the number of objects only.
 class HeldCorrespondences {
  public:
-  /// Those of `max_searches` searches are kept of each object.
-  explicit HeldCorrespondences(std::size_t max_searches) : max_searches_(max_searches) {}
+  /// Those of `max_searches` searches are kept of each object; those farther than `max_distance_m` from where its pose
+  /// has them are not.
+  HeldCorrespondences(std::size_t max_searches, double max_distance_m)
+      : max_searches_(max_searches), max_distance_m_(max_distance_m) {}
 
-  /// Those found by the search of a view (in ascending order) for the object of a track.
-  void add(int track, int view, std::vector<Correspondence> found);
-  /// Of the searches of views from `first_view` on, but before `end_view`; the newest last.
-  [[nodiscard]] std::vector<Correspondence> of_views(int track, int first_view, int end_view) const;
+  /// What the search of a view (ascending) found for the object of a track, which was recognised at
+  /// `world_from_object`: the hypotheses may be at poses that its symmetries make the same.
+  void add(int track, int view, std::span<const Hypothesis> found, const Rigid3& world_from_object,
+           const ObjectSymmetries& symmetries);
+  /// Of the searches of views from `first_view` on, but before `end_view`, those that agree with the pose; the newest
+  /// last.
+  [[nodiscard]] std::vector<Correspondence> of_views(int track, int first_view, int end_view,
+                                                     const Rigid3& world_from_object) const;
   /// Forgets the tracks that are not among these.
   void keep_only(std::span<const int> tracks);
 
@@ -28,7 +35,10 @@ class HeldCorrespondences {
     int view = -1;
     std::vector<Correspondence> found;
   };
+  [[nodiscard]] bool agrees(const Correspondence& correspondence, const Rigid3& world_from_object) const;
+
   std::size_t max_searches_;
+  double max_distance_m_;
   std::map<int, std::deque<Search>> searches_;
 };
 

@@ -261,6 +261,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.min_visible_share", &v.min_visible_share},
                                   {"verify.min_explained_share", &v.min_explained_share},
                                   {"verify.min_pattern_similarity", &v.min_pattern_similarity},
+                                  {"verify.min_newest_similarity", &v.min_newest_similarity},
                                   {"verify.plain_max_shared_contrast", &v.plain.max_shared_contrast},
                                   {"verify.plain_min_explained_share", &v.plain.min_explained_share},
                                   {"verify.min_shared_print", &v.min_shared_print},
@@ -380,7 +381,8 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.color_sigma_l = 0.45;          // What lies in a shadow is darker than the light fit has it...
     config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
     config.verify.min_explained_share = 0.5;     // Half of an object may lie in a hard shadow...
-    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own.
+    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own...
+    config.verify.min_newest_similarity = 0.4;   // ...whatever stood there before.
     config.verify.min_visible_share = 0.05;
     config.verify.clutter_weight = 6;
     config.verify.continuation_offset_m = 0.005;
@@ -404,6 +406,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.judge_absent = true;
     config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
     config.attention.object_look_every = 4;
+    config.shape.max_seeds = 600;
     config.skip_planes = true;
     config.shape.enabled = true;
     config.verify.must_pay_alone = true;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,7 +48,7 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         corrector(correction_options(config)),
         scene(scene_options(config)),
-        held(static_cast<std::size_t>(config.num_previous_views) + 1),
+        held(static_cast<std::size_t>(config.num_previous_views) + 1, config.verify.inlier_distance_m),
         attention(config.remembers() ? config.attention : AttentionOptions{}),
         store(std::move(shared)),
         clock(std::move(now)) {
@@ -63,6 +64,7 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
   [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, int number, StageTimes& times);
   [[nodiscard]] bool needs_search(const KnownObject& known, int number, double depth_m) const;
+  void collect_found(const SceneUpdate& update);
   void remember_search(const SceneUpdate& update);
   [[nodiscard]] std::vector<std::uint8_t> presence_of(const std::vector<Hypothesis>& hypotheses) const;
   [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
@@ -82,7 +84,8 @@ struct SceneRecognizer::Impl {
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
-      members_of_cluster;  // ids by the seed's id; this view's
+      members_of_cluster;                                                         // ids by the seed's id; this view's
+  std::unordered_map<std::uint64_t, std::vector<Hypothesis>> found_of_detection;  // by its hypothesis; this view's
   struct Look {
     int view = -1;                // the last that was searched where a known object is
     double depth_m = 0;           // of its centre, the least of such views
@@ -144,7 +147,10 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
     const Image<std::uint8_t> explained = explained_pixels(view.frame, update.view, times);
     made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s), explained);
     made.times.add(times);
-    if (!made.left_out.empty()) attention.look_at_next();
+    if (!made.left_out.empty()) {
+      attention.look_at_next();
+      look_of_track.clear();
+    }
     found = store ? &store->add(update.view, std::move(made)) : &made;
   }
   update.times.add(found->times);
@@ -172,7 +178,8 @@ std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
     hypothesis.world_from_object = known.world_from_object;
     hypothesis.origin_view = known.last_view;
     hypothesis.origin_views = {known.last_view};
-    hypothesis.correspondences = held.of_views(known.track, known.since_view, scene.window().front().number);
+    hypothesis.correspondences =
+        held.of_views(known.track, known.since_view, scene.window().front().number, known.world_from_object);
     hypotheses.push_back(std::move(hypothesis));
   }
   return hypotheses;
@@ -200,16 +207,28 @@ Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& fra
   std::vector<KnownObject> confirmed;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(known[i].object)].center.cast<double>();
-    const double depth_m = (camera_from_world * (known[i].world_from_object * center)).z();
+    const Eigen::Vector3d center_in_camera = camera_from_world * (known[i].world_from_object * center);
+    const double depth_m = center_in_camera.z();
     if (!needs_search(known[i], number, depth_m) && (present.empty() || present[now + i] != 0)) {
       confirmed.push_back(known[i]);
       continue;
     }
+    if (!frame.camera.contains(frame.camera.project(center_in_camera)) || center_in_camera.z() <= 0) continue;
     Look& look = look_of_track[known[i].track];
-    look.depth_m = look.view < 0 ? depth_m : std::min(look.depth_m, depth_m);
+    look.depth_m = look.view < known[i].since_view ? depth_m : std::min(look.depth_m, depth_m);
     look.view = number;
   }
   return find_explained_pixels(frame, confirmed, library, config.history.presence);
+}
+
+// This view's hypotheses of what it recognised, before the weak among them are forgotten.
+void SceneRecognizer::Impl::collect_found(const SceneUpdate& update) {
+  found_of_detection.clear();
+  for (const Detection& detection : update.detections) {
+    const std::vector<std::uint64_t>& members = members_of_cluster.at(detection.hypothesis_id);
+    std::ranges::copy_if(hypotheses_of_view.back(), std::back_inserter(found_of_detection[detection.hypothesis_id]),
+                         [&](const Hypothesis& h) { return std::ranges::find(members, h.id) != members.end(); });
+  }
 }
 
 // What this view's search found for the objects that are now known, and how sure of them it leaves us.
@@ -222,12 +241,8 @@ void SceneRecognizer::Impl::remember_search(const SceneUpdate& update) {
   for (const Detection& detection : update.detections) {
     if (detection.track < 0) continue;
     look_of_track[detection.track].explained_share = detection.views.back().explained_share;
-    const std::vector<std::uint64_t>& members = members_of_cluster.at(detection.hypothesis_id);
-    std::vector<Correspondence> found;
-    for (const Hypothesis& h : hypotheses_of_view.back())
-      if (std::ranges::find(members, h.id) != members.end())
-        found.insert(found.end(), h.correspondences.begin(), h.correspondences.end());
-    if (!found.empty()) held.add(detection.track, update.view, std::move(found));
+    held.add(detection.track, update.view, found_of_detection.at(detection.hypothesis_id), detection.world_from_object,
+             library.objects[static_cast<std::size_t>(detection.object)].symmetries);
   }
 }
 
@@ -375,6 +390,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
   if (verification_s > 0 && !hypotheses.empty())
     verification_of_each_s = verification_s / static_cast<double>(hypotheses.size());
   if (doubts_known_object(hypotheses, result.evidence)) attention.look_at_next();
+  if (config.leaves_out_explained()) collect_found(update);
   forget_refuted(hypotheses, result.evidence);
   if (trace == nullptr) return;
   trace->verified = std::move(hypotheses);

@@ -28,10 +28,6 @@ constexpr int kMaxRoundPerPlace = 1;   // ...which finds the turn of what is rou
 
 constexpr int kAlikeEntries = 4;  // Of what is round, so many entries differ by a turn only: fewer are tried.
 
-Rigid3 to_double(const Rigid3f& motion) {
-  return {nearest_rotation(motion.rotation.cast<double>()), motion.translation.cast<double>()};
-}
-
 SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
   options.num_threads = num_threads;
   return options;
@@ -176,13 +172,14 @@ struct ShapeSearch::Impl {
     std::vector<Rigid3> tried;
     for (const PoseCandidate& c : candidates) {
       if (static_cast<int>(tried.size()) == options.max_refined) break;
-      const Rigid3 start = to_double(c.camera_from_object);
+      const Rigid3 rough{c.camera_from_object.rotation.cast<double>(), c.camera_from_object.translation.cast<double>()};
       const auto object = static_cast<std::size_t>(c.object);
       const ObjectModel& sought = library.objects[object];
       const ObjectSymmetries& symmetries = is_round_in_shape(object) ? sought.shape_symmetries : sought.symmetries;
       if (std::any_of(tried.begin(), tried.end(),
-                      [&](const Rigid3& other) { return is_same(c.object, start, other, symmetries); }))
+                      [&](const Rigid3& other) { return is_same(c.object, rough, other, symmetries); }))
         continue;
+      const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
       const ProbeModel& model = objects[object];
       const Rigid3 refined = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);

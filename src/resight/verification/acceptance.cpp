@@ -28,8 +28,9 @@ Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& 
   if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;
   const bool lacks_print = evidence.print_contrast >= kPrintContrast &&
                            evidence.shared_contrast < options.min_shared_print * evidence.print_contrast;
-  return lacks_print || evidence.pattern_similarity < options.min_pattern_similarity ? Verdict::kOtherPattern
-                                                                                     : Verdict::kCost;
+  const bool is_other = lacks_print || evidence.pattern_similarity < options.min_pattern_similarity ||
+                        evidence.newest_similarity < options.min_newest_similarity;
+  return is_other ? Verdict::kOtherPattern : Verdict::kCost;
 }
 
 bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {

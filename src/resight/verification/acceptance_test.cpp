@@ -24,6 +24,7 @@ VerifyOptions options() {
   VerifyOptions o;
   o.min_explained_share = 0.6;
   o.min_pattern_similarity = 0.5;
+  o.min_newest_similarity = 0.4;
   o.must_pay_alone = true;
   o.min_shared_print = 0.1;
   o.plain = {.max_shared_contrast = 1, .min_explained_share = 0.8, .min_gain = 0.2};
@@ -44,6 +45,8 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.61, 3), Verdict::kCost);
   EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.49, 3), Verdict::kOtherPattern);
   EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.51, 3), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.39, 3), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
   HypothesisEvidence few = good_evidence();
   few.num_visible = 19;
   EXPECT_EQ(judge_evidence(few, options()), Verdict::kTooFewVisible);

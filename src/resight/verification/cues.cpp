@@ -9,6 +9,7 @@
 
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/model_look.hpp"
+#include "resight/verification/newest_print.hpp"
 #include "resight/verification/pattern_similarity.hpp"
 #include "resight/verification/pose_refinement.hpp"
 #include "resight/verification/print_turn.hpp"
@@ -46,6 +47,7 @@ struct CueComputer::Impl {
     turn(views, allowed);
     cues_.evidence.world_from_object = look_.world_from_object;
     count_agreeing(correspondences);
+    if (use_color_ && options.min_newest_similarity > -1) newest_print_.emplace(model_, look_, views, options_);
   }
 
   // A hypothesis is moved onto the scene before it is judged.
@@ -84,6 +86,7 @@ struct CueComputer::Impl {
     if (look_.local) {
       adapt_colors(limit_chroma(look_.light, white_balance, options_.light));
       compare_patterns();
+      if (newest_print_) cues_.evidence.newest_similarity = newest_print_->similarity(white_balance);
       weigh_matches(*look_.local);
       classify_model_points();
     }
@@ -337,6 +340,7 @@ struct CueComputer::Impl {
   bool use_normals_;
   bool use_color_;
   ModelLook look_;
+  std::optional<NewestPrint> newest_print_;
   std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
   std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near,

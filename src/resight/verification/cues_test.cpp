@@ -98,7 +98,7 @@ TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
 TEST(FindVisiblePoints, AModelHidesItself) {
   // Two parallel boards, the rear one 10 cm behind, and nothing else in the world but a wall far behind.
   const Camera camera = test_camera();
-  DepthView view{camera, Rigid3::identity(), Image<float>(camera.width, camera.height, 3.0F)};
+  DepthView view{camera, Rigid3::identity(), nullptr, Image<float>(camera.width, camera.height, 3.0F)};
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   for (int i = -10; i <= 10; ++i)

@@ -38,7 +38,7 @@ Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoin
     const Rigid3f turned_from_object(turn.inverse());
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const int nearest = model.grid->nearest(turned_from_object * points[k * step].p_in_object);
-      expected[k] = model.lab[static_cast<std::size_t>(nearest)];
+      expected[k] = nearest < 0 ? LabColor{} : model.lab[static_cast<std::size_t>(nearest)];
     }
     const double found = likeness(expected, seen, chroma_weight);
     const bool is_first = &turn == &model.turns.front();

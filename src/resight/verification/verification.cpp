@@ -276,6 +276,7 @@ void VerifyOptions::check() const {
   check_in_range(name("min_visible_share"), min_visible_share, 0, 1);
   check_in_range(name("min_explained_share"), min_explained_share, 0, 1);
   check_in_range(name("min_pattern_similarity"), min_pattern_similarity, -1, 1);
+  check_in_range(name("min_newest_similarity"), min_newest_similarity, -1, 1);
   check_not_negative(name("plain.max_shared_contrast"), plain.max_shared_contrast);
   check_in_range(name("plain.min_explained_share"), plain.min_explained_share, 0, 1);
   check_in_range(name("min_shared_print"), min_shared_print, 0, 1);

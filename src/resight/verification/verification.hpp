@@ -90,6 +90,8 @@ struct VerifyOptions {
   double min_explained_share = 0.7;    ///< ...and less of the visible points explained too. 0 turns either off.
   double min_pattern_similarity = -1;  ///< Prints that differ more are not the same, however well they fit in the mean;
                                        ///< -1 turns it off.
+  double min_newest_similarity = -1;   ///< Likewise with the colours of the newest view that sees at least 50 points of
+                                       ///< it: the scene may still have those of what was exchanged for it.
   double min_shared_print = 0;  ///< A model with a print (print_contrast of 1 or more) is another if the scene shares
                                 ///< less than this part of it.
   PlainOptions plain{};
@@ -111,7 +113,7 @@ enum class Verdict : std::uint8_t {
   kTooFewVisible,  ///< min_visible_points or min_visible_share not reached: hidden, outside, or the mask allows no
                    ///< view.
   kNoSupport,      ///< Less than min_explained_share (plain.min_explained_share) of the visible points is explained.
-  kOtherPattern,   ///< Less than min_pattern_similarity, or than min_shared_print.
+  kOtherPattern,   ///< Less than min_pattern_similarity, min_newest_similarity or min_shared_print.
   kOutvoted,       ///< Pays off alone, but not beside `outvoted_by`.
   kCost,  ///< Costs more than it explains even alone (outliers, clutter, planes); what is plain, nearly as much.
 };
@@ -143,8 +145,10 @@ struct HypothesisEvidence {
                                   ///< has in even light.
   double print_contrast = 0;      ///< Of the model's own print in even light, where it is visible: at most so much can
                                   ///< be shared.
-  double clutter_cost = 0;        ///< Alone: unexplained rest of the segments that it explains in part.
-  double plane_cost = 0;          ///< Points of planes that it claims, and model points on the far side of a plane.
+  double newest_similarity = 1;  ///< As pattern_similarity, with the colours of the newest view that sees enough of it;
+                                 ///< 1 if that is not asked for, or none does.
+  double clutter_cost = 0;       ///< Alone: unexplained rest of the segments that it explains in part.
+  double plane_cost = 0;         ///< Points of planes that it claims, and model points on the far side of a plane.
   double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
   Verdict verdict = Verdict::kTooFewVisible;
   PoseUncertainty uncertainty;  ///< Of accepted ones.

@@ -453,6 +453,33 @@ TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
   EXPECT_NE(evidence.verdict, Verdict::kOtherPattern);
 }
 
+TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
+  // A can stands where another stood, of the same shape: the scene keeps colours of both, the newest view shows one.
+  const auto rings = [](Rgb8 even, Rgb8 odd) -> Paint {
+    return [=](const Eigen::Vector3d& p) { return std::fmod(p.z() + 1, 0.04) < 0.02 ? even : odd; };
+  };
+  Solid can{Shape::kCylinder, {0.07, 0.07, 0.12}, rings({190, 60, 60}, {220, 220, 220}), on_table(0, 0, 0.06)};
+  ModelLibrary library;
+  library.objects = {make_model("before", can)};
+  const std::vector<Rigid3> cameras = circle_of_cameras(4);
+  Fixture f({.solids = {can}}, cameras);
+  can.paint = rings({220, 220, 220}, {60, 160, 60});
+  library.objects.push_back(make_model("after", can));
+  const PreparedView newest = render_all({.solids = {can}}, {cameras[0]}).front();
+  f.views.push_back(newest);  // And the scene as older views have it.
+  const auto before = [&](double min_newest_similarity) {
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(0, can.world_from_object)};
+    return f.verify(hypotheses, library, {.min_newest_similarity = min_newest_similarity}).evidence[0];
+  };
+  EXPECT_TRUE(before(-1).accepted);
+  EXPECT_GT(before(-1).pattern_similarity, 0.8);
+  EXPECT_EQ(before(0.4).verdict, Verdict::kOtherPattern);
+  EXPECT_LT(before(0.4).newest_similarity, 0.2);
+  f.views.pop_back();
+  EXPECT_TRUE(before(0.4).accepted) << "no view shows another";
+  EXPECT_GT(before(0.4).newest_similarity, 0.8);
+}
+
 TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
   // The same can, once striped and once in the stripes' mean colour.
   const auto striped = [](const Eigen::Vector3d& p) {

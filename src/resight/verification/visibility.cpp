@@ -163,7 +163,9 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
   std::vector<DepthView> result(views.size());
   parallel_for(views.size(), num_threads, [&](std::size_t i) {
     const PreparedView& view = *views[i].view;
-    result[i] = {view.frame.camera, view.frame.world_from_camera, fill_small_holes(view.cloud.z)};
+    const bool has_color = view.frame.color.size() == view.cloud.z.size();
+    result[i] = {view.frame.camera, view.frame.world_from_camera, has_color ? &view.frame.color : nullptr,
+                 fill_small_holes(view.cloud.z)};
   });
   return result;
 }

@@ -13,7 +13,8 @@ namespace resight {
 struct DepthView {
   Camera camera;
   Rigid3 world_from_camera;
-  Image<float> depth_m;  ///< Of the view's cloud; single missing pixels filled, see fill_small_holes().
+  const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this; null if it has none.
+  Image<float> depth_m;                ///< Of the view's cloud; single missing pixels filled, see fill_small_holes().
 };
 
 /// The depth with each missing pixel that has at least five of its eight neighbours replaced by their median. Larger
