@@ -5,11 +5,26 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <thread>
 
 #include "resight/core/check.hpp"
 
 namespace resight {
+
+namespace {
+
+// One for each number of threads, kept to the end of the program: of each that is made and dropped, oneTBB 2021.8 keeps
+// about a kilobyte, and a view needs hundreds.
+tbb::task_arena& arena_of(int num_workers) {
+  static std::mutex mutex;
+  static auto& arenas = *new std::map<int, tbb::task_arena>();  // Never destroyed: TBB may be gone before it.
+  const std::lock_guard lock(mutex);
+  return arenas.try_emplace(num_workers, num_workers).first->second;
+}
+
+}  // namespace
 
 void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
                          const std::function<void(std::size_t, std::size_t)>& body) {
@@ -26,8 +41,9 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
     for (std::size_t block = 0; block < num_blocks; ++block) run_block(block);
     return;
   }
-  tbb::task_arena arena(num_workers);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, num_blocks, run_block, tbb::simple_partitioner()); });
+  arena_of(num_workers).execute([&] {
+    tbb::parallel_for(std::size_t{0}, num_blocks, run_block, tbb::simple_partitioner());
+  });
 }
 
 int num_hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }

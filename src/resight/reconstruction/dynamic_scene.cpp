@@ -9,8 +9,9 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMaxNumbersPerPoint = 3;  // Of places that no view shows any more: memory stays flat.
-constexpr std::size_t kMinNumbers = 1 << 20;
+// Noise numbers voxels beside a surface in every view, and a camera leaves places behind: memory stays flat.
+constexpr std::size_t kMaxBlockGrowth = 2;
+constexpr std::size_t kFewBlocks = 1 << 15;
 
 /// Takes what was removed out of an earlier view. Most views of a large scene do not see the place at all.
 void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& options, DynamicScene::View& view) {
@@ -62,7 +63,8 @@ ChangeResult DynamicScene::add_view(PreparedView view) {
 }
 
 void DynamicScene::reconstruct() {
-  if (numbers_.size() > kMaxNumbersPerPoint * reconstruction_.cloud_in_world.size() + kMinNumbers) {
+  const bool starts_anew = numbers_.num_blocks() > kMaxBlockGrowth * num_blocks_at_start_ + kFewBlocks;
+  if (starts_anew) {
     numbers_ = {};
     for (View& view : window_) view.voxels.numbers.clear();
   }
@@ -71,6 +73,7 @@ void DynamicScene::reconstruct() {
     numbers_.assign_to(view.voxels);
     views.push_back(&view.voxels);
   }
+  if (starts_anew) num_blocks_at_start_ = numbers_.num_blocks();
   merger_.merge(views, options_.integrate, reconstruction_);
 }
 

@@ -50,7 +50,8 @@ class DynamicScene {
 
   DynamicSceneOptions options_;
   std::deque<View> window_;
-  VoxelNumbers numbers_;  // Of the voxels of the window, and of some before.
+  VoxelNumbers numbers_;                 // Of the voxels of the window, and of some before.
+  std::size_t num_blocks_at_start_ = 0;  // When the window alone was numbered.
   VoxelMerger merger_;
   Reconstruction reconstruction_;
   int num_views_ = 0;

@@ -42,6 +42,8 @@ class VoxelNumbers {
   /// Numbers the slots that have none yet.
   void assign_to(ViewVoxels& view);
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(num_voxels_); }
+  /// Cubes of 64 voxels of which one is numbered: what the memory goes by.
+  [[nodiscard]] std::size_t num_blocks() const { return blocks_.size(); }
 
  private:
   static constexpr int kNone = -1;
