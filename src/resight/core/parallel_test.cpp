@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "resight/core/timing.hpp"
+
 namespace resight {
 namespace {
 
@@ -80,6 +82,17 @@ TEST(ParallelFor, MayBeNested) {
   parallel_for(
       8, 2, [&](std::size_t i) { parallel_for(100, 2, [&](std::size_t j) { sum += static_cast<int>(i * 100 + j); }); });
   EXPECT_EQ(sum, 799 * 800 / 2);
+}
+
+TEST(ParallelFor, LeavesNoMemoryBehind) {
+  std::atomic<int> sum = 0;
+  const auto run = [&](int times) {
+    for (int i = 0; i < times; ++i) parallel_for(4, 2, [&](std::size_t) { ++sum; });
+    return peak_memory_bytes();
+  };
+  const std::size_t before = run(1000);
+  EXPECT_LT(run(20000), before + (std::size_t{4} << 20U)) << "a view needs hundreds, a day of views 100 million";
+  EXPECT_EQ(sum, 84000);
 }
 
 TEST(NumHardwareThreads, IsAtLeastOne) { EXPECT_GE(num_hardware_threads(), 1); }

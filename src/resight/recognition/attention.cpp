@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "resight/core/check.hpp"
+#include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
@@ -12,7 +13,8 @@ namespace {
 constexpr std::size_t kLooks = 4;
 constexpr int kPixelStep = 4;
 constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, the same surface is measured here and there.
-constexpr float kTolerance_m = 0.02F;     // Of the depth, as of a change.
+constexpr float kTolerance_m = 0.02F;     // Of the depth, as of a change...
+constexpr double kSigmas = 3;  // ...and so many standard deviations of the sensor's: far away, noise flickers.
 
 }  // namespace
 
@@ -67,7 +69,9 @@ bool Attention::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vec
     const Rigid3f camera_from_world(look.world_from_camera.inverse());
     const Eigen::Vector3f p = camera_from_world * p_in_world;
     const float depth = nearest_depth(p, look.camera, look.depth_m, 1);
-    if (!(std::abs(depth - p.z()) < kTolerance_m)) continue;
+    if (std::isnan(depth)) continue;  // Outside, behind the camera, or nothing measured.
+    const double noise_m = nguyen_noise(p.z(), 0, look.camera.fx).axial_m;
+    if (!(std::abs(depth - p.z()) < kTolerance_m + static_cast<float>(kSigmas * noise_m))) continue;
     const Eigen::Vector3f ray_then = p_in_world - look.world_from_camera.translation.cast<float>();
     const float distance = ray.norm();
     if (ray.dot(ray_then) > min_cosine * distance * ray_then.norm() &&

@@ -63,6 +63,18 @@ TEST(Attention, WhatWasPutThereOrUncoveredIsNew) {
   EXPECT_TRUE(w.is_due(w.cameras[0], changes));
 }
 
+TEST(Attention, NoiseOfTheDepthIsNothingNew) {
+  const auto shifted = [](const Watch& w, float by_m) {
+    RgbdFrame frame = render(w.world, w.cameras[0]).frame;
+    for (std::size_t i = 0; i < frame.depth_m.size(); ++i) frame.depth_m[i] += by_m;
+    return prepare_view(std::move(frame));
+  };
+  Watch w;
+  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  EXPECT_FALSE(w.attention.is_due(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
+  EXPECT_TRUE(w.attention.is_due(shifted(w, 0.04F), {}));
+}
+
 TEST(Attention, AWrongPoseIsNoReasonToLookAway) {
   Watch w;
   EXPECT_TRUE(w.is_due(w.cameras[0]));
