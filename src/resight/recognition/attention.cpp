@@ -16,6 +16,20 @@ constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, the same sur
 constexpr float kTolerance_m = 0.02F;     // Of the depth, as of a change...
 constexpr double kSigmas = 3;  // ...and so many standard deviations of the sensor's: far away, noise flickers.
 
+// Whether one of the pixels around has the depth of the point.
+bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m) {
+  if (!(p.z() > 0)) return false;
+  const Eigen::Vector2d pixel = camera.project(p.cast<double>());
+  if (!camera.contains(pixel)) return false;
+  const auto tolerance_m = kTolerance_m + static_cast<float>(kSigmas * nguyen_noise(p.z(), 0, camera.fx).axial_m);
+  const int u = static_cast<int>(std::lround(pixel.x()));
+  const int v = static_cast<int>(std::lround(pixel.y()));
+  for (int dv = -1; dv <= 1; ++dv)
+    for (int du = -1; du <= 1; ++du)
+      if (depth_m.contains(u + du, v + dv) && std::abs(depth_m(u + du, v + dv) - p.z()) < tolerance_m) return true;
+  return false;
+}
+
 }  // namespace
 
 void AttentionOptions::check() const {
@@ -68,10 +82,7 @@ bool Attention::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vec
   for (const Look& look : looks_) {
     const Rigid3f camera_from_world(look.world_from_camera.inverse());
     const Eigen::Vector3f p = camera_from_world * p_in_world;
-    const float depth = nearest_depth(p, look.camera, look.depth_m, 1);
-    if (std::isnan(depth)) continue;  // Outside, behind the camera, or nothing measured.
-    const double noise_m = nguyen_noise(p.z(), 0, look.camera.fx).axial_m;
-    if (!(std::abs(depth - p.z()) < kTolerance_m + static_cast<float>(kSigmas * noise_m))) continue;
+    if (!was_measured(p, look.camera, look.depth_m)) continue;
     const Eigen::Vector3f ray_then = p_in_world - look.world_from_camera.translation.cast<float>();
     const float distance = ray.norm();
     if (ray.dot(ray_then) > min_cosine * distance * ray_then.norm() &&
