@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 namespace resight {
 namespace {
 
@@ -65,7 +63,7 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
   EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_addition}).events, (RecognitionScore{0, 1, 1}));
   EXPECT_EQ(score({kMove}, {only_left}, {}).arrivals, (RecognitionScore{0, 0, 0}));
-  const ChangeSight never_seen_before{4, 5, false};
+  const ChangeSight never_seen_before{4, 5, -1};
   const EventScore s = score({kMove}, {never_seen_before}, {as_addition});
   EXPECT_EQ(s.events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{0, 0, 0}));
@@ -76,14 +74,14 @@ TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   const ChangeSight nothing{-1, -1};
   EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
-  const ChangeSight came_unseen{-1, 5, false, false};
+  const ChangeSight came_unseen{-1, 5, -1, -1};
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", at(0), {}}}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
-  EXPECT_EQ(score({kRemoval}, {{6, -1, false}}, {}).departures, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
+  EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
   const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
   EXPECT_EQ(score({addition}, {{-1, 5}}, {}).events, (RecognitionScore{0, 0, 1}));
-  const ChangeSight first_look{-1, 5, true, false};  // It may have been there.
+  const ChangeSight first_look{-1, 5, 0, -1};  // It may have been there.
   EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({addition}, {first_look}, {}).arrivals, (RecognitionScore{0, 0, 0}));
 }
@@ -95,84 +93,6 @@ TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
   const EventScore s = score({of_stranger}, {{6, -1}},
                              {{6, Kind::kFound, "mug", {}, at(0)}, {6, Kind::kStillThere, "mug", at(0), at(0)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 0, 0}));
-}
-
-// A camera at the origin that looks along z at a wall.
-RgbdFrame frame_with_wall(float depth_m) {
-  RgbdFrame frame;
-  frame.camera = {64, 48, 50, 50, 31.5, 23.5};
-  frame.depth_m = Image<float>(64, 48, depth_m);
-  return frame;
-}
-
-TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
-  const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
-  truth.views.resize(4);
-  GroundTruthObject arrived;
-  arrived.object = "mug";
-  arrived.camera_from_object = at(0.3);
-  arrived.visible_share = 0.02;  // still behind something
-  truth.views[1].objects = truth.views[2].objects = {arrived};
-  arrived.visible_share = 0.5;
-  truth.views[3].objects = {arrived};
-  GroundTruthObject before = arrived;
-  before.camera_from_object = at(0);
-  before.visible_share = 0.5;
-  truth.views[0].objects = {before};
-  ChangeSightFinder finder(library, truth);
-  EXPECT_FALSE(finder.sights()[0].was_seen);
-  EXPECT_FALSE(finder.sights()[0].place_was_seen);
-  finder.add_view(frame_with_wall(2.0F));  // before the change
-  EXPECT_EQ(finder.sights()[0].before_view, -1);
-  EXPECT_TRUE(finder.sights()[0].was_seen);
-  EXPECT_TRUE(finder.sights()[0].place_was_seen);
-  finder.add_view(frame_with_wall(0.7F));  // something stands before the place
-  EXPECT_EQ(finder.sights()[0].before_view, -1);
-  finder.add_view(frame_with_wall(2.0F));
-  EXPECT_EQ(finder.sights()[0].before_view, 2);
-  EXPECT_EQ(finder.sights()[0].after_view, -1);
-  finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
-  EXPECT_EQ(finder.sights()[0].before_view, 2);
-  EXPECT_EQ(finder.sights()[0].after_view, 3);
-}
-
-// It was seen there once, left, and came back unseen: that it leaves again no view can tell.
-TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
-  const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
-                                          {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
-                                          {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
-  truth.views.resize(5);
-  GroundTruthObject seen;
-  seen.object = "mug";
-  seen.camera_from_object = at(0);
-  seen.visible_share = 0.5;
-  truth.views[0].objects = {seen};
-  seen.visible_share = 0.02;
-  truth.views[2].objects = truth.views[3].objects = {seen};
-  ChangeSightFinder finder(library, truth);
-  for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
-  EXPECT_TRUE(finder.sights()[0].was_seen);
-  EXPECT_FALSE(finder.sights()[2].was_seen);
-}
-
-TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
-  const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
-  truth.views.resize(1);
-  GroundTruthObject hidden;
-  hidden.object = "mug";
-  hidden.camera_from_object = at(0);
-  hidden.visible_share = 0.02;
-  truth.views[0].objects = {hidden};
-  ChangeSightFinder finder(library, truth);
-  finder.add_view(frame_with_wall(0.7F));
-  EXPECT_FALSE(finder.sights()[0].was_seen);
-  EXPECT_FALSE(finder.sights()[0].place_was_seen);
 }
 
 }  // namespace

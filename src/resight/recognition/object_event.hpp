@@ -22,9 +22,10 @@ enum class ObjectEventKind : std::uint8_t {
 /// Added, moved or removed: a change of the scene, unlike the other kinds.
 [[nodiscard]] bool is_change(ObjectEventKind kind);
 
-/// An event told before that turned out to be part of another: what was removed here turns up there, and has moved.
+/// An event told before that turned out to be part of another (what was removed here turns up there, and has moved), or
+/// to be a little otherwise (the pose of what came).
 struct ReplacedEvent {
-  ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved or kAdded.
+  ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved, kAdded or kMoved.
   int track = -1;
   int view = 0;
 };
@@ -38,7 +39,7 @@ struct ObjectEvent {
   std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
   std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
   double confidence = 0;                           ///< In [0, 1].
-  std::optional<ReplacedEvent> replaces{};         ///< kMoved only.
+  std::optional<ReplacedEvent> replaces{};         ///< kMoved or kAdded only.
 };
 
 /// Leaves of a run, given as the events of each of its views, what is known in the end: drops each event that another

@@ -7,11 +7,13 @@
 
 #include "resight/core/check.hpp"
 #include "resight/geometry/symmetry.hpp"
+#include "resight/recognition/shared_space.hpp"
 
 namespace resight {
 namespace {
 
 constexpr int kUnmatched = -1;
+constexpr double kMinTakenShare = 0.5;  // Of a body, in another: both cannot be there.
 
 double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
   const Eigen::Vector3d center = model.center.cast<double>();
@@ -29,6 +31,7 @@ void ObjectHistoryOptions::check() const {
   check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
   check_positive("ObjectHistoryOptions.same_rotation_rad", same_rotation_rad);
   check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
+  check_not_negative("ObjectHistoryOptions.correct_views", correct_views);
   check_in_range("ObjectHistoryOptions.min_new_share", min_new_share, 0, 1);
   check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
   presence.check();
@@ -52,15 +55,13 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   confirm_removals(view, events);
   std::erase_if(tracks_, [](const Track& track) { return track.state == State::kJoined; });
   if (use_evidence) memory_.add(view, current);
+  std::erase_if(former_stays_, [&](const Stay& stay) { return !memory_.reaches_back_to(stay.seen_view); });
   return events;
 }
 
-bool ObjectHistory::same_place(const Track& track, const Detection& detection) const {
-  if (track.object != detection.object) return false;
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
-  return center_distance_m(model, track.world_from_object, detection.world_from_object) <= options_.same_place_m &&
-         symmetric_rotation_distance_rad(detection.world_from_object, track.world_from_object, model.symmetries) <=
-             options_.same_rotation_rad;
+bool ObjectHistory::is_same_place(const ObjectModel& model, const Rigid3& a, const Rigid3& b) const {
+  return center_distance_m(model, a, b) <= options_.same_place_m &&
+         symmetric_rotation_distance_rad(a, b, model.symmetries) <= options_.same_rotation_rad;
 }
 
 void ObjectHistory::match_in_place(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
@@ -71,9 +72,11 @@ void ObjectHistory::match_in_place(std::vector<Detection>& detections, std::vect
     int best = kUnmatched;
     double best_m = 0;
     for (std::size_t d = 0; d < detections.size(); ++d) {
-      if (track_of[d] != kUnmatched || !same_place(track, detections[d])) continue;
-      const double distance_m = center_distance_m(library_.objects[static_cast<std::size_t>(track.object)],
-                                                  track.world_from_object, detections[d].world_from_object);
+      if (track_of[d] != kUnmatched || track.object != detections[d].object ||
+          !is_same_place(model_of(track), detections[d].world_from_object, track.world_from_object))
+        continue;
+      const double distance_m =
+          center_distance_m(model_of(track), track.world_from_object, detections[d].world_from_object);
       if (best != kUnmatched && distance_m >= best_m) continue;
       best = static_cast<int>(d);
       best_m = distance_m;
@@ -91,14 +94,27 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
                     detection.world_from_object, detection.score, std::nullopt});
   track.world_from_object = detection.world_from_object;
   track.last_view = view;
-  if (is_seen_now(detection, options_.min_new_share)) track.seen_view = view;
   track.state = State::kPresent;
+  if (!is_seen_now(detection, options_.min_new_share)) return;
+  track.seen_view = view;
+  correct_arrival(track, view, events);
+}
+
+// What is first seen in part may be taken to lie a little otherwise than it does.
+void ObjectHistory::correct_arrival(Track& track, int view, std::vector<ObjectEvent>& events) const {
+  if (!track.arrival || view - track.since_view > options_.correct_views) return;
+  ObjectEvent& arrival = *track.arrival;
+  if (is_same_place(model_of(track), *arrival.world_from_object_after, track.world_from_object)) return;
+  arrival.replaces = {arrival.kind, track.id, arrival.view};
+  arrival.view = view;
+  arrival.world_from_object_after = track.world_from_object;
+  events.push_back(arrival);
 }
 
 // Two bodies of one kind cannot overlap: the nearest free detection inside the old place is the same object.
 int ObjectHistory::find_displaced(const Track& track, std::span<const Detection> detections,
                                   std::span<const int> track_of) const {
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(track.object)];
+  const ObjectModel& model = model_of(track);
   int nearest = kUnmatched;
   double nearest_m = 0.5 * model.diameter_m;
   for (std::size_t d = 0; d < detections.size(); ++d) {
@@ -120,8 +136,7 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
     const bool seen = std::find(track_of.begin(), track_of.end(), static_cast<int>(t)) != track_of.end();
     if (seen || track.state != State::kPresent) continue;
     const ObjectPresence presence =
-        use_evidence ? assess_presence(library_.objects[static_cast<std::size_t>(track.object)].surface,
-                                       track.world_from_object, current, options_.presence)
+        use_evidence ? assess_presence(model_of(track).surface, track.world_from_object, current, options_.presence)
                      : ObjectPresence{};
     const int displaced = find_displaced(track, detections, taken);
     if (displaced != kUnmatched) taken[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
@@ -129,10 +144,11 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
         !use_evidence || (presence.is_informative && presence.gone_share >= options_.min_displaced_gone_share);
     const bool has_moved = displaced != kUnmatched && is_free &&
                            is_seen_now(detections[static_cast<std::size_t>(displaced)], options_.min_new_share);
-    if (presence.is_gone || has_moved) {
+    const bool is_taken = use_evidence && !presence.is_gone && is_place_taken(track, detections, track_of);
+    if (presence.is_gone || has_moved || is_taken) {
       track.state = State::kLeaving;
       track.left_view = view;
-      track.confidence = has_moved ? 1.0 : presence.gone_share;
+      track.confidence = has_moved || is_taken ? 1.0 : presence.gone_share;
       if (!has_moved) left.push_back(t);
     } else if (displaced != kUnmatched) {
       track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
@@ -148,14 +164,42 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
 }
 
+// Another one that the view shows stands in its space, and came there after this one was last seen.
+bool ObjectHistory::is_place_taken(const Track& track, std::span<const Detection> detections,
+                                   std::span<const int> track_of) const {
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    if (detections[d].object == track.object || !is_seen_now(detections[d], options_.min_new_share)) continue;
+    const int other = track_of[d];
+    if (other != kUnmatched && tracks_[static_cast<std::size_t>(other)].since_view <= track.seen_view) continue;
+    if (share_within(model_of(track), track.world_from_object, model_of(detections[d]),
+                     detections[d].world_from_object) >= kMinTakenShare)
+      return true;
+  }
+  return false;
+}
+
+// The last view that showed another one in its space; nothing if none did.
+std::optional<int> ObjectHistory::last_seen_taken(const Detection& detection) const {
+  std::optional<int> last;
+  const auto look_at = [&](const Stay& stay) {
+    if (stay.object != detection.object && stay.seen_view > last.value_or(-1) &&
+        share_within(model_of(detection), detection.world_from_object, model_of(stay), stay.world_from_object) >=
+            kMinTakenShare)
+      last = stay.seen_view;
+  };
+  std::ranges::for_each(former_stays_, look_at);
+  for (const Track& track : tracks_) look_at({track.object, track.world_from_object, track.seen_view});
+  return last;
+}
+
 // The nearest one of its kind that was added after a view last saw this one.
 ObjectHistory::Track* ObjectHistory::find_added_since(const Track& left) {
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(left.object)];
+  const ObjectModel& model = model_of(left);
   Track* nearest = nullptr;
   double nearest_m = 0;
   for (Track& track : tracks_) {
     const bool is_there = track.state == State::kPresent || track.state == State::kLeaving;
-    if (track.object != left.object || !is_there || !track.was_added || track.since_view <= left.seen_view) continue;
+    if (track.object != left.object || !is_there || !was_added(track) || track.since_view <= left.seen_view) continue;
     const double distance_m = center_distance_m(model, track.world_from_object, left.world_from_object);
     if (nearest != nullptr && distance_m >= nearest_m) continue;
     nearest = &track;
@@ -176,7 +220,7 @@ void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detect
   left = [&] {
     Track joined = added;
     joined.id = left.id;
-    joined.was_added = false;
+    joined.arrival = events.back();
     return joined;
   }();
   added.state = State::kJoined;
@@ -185,7 +229,7 @@ void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detect
 // The nearest old place of this kind of object that is seen free, and one that it can have come from right away, which
 // it cannot if its new place was seen free as well since then; one that is leaving goes before one long gone.
 ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::optional<int> last_free_view) {
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
+  const ObjectModel& model = model_of(detection);
   Track* left = nullptr;
   for (Track& track : tracks_) {
     if (track.object != detection.object || (track.state != State::kLeaving && track.state != State::kGone)) continue;
@@ -198,19 +242,20 @@ ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::
   return left;
 }
 
-// The only known object of this kind, if the view does not see its place: what is new elsewhere is likely that one.
+// The only known object of this kind that the view does not show, if it does not see its place: what is new elsewhere
+// is likely that one.
 ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current) {
   Track* only = nullptr;
   for (Track& track : tracks_) {
-    if (track.object != detection.object || track.state != State::kPresent) continue;
+    if (track.object != detection.object || track.state != State::kPresent || track.seen_view == view) continue;
     if (only != nullptr) return nullptr;
     only = &track;
   }
-  if (only == nullptr || only->last_view == view) return nullptr;
-  const ObjectModel& model = library_.objects[static_cast<std::size_t>(only->object)];
-  const bool is_seen =
-      assess_presence(model.surface, only->world_from_object, current, options_.presence).is_informative;
-  return is_seen ? nullptr : only;
+  if (only == nullptr) return nullptr;
+  const ObjectModel& model = model_of(*only);
+  const ObjectPresence presence = assess_presence(model.surface, only->world_from_object, current, options_.presence);
+  const bool is_there = presence.is_informative && presence.gone_share < options_.min_displaced_gone_share;
+  return is_there ? nullptr : only;
 }
 
 ObjectHistory::Track& ObjectHistory::new_track(int object) {
@@ -223,9 +268,11 @@ ObjectHistory::Track& ObjectHistory::new_track(int object) {
 void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                               std::vector<ObjectEvent>& events) {
   constexpr double kOutOfSightConfidence = 0.5;
-  const PointCloud& surface = library_.objects[static_cast<std::size_t>(detection.object)].surface;
-  const std::optional<int> last_free_view =
-      use_evidence ? memory_.last_seen_free(surface, detection.world_from_object, options_.presence) : std::nullopt;
+  const PointCloud& surface = model_of(detection).surface;
+  std::optional<int> last_free_view;  // of this object: with nothing there, or another one
+  if (use_evidence)
+    last_free_view = std::max(memory_.last_seen_free(surface, detection.world_from_object, options_.presence),
+                              last_seen_taken(detection));
   ObjectEvent event{last_free_view ? ObjectEventKind::kAdded : ObjectEventKind::kFound,
                     detection.object,
                     -1,
@@ -255,12 +302,18 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
   } else if (from != nullptr && from->state == State::kLeaving) {
     remove(*from, events);  // It was away before it was put here.
   }
-  if (from == nullptr) from = &new_track(detection.object);
+  if (from == nullptr)
+    from = &new_track(detection.object);
+  else
+    former_stays_.push_back({from->object, from->world_from_object, from->seen_view});
   event.track = from->id;
   events.push_back(event);
   from->world_from_object = detection.world_from_object;
   from->last_view = from->seen_view = from->since_view = view;
-  from->was_added = event.kind == ObjectEventKind::kAdded;
+  if (is_change(event.kind))
+    from->arrival = event;
+  else
+    from->arrival.reset();
   from->state = State::kPresent;
   detection.track = from->id;
 }

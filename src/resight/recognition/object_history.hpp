@@ -19,6 +19,7 @@ struct ObjectHistoryOptions {
   double min_new_share = 0;  ///< What the view itself confirms less of (of the model's points) is not new in it.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
+  int correct_views = 3;  ///< An arrival whose pose turns out otherwise within so many views is told anew.
   PresenceOptions presence;
   DepthMemoryOptions memory;
   void check() const;
@@ -43,12 +44,14 @@ class ObjectHistory {
   /// Takes over the detections of a view (gives each that the view confirms its track) and returns the events of the
   /// tracks concerned. What is new at a place is
   /// - moved, if one of its kind has left its place, as far back as the memory reaches, and was not missing from both
-  ///   while both were seen free; also, at a place that was free before, if the only one known of its kind is out of
-  ///   sight,
-  /// - else added, if an earlier view saw the place free,
+  ///   while both were seen free; also, at a place that was free before, if of its kind the only one that is not
+  ///   recognised is out of sight,
+  /// - else added, if an earlier view saw the place free, or another object in it,
   /// - else found.
-  /// What leaves a place after one of its kind was added elsewhere has moved there. `current` is the view's frame.
-  /// Without change detection (`use_evidence` false) no free space is looked for: nothing is called added or removed.
+  /// What leaves a place after one of its kind was added elsewhere has moved there; another object recognised in its
+  /// place tells that it has left as well as free space does. An arrival whose pose the next views correct is told
+  /// anew. `current` is the view's frame. Without change detection (`use_evidence` false) no free space is looked for:
+  /// nothing is called added or removed.
   [[nodiscard]] std::vector<ObjectEvent> update(int view, std::vector<Detection>& detections, const RgbdFrame& current,
                                                 bool use_evidence);
   /// Removals that still wait for confirmation; to be called after the last view.
@@ -64,14 +67,25 @@ class ObjectHistory {
     Rigid3 world_from_object;
     int last_view = -1;  // that it was recognised with
     State state = State::kPresent;
-    int seen_view = -1;      // likewise, and saw itself
-    int since_view = -1;     // that it was first recognised with at its place
-    bool was_added = false;  // and told to be added there
-    int left_view = -1;      // first view that saw its place free
-    double confidence = 0;   // of that
+    int seen_view = -1;                  // likewise, and saw itself
+    int since_view = -1;                 // that it was first recognised with at its place
+    std::optional<ObjectEvent> arrival;  // that told of it: kAdded or kMoved
+    int left_view = -1;                  // first view that saw its place free
+    double confidence = 0;               // of that
   };
 
-  [[nodiscard]] bool same_place(const Track& track, const Detection& detection) const;
+  /// Where an object was until it was recognised elsewhere.
+  struct Stay {
+    int object = -1;
+    Rigid3 world_from_object;
+    int seen_view = -1;  // last
+  };
+
+  [[nodiscard]] static bool was_added(const Track& track) {
+    return track.arrival && track.arrival->kind == ObjectEventKind::kAdded;
+  }
+  [[nodiscard]] bool is_same_place(const ObjectModel& model, const Rigid3& a, const Rigid3& b) const;
+  void correct_arrival(Track& track, int view, std::vector<ObjectEvent>& events) const;
   void match_in_place(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                       std::vector<ObjectEvent>& events);
   void keep_in_place(Track& track, Detection& detection, int view, std::vector<ObjectEvent>& events) const;
@@ -79,6 +93,12 @@ class ObjectHistory {
                                    std::span<const int> track_of) const;
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
+  [[nodiscard]] bool is_place_taken(const Track& track, std::span<const Detection> detections,
+                                    std::span<const int> track_of) const;
+  [[nodiscard]] const ObjectModel& model_of(const auto& thing) const {
+    return library_.objects[static_cast<std::size_t>(thing.object)];
+  }
+  [[nodiscard]] std::optional<int> last_seen_taken(const Detection& detection) const;
   [[nodiscard]] Track* find_added_since(const Track& left);
   void join(Track& left, Track& added, int view, std::vector<Detection>& detections, std::vector<ObjectEvent>& events);
   [[nodiscard]] Track* find_left(const Detection& detection, std::optional<int> last_free_view);
@@ -93,6 +113,7 @@ class ObjectHistory {
   ObjectHistoryOptions options_;
   DepthMemory memory_;
   std::vector<Track> tracks_;
+  std::vector<Stay> former_stays_;  // since the memory begins
   int next_id_ = 0;
 };
 

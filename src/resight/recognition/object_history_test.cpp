@@ -298,14 +298,101 @@ TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
   EXPECT_EQ(detections_[0].track, -1);
 }
 
-TEST_F(ObjectHistoryTest, OfTwoOfAKindNoneIsTakenForANewOne) {
+TEST_F(ObjectHistoryTest, OfTwoOfAKindTheOneOutOfSightHasMoved) {
   const Rigid3 third = plate_at(0, 0.2, 1);
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   RgbdFrame without_left = see_plates({right_, third});
   hide_columns(without_left, 0, without_left.depth_m.width() / 3);
-  const auto seen = kinds(view({{0, right_}, {0, third}}, without_left));
+  const auto events = view({{0, right_}, {0, third}}, without_left);
+  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
+  EXPECT_DOUBLE_EQ(events[1].world_from_object_before->translation.x(), -0.3);
+  EXPECT_LE(events[1].confidence, 0.5);
+}
+
+TEST_F(ObjectHistoryTest, OfTwoOutOfSightNoneIsTakenForANewOne) {
+  const Rigid3 third = plate_at(0, 0.2, 1);
+  view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
+  RgbdFrame without_both = see_plates({third});
+  hide_columns(without_both, 0, without_both.depth_m.width() / 3);
+  hide_columns(without_both, 2 * without_both.depth_m.width() / 3, without_both.depth_m.width());
+  const auto seen = kinds(view({{0, third}}, without_both));
   EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kAdded), 1);
   EXPECT_EQ(std::count(seen.begin(), seen.end(), K::kMoved), 0);
+}
+
+// The detection at the old place lives on older views; the new one stands before a part of it.
+TEST_F(ObjectHistoryTest, AnOldPlaceThatTheViewDoesNotConfirmIsLeft) {
+  ObjectHistoryOptions options;
+  options.min_new_share = 0.02;
+  history_ = std::make_unique<ObjectHistory>(library_, options);
+  const auto seen_at = [](const Rigid3& pose, int in_view, float explained) {
+    Detection detection;
+    detection.object = 0;
+    detection.world_from_object = pose;
+    detection.score = 0.9;
+    detection.views.push_back({in_view, true, 0.5F, explained});
+    return detection;
+  };
+  std::vector<Detection> first = {seen_at(left_, 0, 1)};
+  ASSERT_EQ(kinds(history_->update(0, first, see_plates({left_}), true)), (std::vector{K::kFound}));
+  const RgbdFrame half_free = see_plates({right_, plate_at(-0.36, 0, 1)});  // Half of the old place is free.
+  std::vector<Detection> second = {seen_at(left_, 1, 0.01F), seen_at(right_, 1, 1)};
+  const auto events = history_->update(1, second, half_free, true);
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
+  EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
+}
+
+TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneStoodHasTakenItsPlace) {
+  view({{0, left_}}, see_plates({left_}));
+  // The depth is the same: nothing is seen through.
+  const auto events = view({{1, left_}}, see_plates({left_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kAdded})) << "not found: the other one was there before";
+  EXPECT_EQ(events[0].object, 1);
+  const auto later = view({{1, left_}}, see_plates({left_}));
+  ASSERT_EQ(kinds(later), (std::vector{K::kStillThere, K::kRemoved}));
+  EXPECT_EQ(later[1].object, 0);
+  EXPECT_EQ(later[1].view, 1);
+}
+
+TEST_F(ObjectHistoryTest, TakenForAnotherInOneViewIsNotRemoved) {
+  view({{0, left_}}, see_plates({left_}));
+  view({{1, left_}}, see_plates({left_}));
+  const auto events = view({{0, left_}}, see_plates({left_}));
+  EXPECT_EQ(std::ranges::count(events, K::kRemoved, &ObjectEvent::kind), 0);
+  EXPECT_EQ(events[0].kind, K::kStillThere);
+  EXPECT_EQ(events[0].object, 0);
+}
+
+TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneMovedAwayWasAdded) {
+  view({{0, left_}}, see_plates({left_}));
+  RgbdFrame left_is_hidden = see_plates({right_});
+  hide_left_half(left_is_hidden);  // No view sees the place free.
+  ASSERT_EQ(kinds(view({{0, right_}}, left_is_hidden)), (std::vector{K::kMoved}));
+  EXPECT_EQ(kinds(view({{0, right_}, {1, left_}}, see_plates({left_, right_}))),
+            (std::vector{K::kStillThere, K::kAdded}));
+}
+
+TEST_F(ObjectHistoryTest, AnArrivalWhosePoseTurnsOutOtherwiseIsToldAnew) {
+  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
+  view({{0, left_}}, see_plates({left_}));
+  const auto told = view({{0, turned}}, see_plates({right_}));
+  ASSERT_EQ(kinds(told), (std::vector{K::kMoved}));
+  const auto events = view({{0, right_}}, see_plates({right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
+  EXPECT_EQ(events[1].world_from_object_after->rotation, right_.rotation);
+  EXPECT_DOUBLE_EQ(events[1].world_from_object_before->translation.x(), -0.3);
+  ASSERT_TRUE(events[1].replaces);
+  EXPECT_EQ(events[1].replaces->kind, K::kMoved);
+  EXPECT_EQ(events[1].replaces->track, told[0].track);
+  EXPECT_EQ(events[1].replaces->view, 1);
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere})) << "once";
+}
+
+TEST_F(ObjectHistoryTest, LongAfterItsArrivalAnOtherPoseIsNoNews) {
+  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
+  view({{0, left_}}, see_plates({left_}));
+  for (int i = 0; i < 4; ++i) view({{0, turned}}, see_plates({right_}));
+  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
 }
 
 TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {

@@ -190,6 +190,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.same_place_m", &c.history.same_place_m},
                                   {"history.same_rotation_rad", &c.history.same_rotation_rad},
                                   {"history.confirm_removal_views", &c.history.confirm_removal_views},
+                                  {"history.correct_views", &c.history.correct_views},
                                   {"history.min_new_share", &c.history.min_new_share},
                                   {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
                                   {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},

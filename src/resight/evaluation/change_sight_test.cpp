@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/change_sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace resight {
+namespace {
+
+using Kind = ObjectEventKind;
+
+ModelLibrary make_library() {
+  ModelLibrary library;
+  library.objects.resize(2);
+  library.objects[0].name = "mug";
+  library.objects[0].diameter_m = 0.1F;
+  library.objects[1].name = "soup";
+  return library;
+}
+
+Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+
+// A camera at the origin that looks along z at a wall.
+RgbdFrame frame_with_wall(float depth_m) {
+  RgbdFrame frame;
+  frame.camera = {64, 48, 50, 50, 31.5, 23.5};
+  frame.depth_m = Image<float>(64, 48, depth_m);
+  return frame;
+}
+
+TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(4);
+  GroundTruthObject arrived;
+  arrived.object = "mug";
+  arrived.camera_from_object = at(0.3);
+  arrived.visible_share = 0.02;  // still behind something
+  truth.views[1].objects = truth.views[2].objects = {arrived};
+  arrived.visible_share = 0.5;
+  truth.views[3].objects = {arrived};
+  GroundTruthObject before = arrived;
+  before.camera_from_object = at(0);
+  before.visible_share = 0.5;
+  truth.views[0].objects = {before};
+  ChangeSightFinder finder(library, truth);
+  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  finder.add_view(frame_with_wall(2.0F));  // before the change
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
+  EXPECT_EQ(finder.sights()[0].last_free_view, 0);
+  finder.add_view(frame_with_wall(0.7F));  // something stands before the place
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, -1);
+  finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, 3);
+}
+
+// It was seen there once, left, and came back unseen: that it leaves again no view can tell.
+TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
+                                          {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
+                                          {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
+  truth.views.resize(5);
+  GroundTruthObject seen;
+  seen.object = "mug";
+  seen.camera_from_object = at(0);
+  seen.visible_share = 0.5;
+  truth.views[0].objects = {seen};
+  seen.visible_share = 0.02;
+  truth.views[2].objects = truth.views[3].objects = {seen};
+  ChangeSightFinder finder(library, truth);
+  for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
+  EXPECT_EQ(finder.sights()[2].last_there_view, -1);
+}
+
+TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(1);
+  GroundTruthObject hidden;
+  hidden.object = "mug";
+  hidden.camera_from_object = at(0);
+  hidden.visible_share = 0.02;
+  truth.views[0].objects = {hidden};
+  ChangeSightFinder finder(library, truth);
+  finder.add_view(frame_with_wall(0.7F));
+  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/models/object_model.hpp"
+
+namespace resight {
+
+/// How much of the body of one object at its pose lies in that of another at its pose, in [0, 1]: of points spread over
+/// the one, the share in the box around the other (axes of its object frame). Next to each other: about 0.
+[[nodiscard]] double share_within(const ObjectModel& one, const Rigid3& world_from_one, const ObjectModel& other,
+                                  const Rigid3& world_from_other);
+
+}  // namespace resight
