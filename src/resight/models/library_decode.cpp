@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 
+#include "resight/core/parallel.hpp"
 #include "resight/models/descriptor_code.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
@@ -111,12 +112,18 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
   library.surface_voxel_m = stored.surface_voxel_m();
   if (!(library.surface_voxel_m > 0 && std::isfinite(library.surface_voxel_m)) || stored.objects() == nullptr)
     return Error{"damaged: no objects, or no voxel size of their surfaces"};
+  const auto& objects = *stored.objects();
+  library.objects.resize(objects.size());
+  std::vector<std::string> damaged_parts(objects.size());
+  // Most of the time is that of the first touch of the memory of the descriptors.
+  parallel_for(objects.size(), num_hardware_threads(), [&](std::size_t i) {
+    damaged_parts[i] = read(*objects[static_cast<flatbuffers::uoffset_t>(i)], library.objects[i]);
+  });
   std::set<std::string> names;
-  for (const schema::Object* object : *stored.objects()) {
-    const std::string damaged_part = read(*object, library.objects.emplace_back());
-    const std::string& name = library.objects.back().name;
-    if (!damaged_part.empty())
-      return Error{fmt::format("damaged: the {} of object '{}' cannot be read", damaged_part, name)};
+  for (std::size_t i = 0; i < library.objects.size(); ++i) {
+    const std::string& name = library.objects[i].name;
+    if (!damaged_parts[i].empty())
+      return Error{fmt::format("damaged: the {} of object '{}' cannot be read", damaged_parts[i], name)};
     if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
   }
   return library;

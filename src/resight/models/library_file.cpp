@@ -7,6 +7,8 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <memory>
+#include <span>
 #include <system_error>
 
 #include "resight/core/files.hpp"
@@ -46,7 +48,14 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path) {
+/// The bytes of a file, in memory that nobody fills beforehand.
+struct FileBytes {
+  std::unique_ptr<std::uint8_t[]> data;
+  std::size_t size = 0;
+  [[nodiscard]] std::span<const std::uint8_t> all() const { return {data.get(), size}; }
+};
+
+Result<FileBytes> read_file(const std::filesystem::path& path) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) {
     return fail(path, std::filesystem::exists(path, code) ? "not a file" : "no such file");
@@ -54,8 +63,8 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, code);
   std::ifstream file(path, std::ios::binary);
   if (code || !file) return fail(path, "cannot be opened");
-  std::vector<std::uint8_t> bytes(size);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  FileBytes bytes{std::make_unique_for_overwrite<std::uint8_t[]>(size), size};
+  file.read(reinterpret_cast<char*>(bytes.data.get()), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(file.gcount()) != size) return fail(path, "cannot be read to its end");
   return bytes;
 }
@@ -100,15 +109,15 @@ Result<void> save_library(const ModelLibrary& library, const std::filesystem::pa
 
 Result<ModelLibrary> load_library(const std::filesystem::path& path,
                                   std::optional<std::uint64_t> expected_options_hash) {
-  const Result<std::vector<std::uint8_t>> bytes = read_file(path);
+  const Result<FileBytes> bytes = read_file(path);
   if (!bytes.ok()) return bytes.error();
-  const Result<Header> header = read_header(path, *bytes);
+  const Result<Header> header = read_header(path, bytes->all());
   if (!header.ok()) return header.error();
   if (expected_options_hash.has_value() && header->options_hash != *expected_options_hash) {
     return fail(path, fmt::format("trained with other options (hash {:016x}, expected {:016x}); train again",
                                   header->options_hash, *expected_options_hash));
   }
-  Result<ModelLibrary> library = internal::decode_payload(std::span(*bytes).subspan(sizeof(Header)));
+  Result<ModelLibrary> library = internal::decode_payload(bytes->all().subspan(sizeof(Header)));
   if (!library.ok()) return fail(path, library.error().message);
   library->options_hash = header->options_hash;
   return library;

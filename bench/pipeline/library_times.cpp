@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a library costs before the first view, by the number of its objects: size of the file, time to load it and to
+// make ready what matching needs (medians of three), and memory in use then. The objects of the given library are
+// repeated under other names.
+//   bench_library_times models.resight [objects..]     (20 50 100)
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "../quality/arguments.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/recognition/view_hypothesis_generator.hpp"
+
+namespace {
+
+using namespace resight;
+
+template <typename Work>
+double median_of_three_s(Work&& work) {
+  std::array<double, 3> times{};
+  for (double& time : times) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  std::ranges::sort(times);
+  return times[1];
+}
+
+double memory_in_use_mb() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0;
+  double resident = 0;
+  file >> all >> resident;
+  return 1e-6 * resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+ModelLibrary repeat_objects(const ModelLibrary& library, int count) {
+  ModelLibrary repeated = library;
+  repeated.objects.clear();
+  for (int i = 0; i < count; ++i) {
+    ObjectModel object = library.objects[static_cast<std::size_t>(i) % library.objects.size()];
+    object.name = fmt::format("{}_{}", object.name, i);
+    object.bop_id = i + 1;
+    repeated.objects.push_back(std::move(object));
+  }
+  return repeated;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) exit_with("usage: bench_library_times LIBRARY [objects..]");
+  std::vector<int> counts;
+  for (int i = 2; i < argc; ++i) counts.push_back(std::max(1, std::atoi(argv[i])));
+  if (counts.empty()) counts = {20, 50, 100};
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("bench_library_{}.resight", getpid());
+  fmt::print("| objects | file, MB | loaded in, s | made ready in, s | memory, MB |\n|---|---|---|---|---|\n");
+  for (const int count : counts) {
+    {
+      const ModelLibrary given = value_or_exit(load_library(argv[1]));
+      if (given.objects.empty()) exit_with("the library has no objects");
+      const auto saved = save_library(repeat_objects(given, count), file);
+      if (!saved.ok()) exit_with(saved.error().message);
+    }
+    ModelLibrary library;
+    const double load_s = median_of_three_s([&] {
+      library = {};
+      library = value_or_exit(load_library(file));
+    });
+    const RecognizerConfig config = preset_or_exit("default");
+    double memory_mb = 0;
+    const double ready_s = median_of_three_s([&] {
+      const ViewHypothesisGenerator generator(library, config);
+      memory_mb = memory_in_use_mb();
+    });
+    fmt::print("| {} | {:.0f} | {:.2f} | {:.2f} | {:.0f} |\n", count,
+               1e-6 * static_cast<double>(std::filesystem::file_size(file)), load_s, ready_s, memory_mb);
+    std::fflush(stdout);
+  }
+  std::filesystem::remove(file);
+  return 0;
+}
