@@ -21,7 +21,6 @@ constexpr float kMinWeight = 0.05F;
 constexpr float kWellExplained = 0.5F;
 constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
 constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
-const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
 // 0.
@@ -108,7 +107,7 @@ struct CueComputer::Impl {
     if (!use_color_) return;
     lab_.reserve(look_.visibility.visible.size());
     for (const int i : look_.visibility.visible)
-      lab_.push_back(to_lab(light(model_.linear_light[i], look_.normals.empty() ? kNoNormal : look_.normals[i])));
+      lab_.push_back(to_lab(light(model_.linear_light[i], normal_at(look_.normals, i))));
   }
 
   void compare_patterns() {

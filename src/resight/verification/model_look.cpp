@@ -8,12 +8,6 @@
 #include "resight/verification/pattern_similarity.hpp"
 
 namespace resight {
-namespace {
-
-const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
-
-}  // namespace
-
 ModelLook::ModelLook(const PreparedModel& model, const Rigid3& pose, const PreparedScene& scene,
                      std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                      const VerifyOptions& options)
@@ -97,7 +91,7 @@ double ModelLook::color_fit() const {
   double sum = 0;
   for (const PointMatch& m : nearest) {
     const auto i = static_cast<std::size_t>(visibility.visible[static_cast<std::size_t>(m.visible)]);
-    model_colors.push_back(to_lab(plain_light(model_->linear_light[i], normals.empty() ? kNoNormal : normals[i])));
+    model_colors.push_back(to_lab(plain_light(model_->linear_light[i], normal_at(normals, i))));
     scene_colors.push_back(local_lab[static_cast<std::size_t>(m.local)]);
     sum += std::exp(-tolerance.exponent(model_colors.back(), scene_colors.back()));
   }

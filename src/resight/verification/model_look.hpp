@@ -12,6 +12,12 @@
 
 namespace resight {
 
+/// Zero, which no shading applies to, where there are no normals.
+[[nodiscard]] inline Eigen::Vector3f normal_at(const std::vector<Eigen::Vector3f>& normals, std::size_t i) {
+  if (normals.empty()) return Eigen::Vector3f::Zero();
+  return normals[i];
+}
+
 /// A visible model point and a scene point within the inlier distance.
 struct PointMatch {
   int visible;  ///< Position in ModelVisibility::visible.

@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::ptrdiff_t kMinPoints = 50;
 constexpr double kMinShare = 0.1;
-const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Zero();
 
 // The newest view in which enough of what is visible of the model is at the measured depth, or -1.
 int find_newest(const ModelVisibility& visibility) {
@@ -50,7 +49,7 @@ double NewestPrint::similarity(const Eigen::Array3f& white_balance) const {
   const LightFit light = limit_chroma(light_, white_balance, options_.light);
   std::vector<LabColor> expected;
   for (std::size_t i = 0; i < model_light_.size(); ++i)
-    expected.push_back(to_lab(light(model_light_[i], normals_.empty() ? kNoNormal : normals_[i])));
+    expected.push_back(to_lab(light(model_light_[i], normal_at(normals_, i))));
   return pattern_similarity(expected, to_lab(seen_light_), options_.color_sigma_l / options_.color_sigma_ab);
 }
 
