@@ -4,6 +4,7 @@
 // repeated under other names.
 //   bench_library_times models.resight [objects..]     (20 50 100)
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,7 +60,10 @@ ModelLibrary repeat_objects(const ModelLibrary& library, int count) {
 int main(int argc, char** argv) {
   if (argc < 2) exit_with("usage: bench_library_times LIBRARY [objects..]");
   std::vector<int> counts;
-  for (int i = 2; i < argc; ++i) counts.push_back(std::max(1, std::atoi(argv[i])));
+  for (int i = 2; i < argc; ++i) {
+    counts.push_back(std::atoi(argv[i]));
+    if (counts.back() < 1) exit_with(fmt::format("'{}' is no number of objects", argv[i]));
+  }
   if (counts.empty()) counts = {20, 50, 100};
   const auto file = std::filesystem::temp_directory_path() / fmt::format("bench_library_{}.resight", getpid());
   fmt::print("| objects | file, MB | loaded in, s | made ready in, s | memory, MB |\n|---|---|---|---|---|\n");
@@ -70,6 +74,7 @@ int main(int argc, char** argv) {
       const auto saved = save_library(repeat_objects(given, count), file);
       if (!saved.ok()) exit_with(saved.error().message);
     }
+    malloc_trim(0);  // What follows counts alone.
     ModelLibrary library;
     const double load_s = median_of_three_s([&] {
       library = {};

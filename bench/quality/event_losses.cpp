@@ -6,6 +6,7 @@
 // all.toml: min_reported_share = 0, for the history sees what the newest view does not show, too.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -24,19 +25,22 @@ using Json = nlohmann::json;
 
 Rigid3 pose_of(const Json& json) {
   Rigid3 pose;
-  for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = json["rotation"][static_cast<std::size_t>(i)];
-  for (int i = 0; i < 3; ++i) pose.translation[i] = json["translation_m"][static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < 9; ++i)
+    pose.rotation(static_cast<int>(i / 3), static_cast<int>(i % 3)) = json.at("rotation").at(i);
+  for (std::size_t i = 0; i < 3; ++i) pose.translation[static_cast<int>(i)] = json.at("translation_m").at(i);
   return pose;
 }
 
 Detection detection_of(const Json& json, const ModelLibrary& library) {
   Detection detection;
-  detection.object = library.find(json["object"]);
-  detection.score = json["score"];
-  detection.visible_share = json["visible_share"];
-  detection.world_from_object = pose_of(json["world_from_object"]);
-  for (const Json& e : json["evidence"])
-    detection.views.push_back({e["view"], e["allowed"], e["visible_share"], e["explained_share"]});
+  detection.object = library.find(json.at("object"));
+  if (detection.object < 0) exit_with("the library does not hold the objects of the detections");
+  detection.score = json.at("score");
+  detection.visible_share = json.at("visible_share");
+  detection.world_from_object = pose_of(json.at("world_from_object"));
+  for (const Json& e : json.at("evidence"))
+    detection.views.push_back({e.at("view"), e.at("allowed"), e.at("visible_share"), e.at("explained_share")});
+  if (detection.views.empty()) exit_with("a detection has no evidence");
   return detection;
 }
 
@@ -64,67 +68,93 @@ std::string views_with(const std::string& object, const std::optional<Rigid3>& p
   return views;
 }
 
+/// What the history tells of a run, as it is known in the end.
+struct Replay {
+  std::vector<std::vector<Detection>> detections;
+  std::vector<ReportedChange> reported;
+};
+
+Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& library, const std::string& preset,
+              ChangeSightFinder& sights) {
+  Replay replay;
+  ObjectHistory history(library, preset_or_exit(preset).history);
+  std::vector<std::vector<ObjectEvent>> events;
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    RgbdFrame frame = value_or_exit(sequence.read_view(v));
+    sights.add_view(frame);
+    const Json& view = run.at("views").at(static_cast<std::size_t>(v));
+    frame.world_from_camera = pose_of(view.at("world_from_camera"));
+    std::vector<Detection> detections;
+    for (const Json& detection : view.at("detections")) detections.push_back(detection_of(detection, library));
+    events.push_back(history.update(v, detections, frame, true));
+    replay.detections.push_back(std::move(detections));
+  }
+  events.push_back(history.finish());
+  std::vector<std::vector<ObjectEvent>*> all;
+  for (auto& of_view : events) all.push_back(&of_view);
+  drop_replaced(all);
+  for (const auto& of_view : events)
+    for (const ObjectEvent& e : of_view)
+      if (is_change(e.kind))
+        replay.reported.push_back({e.view, e.kind, library.objects[static_cast<std::size_t>(e.object)].name,
+                                   e.world_from_object_before, e.world_from_object_after});
+  std::ranges::stable_sort(replay.reported, {}, &ReportedChange::view);
+  return replay;
+}
+
+void print_missed(const SeenChange& c, const Replay& replay, const ModelLibrary& library) {
+  constexpr int kViews = 8;
+  print("missed", c.view, c.kind, c.object, c.world_from_object_before, c.world_from_object_after);
+  const auto views = [&](const std::optional<Rigid3>& pose, int first) {
+    return views_with(c.object, pose, first, first + kViews, replay.detections, library);
+  };
+  fmt::print(" | there until {} free until {} left seen {} come seen {} | there:{} /{} here:{} /{}\n",
+             c.sight.last_there_view, c.sight.last_free_view, c.sight.before_view, c.sight.after_view,
+             views(c.world_from_object_before, c.view - kViews), views(c.world_from_object_before, c.view),
+             views(c.world_from_object_after, c.view - kViews), views(c.world_from_object_after, c.view));
+}
+
+void print_losses(const Replay& replay, const std::vector<TrueChange>& changes, const std::vector<ChangeSight>& sights,
+                  const ModelLibrary& library) {
+  std::vector<SeenChange> truths;
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (changes[i].known && library.find(changes[i].object) >= 0) truths.push_back({changes[i], sights[i]});
+  std::ranges::stable_sort(truths, {}, &SeenChange::view);
+  const MatchDetectionsOptions options;
+  const ChangeMatcher matcher(library, options);
+  truths = retell_as_reported(std::move(truths), replay.reported, matcher);
+  const std::vector<int> truth_of = match_in_order(
+      truths, replay.reported, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); });
+  for (std::size_t t = 0; t < truths.size(); ++t)
+    if (truths[t].counts() && std::ranges::find(truth_of, static_cast<int>(t)) == truth_of.end())
+      print_missed(truths[t], replay, library);
+  for (std::size_t r = 0; r < replay.reported.size(); ++r) {
+    if (truth_of[r] >= 0) continue;
+    const ReportedChange& report = replay.reported[r];
+    print("wrong ", report.view, report.kind, report.object, report.world_from_object_before,
+          report.world_from_object_after);
+    const EventScore alone = score_events(changes, sights, std::span(&report, 1), library);
+    fmt::print(" | departure {} arrival {}\n", alone.departures.true_positives, alone.arrivals.true_positives);
+  }
+  const RecognitionScore score = score_events(changes, sights, replay.reported, library).events;
+  fmt::print("told {} wrong {} missed {}\n", score.true_positives, score.false_positives, score.false_negatives);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 5) exit_with("usage: bench_event_losses SEQUENCE LIBRARY DETECTIONS.json EVENTS.json [preset]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
-  std::ifstream file(argv[3]);
-  const Json run = Json::parse(file);
   const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argv[4], ""));
-  ObjectHistory history(library, preset_or_exit(argc > 5 ? argv[5] : "default").history);
+  if (!truth.changes) exit_with(fmt::format("no changes in {}", argv[4]));
   ChangeSightFinder sights(library, truth);
-  std::vector<std::vector<ObjectEvent>> events;
-  std::vector<std::vector<Detection>> all_detections;
-  for (int v = 0; v < sequence->num_views(); ++v) {
-    RgbdFrame frame = value_or_exit(sequence->read_view(v));
-    sights.add_view(frame);
-    const Json& view = run["views"].at(static_cast<std::size_t>(v));
-    frame.world_from_camera = pose_of(view["world_from_camera"]);
-    std::vector<Detection> detections;
-    for (const Json& detection : view["detections"]) detections.push_back(detection_of(detection, library));
-    events.push_back(history.update(v, detections, frame, true));
-    all_detections.push_back(std::move(detections));
+  try {
+    std::ifstream file(argv[3]);
+    const Replay run = replay(*sequence, Json::parse(file), library, argc > 5 ? argv[5] : "default", sights);
+    print_losses(run, *truth.changes, sights.sights(), library);
+  } catch (const Json::exception& error) {
+    exit_with(fmt::format("{}: {}", argv[3], error.what()));
   }
-  events.push_back(history.finish());
-  std::vector<std::vector<ObjectEvent>*> all;
-  for (auto& e : events) all.push_back(&e);
-  drop_replaced(all);
-
-  std::vector<ReportedChange> reported;
-  for (const auto& of_view : events)
-    for (const ObjectEvent& e : of_view)
-      if (is_change(e.kind))
-        reported.push_back({e.view, e.kind, library.objects[static_cast<std::size_t>(e.object)].name,
-                            e.world_from_object_before, e.world_from_object_after});
-  const auto& changes = *truth.changes;
-  const EventScore whole = score_events(changes, sights.sights(), reported, library);
-  const auto hits = [&](std::span<const TrueChange> c, std::span<const ChangeSight> s) {
-    return score_events(c, s, reported, library).events.true_positives;
-  };
-  // A change is told if it fits a report; a report is right if it fits a change. (One to one in the score.)
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    const std::span one(&changes[i], 1);
-    const ChangeSight& s = sights.sights()[i];
-    const EventScore score = score_events(one, std::span(&s, 1), reported, library);
-    if (score.events.false_negatives == 0 || hits(one, std::span(&s, 1)) > 0) continue;
-    const TrueChange& c = changes[i];
-    print("missed", c.view, c.kind, c.object, c.world_from_object_before, c.world_from_object_after);
-    fmt::print(" | there until {} free until {} left seen {} come seen {} | there:{} / {} here: {} / {}\n",
-               s.last_there_view, s.last_free_view, s.before_view, s.after_view,
-               views_with(c.object, c.world_from_object_before, c.view - 8, c.view, all_detections, library),
-               views_with(c.object, c.world_from_object_before, c.view, c.view + 8, all_detections, library),
-               views_with(c.object, c.world_from_object_after, c.view - 8, c.view, all_detections, library),
-               views_with(c.object, c.world_from_object_after, c.view, c.view + 8, all_detections, library));
-  }
-  for (const ReportedChange& r : reported) {
-    const EventScore score = score_events(changes, sights.sights(), std::span(&r, 1), library);
-    if (score.events.false_positives == 0) continue;
-    print("wrong ", r.view, r.kind, r.object, r.world_from_object_before, r.world_from_object_after);
-    fmt::print(" | departure {} arrival {}\n", score.departures.true_positives, score.arrivals.true_positives);
-  }
-  fmt::print("told {} wrong {} missed {}\n", whole.events.true_positives, whole.events.false_positives,
-             whole.events.false_negatives);
   return 0;
 }

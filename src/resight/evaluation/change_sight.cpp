@@ -42,10 +42,13 @@ void ChangeSightFinder::add_view(const RgbdFrame& frame) {
     if (change.view > view_) {
       if (before && view_ >= stands_since_[i] && shows(frame, change.object, *before, model))
         sight.last_there_view = view_;
-      if (after && looks_at(frame, *after, model)) sight.last_free_view = view_;
+      if (after && looks_at(frame, *after, model) && !shows(frame, change.object, *after, model))
+        sight.last_free_view = view_;
       continue;
     }
-    if (before && sight.before_view < 0 && looks_at(frame, *before, model)) sight.before_view = view_;
+    if (before && sight.before_view < 0 && looks_at(frame, *before, model) &&
+        !shows(frame, change.object, *before, model))
+      sight.before_view = view_;
     if (after && sight.after_view < 0 && shows(frame, change.object, *after, model)) sight.after_view = view_;
   }
   ++view_;

@@ -12,10 +12,10 @@ namespace resight {
 /// What the views show of a change, and since when; -1 = never.
 struct ChangeSight {
   int before_view = -1;  ///< First view, from the change on, that looks at the place left: its centre is in the image
-                         ///< and not hidden.
+                         ///< and not hidden, and none of its kind is there again.
   int after_view = -1;   ///< First view, from the change on, with the object visible at its new place.
-  int last_there_view = 0;  ///< Last view before the change, since it came there, with it visible at the place left.
-  int last_free_view = 0;   ///< Last view before the change that looks at the new place.
+  int last_there_view = -1;  ///< Last view before the change, since it came there, with it visible at the place left.
+  int last_free_view = -1;   ///< Last view before the change that looks at the new place, with none of its kind there.
 };
 
 /// Finds the sight of each change, view by view (in order). The views up to the last one added count.

@@ -21,7 +21,7 @@ Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 
 const TrueChange kMove{4, Kind::kMoved, "mug", true, at(0), at(0.3)};
 const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, at(-0.3), std::nullopt};
-const ChangeSight kAtOnce{4, 5};
+const ChangeSight kAtOnce{4, 5, 3, 3};
 
 EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeSight>& sights,
                  const std::vector<ReportedChange>& reported) {
@@ -29,7 +29,7 @@ EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeS
 }
 
 TEST(EventScore, RightKindPlacesAndTime) {
-  const EventScore s = score({kMove, kRemoval}, {kAtOnce, {6, -1}},
+  const EventScore s = score({kMove, kRemoval}, {kAtOnce, {6, -1, 5, -1}},
                              {{7, Kind::kMoved, "mug", at(0.01), at(0.29)}, {6, Kind::kRemoved, "soup", at(-0.3), {}}});
   EXPECT_EQ(s.events, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{2, 0, 0}));
@@ -58,12 +58,12 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
   const ReportedChange as_removal{5, Kind::kRemoved, "mug", at(0), {}};
   const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, at(0.3)};
   const ReportedChange as_move{5, Kind::kMoved, "mug", at(0), at(0.3)};
-  const ChangeSight only_left{4, -1};
+  const ChangeSight only_left{4, -1, 3, 3};
   EXPECT_EQ(score({kMove}, {only_left}, {as_removal}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_addition}).events, (RecognitionScore{0, 1, 1}));
   EXPECT_EQ(score({kMove}, {only_left}, {}).arrivals, (RecognitionScore{0, 0, 0}));
-  const ChangeSight never_seen_before{4, 5, -1};
+  const ChangeSight never_seen_before{4, 5, -1, 3};
   const EventScore s = score({kMove}, {never_seen_before}, {as_addition});
   EXPECT_EQ(s.events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{0, 0, 0}));
@@ -80,7 +80,7 @@ TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
   const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
-  EXPECT_EQ(score({addition}, {{-1, 5}}, {}).events, (RecognitionScore{0, 0, 1}));
+  EXPECT_EQ(score({addition}, {{-1, 5, -1, 3}}, {}).events, (RecognitionScore{0, 0, 1}));
   const ChangeSight first_look{-1, 5, 0, -1};  // It may have been there.
   EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({addition}, {first_look}, {}).arrivals, (RecognitionScore{0, 0, 0}));
@@ -90,7 +90,7 @@ TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
   TrueChange of_stranger = kRemoval;
   of_stranger.object = "vase";
   of_stranger.known = false;
-  const EventScore s = score({of_stranger}, {{6, -1}},
+  const EventScore s = score({of_stranger}, {{6, -1, 5, -1}},
                              {{6, Kind::kFound, "mug", {}, at(0)}, {6, Kind::kStillThere, "mug", at(0), at(0)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 0, 0}));
 }

@@ -34,7 +34,12 @@ void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChan
   truths.erase(truths.begin() + static_cast<std::ptrdiff_t>(std::max(left_index, came_index)));
   truths.erase(truths.begin() + static_cast<std::ptrdiff_t>(std::min(left_index, came_index)));
   insert_by_view(join(left, came), truths);
-  if (left.kind == ObjectEventKind::kMoved) insert_by_view(left.arrival(), truths);
+  if (left.kind == ObjectEventKind::kMoved) {
+    SeenChange arrival = left.arrival();
+    if (left.shows_arrival())  // It was not there yet while it was seen at its old place.
+      arrival.sight.last_free_view = std::max(arrival.sight.last_free_view, left.sight.last_there_view);
+    insert_by_view(arrival, truths);
+  }
   if (came.kind == ObjectEventKind::kMoved) insert_by_view(came.departure(), truths);
 }
 
@@ -108,7 +113,7 @@ bool ChangeMatcher::fits(const SeenChange& truth, const ReportedChange& report) 
 
 std::vector<SeenChange> retell_as_reported(std::vector<SeenChange> truths, const std::vector<ReportedChange>& reports,
                                            const ChangeMatcher& matcher) {
-  // Each step gives one more report its truth.
+  // Ends: no step takes a truth from the reports, and one that gives none more leaves them earlier ones.
   for (bool changed = true; changed;) {
     changed = false;
     const std::vector<int> truth_of = match_in_order(

@@ -68,9 +68,10 @@ template <typename Truth, typename Report, typename Fits>
 
 /// The changes as the reports tell them, where no view can tell the difference. Objects of one model are alike: which
 /// of two that left is the one that came, or whether what came is what left, the views show only by when they show it.
-/// A reported move that is none, but whose old place was left and whose new place was come to with no view in between
-/// that shows both without it (or with it), stands for these two sides; what remains of their changes are changes of
-/// their own. Both ordered by view.
+/// A reported move that is none, but whose old place was left and whose new place was come to, stands for these two
+/// sides if it can have happened at one moment: after the last views that show the one still there and the other free,
+/// and before the first ones that show it gone and come. What remains of the two changes are changes of their own. Both
+/// ordered by view.
 [[nodiscard]] std::vector<SeenChange> retell_as_reported(std::vector<SeenChange> truths,
                                                          const std::vector<ReportedChange>& reports,
                                                          const ChangeMatcher& matcher);

@@ -82,7 +82,6 @@ bool read_all(const flatbuffers::Vector<const Stored*>* stored, std::vector<Valu
 
 // Empty if all is well, else which part is damaged.
 std::string read(const schema::Object& stored, ObjectModel& object) {
-  if (stored.name() == nullptr || stored.name()->size() == 0) return "name";
   object.name = stored.name()->str();
   object.bop_id = stored.bop_id();
   if (object.bop_id < 0) return "obj_id";
@@ -113,19 +112,23 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
   if (!(library.surface_voxel_m > 0 && std::isfinite(library.surface_voxel_m)) || stored.objects() == nullptr)
     return Error{"damaged: no objects, or no voxel size of their surfaces"};
   const auto& objects = *stored.objects();
+  std::set<std::string> names;  // First: nothing is decoded twice.
+  for (const schema::Object* object : objects) {
+    if (object->name() == nullptr || object->name()->size() == 0)
+      return Error{"damaged: the name of an object cannot be read"};
+    const std::string name = object->name()->str();
+    if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
+  }
   library.objects.resize(objects.size());
   std::vector<std::string> damaged_parts(objects.size());
   // Most of the time is that of the first touch of the memory of the descriptors.
   parallel_for(objects.size(), num_hardware_threads(), [&](std::size_t i) {
     damaged_parts[i] = read(*objects[static_cast<flatbuffers::uoffset_t>(i)], library.objects[i]);
   });
-  std::set<std::string> names;
-  for (std::size_t i = 0; i < library.objects.size(); ++i) {
-    const std::string& name = library.objects[i].name;
+  for (std::size_t i = 0; i < damaged_parts.size(); ++i)
     if (!damaged_parts[i].empty())
-      return Error{fmt::format("damaged: the {} of object '{}' cannot be read", damaged_parts[i], name)};
-    if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
-  }
+      return Error{
+          fmt::format("damaged: the {} of object '{}' cannot be read", damaged_parts[i], library.objects[i].name)};
   return library;
 }
 

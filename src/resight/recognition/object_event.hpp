@@ -12,9 +12,9 @@ namespace resight {
 
 enum class ObjectEventKind : std::uint8_t {
   kFound,       ///< Recognised for the first time; nothing tells since when it has been there.
-  kAdded,       ///< Recognised where an earlier view saw free space.
+  kAdded,       ///< Recognised where an earlier view saw free space, or another object.
   kMoved,       ///< Recognised at a new place, its old place seen free (or out of sight).
-  kRemoved,     ///< Its place seen free, and not recognised elsewhere.
+  kRemoved,     ///< Its place seen free, or another object in it, and not recognised elsewhere.
   kStillThere,  ///< Recognised where it was.
   kNotSeen,     ///< Not recognised, and nothing says that it has left.
 };
@@ -39,7 +39,7 @@ struct ObjectEvent {
   std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
   std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
   double confidence = 0;                           ///< In [0, 1].
-  std::optional<ReplacedEvent> replaces{};         ///< kMoved or kAdded only.
+  std::optional<ReplacedEvent> replaces{};         ///< kMoved, kAdded and kStillThere only.
 };
 
 /// Leaves of a run, given as the events of each of its views, what is known in the end: drops each event that another

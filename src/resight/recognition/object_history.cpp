@@ -7,13 +7,11 @@
 
 #include "resight/core/check.hpp"
 #include "resight/geometry/symmetry.hpp"
-#include "resight/recognition/shared_space.hpp"
 
 namespace resight {
 namespace {
 
 constexpr int kUnmatched = -1;
-constexpr double kMinTakenShare = 0.5;  // Of a body, in another: both cannot be there.
 
 double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
   const Eigen::Vector3d center = model.center.cast<double>();
@@ -49,9 +47,12 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   std::vector<int> track_of(detections.size(), kUnmatched);
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
-  for (std::size_t d = 0; d < detections.size(); ++d)
-    if (track_of[d] == kUnmatched && is_seen_now(detections[d], options_.min_new_share))
-      place_new(detections[d], view, current, use_evidence, events);
+  for (std::size_t d = 0; d < detections.size(); ++d) {
+    if (track_of[d] != kUnmatched || !is_seen_now(detections[d], options_.min_new_share)) continue;
+    place_new(detections[d], view, current, use_evidence, events);
+    for (std::size_t other = 0; other < detections.size(); ++other)  // What only older views saw at its old place.
+      if (other != d && detections[other].track == detections[d].track) detections[other].track = -1;
+  }
   confirm_removals(view, events);
   std::erase_if(tracks_, [](const Track& track) { return track.state == State::kJoined; });
   if (use_evidence) memory_.add(view, current);
@@ -104,8 +105,15 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
 void ObjectHistory::correct_arrival(Track& track, int view, std::vector<ObjectEvent>& events) const {
   if (!track.arrival || view - track.since_view > options_.correct_views) return;
   ObjectEvent& arrival = *track.arrival;
-  if (is_same_place(model_of(track), *arrival.world_from_object_after, track.world_from_object)) return;
+  const ObjectModel& model = model_of(track);
+  if (is_same_place(model, *arrival.world_from_object_after, track.world_from_object)) return;
   arrival.replaces = {arrival.kind, track.id, arrival.view};
+  const auto& before = arrival.world_from_object_before;
+  if (before && is_same_place(model, *before, track.world_from_object)) {  // It has not moved at all.
+    events.back().replaces = arrival.replaces;
+    track.arrival.reset();
+    return;
+  }
   arrival.view = view;
   arrival.world_from_object_after = track.world_from_object;
   events.push_back(arrival);
@@ -130,6 +138,7 @@ int ObjectHistory::find_displaced(const Track& track, std::span<const Detection>
 void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                                        const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events) {
   std::vector<std::size_t> left;
+  std::vector<std::pair<std::size_t, bool>> undecided;  // and whether a surface is seen where it was
   std::vector<int> taken = track_of;  // and by tracks that have moved there, which place_new() will see to
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     Track& track = tracks_[t];
@@ -144,19 +153,26 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
         !use_evidence || (presence.is_informative && presence.gone_share >= options_.min_displaced_gone_share);
     const bool has_moved = displaced != kUnmatched && is_free &&
                            is_seen_now(detections[static_cast<std::size_t>(displaced)], options_.min_new_share);
-    const bool is_taken = use_evidence && !presence.is_gone && is_place_taken(track, detections, track_of);
-    if (presence.is_gone || has_moved || is_taken) {
-      track.state = State::kLeaving;
-      track.left_view = view;
-      track.confidence = has_moved || is_taken ? 1.0 : presence.gone_share;
+    if (presence.is_gone || has_moved) {
+      leave(track, view, has_moved ? 1.0 : presence.gone_share, false);
       if (!has_moved) left.push_back(t);
     } else if (displaced != kUnmatched) {
       track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
       keep_in_place(track, detections[static_cast<std::size_t>(displaced)], view, events);
     } else {
+      undecided.emplace_back(t, presence.is_informative && !is_free);
+    }
+  }
+  for (const auto& [t, is_surface_seen] : undecided) {  // Now it is known which others are where they were.
+    Track& track = tracks_[t];
+    const Detection* taker = use_evidence ? find_taker(track, is_surface_seen, detections, track_of) : nullptr;
+    if (taker == nullptr) {
       events.push_back({ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt,
                         0.0, std::nullopt});
+      continue;
     }
+    leave(track, view, std::min(1.0, taker->score), true);
+    left.push_back(t);
   }
   for (const std::size_t t : left) {
     Track* added = tracks_[t].state == State::kLeaving ? find_added_since(tracks_[t]) : nullptr;
@@ -164,27 +180,33 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
 }
 
-// Another one that the view shows stands in its space, and came there after this one was last seen.
-bool ObjectHistory::is_place_taken(const Track& track, std::span<const Detection> detections,
-                                   std::span<const int> track_of) const {
+void ObjectHistory::leave(Track& track, int view, double confidence, bool is_taken) {
+  track.state = State::kLeaving;
+  track.is_taken = is_taken;
+  track.left_view = view;
+  track.confidence = confidence;
+}
+
+// Another one that the view shows in its space, and that came there after this one was last seen. Where a surface is
+// seen that might be its own, the other one must be of its size: a bowl may stand around it.
+const Detection* ObjectHistory::find_taker(const Track& track, bool is_surface_seen,
+                                           std::span<const Detection> detections, std::span<const int> track_of) const {
   for (std::size_t d = 0; d < detections.size(); ++d) {
-    if (detections[d].object == track.object || !is_seen_now(detections[d], options_.min_new_share)) continue;
+    const Detection& detection = detections[d];
+    if (detection.object == track.object || !is_seen_now(detection, options_.min_new_share)) continue;
     const int other = track_of[d];
     if (other != kUnmatched && tracks_[static_cast<std::size_t>(other)].since_view <= track.seen_view) continue;
-    if (share_within(model_of(track), track.world_from_object, model_of(detections[d]),
-                     detections[d].world_from_object) >= kMinTakenShare)
-      return true;
+    if (is_in_space_of(track, detection) && (!is_surface_seen || is_in_space_of(detection, track))) return &detection;
   }
-  return false;
+  return nullptr;
 }
 
 // The last view that showed another one in its space; nothing if none did.
-std::optional<int> ObjectHistory::last_seen_taken(const Detection& detection) const {
+std::optional<int> ObjectHistory::last_seen_taken(const Detection& detection, int view) const {
   std::optional<int> last;
   const auto look_at = [&](const Stay& stay) {
-    if (stay.object != detection.object && stay.seen_view > last.value_or(-1) &&
-        share_within(model_of(detection), detection.world_from_object, model_of(stay), stay.world_from_object) >=
-            kMinTakenShare)
+    if (stay.object != detection.object && stay.seen_view > last.value_or(-1) && stay.seen_view < view &&
+        memory_.reaches_back_to(stay.seen_view) && is_in_space_of(detection, stay))
       last = stay.seen_view;
   };
   std::ranges::for_each(former_stays_, look_at);
@@ -211,12 +233,17 @@ ObjectHistory::Track* ObjectHistory::find_added_since(const Track& left) {
 // What left its place is what was added elsewhere: one track, the older one, and one event.
 void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detection>& detections,
                          std::vector<ObjectEvent>& events) {
+  // What this view has told of it is not told; if it corrected the arrival, then the arrival as it was told before.
+  const ObjectEvent& arrival = *added.arrival;
+  const ReplacedEvent replaced = arrival.view == view && arrival.replaces
+                                     ? *arrival.replaces
+                                     : ReplacedEvent{ObjectEventKind::kAdded, added.id, arrival.view};
   std::erase_if(events, [&](const ObjectEvent& e) { return e.track == added.id; });
   for (Detection& d : detections)
     if (d.track == added.id) d.track = left.id;
   events.push_back({ObjectEventKind::kMoved, left.object, left.id, view, left.world_from_object,
-                    added.world_from_object, left.confidence,
-                    ReplacedEvent{ObjectEventKind::kAdded, added.id, added.since_view}});
+                    added.world_from_object, left.confidence, replaced});
+  former_stays_.push_back({left.object, left.world_from_object, left.seen_view});
   left = [&] {
     Track joined = added;
     joined.id = left.id;
@@ -272,7 +299,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
   std::optional<int> last_free_view;  // of this object: with nothing there, or another one
   if (use_evidence)
     last_free_view = std::max(memory_.last_seen_free(surface, detection.world_from_object, options_.presence),
-                              last_seen_taken(detection));
+                              last_seen_taken(detection, view));
   ObjectEvent event{last_free_view ? ObjectEventKind::kAdded : ObjectEventKind::kFound,
                     detection.object,
                     -1,
@@ -297,7 +324,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
   } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, view, current) : nullptr;
              hidden != nullptr) {
     tell_move(*hidden, kOutOfSightConfidence);
-    std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id; });  // It was called not seen.
+    std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id && !is_change(e.kind); });
     from = hidden;
   } else if (from != nullptr && from->state == State::kLeaving) {
     remove(*from, events);  // It was away before it was put here.
@@ -325,9 +352,20 @@ void ObjectHistory::remove(Track& track, std::vector<ObjectEvent>& events) const
 }
 
 void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events) {
-  for (Track& track : tracks_)
-    if (track.state == State::kLeaving && view - track.left_view >= options_.confirm_removal_views)
+  for (Track& track : tracks_) {
+    if (track.state != State::kLeaving || view - track.left_view < options_.confirm_removal_views) continue;
+    if (track.is_taken && !is_still_taken(track, view))
+      track.state = State::kPresent;  // The other one was seen once only: perhaps it was this one.
+    else
       remove(track, events);
+  }
+}
+
+bool ObjectHistory::is_still_taken(const Track& left, int view) const {
+  return std::ranges::any_of(tracks_, [&](const Track& track) {
+    return track.object != left.object && track.state == State::kPresent && track.seen_view == view &&
+           is_in_space_of(left, track);
+  });
 }
 
 std::vector<KnownObject> ObjectHistory::known_objects() const {

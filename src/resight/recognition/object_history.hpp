@@ -8,6 +8,7 @@
 #include "resight/recognition/depth_memory.hpp"
 #include "resight/recognition/object_presence.hpp"
 #include "resight/recognition/scene_update.hpp"
+#include "resight/recognition/shared_space.hpp"
 
 namespace resight {
 
@@ -70,7 +71,8 @@ class ObjectHistory {
     int seen_view = -1;                  // likewise, and saw itself
     int since_view = -1;                 // that it was first recognised with at its place
     std::optional<ObjectEvent> arrival;  // that told of it: kAdded or kMoved
-    int left_view = -1;                  // first view that saw its place free
+    int left_view = -1;                  // first view that saw its place free, or taken
+    bool is_taken = false;               // by another object
     double confidence = 0;               // of that
   };
 
@@ -93,12 +95,20 @@ class ObjectHistory {
                                    std::span<const int> track_of) const;
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
-  [[nodiscard]] bool is_place_taken(const Track& track, std::span<const Detection> detections,
-                                    std::span<const int> track_of) const;
+  static void leave(Track& track, int view, double confidence, bool is_taken);
+  [[nodiscard]] const Detection* find_taker(const Track& track, bool is_surface_seen,
+                                            std::span<const Detection> detections, std::span<const int> track_of) const;
+  [[nodiscard]] bool is_still_taken(const Track& left, int view) const;
   [[nodiscard]] const ObjectModel& model_of(const auto& thing) const {
     return library_.objects[static_cast<std::size_t>(thing.object)];
   }
-  [[nodiscard]] std::optional<int> last_seen_taken(const Detection& detection) const;
+  /// Most of the body of the one lies in the other: both cannot be there.
+  [[nodiscard]] bool is_in_space_of(const auto& one, const auto& other) const {
+    constexpr double kMinTakenShare = 0.5;
+    return share_within(model_of(one), one.world_from_object, model_of(other), other.world_from_object) >=
+           kMinTakenShare;
+  }
+  [[nodiscard]] std::optional<int> last_seen_taken(const Detection& detection, int view) const;
   [[nodiscard]] Track* find_added_since(const Track& left);
   void join(Track& left, Track& added, int view, std::vector<Detection>& detections, std::vector<ObjectEvent>& events);
   [[nodiscard]] Track* find_left(const Detection& detection, std::optional<int> last_free_view);

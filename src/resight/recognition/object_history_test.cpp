@@ -340,6 +340,8 @@ TEST_F(ObjectHistoryTest, AnOldPlaceThatTheViewDoesNotConfirmIsLeft) {
   const auto events = history_->update(1, second, half_free, true);
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
+  EXPECT_EQ(second[0].track, -1) << "one object, one place";
+  EXPECT_EQ(second[1].track, 0);
 }
 
 TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneStoodHasTakenItsPlace) {
@@ -361,6 +363,29 @@ TEST_F(ObjectHistoryTest, TakenForAnotherInOneViewIsNotRemoved) {
   EXPECT_EQ(std::ranges::count(events, K::kRemoved, &ObjectEvent::kind), 0);
   EXPECT_EQ(events[0].kind, K::kStillThere);
   EXPECT_EQ(events[0].object, 0);
+}
+
+TEST_F(ObjectHistoryTest, TakenByWhatWasSeenOnceIsNotRemoved) {
+  view({{0, left_}}, see_plates({left_}));
+  view({{1, left_}}, see_plates({left_}));
+  EXPECT_EQ(kinds(view({}, see_nothing())), (std::vector{K::kNotSeen})) << "of the other one";
+  EXPECT_TRUE(history_->finish().empty());
+  const std::vector<KnownObject> known = history_->known_objects();
+  EXPECT_EQ(known.size(), 2U);
+}
+
+TEST_F(ObjectHistoryTest, TwoOnOneSpotInTheFirstViewAreBothFound) {
+  const Rigid3 near = plate_at(-0.28, 0, 1);
+  EXPECT_EQ(kinds(view({{0, left_}, {1, near}}, see_plates({left_}))), (std::vector{K::kFound, K::kFound}));
+}
+
+TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneWasFoundToHaveMovedAwayWasAdded) {
+  view({{0, left_}}, see_plates({left_}));
+  view({{0, right_}}, see_plates({left_, right_}));  // Something stands at the old place, and is not recognised.
+  const auto events = view({{0, right_}, {1, left_}}, see_plates({left_, right_}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kMoved, K::kAdded})) << "not found";
+  EXPECT_EQ(events[0].object, 0);
+  EXPECT_EQ(events[1].object, 1);
 }
 
 TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneMovedAwayWasAdded) {
@@ -386,6 +411,38 @@ TEST_F(ObjectHistoryTest, AnArrivalWhosePoseTurnsOutOtherwiseIsToldAnew) {
   EXPECT_EQ(events[1].replaces->track, told[0].track);
   EXPECT_EQ(events[1].replaces->view, 1);
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere})) << "once";
+}
+
+TEST_F(ObjectHistoryTest, AnArrivalThatWasCorrectedIsReplacedAsItWasToldLast) {
+  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
+  for (const bool at_once : {false, true}) {
+    history_ = std::make_unique<ObjectHistory>(library_);
+    view_ = 0;
+    std::vector<std::vector<ObjectEvent>> all;
+    all.push_back(view({{0, left_}}, see_plates({left_})));
+    all.push_back(view({{0, turned}}, see_plates({left_, right_})));  // added: the old place looks taken
+    if (!at_once) all.push_back(view({{0, right_}}, see_plates({left_, right_})));
+    all.push_back(view({{0, right_}}, see_plates({right_})));  // moved there
+    std::vector<std::vector<ObjectEvent>*> views;
+    for (auto& events : all) views.push_back(&events);
+    drop_replaced(views);
+    std::vector<ObjectEventKind> changes;
+    for (const auto& events : all)
+      for (const ObjectEvent& e : events)
+        if (is_change(e.kind)) changes.push_back(e.kind);
+    EXPECT_EQ(changes, (std::vector{K::kMoved})) << "corrected in the same view: " << at_once;
+  }
+}
+
+TEST_F(ObjectHistoryTest, AMoveThatTurnsOutToBeNoneIsTakenBack) {
+  const Rigid3 shifted = plate_at(-0.24, 0, 1);
+  view({{0, left_}}, see_plates({left_}));
+  ASSERT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
+  const auto events = view({{0, left_}}, see_plates({plate_at(-0.26, 0, 1)}));
+  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere}));
+  ASSERT_TRUE(events[0].replaces);
+  EXPECT_EQ(events[0].replaces->kind, K::kMoved);
+  EXPECT_EQ(events[0].replaces->view, 1);
 }
 
 TEST_F(ObjectHistoryTest, LongAfterItsArrivalAnOtherPoseIsNoNews) {
