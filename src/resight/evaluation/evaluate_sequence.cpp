@@ -83,7 +83,8 @@ class SequenceEvaluator {
   }
 
   void keep_changes(const std::vector<ObjectEvent>& events) {
-    std::ranges::copy_if(events, std::back_inserter(changes_), [](const ObjectEvent& e) { return is_change(e.kind); });
+    std::ranges::copy_if(events, std::back_inserter(changes_),
+                         [](const ObjectEvent& e) { return is_change(e.kind) || e.replaces; });
   }
 
   [[nodiscard]] std::vector<ReportedChange> reported_changes() const {
