@@ -12,10 +12,10 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "../quality/arguments.hpp"
+#include "memory_in_use.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
 
@@ -33,14 +33,6 @@ double median_of_three_s(Work&& work) {
   }
   std::ranges::sort(times);
   return times[1];
-}
-
-double memory_in_use_mb() {
-  std::ifstream file("/proc/self/statm");
-  double all = 0;
-  double resident = 0;
-  file >> all >> resident;
-  return 1e-6 * resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 ModelLibrary repeat_objects(const ModelLibrary& library, int count) {

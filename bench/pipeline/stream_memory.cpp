@@ -4,16 +4,15 @@
 // of the views since the last row, of those that were searched and of the quiet ones.
 //   bench_stream_memory sequence models.resight [preset] [views=10000] [threads=2]
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <vector>
 
 #include "../quality/arguments.hpp"
+#include "memory_in_use.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
@@ -23,15 +22,6 @@ namespace {
 using namespace resight;
 
 constexpr int kRows = 20;
-
-double memory_in_use_mb() {
-  const double page_mb = 1e-6 * static_cast<double>(sysconf(_SC_PAGESIZE));
-  std::ifstream file("/proc/self/statm");
-  double all = 0;
-  double resident = 0;
-  file >> all >> resident;
-  return resident * page_mb;
-}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;

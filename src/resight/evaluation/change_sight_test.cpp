@@ -12,10 +12,9 @@ using Kind = ObjectEventKind;
 
 ModelLibrary make_library() {
   ModelLibrary library;
-  library.objects.resize(2);
-  library.objects[0].name = "mug";
-  library.objects[0].diameter_m = 0.1F;
-  library.objects[1].name = "soup";
+  ObjectModel& mug = library.objects.emplace_back();
+  mug.name = "mug";
+  mug.diameter_m = 0.1F;
   return library;
 }
 
@@ -81,6 +80,25 @@ TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].last_there_view, 0);
   EXPECT_EQ(finder.sights()[2].last_there_view, -1);
+}
+
+// Another mug stands at the new place before, and at the old one after: no view shows either without a mug.
+TEST(ChangeSightFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(2);
+  GroundTruthObject other;
+  other.object = "mug";
+  other.visible_share = 0.5;
+  other.camera_from_object = at(0.3);
+  truth.views[0].objects = {other};
+  other.camera_from_object = at(0);
+  truth.views[1].objects = {other};
+  ChangeSightFinder finder(library, truth);
+  for (int v = 0; v < 2; ++v) finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
 }
 
 TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
