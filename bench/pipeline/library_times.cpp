@@ -18,6 +18,7 @@
 #include "memory_in_use.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
+#include "resize_library.hpp"
 
 namespace {
 
@@ -35,18 +36,6 @@ double median_of_three_s(Work&& work) {
   return times[1];
 }
 
-ModelLibrary repeat_objects(const ModelLibrary& library, int count) {
-  ModelLibrary repeated = library;
-  repeated.objects.clear();
-  for (int i = 0; i < count; ++i) {
-    ObjectModel object = library.objects[static_cast<std::size_t>(i) % library.objects.size()];
-    object.name = fmt::format("{}_{}", object.name, i);
-    object.bop_id = i + 1;
-    repeated.objects.push_back(std::move(object));
-  }
-  return repeated;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -61,9 +50,10 @@ int main(int argc, char** argv) {
   fmt::print("| objects | file, MB | loaded in, s | made ready in, s | memory, MB |\n|---|---|---|---|---|\n");
   for (const int count : counts) {
     {
-      const ModelLibrary given = value_or_exit(load_library(argv[1]));
-      if (given.objects.empty()) exit_with("the library has no objects");
-      const auto saved = save_library(repeat_objects(given, count), file);
+      ModelLibrary repeated = value_or_exit(load_library(argv[1]));
+      if (repeated.objects.empty()) exit_with("the library has no objects");
+      resize_library(repeated, static_cast<std::size_t>(count));
+      const auto saved = save_library(repeated, file);
       if (!saved.ok()) exit_with(saved.error().message);
     }
     malloc_trim(0);  // What follows counts alone.

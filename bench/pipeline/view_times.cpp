@@ -2,7 +2,8 @@
 // Time of a view by stage over a sequence, from image files to detections: median and 95 % quantile of wall time, mean
 // CPU time, what went through each stage, and the peak memory. Several runs of a sequence differ in time only.
 //   resight simulate --preset demo --seed 3 --out scene; resight train scene/models --out models.resight
-//   bench_view_times scene models.resight [preset] [config.toml|-] [K] [threads] [max views] [max objects]
+//   bench_view_times scene models.resight [preset] [config.toml|-] [K] [threads] [max views] [objects]
+// Objects beyond those of the library are these again, under other names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
+#include "resize_library.hpp"
 
 namespace {
 
@@ -86,14 +88,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 int main(int argc, char** argv) {
   if (argc < 3)
-    exit_with(
-        "usage: bench_view_times SEQUENCE LIBRARY [preset] [config.toml|-] [K] [threads] [max views] [max objects]");
+    exit_with("usage: bench_view_times SEQUENCE LIBRARY [preset] [config.toml|-] [K] [threads] [max views] [objects]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const auto start_loading = std::chrono::steady_clock::now();
   ModelLibrary library = value_or_exit(load_library(argv[2]));
   const double loading_s = seconds_since(start_loading);
-  const std::size_t max_objects = argc > 8 ? static_cast<std::size_t>(std::atoi(argv[8])) : library.objects.size();
-  while (library.objects.size() > max_objects) library.objects.pop_back();
+  if (library.objects.empty()) exit_with("the library has no objects");
+  if (argc > 8) resize_library(library, static_cast<std::size_t>(std::max(1, std::atoi(argv[8]))));
   RecognizerConfig config = preset_or_exit(argc > 3 ? argv[3] : "default");
   if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_config(argv[4], config));
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);

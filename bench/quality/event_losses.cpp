@@ -39,7 +39,8 @@ Detection detection_of(const Json& json, const ModelLibrary& library) {
   detection.visible_share = json.at("visible_share");
   detection.world_from_object = pose_of(json.at("world_from_object"));
   for (const Json& e : json.at("evidence"))
-    detection.views.push_back({e.at("view"), e.at("allowed"), e.at("visible_share"), e.at("explained_share")});
+    detection.views.push_back(
+        {e.at("view"), e.at("allowed"), e.at("visible_share"), e.at("explained_share"), e.value("color_share", 0.0)});
   if (detection.views.empty()) exit_with("a detection has no evidence");
   return detection;
 }

@@ -29,7 +29,7 @@ void print_evidence(const HypothesisEvidence& e) {
       "{:.0f} plane "
       "{:.0f} alone "
       "{:.0f}\n",
-      to_string(e.verdict), e.score, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_contrast,
+      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_contrast,
       e.print_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
       e.plane_cost, e.cost_alone);
   if (e.accepted) return;

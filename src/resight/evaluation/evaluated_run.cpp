@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "resight/core/check.hpp"
+
 namespace resight {
 namespace {
 
@@ -108,13 +110,19 @@ Json view_json(const EvaluatedView& view) {
           {"times", times}};
 }
 
+double probability_from(const Json& j) {
+  const double probability = j.get<double>();
+  check_in_range("score", probability, 0, 1);
+  return probability;
+}
+
 EvaluatedView view_from(const Json& j) {
   EvaluatedView view;
   view.name = j.at("name").get<std::string>();
   for (const Json& t : j.at("truth")) view.truth.push_back(truth_from(t));
   for (const Json& d : j.at("detections"))
     view.detections.push_back({d.at("object").get<std::string>(), pose_from(d.at("camera_from_object")),
-                               d.at("score").get<double>(), verdict_from(d.at("verdict").get<std::string>())});
+                               probability_from(d.at("score")), verdict_from(d.at("verdict").get<std::string>())});
   view.score = score_from(j.at("score"));
   view.strict_score = score_from(j.at("strict_score"));
   view.counts = counts_from(j.at("counts"));

@@ -73,9 +73,12 @@ class Summarizer {
     ++num_with_view_[number];
     for (const EvaluatedTruth& t : view.truth)
       if (t.counts) add_truth(t);
-    for (const EvaluatedDetection& d : view.detections)
-      if (d.verdict == DetectionVerdict::kFalsePositive || d.verdict == DetectionVerdict::kGhost)
-        ++summary_.by_object[d.object].false_positives;
+    for (const EvaluatedDetection& d : view.detections) {
+      if (d.verdict == DetectionVerdict::kIgnored) continue;
+      const bool is_right = d.verdict == DetectionVerdict::kCorrect;
+      summary_.reliability.add(d.score, is_right);
+      if (!is_right) ++summary_.by_object[d.object].false_positives;
+    }
   }
 
   void add_truth(const EvaluatedTruth& t) {

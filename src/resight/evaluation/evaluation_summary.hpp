@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "resight/evaluation/evaluated_run.hpp"
+#include "resight/evaluation/reliability.hpp"
 
 namespace resight {
 
@@ -36,6 +37,7 @@ struct ConfigurationSummary {
   RecognitionScore strict_score;  ///< Within 1 cm and 10 deg.
   ErrorQuantiles center_error_m;  ///< Of the true positives within the loose pair.
   ErrorQuantiles rotation_error_rad;
+  Reliability reliability;  ///< Of the scores of all detections that count.
   int num_ghosts = 0;
   int num_former_places = 0;  ///< Places left, over the sequences.
   HypothesisCounts counts;    ///< Sums over the views.

@@ -58,7 +58,9 @@ TEST(EvaluatedRun, ComesBackToTheBit) {
 
 TEST(EvaluatedRun, DamageIsToldInOneLine) {
   std::string text = format_run(make_run("a", "mvr", 3));
-  for (const std::string& bad : {text.substr(0, text.size() / 2), std::string("[]"), std::string()}) {
+  std::string high_score = text;
+  high_score.replace(high_score.find("\"score\":0.5"), 11, "\"score\":1.5");
+  for (const std::string& bad : {text.substr(0, text.size() / 2), high_score, std::string("[]"), std::string()}) {
     const auto run = parse_run(bad, "a.json");
     ASSERT_FALSE(run.ok());
     EXPECT_TRUE(run.error().message.starts_with("a.json: ")) << run.error().message;
@@ -78,6 +80,7 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_EQ(c.num_sequences, 2);
   EXPECT_EQ(c.num_views, 3);
   EXPECT_EQ(c.score, (RecognitionScore{2, 2, 9}));
+  EXPECT_NEAR(c.reliability.calibration_error(), (0.5 + 0.25) / 2, 1e-12) << "right at .5, and a ghost at .25";
   EXPECT_DOUBLE_EQ(c.score.recall(), 2.0 / 11);
   EXPECT_EQ(c.num_ghosts, 3);
   EXPECT_DOUBLE_EQ(c.ghosts_per_change(), 0.75);

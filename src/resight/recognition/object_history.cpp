@@ -13,11 +13,6 @@ namespace {
 
 constexpr int kUnmatched = -1;
 
-double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
-  const Eigen::Vector3d center = model.center.cast<double>();
-  return (a * center - b * center).norm();
-}
-
 // What only earlier views saw is no news.
 bool is_seen_now(const Detection& detection, double min_share) {
   return detection.views.empty() || detection.views.back().confirmed_share() >= min_share;
@@ -31,13 +26,14 @@ void ObjectHistoryOptions::check() const {
   check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
   check_not_negative("ObjectHistoryOptions.correct_views", correct_views);
   check_in_range("ObjectHistoryOptions.min_new_share", min_new_share, 0, 1);
+  check_in_range("ObjectHistoryOptions.min_told_score", min_told_score, 0, 1);
   check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
   presence.check();
   memory.check();
 }
 
 ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
-    : library_(library), options_(std::move(options)), memory_(options_.memory) {
+    : library_(library), options_(std::move(options)), memory_(options_.memory), unsure_(library) {
   options_.check();
 }
 
@@ -47,15 +43,31 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   std::vector<int> track_of(detections.size(), kUnmatched);
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
+  std::vector<std::size_t> unsure;
   for (std::size_t d = 0; d < detections.size(); ++d) {
-    if (track_of[d] != kUnmatched || !is_seen_now(detections[d], options_.min_new_share)) continue;
-    place_new(detections[d], view, current, use_evidence, events);
-    for (std::size_t other = 0; other < detections.size(); ++other)  // What only older views saw at its old place.
-      if (other != d && detections[other].track == detections[d].track) detections[other].track = -1;
+    if (track_of[d] != kUnmatched) {
+      unsure_.take(detections[d], view);  // Two of one kind are not in one place.
+    } else if (is_seen_now(detections[d], options_.min_new_share)) {
+      if (!is_sure(detections[d], view)) {
+        unsure.push_back(d);
+        continue;
+      }
+      place_new(detections[d], view, current, use_evidence, events);
+      for (std::size_t other = 0; other < detections.size(); ++other)  // What only older views saw at its old place.
+        if (other != d && detections[other].track == detections[d].track) detections[other].track = -1;
+    }
+  }
+  for (const std::size_t d : unsure) {
+    detections[d].track = unsure_.keep(detections[d], view, next_id_);
+    next_id_ = std::max(next_id_, detections[d].track + 1);
   }
   confirm_removals(view, events);
   std::erase_if(tracks_, [](const Track& track) { return track.state == State::kJoined; });
-  if (use_evidence) memory_.add(view, current);
+  if (use_evidence) {
+    unsure_.forget_gone(view, current, options_.presence);
+    memory_.add(view, current);
+  }
+  unsure_.forget_before(view - options_.memory.max_views);
   std::erase_if(former_stays_, [&](const Stay& stay) { return !memory_.reaches_back_to(stay.seen_view); });
   return events;
 }
@@ -103,7 +115,7 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
 
 // What is first seen in part may be taken to lie a little otherwise than it does.
 void ObjectHistory::correct_arrival(Track& track, int view, std::vector<ObjectEvent>& events) const {
-  if (!track.arrival || view - track.since_view > options_.correct_views) return;
+  if (!track.arrival || view - track.told_view > options_.correct_views) return;
   ObjectEvent& arrival = *track.arrival;
   const ObjectModel& model = model_of(track);
   if (is_same_place(model, *arrival.world_from_object_after, track.world_from_object)) return;
@@ -124,7 +136,7 @@ int ObjectHistory::find_displaced(const Track& track, std::span<const Detection>
                                   std::span<const int> track_of) const {
   const ObjectModel& model = model_of(track);
   int nearest = kUnmatched;
-  double nearest_m = 0.5 * model.diameter_m;
+  double nearest_m = same_body_distance_m(model);
   for (std::size_t d = 0; d < detections.size(); ++d) {
     if (track_of[d] != kUnmatched || detections[d].object != track.object) continue;
     const double distance_m = center_distance_m(model, track.world_from_object, detections[d].world_from_object);
@@ -171,7 +183,7 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
                         0.0, std::nullopt});
       continue;
     }
-    leave(track, view, std::min(1.0, taker->score), true);
+    leave(track, view, taker->score, true);
     left.push_back(t);
   }
   for (const std::size_t t : left) {
@@ -195,6 +207,7 @@ const Detection* ObjectHistory::find_taker(const Track& track, bool is_surface_s
     const Detection& detection = detections[d];
     if (detection.object == track.object || !is_seen_now(detection, options_.min_new_share)) continue;
     const int other = track_of[d];
+    if (other == kUnmatched && !is_sure(detection, -1)) continue;
     if (other != kUnmatched && tracks_[static_cast<std::size_t>(other)].since_view <= track.seen_view) continue;
     if (is_in_space_of(track, detection) && (!is_surface_seen || is_in_space_of(detection, track))) return &detection;
   }
@@ -255,11 +268,13 @@ void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detect
 
 // The nearest old place of this kind of object that is seen free, and one that it can have come from right away, which
 // it cannot if its new place was seen free as well since then; one that is leaving goes before one long gone.
-ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::optional<int> last_free_view) {
+ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, int since_view,
+                                               std::optional<int> last_free_view) {
   const ObjectModel& model = model_of(detection);
   Track* left = nullptr;
   for (Track& track : tracks_) {
     if (track.object != detection.object || (track.state != State::kLeaving && track.state != State::kGone)) continue;
+    if (track.seen_view >= since_view) continue;  // Elsewhere, when this one was here.
     const auto rank = [&](const Track& t) {
       return std::tuple(last_free_view && *last_free_view >= t.left_view, t.state == State::kGone,
                         center_distance_m(model, t.world_from_object, detection.world_from_object));
@@ -271,10 +286,11 @@ ObjectHistory::Track* ObjectHistory::find_left(const Detection& detection, std::
 
 // The only known object of this kind that the view does not show, if it does not see its place: what is new elsewhere
 // is likely that one.
-ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current) {
+ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detection, int since_view,
+                                                       const RgbdFrame& current) {
   Track* only = nullptr;
   for (Track& track : tracks_) {
-    if (track.object != detection.object || track.state != State::kPresent || track.seen_view == view) continue;
+    if (track.object != detection.object || track.state != State::kPresent || track.seen_view >= since_view) continue;
     if (only != nullptr) return nullptr;
     only = &track;
   }
@@ -285,17 +301,30 @@ ObjectHistory::Track* ObjectHistory::find_out_of_sight(const Detection& detectio
   return is_there ? nullptr : only;
 }
 
-ObjectHistory::Track& ObjectHistory::new_track(int object) {
+ObjectHistory::Track& ObjectHistory::new_track(int object, int id) {
   Track track;
-  track.id = next_id_++;
+  track.id = id;
   track.object = object;
   return tracks_.emplace_back(track);
+}
+
+// What may well be something else is not told before a view is sure of it; what lies in the old place of one that has
+// just left it is that one.
+bool ObjectHistory::is_sure(const Detection& detection, int view) const {
+  return detection.score >= options_.min_told_score || std::ranges::any_of(tracks_, [&](const Track& track) {
+           const ObjectModel& model = model_of(track);
+           return track.object == detection.object && track.state == State::kLeaving && track.left_view == view &&
+                  center_distance_m(model, track.world_from_object, detection.world_from_object) <
+                      same_body_distance_m(model);
+         });
 }
 
 void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                               std::vector<ObjectEvent>& events) {
   constexpr double kOutOfSightConfidence = 0.5;
   const PointCloud& surface = model_of(detection).surface;
+  const std::optional<KnownObject> unsure = unsure_.take(detection, view);
+  const int since_view = unsure ? unsure->since_view : view;
   std::optional<int> last_free_view;  // of this object: with nothing there, or another one
   if (use_evidence)
     last_free_view = std::max(memory_.last_seen_free(surface, detection.world_from_object, options_.presence),
@@ -313,7 +342,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
     event.world_from_object_before = from.world_from_object;
     event.confidence = std::min(confidence, detection.score);
   };
-  Track* from = find_left(detection, last_free_view);
+  Track* from = find_left(detection, since_view, last_free_view);
   const bool was_away = from != nullptr && last_free_view && *last_free_view >= from->left_view;
   // Whether the new place was free since a time that is forgotten nobody knows.
   const bool is_recent =
@@ -321,7 +350,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
   if (from != nullptr && is_recent && !was_away) {
     tell_move(*from, from->confidence);
     if (from->state == State::kGone) event.replaces = {ObjectEventKind::kRemoved, from->id, from->left_view};
-  } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, view, current) : nullptr;
+  } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, since_view, current) : nullptr;
              hidden != nullptr) {
     tell_move(*hidden, kOutOfSightConfidence);
     std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id && !is_change(e.kind); });
@@ -330,13 +359,14 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
     remove(*from, events);  // It was away before it was put here.
   }
   if (from == nullptr)
-    from = &new_track(detection.object);
+    from = &new_track(detection.object, unsure ? unsure->track : next_id_++);
   else
     former_stays_.push_back({from->object, from->world_from_object, from->seen_view});
   event.track = from->id;
   events.push_back(event);
   from->world_from_object = detection.world_from_object;
-  from->last_view = from->seen_view = from->since_view = view;
+  from->last_view = from->seen_view = from->told_view = view;
+  from->since_view = since_view;
   if (is_change(event.kind))
     from->arrival = event;
   else
@@ -374,6 +404,7 @@ std::vector<KnownObject> ObjectHistory::known_objects() const {
     if (track.state == State::kPresent)
       known.push_back(
           {track.id, track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
+  known.insert(known.end(), unsure_.objects().begin(), unsure_.objects().end());
   return known;
 }
 

@@ -9,6 +9,7 @@
 #include "resight/recognition/object_presence.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/recognition/shared_space.hpp"
+#include "resight/recognition/unsure_objects.hpp"
 
 namespace resight {
 
@@ -17,23 +18,15 @@ struct ObjectHistoryOptions {
   double same_rotation_rad = 0.349;       ///< 20 deg, over the object's symmetries.
   double min_displaced_gone_share = 0.2;  ///< An object recognised within its old place has moved if at least so much
                                           ///< of that is seen free; with less it is only seen better, or worse.
-  double min_new_share = 0;  ///< What the view itself confirms less of (of the model's points) is not new in it.
+  double min_new_share = 0;   ///< What the view itself confirms less of (of the model's points) is not new in it.
+  double min_told_score = 0;  ///< What is new at a place and scores less is not told until it scores as much. Its old
+                              ///< place, if it has moved, is told of as if it had not been recognised.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
-  int correct_views = 3;  ///< An arrival whose pose turns out otherwise within so many views is told anew.
+  int correct_views = 6;  ///< An arrival whose pose turns out otherwise so many views after it was told is told anew.
   PresenceOptions presence;
   DepthMemoryOptions memory;
   void check() const;
-};
-
-/// An object that was not seen to leave its place.
-struct KnownObject {
-  int track = -1;
-  int object = -1;
-  Rigid3 world_from_object;
-  int last_view = -1;   ///< That it was recognised with.
-  int seen_view = -1;   ///< Likewise, and that confirmed it itself.
-  int since_view = -1;  ///< That it was first recognised with at its place.
 };
 
 /// Remembers which object was where, and tells what happened to it. Memory grows with the number of objects, not of
@@ -48,7 +41,9 @@ class ObjectHistory {
   ///   while both were seen free; also, at a place that was free before, if of its kind the only one that is not
   ///   recognised is out of sight,
   /// - else added, if an earlier view saw the place free, or another object in it,
-  /// - else found.
+  /// - else found;
+  /// if its score is below min_told_score, it is looked for in the next views and nothing is told of it before one of
+  /// them scores as much.
   /// What leaves a place after one of its kind was added elsewhere has moved there; another object recognised in its
   /// place tells that it has left as well as free space does. An arrival whose pose the next views correct is told
   /// anew. `current` is the view's frame. Without change detection (`use_evidence` false) no free space is looked for:
@@ -57,7 +52,7 @@ class ObjectHistory {
                                                 bool use_evidence);
   /// Removals that still wait for confirmation; to be called after the last view.
   [[nodiscard]] std::vector<ObjectEvent> finish();
-  /// What is known to be there, by track; whether the last view saw it or not.
+  /// What is known to be there, whether the last view saw it or not; what is not sure comes last.
   [[nodiscard]] std::vector<KnownObject> known_objects() const;
 
  private:
@@ -70,6 +65,7 @@ class ObjectHistory {
     State state = State::kPresent;
     int seen_view = -1;                  // likewise, and saw itself
     int since_view = -1;                 // that it was first recognised with at its place
+    int told_view = -1;                  // that told so
     std::optional<ObjectEvent> arrival;  // that told of it: kAdded or kMoved
     int left_view = -1;                  // first view that saw its place free, or taken
     bool is_taken = false;               // by another object
@@ -111,9 +107,10 @@ class ObjectHistory {
   [[nodiscard]] std::optional<int> last_seen_taken(const Detection& detection, int view) const;
   [[nodiscard]] Track* find_added_since(const Track& left);
   void join(Track& left, Track& added, int view, std::vector<Detection>& detections, std::vector<ObjectEvent>& events);
-  [[nodiscard]] Track* find_left(const Detection& detection, std::optional<int> last_free_view);
-  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int view, const RgbdFrame& current);
-  Track& new_track(int object);
+  [[nodiscard]] Track* find_left(const Detection& detection, int since_view, std::optional<int> last_free_view);
+  [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int since_view, const RgbdFrame& current);
+  Track& new_track(int object, int id);
+  [[nodiscard]] bool is_sure(const Detection& detection, int view) const;
   void place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                  std::vector<ObjectEvent>& events);
   void confirm_removals(int view, std::vector<ObjectEvent>& events);
@@ -124,6 +121,7 @@ class ObjectHistory {
   DepthMemory memory_;
   std::vector<Track> tracks_;
   std::vector<Stay> former_stays_;  // since the memory begins
+  UnsureObjects unsure_;
   int next_id_ = 0;
 };
 

@@ -187,10 +187,17 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"integrate.voxel_m", &c.integrate.voxel_m},
                                   {"integrate.min_edge_distance_px", &c.integrate.min_edge_distance_px},
                                   {"integrate.min_points_per_voxel", &c.integrate.min_points_per_voxel},
+                                  {"score.offset", &c.score.offset},
+                                  {"score.gain_weight", &c.score.gain_weight},
+                                  {"score.correspondence_weight", &c.score.correspondence_weight},
+                                  {"score.fit_weight", &c.score.fit_weight},
+                                  {"score.visible_weight", &c.score.visible_weight},
+                                  {"score.known_weight", &c.score.known_weight},
                                   {"history.same_place_m", &c.history.same_place_m},
                                   {"history.same_rotation_rad", &c.history.same_rotation_rad},
                                   {"history.confirm_removal_views", &c.history.confirm_removal_views},
                                   {"history.correct_views", &c.history.correct_views},
+                                  {"history.min_told_score", &c.history.min_told_score},
                                   {"history.min_new_share", &c.history.min_new_share},
                                   {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
                                   {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
@@ -374,6 +381,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.detect_changes = name == "mvr-chd";
     config.changes.occlusion_test = OcclusionTest::kSphericalBins;
     config.verify.refine.max_iterations = 0;
+    config.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
     return config;
   }
   if (name == "default") {
@@ -401,6 +409,12 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.01;
     config.history.min_new_share = 0.01;
+    config.history.min_told_score = 0.7;
+    config.score = {.offset = -4.24,
+                    .gain_weight = 5.14,
+                    .correspondence_weight = 0.71,
+                    .visible_weight = 6.87,
+                    .known_weight = 0.83};
     config.remember_objects = true;
     config.poses.enabled = true;
     config.min_carried_share = 0.8;
@@ -454,6 +468,7 @@ void RecognizerConfig::check() const {
   removal.check();
   integrate.check();
   verify.check();
+  score.check();
   history.check();
 }
 

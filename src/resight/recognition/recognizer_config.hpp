@@ -14,6 +14,7 @@
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
 #include "resight/recognition/attention.hpp"
+#include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -53,6 +54,7 @@ struct RecognizerConfig {
   RemovalSupportOptions removal;
   IntegrateOptions integrate;
   VerifyOptions verify;
+  DetectionScoreOptions score;
   ObjectHistoryOptions history;
 
   /// "mvr" (the paper's baseline: a static world), "mvr-chd" (the paper's system) or "default" (the best we know).

@@ -93,7 +93,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
   constexpr int kThreads = 1;
   constexpr int kPose = num_fields<EstimatePoseOptions>();
   const std::map<std::string, int> expected{
-      {"", num_fields<RecognizerConfig>() - 14},  // the options of the stages
+      {"", num_fields<RecognizerConfig>() - 15},  // the options of the stages
       {"attention", num_fields<AttentionOptions>()},
       {"poses", num_fields<CorrectCameraOptions>() - 2 + num_fields<AlignmentViewOptions>() +
                     num_fields<AlignViewOptions>() - kThreads - 2},  // the prior is that of the poses
@@ -112,6 +112,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
       {"verify", num_fields<VerifyOptions>() - 3 - kThreads + num_fields<LightLimits>() +
                      num_fields<RefinePoseOptions>() + num_fields<PlainOptions>()},
+      {"score", num_fields<DetectionScoreOptions>()},
       {"history",
        num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthMemoryOptions>()}};
   std::map<std::string, int> found;

@@ -14,6 +14,8 @@
 #include "resight/core/check.hpp"
 #include "resight/core/deadline.hpp"
 #include "resight/recognition/attention.hpp"
+#include "resight/recognition/color_confirmation.hpp"
+#include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/explained_pixels.hpp"
 #include "resight/recognition/held_correspondences.hpp"
 #include "resight/recognition/object_history.hpp"
@@ -60,6 +62,7 @@ struct SceneRecognizer::Impl {
                                                         RecognitionTrace* trace);
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] bool is_known(const Hypothesis& hypothesis) const;
+  void look_without_depth(Detection& detection) const;
   void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
   [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
   [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, int number, StageTimes& times);
@@ -185,12 +188,12 @@ std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
   return hypotheses;
 }
 
-// Whether there is something to be won: it is new at its place, was not searched for lately, is nearer than ever
-// before, or was not all that the last view showed there.
+// Whether there is something to be won: it may be something else, is new at its place, was not searched for lately, is
+// nearer than ever before, or was not all that the last view showed there.
 bool SceneRecognizer::Impl::needs_search(const KnownObject& known, int number, double depth_m) const {
   const AttentionOptions& options = config.attention;
   const auto last = look_of_track.find(known.track);
-  return last == look_of_track.end() || number - known.since_view < options.object_min_views ||
+  return !known.is_sure || last == look_of_track.end() || number - known.since_view < options.object_min_views ||
          number - last->second.view >= options.object_look_every || known.seen_view + 1 != number ||
          last->second.explained_share < options.min_sure_share ||
          depth_m * options.max_distance_ratio < last->second.depth_m;
@@ -361,6 +364,15 @@ void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypoth
     std::erase_if(of_view, [&](const Hypothesis& h) { return refuted.contains(h.id); });
 }
 
+// What the newest view does not see by its depth, and does not see through, may still be seen by its colours.
+void SceneRecognizer::Impl::look_without_depth(Detection& detection) const {
+  DetectionViewEvidence& newest = detection.views.back();
+  if (!newest.allowed || newest.confirmed_share() >= config.min_reported_share) return;
+  const double share = color_confirmed_share(library.objects[static_cast<std::size_t>(detection.object)],
+                                             detection.world_from_object, scene.window().back().raw, config.verify);
+  if (share > newest.visible_share) newest.color_share = share;
+}
+
 void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) {
   leave_out_late(hypotheses, update);
   const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
@@ -378,11 +390,13 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     detection.hypothesis_id = hypotheses[h].id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = evidence.score;
+    detection.score = detection_score(evidence, is_known(hypotheses[h]), config.score);
+    detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     for (std::size_t v = 0; v < window.size(); ++v)
       detection.views.push_back({window[v].number, present.empty() || present[v * hypotheses.size() + h] != 0,
-                                 evidence.visible_share_per_view[v], evidence.explained_share_per_view[v]});
+                                 evidence.visible_share_per_view[v], evidence.explained_share_per_view[v], 0});
+    look_without_depth(detection);
     update.detections.push_back(std::move(detection));
   }
   update.counts.accepted = static_cast<int>(update.detections.size());

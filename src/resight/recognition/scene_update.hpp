@@ -18,8 +18,9 @@ struct DetectionViewEvidence {
   bool allowed = true;         ///< False: the change detection excludes it (the object was not there yet, or had left).
   double visible_share = 0;    ///< Of the model's points.
   double explained_share = 0;  ///< Of the visible ones.
+  double color_share = 0;      ///< Of the model's points: shown in the right colours, without depth (newest view only).
   /// Of the model's points: what the view itself sees and explains.
-  [[nodiscard]] double confirmed_share() const { return visible_share * explained_share; }
+  [[nodiscard]] double confirmed_share() const { return visible_share * explained_share + color_share; }
 };
 
 /// An object recognised in the scene as it stands at a view.
@@ -29,7 +30,8 @@ struct Detection {
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
-  double score = 0;          ///< In [0, 1].
+  double score = 0;          ///< How likely it is right, in [0, 1] (detection_score.hpp).
+  double fit = 0;            ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
 };

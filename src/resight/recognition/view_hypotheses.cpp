@@ -23,7 +23,7 @@ std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rig
 
 std::string generation_settings(const RecognizerConfig& config) {
   // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 18> kLaterSections{"preset",
+  constexpr std::array<std::string_view, 19> kLaterSections{"preset",
                                                             "num_previous_views",
                                                             "detect_changes",
                                                             "cluster_hypotheses",
@@ -39,6 +39,7 @@ std::string generation_settings(const RecognizerConfig& config) {
                                                             "removal.",
                                                             "integrate.",
                                                             "verify.",
+                                                            "score.",
                                                             "history.",
                                                             "presence."};
   // Shapes are checked with the colours of the verification.

@@ -49,6 +49,16 @@ Json changes_json(const ConfigurationSummary& c) {
           {"max_delay_views", delays.empty() ? Json(nullptr) : Json(*std::ranges::max_element(delays))}};
 }
 
+Json reliability_json(const Reliability& reliability) {
+  Json bins = Json::array();
+  for (const ScoreBin& bin : reliability.bins())
+    bins.push_back({{"from", bin.from},
+                    {"detections", bin.count()},
+                    {"mean_score", number(bin.mean_score())},
+                    {"share_right", number(bin.share_right())}});
+  return {{"calibration_error", number(reliability.calibration_error())}, {"by_score", bins}};
+}
+
 Json key_json(const ConfigurationSummary& c) {
   return {{"preset", c.preset}, {"num_previous_views", c.num_previous_views}, {"is_clustered", c.is_clustered}};
 }
@@ -65,6 +75,7 @@ Json configuration_json(const ConfigurationSummary& c) {
   json["ghosts"] = {{"detections", c.num_ghosts},
                     {"places_left", c.num_former_places},
                     {"per_place_left", number(c.ghosts_per_change())}};
+  json["reliability"] = reliability_json(c.reliability);
   json["hypotheses"] = {{"correspondences", c.counts.correspondences},
                         {"generated", c.counts.generated},
                         {"merged", c.counts.merged},

@@ -76,6 +76,8 @@ TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
   EXPECT_NE(text.find("| 2 | 0.50 |"), std::string::npos);          // ghosts, per place left
   EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // clustering keeps 10 of 40
   EXPECT_NE(text.find("no keypoints"), std::string::npos);
+  EXPECT_NE(text.find("| `mvr` | 5 | .500 | - | - | .500 / .000 (2) | - |"), std::string::npos)
+      << "two ghosts of score .5";
   EXPECT_NE(text.find("| `mvr-chd` - `mvr` | 5 | 1 | +0.000 ± - |"), std::string::npos);
 }
 
@@ -86,6 +88,9 @@ TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {
   ASSERT_EQ(json["configurations"].size(), 5U);
   EXPECT_EQ(json["configurations"][1]["num_previous_views"], 5);
   EXPECT_DOUBLE_EQ(json["configurations"][1]["score_5cm_30deg"]["recall"].get<double>(), 3.0 / 13);
+  EXPECT_EQ(json["configurations"][1]["reliability"]["calibration_error"], 0.5);
+  EXPECT_EQ(json["configurations"][1]["reliability"]["by_score"][2]["detections"], 2);
+  EXPECT_TRUE(json["configurations"][1]["reliability"]["by_score"][0]["share_right"].is_null());
   EXPECT_TRUE(json["configurations"][0]["changes"].is_null());
   EXPECT_FALSE(json["configurations"][3]["changes"].is_null());
   EXPECT_EQ(text.find("wall"), std::string::npos);

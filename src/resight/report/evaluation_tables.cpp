@@ -84,6 +84,36 @@ std::string clustering_table(Configurations configurations) {
          rows;
 }
 
+std::string bin_name(std::span<const ScoreBin> bins, std::size_t b) {
+  const double to = b + 1 < bins.size() ? bins[b + 1].from : 1;
+  return fmt::format("{:.2f} to {:.2f}", bins[b].from, to);
+}
+
+std::string bin_cell(const ScoreBin& bin) {
+  return bin.count() == 0 ? "-"
+                          : fmt::format("{} / {} ({})", share(bin.mean_score()), share(bin.share_right()), bin.count());
+}
+
+std::string reliability_table(Configurations configurations) {
+  if (configurations.empty()) return {};
+  std::string header = "| preset | K | calibration error |";
+  std::string rule = "|---|---|---|";
+  const auto bins = configurations.front().reliability.bins();
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    header += fmt::format(" {} |", bin_name(bins, b));
+    rule += "---|";
+  }
+  std::string rows;
+  for (const ConfigurationSummary& c : configurations) {
+    rows += fmt::format("| {} | {} | {} |", name_of(c), c.num_previous_views, share(c.reliability.calibration_error()));
+    for (const ScoreBin& bin : c.reliability.bins()) rows += fmt::format(" {} |", bin_cell(bin));
+    rows += "\n";
+  }
+  return fmt::format(
+      "\n## Scores\n\nDetections by their score: mean score / share of them that is right (how many).\n\n{}\n{}\n{}",
+      header, rule, rows);
+}
+
 std::string points_cells(const ChangePointScore& s) {
   return fmt::format("{} | {}", share(s.precision()), share(s.recall()));
 }
@@ -198,8 +228,8 @@ std::string format_evaluation_tables(const EvaluationHeader& header, Configurati
       title("Evaluation", header, configurations) +
       " Right: within 5 cm and 30 deg (strict: 1 cm and 10 deg) of an object that is at least 5 % visible. "
       "Ghost: an object reported at a place that it has left.\n\n";
-  text += recognition_table(configurations) + comparison_table(comparisons) + clustering_table(configurations) +
-          change_table(configurations);
+  text += recognition_table(configurations) + comparison_table(comparisons) + reliability_table(configurations) +
+          clustering_table(configurations) + change_table(configurations);
   text += loss_table(configurations, stages);
   for (const ConfigurationSummary& c : configurations) text += breakdown(c, stages);
   return text;

@@ -51,12 +51,14 @@ Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrar
     evidence.push_back({{"view", e.view},
                         {"allowed", e.allowed},
                         {"visible_share", e.visible_share},
-                        {"explained_share", e.explained_share}});
+                        {"explained_share", e.explained_share},
+                        {"color_share", e.color_share}});
   }
   Json json = {{"object", model.name},
                {"obj_id", model.bop_id},
                {"track", detection.track},
                {"score", detection.score},
+               {"fit", detection.fit},
                {"visible_share", detection.visible_share},
                {"camera_from_object", pose_json(view.update.world_from_camera.inverse() * detection.world_from_object)},
                {"world_from_object", pose_json(detection.world_from_object)},

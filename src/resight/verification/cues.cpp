@@ -192,7 +192,7 @@ struct CueComputer::Impl {
     }
     if (sum_weight > 0) {
       cues_.evidence.explained_share = sum_explained / sum_weight;
-      cues_.evidence.score = sum_fit / sum_weight;
+      cues_.evidence.fit = sum_fit / sum_weight;
     }
   }
 

@@ -18,7 +18,7 @@ constexpr float kScale =
 constexpr float kDark = 0.05F;          // Dark pairs weigh more, as they do to the eye, down to this.
 constexpr float kShadingPrior = 0.05F;  // Share of the total weight: normals that hardly differ tell no shading.
 constexpr float kMinGain = 0.05F;
-constexpr double kVotesForNone = 400;
+constexpr double kVotesForNone = 20;
 constexpr float kDim = 0.1F;  // Light of a channel that tells half as much of its gain as much light does.
 
 template <int kColumns>

@@ -75,9 +75,9 @@ TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
   const LightFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
   const LightFit none;
   const std::vector<LightFit> fits{blue, wrong, none, blue, wrong, wrong};
-  const std::vector<float> votes{900, 100, 1e6F, 900, 100, 100};
+  const std::vector<float> votes{900, 300, 1e6F, 900, 300, 300};
   EXPECT_TRUE(find_white_balance(fits, votes, limits).isApprox(blue.chroma()));
-  const std::vector<float> weak{50, 50, 50, 50, 50, 50};
+  const std::vector<float> weak{3, 3, 3, 3, 3, 3};
   EXPECT_TRUE((find_white_balance(fits, weak, limits) == 0).all());
   EXPECT_NEAR(find_white_balance(std::vector{wrong}, std::vector{1e4F}, limits).abs().maxCoeff(),
               limits.max_log_white_balance, 1e-6);

@@ -75,7 +75,8 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
 }
 
 // Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are: of each object the hypothesis with
-// the most correspondences votes, however often the object is taken for something like it.
+// the most correspondences votes, however often the object is taken for something like it. Votes grow no faster than
+// their number: the colours of one object may tell the light wrongly, however many keypoints it has.
 std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
   const auto size = [&](int h) { return h < 0 ? 0 : hypotheses[h].correspondences.size(); };
   std::vector<int> voter(num_models, -1);
@@ -83,7 +84,7 @@ std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, s
     if (size(h) > size(voter[hypotheses[h].object])) voter[hypotheses[h].object] = h;
   std::vector<float> votes(hypotheses.size(), 0.0F);
   for (const int h : voter)
-    if (h >= 0) votes[h] = static_cast<float>(size(h) * size(h));
+    if (h >= 0) votes[h] = static_cast<float>(size(h));
   return votes;
 }
 

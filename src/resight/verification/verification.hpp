@@ -126,8 +126,8 @@ enum class Verdict : std::uint8_t {
 struct HypothesisEvidence {
   bool accepted = false;
   Rigid3 world_from_object;  ///< The pose that was judged: the hypothesis', refined and turned.
-  double score = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
-                     ///< each weighted by how well; steep ones count little.
+  double fit = 0;  ///< In [0, 1]: share of its visible points that the scene explains (distance, normal, colour),
+                   ///< each weighted by how well; steep ones count little.
   double visible_share = 0;     ///< Visible / all model points.
   int num_visible = 0;          ///< Model points visible in at least one allowed view.
   int num_explained = 0;        ///< Of these, inliers.

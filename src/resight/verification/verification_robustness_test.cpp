@@ -35,7 +35,7 @@ TEST(VerifyHypotheses, CopesWithNothing) {
   EXPECT_TRUE(f.verify({}, library).evidence.empty());
   const VerifyResult no_scene = verify_hypotheses(hypotheses, library, {}, refs, {});
   EXPECT_EQ(no_scene.evidence[0].verdict, Verdict::kNoSupport);
-  EXPECT_EQ(no_scene.evidence[0].score, 0);
+  EXPECT_EQ(no_scene.evidence[0].fit, 0);
   const VerifyResult no_views = verify_hypotheses(hypotheses, library, f.scene, {}, {});
   EXPECT_EQ(no_views.evidence[0].verdict, Verdict::kTooFewVisible);
   ModelLibrary hollow;
@@ -88,7 +88,7 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
       EXPECT_EQ(a.verdict, b.verdict);
       EXPECT_EQ(a.outvoted_by, b.outvoted_by);
       for (const auto field :
-           {&HypothesisEvidence::score, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
+           {&HypothesisEvidence::fit, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
             &HypothesisEvidence::outlier_cost, &HypothesisEvidence::clutter_cost, &HypothesisEvidence::plane_cost,
             &HypothesisEvidence::cost_alone})
         EXPECT_EQ(std::memcmp(&(a.*field), &(b.*field), sizeof(double)), 0);

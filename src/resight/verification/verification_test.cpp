@@ -29,13 +29,13 @@ TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
                     make_hypothesis(kBox, disturb(truth, {0.002, -0.001, 0.001}, Eigen::Vector3d(1, 2, 3), 0.03)));
   const VerifyResult result = f.verify(hypotheses, make_library());
   EXPECT_THAT(accepted(result), testing::ElementsAre(4));
-  EXPECT_GT(result.evidence[4].score, 0.85);
+  EXPECT_GT(result.evidence[4].fit, 0.85);
   EXPECT_GE(result.num_planes, 1);
   EXPECT_LT(result.cost, 0);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
-    EXPECT_GE(result.evidence[i].score, 0);
-    EXPECT_LE(result.evidence[i].score, 1);
+    EXPECT_GE(result.evidence[i].fit, 0);
+    EXPECT_LE(result.evidence[i].fit, 1);
     if (result.evidence[i].verdict == Verdict::kOutvoted) {
       EXPECT_EQ(result.evidence[i].outvoted_by, 4);
     }
@@ -111,7 +111,7 @@ TEST(VerifyHypotheses, TellsLookAlikesByColor) {
     const std::vector<Hypothesis> both = {make_hypothesis(3, truth), make_hypothesis(kBox, truth)};
     const VerifyResult result = f.verify(both, library);
     EXPECT_THAT(accepted(result), testing::ElementsAre(1)) << "brightness " << brightness;
-    EXPECT_GT(result.evidence[1].score, result.evidence[0].score + 0.2);
+    EXPECT_GT(result.evidence[1].fit, result.evidence[0].fit + 0.2);
     // Even without a rival, and accepted when colour is not looked at.
     EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
     EXPECT_THAT(accepted(f.verify({both[0]}, library, {.use_color = false})), testing::ElementsAre(0));
@@ -137,7 +137,7 @@ TEST(VerifyHypotheses, AcceptsAHalfOccludedObject) {
   // The ray over the board's rear edge (0, -0.11, 0.075) meets the front face y = -0.035 at z = 0.071 (less 2 cm margin
   // behind the board: none).
   EXPECT_NEAR(after.evidence[0].visible_share, 0.227 * (0.14 - 0.0707) / 0.14, 0.03);
-  EXPECT_GT(after.evidence[0].score, 0.8);
+  EXPECT_GT(after.evidence[0].fit, 0.8);
 }
 
 TEST(VerifyHypotheses, ThePresenceMaskTakesTheEvidenceAway) {
@@ -167,7 +167,7 @@ TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
                                               make_hypothesis(3, on_table(-0.25, 0.1, -0.02))};
   const VerifyResult result = f.verify(hypotheses, library);
   EXPECT_THAT(accepted(result), testing::IsEmpty());
-  EXPECT_GT(result.evidence[0].score, 0.7);  // Its sides count as visible down to the margin.
+  EXPECT_GT(result.evidence[0].fit, 0.7);  // Its sides count as visible down to the margin.
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
   EXPECT_GT(result.evidence[0].plane_cost, 100);
   // The planes are what rejects it.

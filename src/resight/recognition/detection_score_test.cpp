@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/detection_score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "resight/recognition/recognizer_config.hpp"
+
+namespace resight {
+namespace {
+
+HypothesisEvidence some_evidence() {
+  HypothesisEvidence evidence;
+  evidence.accepted = true;
+  evidence.fit = 0.8;
+  evidence.visible_share = 0.3;
+  evidence.num_correspondences = 20;
+  evidence.explained_scene = 500;
+  evidence.cost_alone = -350;
+  return evidence;
+}
+
+constexpr DetectionScoreOptions kSome{.offset = -4,
+                                      .gain_weight = 5,
+                                      .correspondence_weight = 0.7,
+                                      .fit_weight = 2,
+                                      .visible_weight = 6,
+                                      .known_weight = 0.8};
+
+TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
+  const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * 0.3;
+  EXPECT_NEAR(detection_score(some_evidence(), false, kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
+  EXPECT_NEAR(detection_score(some_evidence(), true, kSome), 1 / (1 + std::exp(-log_odds - 0.8)), 1e-12);
+}
+
+TEST(DetectionScore, GrowsWithAllThatSpeaksForIt) {
+  for (const char* preset : {"mvr", "mvr-chd", "default"}) {
+    const DetectionScoreOptions options = RecognizerConfig::from_preset(preset).score;
+    const double score = detection_score(some_evidence(), false, options);
+    EXPECT_GT(score, 0) << preset;
+    EXPECT_LT(score, 1) << preset;
+    HypothesisEvidence better = some_evidence();
+    better.num_correspondences = 40;
+    EXPECT_GT(detection_score(better, false, options), score) << preset;
+    better = some_evidence();
+    better.cost_alone = -450;
+    EXPECT_GT(detection_score(better, false, options), score) << preset;
+  }
+}
+
+TEST(DetectionScore, WhatExplainsNothingOrCostsMoreThanItDoesIsNoNumberGoneWild) {
+  HypothesisEvidence evidence = some_evidence();
+  evidence.explained_scene = 0;
+  const double nothing = detection_score(evidence, false, kSome);
+  evidence.explained_scene = 1e-3;
+  evidence.cost_alone = 1e9;
+  const double costly = detection_score(evidence, false, kSome);
+  EXPECT_GT(nothing, costly);
+  EXPECT_GT(costly, 0);
+}
+
+TEST(DetectionScore, BadOptionsAreRefused) {
+  DetectionScoreOptions options;
+  options.gain_weight = -1;
+  EXPECT_THROW(options.check(), std::invalid_argument);
+  options = {};
+  options.offset = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(options.check(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "resight/models/object_model.hpp"
+#include "resight/recognition/object_presence.hpp"
+#include "resight/recognition/scene_update.hpp"
+
+namespace resight {
+
+/// An object that was not seen to leave its place.
+struct KnownObject {
+  int track = -1;
+  int object = -1;
+  Rigid3 world_from_object;
+  int last_view = -1;   ///< That it was recognised with.
+  int seen_view = -1;   ///< Likewise, and that confirmed it itself.
+  int since_view = -1;  ///< That it was first recognised with at its place.
+  bool is_sure = true;  ///< False: it may well be something else (UnsureObjects).
+};
+
+/// What was recognised and may well be something else: nothing is told of it before a view is sure, but it is looked
+/// for as anything known is.
+class UnsureObjects {
+ public:
+  /// `library` must outlive it.
+  explicit UnsureObjects(const ModelLibrary& library) : library_(library) {}
+
+  /// Takes a detection over: the one of its kind whose place it is in, or else a new one with the track `new_id`. Two
+  /// of one view are two. Returns its track.
+  int keep(const Detection& detection, int view, int new_id);
+  /// Forgets the one whose place the detection is in, unless it is of this view itself, and returns it.
+  std::optional<KnownObject> take(const Detection& detection, int view);
+  /// Forgets what was last recognised before a view.
+  void forget_before(int view);
+  /// Forgets what `view` did not recognise and its frame sees gone.
+  void forget_gone(int view, const RgbdFrame& frame, const PresenceOptions& options);
+  [[nodiscard]] std::span<const KnownObject> objects() const { return objects_; }
+
+ private:
+  [[nodiscard]] std::vector<KnownObject>::iterator find(const Detection& detection, int before_view);
+
+  const ModelLibrary& library_;
+  std::vector<KnownObject> objects_;
+};
+
+}  // namespace resight
