@@ -65,6 +65,11 @@ TEST_F(ColorConfirmation, AnotherPrintIsNone) {
   const Rigid3 turned = near_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159);
   EXPECT_EQ(share(turned, see_print_without_depth(near_)), 0);
   EXPECT_EQ(share(near_, see_nothing()), 0) << "grey all over";
+  RgbdFrame speckled = see_print_without_depth(near_);  // A third of it shines through.
+  for (int v = 0; v < speckled.camera.height; ++v)
+    for (int u = 0; u < speckled.camera.width; ++u)
+      if (const int k = (u * 7 + v * 11) % 6; k < 4) speckled.color(u, v) = k < 2 ? Rgb8{0, 0, 0} : Rgb8{255, 255, 255};
+  EXPECT_EQ(share(near_, speckled), 0);
 }
 
 TEST_F(ColorConfirmation, WhereThereIsDepthColorsAreNotAsked) {
