@@ -177,7 +177,7 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
   for (const auto& [t, is_surface_seen] : undecided) {  // Now it is known which others are where they were.
     Track& track = tracks_[t];
-    const Detection* taker = use_evidence ? find_taker(track, is_surface_seen, detections, track_of) : nullptr;
+    const Detection* taker = use_evidence ? find_taker(track, view, is_surface_seen, detections, track_of) : nullptr;
     if (taker == nullptr) {
       events.push_back({ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt,
                         0.0, std::nullopt});
@@ -201,14 +201,16 @@ void ObjectHistory::leave(Track& track, int view, double confidence, bool is_tak
 
 // Another one that the view shows in its space, and that came there after this one was last seen. Where a surface is
 // seen that might be its own, the other one must be of its size: a bowl may stand around it.
-const Detection* ObjectHistory::find_taker(const Track& track, bool is_surface_seen,
+const Detection* ObjectHistory::find_taker(const Track& track, int view, bool is_surface_seen,
                                            std::span<const Detection> detections, std::span<const int> track_of) const {
   for (std::size_t d = 0; d < detections.size(); ++d) {
     const Detection& detection = detections[d];
     if (detection.object == track.object || !is_seen_now(detection, options_.min_new_share)) continue;
     const int other = track_of[d];
     if (other == kUnmatched && !is_sure(detection, -1)) continue;
-    if (other != kUnmatched && tracks_[static_cast<std::size_t>(other)].since_view <= track.seen_view) continue;
+    const int since_view =
+        other == kUnmatched ? unsure_.since_view(detection, view) : tracks_[static_cast<std::size_t>(other)].since_view;
+    if (since_view <= track.seen_view) continue;
     if (is_in_space_of(track, detection) && (!is_surface_seen || is_in_space_of(detection, track))) return &detection;
   }
   return nullptr;

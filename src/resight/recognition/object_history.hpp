@@ -19,11 +19,13 @@ struct ObjectHistoryOptions {
   double min_displaced_gone_share = 0.2;  ///< An object recognised within its old place has moved if at least so much
                                           ///< of that is seen free; with less it is only seen better, or worse.
   double min_new_share = 0;   ///< What the view itself confirms less of (of the model's points) is not new in it.
-  double min_told_score = 0;  ///< What is new at a place and scores less is not told until it scores as much. Its old
-                              ///< place, if it has moved, is told of as if it had not been recognised.
+  double min_told_score = 0;  ///< What is new at a place and scores less is not told until it scores as much, for which
+                              ///< its having been recognised there before counts as well. Its old place, if it has
+                              ///< moved, is told of as if it had not been recognised.
   int confirm_removal_views =
       1;  ///< An object seen gone is called removed when it is not recognised elsewhere for so many more views.
-  int correct_views = 6;  ///< An arrival whose pose turns out otherwise so many views after it was told is told anew.
+  int correct_views = 6;  ///< An arrival whose pose turns out otherwise is told anew, up to so many views after it was
+                          ///< first told.
   PresenceOptions presence;
   DepthMemoryOptions memory;
   void check() const;
@@ -92,7 +94,7 @@ class ObjectHistory {
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
   static void leave(Track& track, int view, double confidence, bool is_taken);
-  [[nodiscard]] const Detection* find_taker(const Track& track, bool is_surface_seen,
+  [[nodiscard]] const Detection* find_taker(const Track& track, int view, bool is_surface_seen,
                                             std::span<const Detection> detections, std::span<const int> track_of) const;
   [[nodiscard]] bool is_still_taken(const Track& left, int view) const;
   [[nodiscard]] const ObjectModel& model_of(const auto& thing) const {

@@ -364,10 +364,10 @@ void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypoth
     std::erase_if(of_view, [&](const Hypothesis& h) { return refuted.contains(h.id); });
 }
 
-// What the newest view does not see by its depth, and does not see through, may still be seen by its colours.
+// What the newest view does not see by its depth may still be seen by its colours, unless it is looked through as much.
 void SceneRecognizer::Impl::look_without_depth(Detection& detection) const {
   DetectionViewEvidence& newest = detection.views.back();
-  if (!newest.allowed || newest.confirmed_share() >= config.min_reported_share) return;
+  if (newest.confirmed_share() >= config.min_reported_share) return;
   const double share = color_confirmed_share(library.objects[static_cast<std::size_t>(detection.object)],
                                              detection.world_from_object, scene.window().back().raw, config.verify);
   if (share > newest.visible_share) newest.color_share = share;

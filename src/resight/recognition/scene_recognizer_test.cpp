@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 
 #include "resight/verification/testing/verify_fixture.hpp"
@@ -123,6 +124,21 @@ TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
   EXPECT_EQ(updates[2].detections.size(), 1U);
   c.config.min_reported_share = 0;
   EXPECT_EQ(c.run()[1].detections.size(), 1U);
+}
+
+TEST(SceneRecognizer, WhatTheSensorIsBlindToIsSeenByItsPrint) {
+  const OneLook c;
+  for (const bool has_colors : {true, false}) {
+    SceneRecognizer recognizer(c.library, c.config, c.store);
+    EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[0]).frame).detections.size(), 1U);
+    RgbdFrame blind = render(c.world, c.cameras[1]).frame;
+    for (std::size_t i = 0; i < blind.depth_m.size(); ++i) blind.depth_m[i] = std::numeric_limits<float>::quiet_NaN();
+    if (!has_colors)
+      for (std::size_t i = 0; i < blind.color.size(); ++i) blind.color[i] = {128, 128, 128};
+    const SceneUpdate update = recognizer.add_view(std::move(blind));
+    ASSERT_EQ(update.detections.size(), has_colors ? 1U : 0U);
+    for (const Detection& detection : update.detections) EXPECT_GT(detection.views.back().color_share, 0.1);
+  }
 }
 
 TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {

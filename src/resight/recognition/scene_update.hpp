@@ -18,7 +18,8 @@ struct DetectionViewEvidence {
   bool allowed = true;         ///< False: the change detection excludes it (the object was not there yet, or had left).
   double visible_share = 0;    ///< Of the model's points.
   double explained_share = 0;  ///< Of the visible ones.
-  double color_share = 0;      ///< Of the model's points: shown in the right colours, without depth (newest view only).
+  double color_share = 0;      ///< Of the model's points: shown in the right colours, without depth. Newest view only,
+                               ///< and only if depth confirms less than min_reported_share.
   /// Of the model's points: what the view itself sees and explains.
   [[nodiscard]] double confirmed_share() const { return visible_share * explained_share + color_share; }
 };

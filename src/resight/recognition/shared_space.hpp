@@ -12,7 +12,8 @@ namespace resight {
 /// Between the centres of one object at two poses in the same frame.
 [[nodiscard]] double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b);
 
-/// Of two of one kind whose centres are nearer than this the bodies would overlap: they are one.
+/// Two of one kind whose centres are nearer than this may be one that was seen otherwise: the bodies of most would
+/// overlap.
 [[nodiscard]] double same_body_distance_m(const ObjectModel& model);
 
 }  // namespace resight

@@ -5,40 +5,51 @@
 
 namespace resight {
 
-std::vector<KnownObject>::iterator UnsureObjects::find(const Detection& detection, int before_view) {
+// The nearest one of its kind whose body overlaps that of the detection, or the number of objects.
+std::size_t UnsureObjects::find(const Detection& detection, int before_view) const {
+  constexpr double kMinOverlap = 0.5;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
-  auto nearest = objects_.end();
+  std::size_t nearest = objects_.size();
   double nearest_m = same_body_distance_m(model);
-  for (auto known = objects_.begin(); known != objects_.end(); ++known) {
-    if (known->object != detection.object || known->last_view >= before_view) continue;
-    const double distance_m = center_distance_m(model, known->world_from_object, detection.world_from_object);
-    if (distance_m >= nearest_m) continue;
-    nearest = known;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const KnownObject& known = objects_[i];
+    if (known.object != detection.object || known.last_view >= before_view) continue;
+    const double distance_m = center_distance_m(model, known.world_from_object, detection.world_from_object);
+    if (distance_m >= nearest_m ||
+        share_within(model, detection.world_from_object, model, known.world_from_object) < kMinOverlap)
+      continue;
+    nearest = i;
     nearest_m = distance_m;
   }
   return nearest;
 }
 
 int UnsureObjects::keep(const Detection& detection, int view, int new_id) {
-  auto known = find(detection, view);
-  if (known == objects_.end()) {
-    known = objects_.emplace(objects_.end());
-    known->track = new_id;
-    known->object = detection.object;
-    known->since_view = view;
-    known->is_sure = false;
+  const std::size_t i = find(detection, view);
+  if (i == objects_.size()) {
+    KnownObject& added = objects_.emplace_back();
+    added.track = new_id;
+    added.object = detection.object;
+    added.since_view = view;
+    added.is_sure = false;
   }
-  known->world_from_object = detection.world_from_object;
-  known->last_view = known->seen_view = view;
-  return known->track;
+  KnownObject& known = objects_[i];
+  known.world_from_object = detection.world_from_object;
+  known.last_view = known.seen_view = view;
+  return known.track;
 }
 
 std::optional<KnownObject> UnsureObjects::take(const Detection& detection, int view) {
-  const auto known = find(detection, view);
-  if (known == objects_.end()) return std::nullopt;
-  const KnownObject taken = *known;
-  objects_.erase(known);
+  const std::size_t i = find(detection, view);
+  if (i == objects_.size()) return std::nullopt;
+  const KnownObject taken = objects_[i];
+  objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(i));
   return taken;
+}
+
+int UnsureObjects::since_view(const Detection& detection, int view) const {
+  const std::size_t i = find(detection, view);
+  return i == objects_.size() ? view : objects_[i].since_view;
 }
 
 void UnsureObjects::forget_before(int view) {

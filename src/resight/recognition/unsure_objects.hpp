@@ -37,10 +37,12 @@ class UnsureObjects {
   void forget_before(int view);
   /// Forgets what `view` did not recognise and its frame sees gone.
   void forget_gone(int view, const RgbdFrame& frame, const PresenceOptions& options);
+  /// Since when the one in the place of the detection has been there; `view` if there is none.
+  [[nodiscard]] int since_view(const Detection& detection, int view) const;
   [[nodiscard]] std::span<const KnownObject> objects() const { return objects_; }
 
  private:
-  [[nodiscard]] std::vector<KnownObject>::iterator find(const Detection& detection, int before_view);
+  [[nodiscard]] std::size_t find(const Detection& detection, int before_view) const;
 
   const ModelLibrary& library_;
   std::vector<KnownObject> objects_;

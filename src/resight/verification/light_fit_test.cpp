@@ -79,6 +79,7 @@ TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
   EXPECT_TRUE(find_white_balance(fits, votes, limits).isApprox(blue.chroma()));
   const std::vector<float> weak{3, 3, 3, 3, 3, 3};
   EXPECT_TRUE((find_white_balance(fits, weak, limits) == 0).all());
+  EXPECT_TRUE(find_white_balance(std::vector{blue}, std::vector{50.0F}, limits).isApprox(blue.chroma()));
   EXPECT_NEAR(find_white_balance(std::vector{wrong}, std::vector{1e4F}, limits).abs().maxCoeff(),
               limits.max_log_white_balance, 1e-6);
   EXPECT_TRUE((find_white_balance({}, {}, limits) == 0).all());

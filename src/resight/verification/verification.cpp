@@ -75,8 +75,8 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
 }
 
 // Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are: of each object the hypothesis with
-// the most correspondences votes, however often the object is taken for something like it. Votes grow no faster than
-// their number: the colours of one object may tell the light wrongly, however many keypoints it has.
+// the most correspondences votes, however often the object is taken for something like it. Each correspondence is one
+// vote, and no more: the colours of one object may tell the light wrongly, however many keypoints it has.
 std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
   const auto size = [&](int h) { return h < 0 ? 0 : hypotheses[h].correspondences.size(); };
   std::vector<int> voter(num_models, -1);
