@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "resight/recognition/recognizer_config.hpp"
@@ -79,22 +78,6 @@ TEST_F(ColorConfirmation, TheSamePrintInAnotherHueIsNone) {
   RgbdFrame frame = see_print_without_depth(near_);
   for (std::size_t i = 0; i < frame.color.size(); ++i) std::swap(frame.color[i].r, frame.color[i].g);
   EXPECT_EQ(share(near_, frame), 0);
-}
-
-TEST_F(ColorConfirmation, ShadingIsNoPrint) {
-  ObjectModel ball = make_plate("ball");
-  RgbdFrame frame = see_nothing();
-  for (std::size_t i = 0; i < ball.surface.size(); ++i) {
-    Eigen::Vector3f& p = ball.surface.points[i];
-    const Eigen::Vector3f normal(8 * p.x(), 8 * p.y(), -std::sqrt(std::max(0.05F, 1 - 64 * p.head<2>().squaredNorm())));
-    ball.surface.normals[i] = normal.normalized();
-  }
-  for (int v = 0; v < frame.camera.height; ++v)  // Lit from the left.
-    for (int u = 0; u < frame.camera.width; ++u)
-      frame.color(u, v) = {static_cast<std::uint8_t>(std::clamp(230 - 2 * u, 0, 255)),
-                           static_cast<std::uint8_t>(std::clamp(40 - u / 3, 0, 255)),
-                           static_cast<std::uint8_t>(std::clamp(40 - u / 3, 0, 255))};
-  EXPECT_EQ(color_confirmed_share(ball, near_, frame, options_), 0);
 }
 
 TEST_F(ColorConfirmation, ColorsThatAreSwitchedOffConfirmNothing) {
