@@ -20,6 +20,22 @@ ModelLibrary make_library() {
 
 Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 
+GroundTruthObject mug_at(double x, double visible_share) {
+  GroundTruthObject mug;
+  mug.object = "mug";
+  mug.camera_from_object = at(x);
+  mug.visible_share = visible_share;
+  return mug;
+}
+
+// A mug that is moved from one place to another before the second view.
+SequenceTruth move_mug(std::size_t num_views) {
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(num_views);
+  return truth;
+}
+
 // A camera at the origin that looks along z at a wall.
 RgbdFrame frame_with_wall(float depth_m) {
   RgbdFrame frame;
@@ -30,20 +46,10 @@ RgbdFrame frame_with_wall(float depth_m) {
 
 TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
   const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
-  truth.views.resize(4);
-  GroundTruthObject arrived;
-  arrived.object = "mug";
-  arrived.camera_from_object = at(0.3);
-  arrived.visible_share = 0.02;  // still behind something
-  truth.views[1].objects = truth.views[2].objects = {arrived};
-  arrived.visible_share = 0.5;
-  truth.views[3].objects = {arrived};
-  GroundTruthObject before = arrived;
-  before.camera_from_object = at(0);
-  before.visible_share = 0.5;
-  truth.views[0].objects = {before};
+  SequenceTruth truth = move_mug(4);
+  truth.views[0].objects = {mug_at(0, 0.5)};
+  truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // still behind something
+  truth.views[3].objects = {mug_at(0.3, 0.5)};
   ChangeSightFinder finder(library, truth);
   EXPECT_EQ(finder.sights()[0].last_there_view, -1);
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);
@@ -69,13 +75,8 @@ TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
                                           {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
                                           {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
   truth.views.resize(5);
-  GroundTruthObject seen;
-  seen.object = "mug";
-  seen.camera_from_object = at(0);
-  seen.visible_share = 0.5;
-  truth.views[0].objects = {seen};
-  seen.visible_share = 0.02;
-  truth.views[2].objects = truth.views[3].objects = {seen};
+  truth.views[0].objects = {mug_at(0, 0.5)};
+  truth.views[2].objects = truth.views[3].objects = {mug_at(0, 0.02)};
   ChangeSightFinder finder(library, truth);
   for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].last_there_view, 0);
@@ -85,16 +86,9 @@ TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
 // Another mug stands at the new place before, and at the old one after: no view shows either without a mug.
 TEST(ChangeSightFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
   const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
-  truth.views.resize(2);
-  GroundTruthObject other;
-  other.object = "mug";
-  other.visible_share = 0.5;
-  other.camera_from_object = at(0.3);
-  truth.views[0].objects = {other};
-  other.camera_from_object = at(0);
-  truth.views[1].objects = {other};
+  SequenceTruth truth = move_mug(2);
+  truth.views[0].objects = {mug_at(0.3, 0.5)};
+  truth.views[1].objects = {mug_at(0, 0.5)};
   ChangeSightFinder finder(library, truth);
   for (int v = 0; v < 2; ++v) finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);
@@ -103,14 +97,8 @@ TEST(ChangeSightFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
 
 TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
   const ModelLibrary library = make_library();
-  SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
-  truth.views.resize(1);
-  GroundTruthObject hidden;
-  hidden.object = "mug";
-  hidden.camera_from_object = at(0);
-  hidden.visible_share = 0.02;
-  truth.views[0].objects = {hidden};
+  SequenceTruth truth = move_mug(1);
+  truth.views[0].objects = {mug_at(0, 0.02)};
   ChangeSightFinder finder(library, truth);
   finder.add_view(frame_with_wall(0.7F));
   EXPECT_EQ(finder.sights()[0].last_there_view, -1);

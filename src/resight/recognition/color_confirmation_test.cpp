@@ -80,6 +80,31 @@ TEST_F(ColorConfirmation, TheSamePrintInAnotherHueIsNone) {
   EXPECT_EQ(share(near_, frame), 0);
 }
 
+// A ball of one colour, lit from one side.
+TEST_F(ColorConfirmation, ShadingIsNoPrint) {
+  constexpr float kRadius_m = 0.08F;
+  ObjectModel ball;
+  RgbdFrame frame = see_nothing();
+  const Rigid3f camera_from_ball(near_);
+  for (int i = 0; i < 4000; ++i) {  // Spirals from pole to pole.
+    const float z = -1 + 2 * (static_cast<float>(i) + 0.5F) / 4000;
+    const float angle = 2.4F * static_cast<float>(i);
+    const float r = std::sqrt(1 - z * z);
+    const Eigen::Vector3f n(r * std::cos(angle), r * std::sin(angle), z);
+    ball.surface.points.push_back(kRadius_m * n);
+    ball.surface.normals.push_back(n);
+    ball.surface.colors.push_back({150, 150, 150});
+    const Eigen::Vector3f p = camera_from_ball * ball.surface.points.back();
+    const Eigen::Vector2d pixel = frame.camera.project(p.cast<double>());
+    const auto grey = static_cast<std::uint8_t>(150 * std::exp(0.45F * (n.x() + 0.4F * n.y())));
+    if (n.dot(p) < 0)
+      frame.color(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))) = {grey, grey,
+                                                                                                         grey};
+  }
+  ball.diameter_m = 2 * kRadius_m;
+  EXPECT_EQ(color_confirmed_share(ball, near_, frame, options_), 0);
+}
+
 TEST_F(ColorConfirmation, ColorsThatAreSwitchedOffConfirmNothing) {
   options_.use_color = false;
   EXPECT_EQ(share(near_, see_print_without_depth(near_)), 0);

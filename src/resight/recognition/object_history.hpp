@@ -100,11 +100,8 @@ class ObjectHistory {
   [[nodiscard]] const ObjectModel& model_of(const auto& thing) const {
     return library_.objects[static_cast<std::size_t>(thing.object)];
   }
-  /// Most of the body of the one lies in the other: both cannot be there.
   [[nodiscard]] bool is_in_space_of(const auto& one, const auto& other) const {
-    constexpr double kMinTakenShare = 0.5;
-    return share_within(model_of(one), one.world_from_object, model_of(other), other.world_from_object) >=
-           kMinTakenShare;
+    return is_mostly_within(model_of(one), one.world_from_object, model_of(other), other.world_from_object);
   }
   [[nodiscard]] std::optional<int> last_seen_taken(const Detection& detection, int view) const;
   [[nodiscard]] Track* find_added_since(const Track& left);

@@ -34,6 +34,11 @@ double share_within(const ObjectModel& one, const Rigid3& world_from_one, const 
   return num_points > 0 ? static_cast<double>(num_within) / num_points : 0;
 }
 
+bool is_mostly_within(const ObjectModel& one, const Rigid3& world_from_one, const ObjectModel& other,
+                      const Rigid3& world_from_other) {
+  return share_within(one, world_from_one, other, world_from_other) >= 0.5;
+}
+
 double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
   const Eigen::Vector3d center = model.center.cast<double>();
   return (a * center - b * center).norm();

@@ -9,6 +9,10 @@ namespace resight {
 [[nodiscard]] double share_within(const ObjectModel& one, const Rigid3& world_from_one, const ObjectModel& other,
                                   const Rigid3& world_from_other);
 
+/// Most of the body of the one lies in the other: both cannot be there.
+[[nodiscard]] bool is_mostly_within(const ObjectModel& one, const Rigid3& world_from_one, const ObjectModel& other,
+                                    const Rigid3& world_from_other);
+
 /// Between the centres of one object at two poses in the same frame.
 [[nodiscard]] double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b);
 

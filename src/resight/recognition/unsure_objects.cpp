@@ -7,7 +7,6 @@ namespace resight {
 
 // The nearest one of its kind whose body overlaps that of the detection, or the number of objects.
 std::size_t UnsureObjects::find(const Detection& detection, int before_view) const {
-  constexpr double kMinOverlap = 0.5;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(detection.object)];
   std::size_t nearest = objects_.size();
   double nearest_m = same_body_distance_m(model);
@@ -16,7 +15,7 @@ std::size_t UnsureObjects::find(const Detection& detection, int before_view) con
     if (known.object != detection.object || known.last_view >= before_view) continue;
     const double distance_m = center_distance_m(model, known.world_from_object, detection.world_from_object);
     if (distance_m >= nearest_m ||
-        share_within(model, detection.world_from_object, model, known.world_from_object) < kMinOverlap)
+        !is_mostly_within(model, detection.world_from_object, model, known.world_from_object))
       continue;
     nearest = i;
     nearest_m = distance_m;

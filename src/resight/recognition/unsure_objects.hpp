@@ -5,21 +5,11 @@
 #include <vector>
 
 #include "resight/models/object_model.hpp"
+#include "resight/recognition/known_object.hpp"
 #include "resight/recognition/object_presence.hpp"
 #include "resight/recognition/scene_update.hpp"
 
 namespace resight {
-
-/// An object that was not seen to leave its place.
-struct KnownObject {
-  int track = -1;
-  int object = -1;
-  Rigid3 world_from_object;
-  int last_view = -1;   ///< That it was recognised with.
-  int seen_view = -1;   ///< Likewise, and that confirmed it itself.
-  int since_view = -1;  ///< That it was first recognised with at its place.
-  bool is_sure = true;  ///< False: it may well be something else (UnsureObjects).
-};
 
 /// What was recognised and may well be something else: nothing is told of it before a view is sure, but it is looked
 /// for as anything known is.

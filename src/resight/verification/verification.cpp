@@ -12,6 +12,7 @@
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/cues.hpp"
 #include "resight/verification/selection_search.hpp"
+#include "resight/verification/white_balance_votes.hpp"
 
 namespace resight {
 namespace {
@@ -72,20 +73,6 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
   if (!present.empty())
     for (std::size_t v = 0; v < num_views; ++v) allowed[v] = present[v * num_hypotheses + h];
   return allowed;
-}
-
-// Many agreeing keypoints are seldom wrong, and a few dozen small groups mostly are: of each object the hypothesis with
-// the most correspondences votes, however often the object is taken for something like it. Each correspondence is one
-// vote, and no more: the colours of one object may tell the light wrongly, however many keypoints it has.
-std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
-  const auto size = [&](int h) { return h < 0 ? 0 : hypotheses[h].correspondences.size(); };
-  std::vector<int> voter(num_models, -1);
-  for (int h = 0; h < static_cast<int>(hypotheses.size()); ++h)
-    if (size(h) > size(voter[hypotheses[h].object])) voter[hypotheses[h].object] = h;
-  std::vector<float> votes(hypotheses.size(), 0.0F);
-  for (const int h : voter)
-    if (h >= 0) votes[h] = static_cast<float>(size(h));
-  return votes;
 }
 
 // First the light on the scene from all hypotheses, then what each of them looks like in it.
