@@ -22,6 +22,17 @@ void parallel_for(std::size_t count, int num_threads, Body&& body) {
   });
 }
 
+/// Calls both, side by side if there is more than one thread; either may use the functions above.
+template <typename First, typename Second>
+void run_both(int num_threads, First&& first, Second&& second) {
+  parallel_for(2, num_threads, [&](std::size_t i) {
+    if (i == 0)
+      first();
+    else
+      second();
+  });
+}
+
 /// Number of hardware threads, at least 1.
 [[nodiscard]] int num_hardware_threads();
 

@@ -22,6 +22,7 @@
 #include "resight/recognition/presence_mask.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight {
 namespace {
@@ -52,6 +53,7 @@ struct SceneRecognizer::Impl {
         scene(scene_options(config)),
         held(static_cast<std::size_t>(config.num_previous_views) + 1, config.verify.inlier_distance_m),
         attention(config.remembers() ? config.attention : AttentionOptions{}),
+        verifier(models, config.verify),
         store(std::move(shared)),
         clock(std::move(now)) {
     if (!store) generator.emplace(library, config);
@@ -84,6 +86,7 @@ struct SceneRecognizer::Impl {
   DynamicScene scene;
   HeldCorrespondences held;  // used only where not each view is searched everywhere
   Attention attention;
+  HypothesisVerifier verifier;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>>
@@ -381,7 +384,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
   const auto& window = scene.window();
   std::vector<VerificationView> views;
   for (const DynamicScene::View& view : window) views.push_back({&view.cleared});
-  VerifyResult result = verify_hypotheses(hypotheses, library, scene.reconstruction(), views, present, config.verify);
+  VerifyResult result = verifier.verify(hypotheses, scene.reconstruction(), views, present);
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const HypothesisEvidence& evidence = result.evidence[h];
     if (!evidence.accepted) continue;

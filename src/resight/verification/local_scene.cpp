@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/local_scene.hpp"
 
-#include <limits>
-
 namespace resight {
 namespace {
 
 constexpr float kMaxCellsPerAxis = 128;  // A huge model gets coarser cells, never a huge grid.
-constexpr int kMaxDoublings = 12;        // Of a cell of some millimetres.
 
 }  // namespace
 
@@ -44,22 +41,6 @@ LocalScene::LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& 
     points_[slot] = scene[i];
     indices_[slot] = i;
   }
-}
-
-int LocalScene::nearest(const Eigen::Vector3f& query) const {
-  int found = -1;
-  float radius_m = 1 / inverse_cell_;
-  for (int i = 0; i < kMaxDoublings && found < 0; ++i, radius_m *= 2) {
-    float least_sq = std::numeric_limits<float>::infinity();
-    visit_within(query, radius_m, [&](std::size_t q, float distance_sq) {
-      if (distance_sq < least_sq) {
-        least_sq = distance_sq;
-        found = static_cast<int>(q);
-      }
-      return true;
-    });
-  }
-  return found < 0 ? -1 : scene_index(static_cast<std::size_t>(found));
 }
 
 LocalScene LocalScene::subset(std::span<const std::uint8_t> kept) const {

@@ -36,10 +36,6 @@ class LocalScene {
     return selected;
   }
 
-  /// The nearest point, by its index in the whole scene; -1 if there is none within some metres. Fast where it is
-  /// nearer than a few cells.
-  [[nodiscard]] int nearest(const Eigen::Vector3f& query) const;
-
   /// Calls visit(local, distance_sq) for each point within the radius (boundary included), until it returns false.
   template <typename Visit>
   void visit_within(const Eigen::Vector3f& query, float radius_m, Visit&& visit) const {

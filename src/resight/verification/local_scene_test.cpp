@@ -27,14 +27,6 @@ class LocalSceneTest : public ::testing::Test {
     blocks_ = BlockGrid(scene_, 0.05);
     local_.emplace(scene_, blocks_, around_, 0.03F, 0.01F);
   }
-  // Of the points of the local scene, by index in the whole one.
-  [[nodiscard]] int nearest_by_brute_force(const Eigen::Vector3f& query) const {
-    int best = -1;
-    for (std::size_t i = 0; i < local_->size(); ++i)
-      if (best < 0 || (local_->point(i) - query).squaredNorm() < (scene_[best] - query).squaredNorm())
-        best = local_->scene_index(i);
-    return best;
-  }
   std::vector<Eigen::Vector3f> scene_, around_, queries_;
   BlockGrid blocks_;
   std::optional<LocalScene> local_;
@@ -56,16 +48,6 @@ TEST_F(LocalSceneTest, HoldsThePointsOfTheBox) {
   EXPECT_EQ(found, expected);
   EXPECT_GT(found.size(), 50U);
   EXPECT_LT(found.size(), scene_.size() / 2);
-}
-
-TEST_F(LocalSceneTest, NearestIsThatOfBruteForce) {
-  for (const Eigen::Vector3f& query : queries_) EXPECT_EQ(local_->nearest(query), nearest_by_brute_force(query));
-}
-
-TEST_F(LocalSceneTest, NearestOfNothingIsNone) {
-  const LocalScene nothing = local_->subset(std::vector<std::uint8_t>(local_->size(), 0));
-  EXPECT_EQ(nothing.nearest(around_[0]), -1);
-  EXPECT_EQ(LocalScene(scene_, blocks_, {}, 0.03F, 0.01F).nearest(around_[0]), -1);
 }
 
 TEST_F(LocalSceneTest, NeighboursAreThoseOfBruteForceInThePartThatIsKept) {

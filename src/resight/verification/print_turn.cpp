@@ -37,7 +37,7 @@ Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoin
   for (const Rigid3& turn : model.turns) {
     const Rigid3f turned_from_object(turn.inverse());
     for (std::size_t k = 0; k < seen.size(); ++k) {
-      const int nearest = model.grid->nearest(turned_from_object * points[k * step].p_in_object);
+      const int nearest = model.nearest.nearest(turned_from_object * points[k * step].p_in_object);
       expected[k] = nearest < 0 ? LabColor{} : model.lab[static_cast<std::size_t>(nearest)];
     }
     const double found = likeness(expected, seen, chroma_weight);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "resight/core/parallel.hpp"
@@ -114,6 +115,8 @@ class PlaneFinder {
     const double scale = std::min(1.0, std::pow(kFullViewSpacing_m / options.resolution_m, 2));
     min_points_ = std::max<std::size_t>(10, static_cast<std::size_t>(options.min_plane_points * scale));
     result_.plane_of_point.assign(points.size(), -1);
+    free_.resize(points.size());
+    std::iota(free_.begin(), free_.end(), 0);
   }
 
   [[nodiscard]] std::size_t min_points() const { return min_points_; }
@@ -132,6 +135,7 @@ class PlaneFinder {
     plane->num_points = static_cast<int>(inliers.size());
     for (const int i : inliers) result_.plane_of_point[i] = static_cast<int>(result_.planes.size());
     result_.planes.push_back(std::move(*plane));
+    std::erase_if(free_, [&](int i) { return result_.plane_of_point[i] >= 0; });
   }
 
   ScenePlanes take() { return std::move(result_); }
@@ -158,9 +162,8 @@ class PlaneFinder {
 
   std::vector<int> find_inliers_in_scene(const ScenePlane& plane) const {
     std::vector<int> inliers;
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (result_.plane_of_point[i] < 0 && plane.holds(points_[i], normals_[i], max_distance_, min_dot_))
-        inliers.push_back(static_cast<int>(i));
+    for (const int i : free_)
+      if (plane.holds(points_[i], normals_[i], max_distance_, min_dot_)) inliers.push_back(i);
     return inliers;
   }
 
@@ -169,6 +172,7 @@ class PlaneFinder {
   float max_distance_;
   float min_dot_;
   std::size_t min_points_ = 0;
+  std::vector<int> free_;  // Points of no plane, ascending.
   ScenePlanes result_;
 };
 

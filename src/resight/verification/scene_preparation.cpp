@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "resight/core/parallel.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/models/shape_turns.hpp"
 
@@ -23,14 +24,29 @@ PointCloud keep_finite(const PointCloud& cloud) {
   return result;
 }
 
-// In the thinned scene: planes are large.
-void find_planes_quickly(PreparedScene& scene, const VerifyOptions& options) {
+// In the scene thinned further: planes are large.
+std::vector<ScenePlane> find_planes_quickly(const PointCloud& scene, const VerifyOptions& options) {
   PointCloud cloud;
   cloud.points = scene.points;
   cloud.normals = scene.normals;
   cloud = voxel_downsample(cloud, options.plane_spacing_m);
-  scene.planes = find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, options).planes;
-  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
+  return find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, options).planes;
+}
+
+// All but the segments and planes.
+PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
+  if (!is_thin(cloud, options.resolution_m)) cloud = voxel_downsample(cloud, options.resolution_m);
+  PreparedScene scene;
+  if (options.use_color && cloud.has_colors()) {
+    scene.linear_light = to_linear_light(cloud.colors);
+    scene.lab = to_lab(scene.linear_light);
+  }
+  scene.points = std::move(cloud.points);
+  scene.normals = std::move(cloud.normals);
+  scene.segment.assign(scene.points.size(), -1);
+  scene.plane.assign(scene.points.size(), -1);
+  scene.blocks = BlockGrid(scene.points, kBlock_m);
+  return scene;
 }
 
 }  // namespace
@@ -52,31 +68,29 @@ PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
 }
 
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
-  PointCloud thinned = keep_finite(scene_in_world);
-  if (!is_thin(thinned, options.resolution_m)) thinned = voxel_downsample(thinned, options.resolution_m);
+  const PointCloud cloud = keep_finite(scene_in_world);
+  const bool has_segments = options.continuation_offset_m <= 0 || options.plane_spacing_m <= options.resolution_m;
+  const bool is_quick = !has_segments && options.use_planes && cloud.has_normals();
   PreparedScene scene;
-  if (options.use_color && thinned.has_colors()) {
-    scene.linear_light = to_linear_light(thinned.colors);
-    scene.lab = to_lab(scene.linear_light);
+  std::vector<ScenePlane> planes;
+  run_both(
+      options.num_threads, [&] { scene = without_surfaces(cloud, options); },
+      [&] {
+        if (is_quick) planes = find_planes_quickly(cloud, options);
+      });
+  if (is_quick) {
+    scene.planes = std::move(planes);
+    scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
+  } else if (has_segments && !scene.normals.empty()) {
+    SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
+    scene.num_segments = segments.num_segments;
+    if (options.use_planes) {
+      ScenePlanes found = find_scene_planes(scene.points, scene.normals, segments, options);
+      scene.planes = std::move(found.planes);
+      scene.plane = std::move(found.plane_of_point);
+    }
+    scene.segment = std::move(segments.segment);
   }
-  scene.points = std::move(thinned.points);
-  scene.normals = std::move(thinned.normals);
-  scene.segment.assign(scene.points.size(), -1);
-  scene.plane.assign(scene.points.size(), -1);
-  scene.blocks = BlockGrid(scene.points, kBlock_m);
-  if (scene.normals.empty()) return scene;
-  if (options.continuation_offset_m > 0 && options.plane_spacing_m > options.resolution_m) {
-    if (options.use_planes) find_planes_quickly(scene, options);
-    return scene;
-  }
-  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
-  scene.num_segments = segments.num_segments;
-  if (options.use_planes) {
-    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options);
-    scene.planes = std::move(planes.planes);
-    scene.plane = std::move(planes.plane_of_point);
-  }
-  scene.segment = std::move(segments.segment);
   return scene;
 }
 
@@ -91,9 +105,8 @@ PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& optio
   prepared.points = std::move(thinned.points);
   prepared.normals = std::move(thinned.normals);
   if (prepared.turns.size() > 1)
-    prepared.grid = std::make_shared<const LocalScene>(prepared.points, BlockGrid(prepared.points, kBlock_m),
-                                                       prepared.points, static_cast<float>(options.inlier_distance_m),
-                                                       static_cast<float>(options.resolution_m));
+    prepared.nearest = NearestPointMap(prepared.points, 2 * static_cast<float>(options.inlier_distance_m),
+                                       0.5F * static_cast<float>(options.resolution_m));
   prepared.center = centroid(prepared.points);
   prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);
   return prepared;

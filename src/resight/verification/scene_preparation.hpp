@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/verification/block_grid.hpp"
 #include "resight/verification/lab_color.hpp"
-#include "resight/verification/local_scene.hpp"
+#include "resight/verification/nearest_point_map.hpp"
 #include "resight/verification/scene_planes.hpp"
 #include "resight/verification/verification.hpp"
 
@@ -48,7 +47,7 @@ struct PreparedModel {
   std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
   std::vector<LabColor> lab;                         ///< The same.
   std::vector<Rigid3> turns;                         ///< shape_turns(): by shape alone, these poses are one.
-  std::shared_ptr<const LocalScene> grid;            ///< Of the points, if there are turns.
+  NearestPointMap nearest;                           ///< Of the points, if there are turns.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };

@@ -67,13 +67,12 @@ class Neighborhood {
  public:
   explicit Neighborhood(const CellOrder& cells) : cells_(cells) {}
 
-  // Of cell `c`, its neighbours from number `first_neighbor` on.
-  void gather(std::size_t c, int first_neighbor) {
+  // Of cell `c` and its neighbours.
+  void gather(std::size_t c) {
     for (std::vector<float>* values : {&x_, &y_, &z_}) values->clear();
     normals_.clear();
     sources_.clear();
-    for (int k = first_neighbor; k < kNumNeighbors; ++k) {
-      const int other = cells_.neighbors[c][k];
+    for (const int other : cells_.neighbors[c]) {
       if (other == VoxelMap::kNotFound) continue;
       for (int j = cells_.cell_begin[other]; j < cells_.cell_begin[other + 1]; ++j) add(j);
     }
@@ -124,21 +123,41 @@ class Neighborhood {
   std::vector<int> near_;
 };
 
-// 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a right-angled edge.
-std::vector<float> find_curvatures(const CellOrder& cells, float radius_sq, int num_threads) {
-  std::vector<float> curvatures(cells.points.size());
+// Of a block of cells, for each point the later ones that are near it and of similar normal.
+struct LaterNeighbors {
+  std::vector<int> begin;  // CSR over the block's points.
+  std::vector<int> neighbors;
+};
+
+struct Surface {
+  std::vector<float> curvatures;  // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a
+                                  // right-angled edge.
+  std::vector<LaterNeighbors> of_block;
+};
+
+Surface look_around(const CellOrder& cells, float radius_sq, float min_dot, int num_threads) {
+  Surface surface;
+  surface.curvatures.resize(cells.points.size());
+  surface.of_block.resize((cells.num_cells() + kCellsPerBlock - 1) / kCellsPerBlock);
   parallel_for_blocks(cells.num_cells(), kCellsPerBlock, num_threads, [&](std::size_t begin, std::size_t end) {
     Neighborhood around(cells);
+    LaterNeighbors& later = surface.of_block[begin / kCellsPerBlock];
     for (std::size_t c = begin; c < end; ++c) {
-      around.gather(c, 0);
+      around.gather(c);
       for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
         Eigen::Vector4f sum = Eigen::Vector4f::Zero();  // Of normals and, last, their number.
-        for (const int k : around.find_near(cells.points[i], radius_sq)) sum += around.normal(k);
-        curvatures[i] = 1.0F - sum.head<3>().norm() / sum.w();
+        later.begin.push_back(static_cast<int>(later.neighbors.size()));
+        for (const int k : around.find_near(cells.points[i], radius_sq)) {
+          sum += around.normal(k);
+          if (around.source(k) > i && cells.normals[i].dot(around.normal(k).head<3>()) >= min_dot)
+            later.neighbors.push_back(around.source(k));
+        }
+        surface.curvatures[i] = 1.0F - sum.head<3>().norm() / sum.w();
       }
     }
+    later.begin.push_back(static_cast<int>(later.neighbors.size()));
   });
-  return curvatures;
+  return surface;
 }
 
 class UnionFind {
@@ -159,21 +178,15 @@ class UnionFind {
   std::vector<int> parent_;
 };
 
-// Joins flat neighbours of similar normals; each pair of cells is looked at from one side.
-void join_flat_points(const CellOrder& cells, const std::vector<float>& curvatures, float radius_sq,
-                      float max_curvature, float min_dot, UnionFind& sets) {
-  Neighborhood around(cells);
-  for (std::size_t c = 0; c < cells.num_cells(); ++c) {
-    around.gather(c, kOwnCell);  // Its own points come first.
-    for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
-      if (curvatures[i] > max_curvature) continue;
-      for (const int k : around.find_near(cells.points[i], radius_sq)) {
-        const int j = around.source(k);
-        if (k <= i - cells.cell_begin[c] || curvatures[j] > max_curvature) continue;
-        if (cells.normals[i].dot(cells.normals[j]) >= min_dot) sets.join(i, j);
-      }
+// Joins flat neighbours of similar normals.
+void join_flat_points(const Surface& surface, float max_curvature, UnionFind& sets) {
+  int i = 0;
+  for (const LaterNeighbors& later : surface.of_block)
+    for (std::size_t p = 0; p + 1 < later.begin.size(); ++p, ++i) {
+      if (surface.curvatures[i] > max_curvature) continue;
+      for (int k = later.begin[p]; k < later.begin[p + 1]; ++k)
+        if (surface.curvatures[later.neighbors[k]] <= max_curvature) sets.join(i, later.neighbors[k]);
     }
-  }
 }
 
 // The flat neighbour of the most similar normal of a point on an edge, or -1. `around`: of its cell.
@@ -203,7 +216,7 @@ std::vector<int> find_hosts(const CellOrder& cells, const std::vector<float>& cu
       for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
         hosts[i] = i;
         if (curvatures[i] <= max_curvature) continue;
-        if (!gathered) around.gather(c, 0);
+        if (!gathered) around.gather(c);
         gathered = true;
         hosts[i] = find_host(cells, around, i, curvatures, radius_sq, max_curvature, min_dot);
       }
@@ -237,10 +250,11 @@ SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points, std
   const float min_dot = static_cast<float>(std::cos(options.smooth_angle_rad));
   const float radius_sq = static_cast<float>(options.smooth_distance_m * options.smooth_distance_m);
   const CellOrder cells = sort_into_cells(points, normals, options);
-  const std::vector<float> curvatures = find_curvatures(cells, radius_sq, options.num_threads);
+  const Surface surface = look_around(cells, radius_sq, min_dot, options.num_threads);
   UnionFind sets(points.size());
-  join_flat_points(cells, curvatures, radius_sq, max_curvature, min_dot, sets);
-  const std::vector<int> hosts = find_hosts(cells, curvatures, radius_sq, max_curvature, min_dot, options.num_threads);
+  join_flat_points(surface, max_curvature, sets);
+  const std::vector<int> hosts =
+      find_hosts(cells, surface.curvatures, radius_sq, max_curvature, min_dot, options.num_threads);
   std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers of the cell order.
   for (std::size_t i = 0; i < hosts.size(); ++i)
     if (hosts[i] >= 0) root_of[cells.source[i]] = sets.find(hosts[i]);

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/hypothesis_verifier.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/geometry/symmetry.hpp"
+#include "resight/verification/acceptance.hpp"
+#include "resight/verification/cues.hpp"
+#include "resight/verification/selection_search.hpp"
+#include "resight/verification/white_balance_votes.hpp"
+
+namespace resight {
+namespace {
+
+constexpr float kMinSurroundings_m =
+    0.25F;  // A small object, too, stands on something that should be recognised as a plane.
+
+void check_input(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                 std::span<const VerificationView> views, std::span<const std::uint8_t> present) {
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const int object = hypotheses[i].object;
+    require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
+            "verify_hypotheses: hypothesis " + std::to_string(i) + " has object = " + std::to_string(object) +
+                " (must be an index of the library)");
+    require(hypotheses[i].world_from_object.is_rigid(),
+            "verify_hypotheses: the pose of hypothesis " + std::to_string(i) + " is not rigid");
+  }
+  for (const VerificationView& view : views) {
+    require(view.view != nullptr, "verify_hypotheses: a view is null");
+    const Camera& camera = view.view->frame.camera;
+    require(camera.is_valid() && view.view->cloud.width() == camera.width && view.view->cloud.height() == camera.height,
+            "verify_hypotheses: a view's cloud does not have the size of its camera's image");
+  }
+  require(present.empty() || present.size() == views.size() * hypotheses.size(),
+          "verify_hypotheses: present has " + std::to_string(present.size()) +
+              " entries (must be views x hypotheses, or none)");
+}
+
+// Where hypotheses need the scene: as far around each as it is large, so that the planes found there are larger than
+// the object.
+std::vector<Ball> surroundings(std::span<const Hypothesis> hypotheses, const std::vector<PreparedModel>& models,
+                               const VerifyOptions& options) {
+  std::vector<Ball> balls;
+  for (const Hypothesis& h : hypotheses) {
+    const PreparedModel& model = models[h.object];
+    const float reach = std::max(1.5F * model.diameter_m, kMinSurroundings_m) +
+                        static_cast<float>(options.inlier_distance_m + options.clutter_radius_m);
+    balls.push_back({Rigid3f(h.world_from_object) * model.center, reach});
+  }
+  return balls;
+}
+
+std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, std::size_t num_views,
+                                        std::size_t num_hypotheses, std::size_t h) {
+  std::vector<std::uint8_t> allowed(num_views, 1);
+  if (!present.empty())
+    for (std::size_t v = 0; v < num_views; ++v) allowed[v] = present[v * num_hypotheses + h];
+  return allowed;
+}
+
+// First the light on the scene from all hypotheses, then what each of them looks like in it.
+std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypotheses,
+                                             const std::vector<PreparedModel>& models, const PreparedScene& scene,
+                                             std::span<const DepthView> views, std::span<const std::uint8_t> present,
+                                             const VerifyOptions& options) {
+  std::vector<std::optional<CueComputer>> computers(hypotheses.size());
+  parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
+    const std::vector<std::uint8_t> allowed = allowed_views(present, views.size(), hypotheses.size(), h);
+    computers[h].emplace(models[hypotheses[h].object], hypotheses[h].world_from_object, hypotheses[h].correspondences,
+                         scene, views, allowed, options);
+  });
+  std::vector<LightFit> lights;
+  for (const std::optional<CueComputer>& computer : computers) lights.push_back(computer->light());
+  const Eigen::Array3f white_balance =
+      find_white_balance(lights, white_balance_votes(hypotheses, models.size()), options.light);
+  std::vector<HypothesisCues> cues(hypotheses.size());
+  parallel_for(hypotheses.size(), options.num_threads,
+               [&](std::size_t h) { cues[h] = computers[h]->finish(white_balance); });
+  return cues;
+}
+
+std::vector<int> visible_points(const HypothesisCues& cues) {
+  std::vector<int> visible;
+  for (std::size_t i = 0; i < cues.state.size(); ++i)
+    if (cues.state[i] != ModelPointState::kNotVisible) visible.push_back(static_cast<int>(i));
+  return visible;
+}
+
+// Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
+// stays. Which of them explains a few points more is chance.
+void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
+                   std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
+  if (options.refine.max_iterations == 0 && options.turn_step_rad == 0) return;
+  std::vector<int> by_support = candidates;
+  std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
+    return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();
+  });
+  std::vector<int> kept;
+  for (const int h : by_support) {
+    const ObjectModel& model = library.objects[hypotheses[h].object];
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](int other) {
+      const Rigid3& reference = evidence[other].world_from_object;
+      if (hypotheses[other].object != hypotheses[h].object) return false;
+      const Rigid3 pose = nearest_symmetric_pose(evidence[h].world_from_object, reference, model.symmetries);
+      const Eigen::Vector3d center = model.center.cast<double>();
+      return (pose * center - reference * center).norm() < options.merge_distance_m &&
+             rotation_angle_rad(pose.rotation, reference.rotation) < options.merge_rotation_rad;
+    });
+    if (same == kept.end()) {
+      kept.push_back(h);
+    } else {
+      evidence[h].verdict = Verdict::kOutvoted;
+      evidence[h].outvoted_by = *same;
+      evidence[h].cost_alone = cost_alone(evidence[h], options);
+    }
+  }
+  std::sort(kept.begin(), kept.end());
+  candidates = std::move(kept);
+}
+
+// The active candidate that keeps `rejected` out: without it, switching `rejected` on would be cheapest.
+// Those of other components have no say.
+int find_rival(Selection& selection, const std::vector<int>& component, int rejected) {
+  int rival = -1;
+  FixedCost best_change = selection.change_if_switched(rejected);
+  for (const int c : component) {
+    if (!selection.is_active(c)) continue;
+    selection.switch_candidate(c);
+    const FixedCost change = selection.change_if_switched(rejected);
+    selection.switch_candidate(c);
+    if (change >= best_change) continue;
+    best_change = change;
+    rival = c;
+  }
+  return rival;
+}
+
+void explain_choice(const SelectionProblem& problem, const SearchSelectionResult& found,
+                    const std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
+  Selection none(problem);
+  Selection chosen(problem);
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    if (found.active[c] != 0) chosen.switch_candidate(static_cast<int>(c));
+  for (const std::vector<int>& component : find_components(problem)) {
+    for (const int c : component) {
+      HypothesisEvidence& e = evidence[candidates[c]];
+      const FixedCost change = none.change_if_switched(c);
+      e.cost_alone = from_fixed(change);
+      e.accepted = found.active[c] != 0;
+      e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
+      if (e.accepted || change >= 0) continue;
+      const int rival = find_rival(chosen, component, c);
+      if (rival < 0) continue;
+      e.verdict = Verdict::kOutvoted;
+      e.outvoted_by = candidates[rival];
+    }
+  }
+}
+
+void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+            const std::vector<HypothesisCues>& cues, const std::vector<int>& candidates, const VerifyOptions& options,
+            VerifyResult& result) {
+  std::vector<const HypothesisCues*> candidate_cues;
+  std::vector<PlacedModel> placed;
+  for (const int h : candidates) {
+    candidate_cues.push_back(&cues[h]);
+    placed.push_back({&library.objects[hypotheses[h].object].surface, result.evidence[h].world_from_object});
+  }
+  const std::vector<SharedVoxels> shared = count_shared_voxels(placed, options.occupancy_voxel_m, options.num_threads);
+  const SelectionProblem problem = make_selection_problem(candidate_cues, shared, options);
+  const SearchSelectionResult found = search_selection(problem, {.max_moves = options.max_moves,
+                                                                 .max_exact_candidates = options.max_exact_hypotheses,
+                                                                 .min_shared_points = options.min_shared_points,
+                                                                 .seed = options.seed});
+  explain_choice(problem, found, candidates, result.evidence);
+  result.cost = from_fixed(found.cost);
+  result.num_moves = found.num_moves;
+  result.num_components = found.num_components;
+  result.is_optimal = found.is_optimal;
+}
+
+}  // namespace
+
+HypothesisVerifier::HypothesisVerifier(const ModelLibrary& library, VerifyOptions options)
+    : library_(library), options_(std::move(options)) {
+  options_.check();
+}
+
+// Those that the hypotheses need and that are not made yet; others stay empty.
+void HypothesisVerifier::prepare_models(std::span<const Hypothesis> hypotheses) {
+  models_.resize(library_.objects.size());
+  std::vector<std::uint8_t> needed(models_.size(), 0);
+  for (const Hypothesis& h : hypotheses) needed[h.object] = models_[h.object].points.empty() ? 1 : 0;
+  parallel_for(models_.size(), options_.num_threads, [&](std::size_t i) {
+    if (needed[i] != 0) models_[i] = prepare_model(library_.objects[i], options_);
+  });
+}
+
+VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, const PointCloud& scene_in_world,
+                                        std::span<const VerificationView> views,
+                                        std::span<const std::uint8_t> present) {
+  check_input(hypotheses, library_, views, present);
+  VerifyResult result;
+  result.evidence.resize(hypotheses.size());
+  if (hypotheses.empty()) return result;
+  const std::vector<DepthView> depth_views = prepare_depth_views(views, options_.num_threads);
+  prepare_models(hypotheses);
+  const PreparedScene scene =
+      prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models_, options_)), options_);
+  result.num_planes = static_cast<int>(scene.planes.size());
+  result.num_segments = scene.num_segments;
+  std::vector<HypothesisCues> cues = compute_all_cues(hypotheses, models_, scene, depth_views, present, options_);
+  std::vector<int> candidates;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    result.evidence[h] = std::move(cues[h].evidence);
+    if (pays_alone(result.evidence[h], options_)) candidates.push_back(static_cast<int>(h));
+    cues[h].evidence = result.evidence[h];
+  }
+  drop_repeated(hypotheses, library_, options_, candidates, result.evidence);
+  choose(hypotheses, library_, cues, candidates, options_, result);
+  for (std::size_t h = 0; h < hypotheses.size(); ++h)
+    if (HypothesisEvidence& e = result.evidence[h]; e.accepted)
+      e.uncertainty =
+          estimate_pose_uncertainty(models_[hypotheses[h].object], e.world_from_object, visible_points(cues[h]),
+                                    hypotheses[h].correspondences, scene, options_.refine);
+  return result;
+}
+
+}  // namespace resight
