@@ -6,6 +6,7 @@
 
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/depth_memory.hpp"
+#include "resight/recognition/known_object.hpp"
 #include "resight/recognition/object_presence.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/recognition/shared_space.hpp"

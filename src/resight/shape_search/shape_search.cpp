@@ -14,6 +14,7 @@
 #include "resight/models/shape_turns.hpp"
 #include "resight/shape_search/dipole_search.hpp"
 #include "resight/shape_search/match_pairs.hpp"
+#include "resight/verification/white_balance_votes.hpp"
 
 namespace resight {
 namespace {
@@ -73,14 +74,13 @@ struct ShapeSearch::Impl {
   [[nodiscard]] std::vector<ProbeModel> balance(const PoseProbe& probe,
                                                 std::span<const Hypothesis> from_features) const {
     const Rigid3 camera_from_world = probe.view().frame.world_from_camera.inverse();
-    std::vector<LightFit> lights;
-    std::vector<float> votes;
-    for (const Hypothesis& h : from_features) {
-      lights.push_back(probe.light_on(objects[static_cast<std::size_t>(h.object)],
-                                      camera_from_world * h.world_from_object, options.refine_distance_m,
-                                      colors.light));
-      votes.push_back(static_cast<float>(h.correspondences.size() * h.correspondences.size()));
-    }
+    const std::vector<float> votes = white_balance_votes(from_features, objects.size());
+    std::vector<LightFit> lights(from_features.size());
+    for (std::size_t h = 0; h < lights.size(); ++h)
+      if (votes[h] > 0)
+        lights[h] = probe.light_on(objects[static_cast<std::size_t>(from_features[h].object)],
+                                   camera_from_world * from_features[h].world_from_object, options.refine_distance_m,
+                                   colors.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes, colors.light);
     std::vector<ProbeModel> balanced = objects;
     for (ProbeModel& model : balanced) set_white_balance(model, white_balance);

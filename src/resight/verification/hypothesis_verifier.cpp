@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"

@@ -11,7 +11,7 @@
 
 namespace resight {
 
-/// The scene points around one hypothesis (or those of a model) on a dense grid: neighbours by a few contiguous runs
+/// The scene points around one hypothesis on a dense grid: neighbours by a few contiguous runs
 /// instead of hash look-ups.
 class LocalScene {
  public:

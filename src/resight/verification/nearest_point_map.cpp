@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/nearest_point_map.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "resight/core/check.hpp"
@@ -20,8 +21,8 @@ NearestPointMap::NearestPointMap(std::span<const Eigen::Vector3f> points, float 
   for (const Eigen::Vector3f& p : points) box.extend(p);
   min_ = box.min().array() - reach_m;
   const Eigen::Array3f size = box.sizes().array() + 2 * reach_m;
-  const float cell = std::max(cell_m, size.maxCoeff() / kMaxCellsPerAxis);
-  inverse_cell_ = 1 / cell;
+  const float side_m = std::max(cell_m, size.maxCoeff() / kMaxCellsPerAxis);
+  inverse_cell_ = 1 / side_m;
   dims_ = (size * inverse_cell_).cast<int>() + 1;
   const std::size_t num_cells =
       static_cast<std::size_t>(dims_.x()) * static_cast<std::size_t>(dims_.y()) * static_cast<std::size_t>(dims_.z());
@@ -36,7 +37,7 @@ NearestPointMap::NearestPointMap(std::span<const Eigen::Vector3f> points, float 
         for (int z = first.z(); z <= last.z(); ++z) {
           const std::size_t c = flat({x, y, z});
           const Eigen::Array3f center =
-              (Eigen::Array3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) + 0.5F) * cell;
+              (Eigen::Array3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) + 0.5F) * side_m;
           const float d = (center - at).matrix().squaredNorm();
           if (d > distance_sq[c] || (d == distance_sq[c] && nearest_[c] >= 0)) continue;
           distance_sq[c] = d;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Geometry>
+#include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 

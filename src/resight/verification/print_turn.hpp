@@ -19,8 +19,8 @@ struct ExplainedPoint {
 
 /// The turn of PreparedModel::turns (object_from_turned: the better pose is world_from_object * turn) under which the
 /// print of the model is most like the scene's (pattern_similarity(), less for what the mean hues differ): depth alone
-/// says nothing about it. The identity, unless another is better by .05, and for fewer than 20 points. `chroma_weight`:
-/// of a and b beside l.
+/// says nothing about it. The identity, unless another is better by .05, and for fewer than 20 points. A point
+/// that is beside the model counts as mid-grey there. `chroma_weight`: of a and b beside l.
 [[nodiscard]] Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points,
                                      double chroma_weight);
 

@@ -2,6 +2,7 @@
 #include "resight/verification/scene_preparation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
@@ -25,10 +26,11 @@ PointCloud keep_finite(const PointCloud& cloud) {
 }
 
 // In the scene thinned further: planes are large.
-std::vector<ScenePlane> find_planes_quickly(const PointCloud& scene, const VerifyOptions& options) {
+std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> points,
+                                            std::span<const Eigen::Vector3f> normals, const VerifyOptions& options) {
   PointCloud cloud;
-  cloud.points = scene.points;
-  cloud.normals = scene.normals;
+  cloud.points.assign(points.begin(), points.end());
+  cloud.normals.assign(normals.begin(), normals.end());
   cloud = voxel_downsample(cloud, options.plane_spacing_m);
   return find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, options).planes;
 }
@@ -47,6 +49,17 @@ PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
   scene.plane.assign(scene.points.size(), -1);
   scene.blocks = BlockGrid(scene.points, kBlock_m);
   return scene;
+}
+
+void find_surfaces(PreparedScene& scene, const VerifyOptions& options) {
+  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
+  scene.num_segments = segments.num_segments;
+  if (options.use_planes) {
+    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options);
+    scene.planes = std::move(planes.planes);
+    scene.plane = std::move(planes.plane_of_point);
+  }
+  scene.segment = std::move(segments.segment);
 }
 
 }  // namespace
@@ -68,29 +81,22 @@ PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
 }
 
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
-  const PointCloud cloud = keep_finite(scene_in_world);
+  PointCloud cloud = keep_finite(scene_in_world);
   const bool has_segments = options.continuation_offset_m <= 0 || options.plane_spacing_m <= options.resolution_m;
-  const bool is_quick = !has_segments && options.use_planes && cloud.has_normals();
+  if (!cloud.has_normals() || has_segments || !options.use_planes) {
+    PreparedScene scene = without_surfaces(std::move(cloud), options);
+    if (has_segments && !scene.normals.empty()) find_surfaces(scene, options);
+    return scene;
+  }
+  // Mostly it is thin already: then its planes are those of the cloud, which need not wait for the rest.
   PreparedScene scene;
   std::vector<ScenePlane> planes;
   run_both(
-      options.num_threads, [&] { scene = without_surfaces(cloud, options); },
-      [&] {
-        if (is_quick) planes = find_planes_quickly(cloud, options);
-      });
-  if (is_quick) {
-    scene.planes = std::move(planes);
-    scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
-  } else if (has_segments && !scene.normals.empty()) {
-    SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
-    scene.num_segments = segments.num_segments;
-    if (options.use_planes) {
-      ScenePlanes found = find_scene_planes(scene.points, scene.normals, segments, options);
-      scene.planes = std::move(found.planes);
-      scene.plane = std::move(found.plane_of_point);
-    }
-    scene.segment = std::move(segments.segment);
-  }
+      options.num_threads, [&] { planes = find_planes_quickly(cloud.points, cloud.normals, options); },
+      [&] { scene = without_surfaces(cloud, options); });
+  const bool was_thin = scene.points.size() == cloud.points.size();
+  scene.planes = was_thin ? std::move(planes) : find_planes_quickly(scene.points, scene.normals, options);
+  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
   return scene;
 }
 

@@ -170,6 +170,24 @@ TEST(PrepareScene, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(a.plane, b.plane);
 }
 
+TEST(PrepareScene, QuickPlanesDependNeitherOnThreadsNorOnWhoThinnedTheScene) {
+  VerifyOptions options{.continuation_offset_m = 0.005, .plane_spacing_m = 0.01};
+  const PreparedScene a = prepare_scene(box_and_ball_scene(), options);
+  ASSERT_FALSE(a.planes.empty());
+  options.num_threads = 4;
+  const PreparedScene b = prepare_scene(box_and_ball_scene(), options);
+  const PreparedScene thin = prepare_scene(voxel_downsample(box_and_ball_scene(), options.resolution_m), options);
+  for (const PreparedScene& other : {b, thin}) {
+    EXPECT_EQ(a.points, other.points);
+    EXPECT_EQ(a.plane, other.plane);
+    ASSERT_EQ(a.planes.size(), other.planes.size());
+    for (std::size_t p = 0; p < a.planes.size(); ++p) {
+      EXPECT_EQ(a.planes[p].normal, other.planes[p].normal);
+      EXPECT_EQ(a.planes[p].offset, other.planes[p].offset);
+    }
+  }
+}
+
 TEST(CropToBalls, KeepsAllPointsNearAndNoneFar) {
   const PointCloud cloud = box_and_ball_scene();
   const std::vector<Ball> balls = {{{0.2F, 0.1F, 0.06F}, 0.15F}, {{-0.3F, -0.3F, 0}, 0.05F}};
@@ -190,11 +208,12 @@ TEST(CropToBalls, KeepsAllPointsNearAndNoneFar) {
 }
 
 TEST(FindSmoothSegments, AgreesWithASlowTwin) {
-  // Two sheets that meet at 90 degrees, a third apart. The twin floods from every point over all pairs.
+  // Two sheets that meet at 90 degrees, a third apart, of several blocks of cells. The twin floods from every point
+  // over all pairs.
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
-  for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 20; ++j) {
+  for (int i = 0; i < 32; ++i)
+    for (int j = 0; j < 32; ++j) {
       const float a = 0.005F * static_cast<float>(i);
       const float b = 0.005F * static_cast<float>(j);
       points.insert(points.end(), {{a, b, 0}, {0, b, a + 0.005F}, {a + 0.3F, b, 0}});
