@@ -3,6 +3,7 @@
 // `resight train` and SEQUENCE is a folder of views (`resight demo` makes both).
 #include <cstdio>
 
+#include "resight/core/allocator.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s MODELS SEQUENCE\n", argv[0]);
     return 2;
   }
+  resight::keep_freed_memory();  // Each view needs as much again: a tenth of the time.
   const auto library = resight::load_library(argv[1]);
   const auto sequence = resight::open_posed_sequence(argv[2]);
   if (!library.ok() || !sequence.ok()) {

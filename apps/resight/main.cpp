@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
+#include "resight/core/allocator.hpp"
 #include "resight/core/parallel.hpp"
 
 namespace {
@@ -232,6 +233,7 @@ void resight::app::print_warning(const std::string& what) {
 }
 
 int main(int argc, char** argv) {
+  resight::keep_freed_memory();
   CLI::App app(
       "resight recognises known objects in RGB-D views of a scene that changes: which object is where, and what was\n"
       "added, moved or removed.");

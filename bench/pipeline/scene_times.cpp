@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../quality/arguments.hpp"
+#include "resight/core/allocator.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
@@ -56,6 +57,7 @@ std::vector<PreparedView> prepare_all(const std::string& folder, const PrepareVi
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();  // As the program does.
   if (argc < 2) exit_with("usage: bench_scene_times SEQUENCE [preset] [K] [threads] [passes]");
   RecognizerConfig config = preset_or_exit(argc > 2 ? argv[2] : "default");
   if (argc > 3) config.num_previous_views = std::atoi(argv[3]);

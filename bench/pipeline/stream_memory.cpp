@@ -13,6 +13,7 @@
 
 #include "../quality/arguments.hpp"
 #include "memory_in_use.hpp"
+#include "resight/core/allocator.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
@@ -47,6 +48,7 @@ struct Row {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();  // As the program does.
   if (argc < 3) exit_with("usage: bench_stream_memory SEQUENCE LIBRARY [preset] [views] [threads]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../quality/arguments.hpp"
+#include "resight/core/allocator.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
@@ -87,6 +88,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();  // As the program does.
   if (argc < 3)
     exit_with("usage: bench_view_times SEQUENCE LIBRARY [preset] [config.toml|-] [K] [threads] [max views] [objects]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));

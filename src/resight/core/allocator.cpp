@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/core/allocator.hpp"
+
+#include <climits>
+#include <cstdlib>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace resight {
+
+bool keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kLargest = 1 << 30;  // In bytes: what is smaller is kept.
+  return mallopt(M_MMAP_THRESHOLD, kLargest) == 1 && mallopt(M_TRIM_THRESHOLD, INT_MAX) == 1;
+#else
+  return false;
+#endif
+}
+
+}  // namespace resight

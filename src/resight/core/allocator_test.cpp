@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/core/allocator.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace resight {
+namespace {
+
+#ifdef __GLIBC__
+
+long num_page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt;
+}
+
+// Page faults of one more array of 48 MB, written from end to end and freed.
+long faults_of_large_array() {
+  constexpr std::size_t kBytes = 48'000'000;
+  const long before = num_page_faults();
+  auto* array = static_cast<volatile char*>(std::malloc(kBytes));
+  for (std::size_t i = 0; i < kBytes; i += 1024) array[i] = 1;
+  std::free(const_cast<char*>(array));
+  return num_page_faults() - before;
+}
+
+TEST(KeepFreedMemory, PagesOfTheLastArrayServeTheNext) {
+  EXPECT_GT(faults_of_large_array(), 20);
+  EXPECT_GT(faults_of_large_array(), 20);
+  ASSERT_TRUE(keep_freed_memory());
+  (void)faults_of_large_array();
+  EXPECT_LT(faults_of_large_array(), 10);
+}
+
+#endif
+
+}  // namespace
+}  // namespace resight
