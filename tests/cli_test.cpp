@@ -103,7 +103,7 @@ TriangleMesh make_cube(float metre) {
   return mesh;
 }
 
-FeatureSet make_features(FeatureType type, int dimension, int count) {
+CodedFeatures make_features(FeatureType type, int dimension, int count) {
   Rng rng(3);
   FeatureSet set{.type = type, .dimension = dimension, .points = {}, .normals = {}, .descriptors = {}};
   for (int i = 0; i < count; ++i) {

@@ -90,13 +90,14 @@ void add_pcl(MatchingContest& contest) {
   });
 }
 
-MatchingContest make_contest(const FeatureSet& features, FeatureSet ObjectModel::*of_model,
+MatchingContest make_contest(const FeatureSet& features, CodedFeatures ObjectModel::*of_model,
                              const ModelLibrary& library) {
   MatchingContest contest;
   contest.dimension = features.dimension;
-  for (const ObjectModel& object : library.objects)
-    contest.indexed.insert(contest.indexed.end(), (object.*of_model).descriptors.begin(),
-                           (object.*of_model).descriptors.end());
+  for (const ObjectModel& object : library.objects) {
+    const std::vector<float> rows = decode(object.*of_model).descriptors;
+    contest.indexed.insert(contest.indexed.end(), rows.begin(), rows.end());
+  }
   const std::size_t step = features.size() / kMaxQueries + 1;
   for (std::size_t i = 0; i < features.size(); i += step) {
     const auto row = features.descriptor(i);

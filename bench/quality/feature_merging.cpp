@@ -11,8 +11,8 @@
 #include <numbers>
 
 #include "resight/core/parallel.hpp"
+#include "resight/features/coded_features.hpp"
 #include "resight/io/model_source.hpp"
-#include "resight/models/descriptor_code.hpp"
 #include "resight/models/training.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/simulation/procedural_objects.hpp"
@@ -173,9 +173,7 @@ LabelledFeatures merge(const LabelledFeatures& all, const FeatureMerging& mergin
       const auto descriptor = all.features.descriptor(i);
       part.descriptors.insert(part.descriptors.end(), descriptor.begin(), descriptor.end());
     }
-    FeatureSet reduced = merge_similar_features(part, merging, num_threads);
-    quantize_descriptors(reduced);
-    merged.append(reduced, object);
+    merged.append(decode(encode(merge_similar_features(part, merging, num_threads))), object);
   }
   return merged;
 }

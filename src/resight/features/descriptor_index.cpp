@@ -29,11 +29,13 @@ constexpr int kMeansIterations = 5;
 constexpr int kSpareCandidates = 4;     // the products round: the exact order is settled among a few more than k...
 constexpr int kSpareOfComponents = 16;  // ...and among more of them where not all of a descriptor was compared
 constexpr Index kSamplesOfComponents = 20000;  // rows, evenly taken
+constexpr float kRounding = 1e-5F;             // of a squared distance between unit vectors
 
 // The best few of a query, in the strict order (distance, index): the result does not depend on the order of arrival.
 class BestList {
  public:
   explicit BestList(std::size_t capacity) : capacity_(capacity) { entries_.reserve(capacity + 1); }
+  void clear() { entries_.clear(); }
   [[nodiscard]] bool accepts(float distance_sq) const {
     return entries_.size() < capacity_ || distance_sq <= entries_.back().distance_sq;
   }
@@ -42,7 +44,7 @@ class BestList {
     entries_.insert(std::upper_bound(entries_.begin(), entries_.end(), entry, before), entry);
     if (entries_.size() > capacity_) entries_.pop_back();
   }
-  [[nodiscard]] std::vector<DescriptorMatch>& entries() { return entries_; }
+  [[nodiscard]] const std::vector<DescriptorMatch>& entries() const { return entries_; }
   static bool before(const DescriptorMatch& a, const DescriptorMatch& b) {
     return a.distance_sq != b.distance_sq ? a.distance_sq < b.distance_sq : a.index < b.index;
   }
@@ -134,11 +136,27 @@ Probes sort_by_cell(const std::vector<int>& cell_of_probe, std::size_t num_probe
   return probes;
 }
 
+// Rows first, first + step, ... of all.
+Matrix read_rows(const DescriptorRows& all, Index first, Index count, Index step = 1) {
+  Matrix rows(count, all.dimension());
+  for (Index i = 0; i < count; ++i) all.read(static_cast<std::size_t>(first + i * step), rows.row(i).data());
+  return rows;
+}
+
+// In blocks, so that not all rows are held as floats at once.
+Eigen::RowVectorXf mean_of(const DescriptorRows& all) {
+  const auto n = static_cast<Index>(all.size());
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(all.dimension());
+  for (Index first = 0; first < n; first += kRowsPerBlock)
+    sum += read_rows(all, first, std::min(kRowsPerBlock, n - first)).colwise().sum().cast<double>();
+  return (sum / static_cast<double>(n)).cast<float>();
+}
+
 // The directions in which the descriptors differ most, as columns.
-Matrix principal_components(const Block& data, const Eigen::RowVectorXf& mean, Index count) {
-  const Index step = std::max<Index>(1, data.rows() / kSamplesOfComponents);
-  Matrix sample((data.rows() + step - 1) / step, data.cols());
-  for (Index i = 0; i < sample.rows(); ++i) sample.row(i) = data.row(i * step) - mean;
+Matrix principal_components(const DescriptorRows& all, const Eigen::RowVectorXf& mean, Index count) {
+  const auto n = static_cast<Index>(all.size());
+  const Index step = std::max<Index>(1, n / kSamplesOfComponents);
+  const Matrix sample = read_rows(all, 0, (n + step - 1) / step, step).rowwise() - mean;
   const Eigen::MatrixXf covariance = sample.transpose() * sample;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
   return solver.eigenvectors().rightCols(count);  // Eigenvalues ascend.
@@ -155,101 +173,82 @@ void DescriptorIndexOptions::check() const {
 }
 
 struct DescriptorIndex::Impl {
-  Impl(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& settings,
-       std::vector<const float*> kept);
-  void build_cells(const Block& data, const Block& searched, int num_cells);
+  Impl(DescriptorRows descriptors, const DescriptorIndexOptions& settings);
+  void build_cells(const Matrix& data, int num_cells);
   [[nodiscard]] Matrix project(const Block& descriptors) const;
-  [[nodiscard]] Matrix project_rows() const;
+  [[nodiscard]] Matrix project_all() const;
   void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
             std::vector<BestList>& best) const;
   void search_batch(const Block& queries, int k, DescriptorMatch* results) const;
   [[nodiscard]] Probes probe_cells(const Block& queries) const;
   void scan_cells(const Block& queries, std::vector<BestList>& best) const;
   void scan_rows(const Block& queries, std::vector<BestList>& best) const;
-  void settle(const Block& queries, Index q, int k, BestList& best, DescriptorMatch* results) const;
+  void settle(const Eigen::RowVectorXf& query, float compared_norm_sq, const BestList& candidates,
+              BestList& nearest) const;
 
   [[nodiscard]] bool is_projected() const { return basis.size() > 0; }
-  [[nodiscard]] const Matrix& searched_rows() const { return is_projected() ? components : rows; }
-  // All of a descriptor.
-  [[nodiscard]] Eigen::Map<const Eigen::RowVectorXf> whole_row(Index row) const {
-    return {kept_rows.empty() ? rows.row(row).data() : kept_rows[static_cast<std::size_t>(original[row])], dimension};
-  }
 
   DescriptorIndexOptions options;
   Index dimension;
-  Matrix rows;                          // the descriptors, sorted by cell; empty with kept_rows
-  std::vector<const float*> kept_rows;  // the caller's, in the caller's order; empty unless projected
-  Eigen::RowVectorXf mean;              // of the descriptors
-  Matrix basis;                         // dimension x components; empty: all of a descriptor is compared
-  Matrix components;                    // of the rows, if projected
-  std::vector<int> original;            // index of each row in the caller's order
-  Eigen::VectorXf norms_sq;             // of what is searched
-  Matrix centroids;                     // empty: exact search
+  Matrix rows;                // what is searched, sorted by cell: the descriptors, or their components
+  DescriptorRows whole;       // the descriptors in the caller's order; empty unless components are searched
+  Eigen::RowVectorXf mean;    // of the descriptors
+  Matrix basis;               // dimension x components; empty: all of a descriptor is compared
+  std::vector<int> original;  // index of each row in the caller's order
+  Eigen::VectorXf norms_sq;   // of the rows
+  Matrix centroids;           // empty: exact search
   Scores centroid_norms_sq;
   std::vector<Index> cell_begin;  // first row of each cell, and the end
 };
 
-DescriptorIndex::Impl::Impl(std::span<const float> descriptors, int descriptor_size,
-                            const DescriptorIndexOptions& settings, std::vector<const float*> kept)
-    : options(settings), dimension(descriptor_size) {
-  const auto n = static_cast<Index>(descriptors.size()) / dimension;
-  const Eigen::Map<const Matrix> data(descriptors.data(), n, dimension);
+DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOptions& settings)
+    : options(settings), dimension(descriptors.dimension()) {
+  const auto n = static_cast<Index>(descriptors.size());
   const int automatic = static_cast<int>(4 * std::sqrt(static_cast<double>(n)));
   const int num_cells = std::min<int>(options.num_cells > 0 ? options.num_cells : automatic, static_cast<int>(n));
   if (n < options.exact_below || num_cells <= 1) {
-    rows = data;
+    rows = read_rows(descriptors, 0, n);
     original.resize(static_cast<std::size_t>(n));
     std::iota(original.begin(), original.end(), 0);
   } else if (options.num_components > 0 && 2 * options.num_components <= dimension) {
-    mean = data.colwise().mean();
-    basis = principal_components(data, mean, options.num_components);
-    kept_rows = std::move(kept);
-    build_cells(data, project(data), num_cells);
-    components = project_rows();
+    whole = std::move(descriptors);
+    mean = mean_of(whole);
+    basis = principal_components(whole, mean, options.num_components);
+    build_cells(project_all(), num_cells);
   } else {
-    build_cells(data, data, num_cells);
+    build_cells(read_rows(descriptors, 0, n), num_cells);
   }
-  norms_sq = searched_rows().rowwise().squaredNorm();
+  norms_sq = rows.rowwise().squaredNorm();
 }
 
 Matrix DescriptorIndex::Impl::project(const Block& descriptors) const {
-  Matrix projected(descriptors.rows(), basis.cols());
-  parallel_for_blocks(static_cast<std::size_t>(descriptors.rows()), kRowsPerBlock, options.num_threads,
-                      [&](std::size_t begin, std::size_t end) {
-                        const auto first = static_cast<Index>(begin);
-                        const auto count = static_cast<Index>(end) - first;
-                        const Matrix centered = descriptors.middleRows(first, count).rowwise() - mean;
-                        projected.middleRows(first, count).noalias() = centered * basis;
-                      });
-  return projected;
+  const Matrix centered = descriptors.rowwise() - mean;
+  return centered * basis;
 }
 
-// Block by block as they are sorted: no copy of all whole descriptors.
-Matrix DescriptorIndex::Impl::project_rows() const {
-  const auto n = static_cast<Index>(original.size());
-  Matrix projected(n, basis.cols());
-  parallel_for_blocks(original.size(), kRowsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+Matrix DescriptorIndex::Impl::project_all() const {
+  Matrix projected(static_cast<Index>(whole.size()), basis.cols());
+  parallel_for_blocks(whole.size(), kRowsPerBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Index>(begin);
-    Matrix centered(static_cast<Index>(end) - first, dimension);
-    for (Index r = 0; r < centered.rows(); ++r) centered.row(r) = whole_row(first + r) - mean;
-    projected.middleRows(first, centered.rows()).noalias() = centered * basis;
+    const auto count = static_cast<Index>(end) - first;
+    projected.middleRows(first, count) = project(read_rows(whole, first, count));
   });
   return projected;
 }
 
-void DescriptorIndex::Impl::build_cells(const Block& data, const Block& searched, int num_cells) {
-  centroids = cluster_cells(searched, num_cells, options);
+void DescriptorIndex::Impl::build_cells(const Matrix& data, int num_cells) {
+  centroids = cluster_cells(data, num_cells, options);
   centroid_norms_sq = centroids.rowwise().squaredNorm();
-  const std::vector<int> cell = assign_to_cells(searched, centroids, options.num_threads);
+  const std::vector<int> cell = assign_to_cells(data, centroids, options.num_threads);
   cell_begin.assign(static_cast<std::size_t>(num_cells) + 1, 0);
   for (const int c : cell) ++cell_begin[static_cast<std::size_t>(c) + 1];
   std::partial_sum(cell_begin.begin(), cell_begin.end(), cell_begin.begin());
   std::vector<Index> next(cell_begin.begin(), cell_begin.end() - 1);
-  if (kept_rows.empty()) rows.resize(data.rows(), data.cols());
+  rows.resize(data.rows(), data.cols());
   original.resize(cell.size());
   for (std::size_t i = 0; i < cell.size(); ++i) {
     const Index row = next[static_cast<std::size_t>(cell[i])]++;
-    if (kept_rows.empty()) rows.row(row) = data.row(static_cast<Index>(i));
+    rows.row(row) = data.row(static_cast<Index>(i));
     original[static_cast<std::size_t>(row)] = static_cast<int>(i);
   }
 }
@@ -260,7 +259,7 @@ void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> quer
   Scores scores;
   for (Index first = begin; first < end; first += kRowsPerBlock) {
     const Index count = std::min(kRowsPerBlock, end - first);
-    const Matrix products = queries * searched_rows().middleRows(first, count).transpose();
+    const Matrix products = queries * rows.middleRows(first, count).transpose();
     for (Index q = 0; q < queries.rows(); ++q) {
       BestList& list = best[static_cast<std::size_t>(query_of_row[static_cast<std::size_t>(q)])];
       scores = norms_sq.segment(first, count).array() - 2.0F * products.row(q).transpose().array();
@@ -305,19 +304,26 @@ void DescriptorIndex::Impl::scan_cells(const Block& queries, std::vector<BestLis
 void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList>& best) const {
   std::vector<int> all(static_cast<std::size_t>(queries.rows()));
   std::iota(all.begin(), all.end(), 0);
-  scan(queries, all, 0, searched_rows().rows(), best);
+  scan(queries, all, 0, rows.rows(), best);
 }
 
-// Gives the best few of a query their true distances.
-void DescriptorIndex::Impl::settle(const Block& queries, Index q, int k, BestList& best,
-                                   DescriptorMatch* results) const {
-  auto& entries = best.entries();
-  for (DescriptorMatch& entry : entries) {
-    entry.distance_sq = (queries.row(q) - whole_row(entry.index)).squaredNorm();
-    entry.index = original[static_cast<std::size_t>(entry.index)];
+// The nearest of the candidates, by their true distances and in the caller's order. `compared_norm_sq`: |q|^2 of what
+// was compared, which their scores lack.
+void DescriptorIndex::Impl::settle(const Eigen::RowVectorXf& query, float compared_norm_sq, const BestList& candidates,
+                                   BestList& nearest) const {
+  nearest.clear();
+  Eigen::RowVectorXf row(dimension);
+  for (const DescriptorMatch& candidate : candidates.entries()) {
+    const int index = original[static_cast<std::size_t>(candidate.index)];
+    if (is_projected()) {
+      // Components that were not compared only add to a distance: those that follow are farther still.
+      if (!nearest.accepts(candidate.distance_sq + compared_norm_sq - kRounding)) break;
+      whole.read(static_cast<std::size_t>(index), row.data());
+    } else {
+      row = rows.row(candidate.index);
+    }
+    nearest.add(index, (query - row).squaredNorm());
   }
-  std::sort(entries.begin(), entries.end(), BestList::before);
-  std::copy_n(entries.begin(), std::min(entries.size(), static_cast<std::size_t>(k)), results + q * k);
 }
 
 void DescriptorIndex::Impl::search_batch(const Block& queries, int k, DescriptorMatch* results) const {
@@ -332,20 +338,19 @@ void DescriptorIndex::Impl::search_batch(const Block& queries, int k, Descriptor
     scan_cells(compared, best);
   else
     scan_rows(compared, best);
-  for (Index q = 0; q < queries.rows(); ++q) settle(queries, q, k, best[static_cast<std::size_t>(q)], results);
+  BestList nearest(static_cast<std::size_t>(k));
+  for (Index q = 0; q < queries.rows(); ++q) {
+    settle(queries.row(q), compared.row(q).squaredNorm(), best[static_cast<std::size_t>(q)], nearest);
+    std::ranges::copy(nearest.entries(), results + q * k);
+  }
 }
 
 DescriptorIndex::DescriptorIndex(std::span<const float> descriptors, int dimension,
-                                 const DescriptorIndexOptions& options, std::vector<const float*> kept_rows) {
+                                 const DescriptorIndexOptions& options)
+    : DescriptorIndex(DescriptorRows(descriptors, dimension), options) {}
+DescriptorIndex::DescriptorIndex(DescriptorRows descriptors, const DescriptorIndexOptions& options) {
   options.check();
-  check_positive("dimension", dimension);
-  require(kept_rows.empty() || kept_rows.size() * static_cast<std::size_t>(dimension) == descriptors.size(),
-          "DescriptorIndex: kept_rows must hold one for each descriptor");
-  require(descriptors.size() % static_cast<std::size_t>(dimension) == 0,
-          "DescriptorIndex: the number of values is not a multiple of the dimension");
-  require(std::all_of(descriptors.begin(), descriptors.end(), [](float x) { return std::isfinite(x); }),
-          "DescriptorIndex: a descriptor is not finite");
-  impl_ = std::make_unique<Impl>(descriptors, dimension, options, std::move(kept_rows));
+  impl_ = std::make_unique<Impl>(std::move(descriptors), options);
 }
 DescriptorIndex::~DescriptorIndex() = default;
 DescriptorIndex::DescriptorIndex(DescriptorIndex&&) noexcept = default;

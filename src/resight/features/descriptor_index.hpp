@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "resight/features/descriptor_rows.hpp"
+
 namespace resight {
 
 /// A found descriptor.
@@ -25,14 +27,12 @@ struct DescriptorIndexOptions {
 };
 
 /// k nearest neighbours among descriptors: exact for small sets, else an inverted file over k-means cells (IVF-flat),
-/// if wanted of principal components. Copies what it searches. Deterministic.
+/// if wanted of principal components. Deterministic.
 class DescriptorIndex {
  public:
-  /// `descriptors`: n x dimension floats, row by row. n = 0 gives an index that finds nothing. `kept_rows`: where the
-  /// same n rows are kept by the caller as long as the index is used; an index of principal components then reads whole
-  /// descriptors there instead of copying them. Empty: everything is copied.
-  DescriptorIndex(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& options = {},
-                  std::vector<const float*> kept_rows = {});
+  /// n x dimension floats, row by row; copied. n = 0 gives an index that finds nothing.
+  DescriptorIndex(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& options = {});
+  explicit DescriptorIndex(DescriptorRows descriptors, const DescriptorIndexOptions& options = {});
   ~DescriptorIndex();
   DescriptorIndex(DescriptorIndex&&) noexcept;
   DescriptorIndex& operator=(DescriptorIndex&&) noexcept;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "resight/core/random.hpp"
+#include "resight/features/coded_features.hpp"
 
 namespace resight {
 namespace {
@@ -199,27 +200,43 @@ TEST(DescriptorIndex, RefusesNonsense) {
   EXPECT_THROW((void)index.search(std::vector<float>{1, 0, 0}, 1), std::invalid_argument);
 }
 
-TEST(DescriptorIndex, RowsThatTheCallerKeepsNeedNoCopy) {
+TEST(DescriptorIndex, CodesAreFoundLikeTheFloatsTheyStandFor) {
   constexpr int kRows = 3000;
-  const std::vector<float> data = make_clustered(kRows, kDimension, 60, 0.3, 1);
+  std::vector<float> data = make_clustered(kRows, kDimension, 60, 0.3, 1);
+  for (float& value : data) value = std::abs(value);
+  const std::vector<std::uint8_t> codes = encode_descriptors(data, kDimension);
+  const std::vector<float> decoded = decode_descriptors(codes, kDimension);
+  std::vector<const std::uint8_t*> rows;
+  for (int i = 0; i < kRows; ++i) rows.push_back(codes.data() + i * kDimension);
   const std::vector<float> queries = make_clustered(200, kDimension, 60, 0.3, 2);
-  std::vector<const float*> rows;
-  for (int i = 0; i < kRows; ++i) rows.push_back(data.data() + i * kDimension);
-  DescriptorIndexOptions options;
-  options.exact_below = 100;
-  for (const int components : {0, 8}) {  // without components nothing is read there
-    options.num_components = components;
-    const auto copied = DescriptorIndex(data, kDimension, options).search(queries, 3);
-    const DescriptorIndex index(data, kDimension, options, rows);
-    EXPECT_EQ(index.size(), static_cast<std::size_t>(kRows));
-    const auto kept = index.search(queries, 3);
-    for (std::size_t i = 0; i < copied.size(); ++i) {
-      ASSERT_EQ(kept[i].index, copied[i].index);
-      ASSERT_EQ(kept[i].distance_sq, copied[i].distance_sq);
+  for (const int exact_below : {100, 10000})
+    for (const int components : {0, 8}) {
+      const DescriptorIndexOptions options{.exact_below = exact_below, .num_components = components};
+      const auto expected = DescriptorIndex(decoded, kDimension, options).search(queries, 3);
+      const DescriptorIndex index(DescriptorRows(rows, kDimension), options);
+      EXPECT_EQ(index.size(), static_cast<std::size_t>(kRows));
+      const auto found = index.search(queries, 3);
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        ASSERT_EQ(found[i].index, expected[i].index);
+        ASSERT_EQ(found[i].distance_sq, expected[i].distance_sq);
+      }
+    }
+}
+
+// Of the candidates by components the nearest, wherever they stand among them.
+TEST(DescriptorIndex, CandidatesAreSettledByWholeDescriptors) {
+  constexpr int kRows = 15;  // No more than are settled: all of them are.
+  const auto data = make_clustered(kRows, kDimension, kRows, 0.6, 21);
+  const auto queries = make_clustered(200, kDimension, kRows, 0.9, 22);
+  const DescriptorIndex few(data, kDimension, {.num_cells = 2, .num_probes = 2, .exact_below = 0, .num_components = 2});
+  const auto found = few.search(queries, 2);
+  for (std::size_t q = 0; q < 200; ++q) {
+    const auto expected = brute_force(data, std::span(queries).subspan(q * kDimension, kDimension), kDimension, 2);
+    for (std::size_t j = 0; j < 2; ++j) {
+      ASSERT_EQ(found[2 * q + j].index, expected[j].index);
+      ASSERT_NEAR(found[2 * q + j].distance_sq, expected[j].distance_sq, 1e-5);
     }
   }
-  rows.pop_back();
-  EXPECT_THROW(DescriptorIndex(data, kDimension, options, rows), std::invalid_argument);
 }
 
 }  // namespace

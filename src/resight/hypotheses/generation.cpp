@@ -18,12 +18,12 @@ struct FeatureOwner {
 
 // All descriptors of one type.
 struct TypeIndex {
-  TypeIndex(const ModelLibrary& library, FeatureSet ObjectModel::*features, int neighbors, double max_distance,
+  TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*features, int neighbors, double max_distance,
             const DescriptorIndexOptions& options);
   void match(const ModelLibrary& library, const FeatureSet& scene,
              std::vector<std::vector<Correspondence>>& correspondences) const;
 
-  FeatureSet ObjectModel::*features;
+  CodedFeatures ObjectModel::*features;
   int neighbors;
   double max_distance;
   int dimension = 0;  // 0: no object has such features.
@@ -31,29 +31,24 @@ struct TypeIndex {
   std::unique_ptr<DescriptorIndex> index;
 };
 
-TypeIndex::TypeIndex(const ModelLibrary& library, FeatureSet ObjectModel::*member, int num_neighbors, double max_l2,
+TypeIndex::TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*member, int num_neighbors, double max_l2,
                      const DescriptorIndexOptions& options)
     : features(member), neighbors(num_neighbors), max_distance(max_l2) {
-  std::vector<float> descriptors;
-  std::vector<const float*> rows;
-  std::size_t num_values = 0;
-  for (const ObjectModel& object : library.objects) num_values += (object.*features).descriptors.size();
-  descriptors.reserve(num_values);
+  std::vector<const std::uint8_t*> codes;
   for (std::size_t o = 0; o < library.objects.size(); ++o) {
-    const FeatureSet& set = library.objects[o].*features;
+    const CodedFeatures& set = library.objects[o].*features;
     if (set.size() == 0) continue;
     if (dimension == 0) dimension = set.dimension;
     require(set.dimension == dimension, "ModelFeatureIndex: objects with descriptors of different dimensions");
-    require(set.normals.size() == set.size() &&
-                set.descriptors.size() == set.size() * static_cast<std::size_t>(set.dimension),
-            "ModelFeatureIndex: points, normals and descriptors of an object differ in number");
-    descriptors.insert(descriptors.end(), set.descriptors.begin(), set.descriptors.end());
+    require(
+        set.normals.size() == set.size() && set.codes.size() == set.size() * static_cast<std::size_t>(set.dimension),
+        "ModelFeatureIndex: points, normals and descriptors of an object differ in number");
     for (std::size_t f = 0; f < set.size(); ++f) {
       owners.push_back({static_cast<int>(o), static_cast<int>(f)});
-      rows.push_back(set.descriptors.data() + f * static_cast<std::size_t>(dimension));
+      codes.push_back(set.code(f).data());
     }
   }
-  if (dimension > 0) index = std::make_unique<DescriptorIndex>(descriptors, dimension, options, std::move(rows));
+  if (dimension > 0) index = std::make_unique<DescriptorIndex>(DescriptorRows(std::move(codes), dimension), options);
 }
 
 void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
@@ -71,7 +66,7 @@ void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
     if (match.index < 0 || !scene.points[scene_feature].allFinite()) continue;
     if (max_distance > 0 && !(std::sqrt(static_cast<double>(match.distance_sq)) <= max_distance)) continue;
     const FeatureOwner owner = owners[static_cast<std::size_t>(match.index)];
-    const FeatureSet& model = library.objects[static_cast<std::size_t>(owner.object)].*features;
+    const CodedFeatures& model = library.objects[static_cast<std::size_t>(owner.object)].*features;
     const auto model_feature = static_cast<std::size_t>(owner.feature);
     correspondences[static_cast<std::size_t>(owner.object)].push_back(
         {.model_point = model.points[model_feature],

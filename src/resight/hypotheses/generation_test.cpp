@@ -22,7 +22,7 @@ FeatureSet random_features(Rng& rng, FeatureType type, int dimension, int n) {
     set.points.push_back(p.point.cast<float>());
     set.normals.push_back(p.normal.cast<float>());
     Eigen::VectorXf d(dimension);
-    for (auto& value : d) value = static_cast<float>(rng.normal());
+    for (auto& value : d) value = static_cast<float>(std::abs(rng.normal()));
     d.normalize();
     set.descriptors.insert(set.descriptors.end(), d.data(), d.data() + dimension);
   }
@@ -37,8 +37,8 @@ ModelLibrary random_library(Rng& rng) {
   library.objects.resize(4);
   for (std::size_t o = 0; o < 4; ++o) {
     const int n = o == 2 ? 0 : 30 + 5 * static_cast<int>(o);  // One object without any features.
-    library.objects[o].sift = random_features(rng, FeatureType::kSift, kSiftDimension, n);
-    library.objects[o].shot = random_features(rng, FeatureType::kShot, kShotDimension, n / 2);
+    library.objects[o].sift = encode(random_features(rng, FeatureType::kSift, kSiftDimension, n));
+    library.objects[o].shot = encode(random_features(rng, FeatureType::kShot, kShotDimension, n / 2));
   }
   return library;
 }
@@ -50,11 +50,11 @@ struct Neighbor {
 };
 
 // The k nearest descriptors among all objects, the slow way.
-std::vector<Neighbor> nearest(const ModelLibrary& library, FeatureSet ObjectModel::*type, std::span<const float> query,
-                              int k) {
+std::vector<Neighbor> nearest(const ModelLibrary& library, CodedFeatures ObjectModel::*type,
+                              std::span<const float> query, int k) {
   std::vector<Neighbor> all;
   for (std::size_t o = 0; o < library.objects.size(); ++o) {
-    const FeatureSet& set = library.objects[o].*type;
+    const FeatureSet set = decode(library.objects[o].*type);
     for (std::size_t f = 0; f < set.size(); ++f) {
       double sum = 0;
       for (std::size_t d = 0; d < query.size(); ++d) {
@@ -69,12 +69,12 @@ std::vector<Neighbor> nearest(const ModelLibrary& library, FeatureSet ObjectMode
   return all;
 }
 
-int count_expected(const ModelLibrary& library, FeatureSet ObjectModel::*type, const FeatureSet& scene, int k,
+int count_expected(const ModelLibrary& library, CodedFeatures ObjectModel::*type, const FeatureSet& scene, int k,
                    const std::vector<std::vector<Correspondence>>& found) {
   int checked = 0;
   for (std::size_t i = 0; i < scene.size(); ++i)
     for (const Neighbor& n : nearest(library, type, scene.descriptor(i), k)) {
-      const FeatureSet& model = library.objects[static_cast<std::size_t>(n.object)].*type;
+      const CodedFeatures& model = library.objects[static_cast<std::size_t>(n.object)].*type;
       const auto& candidates = found[static_cast<std::size_t>(n.object)];
       const auto match = std::find_if(candidates.begin(), candidates.end(), [&](const Correspondence& c) {
         return c.type == scene.type && c.model_feature == n.feature && c.scene_feature == static_cast<int>(i);
@@ -121,7 +121,7 @@ TEST(ModelFeatureIndex, LimitsAndMissingFeaturesLeaveScenePointsOut) {
   sift.points[7].x() = std::numeric_limits<float>::quiet_NaN();
   const auto unlimited = ModelFeatureIndex(library, {.sift_neighbors = 1}).match(sift, {});
   EXPECT_EQ(total(unlimited), 59U);
-  constexpr double kLimit = 0.8;
+  constexpr double kLimit = 0.5;
   const auto limited = ModelFeatureIndex(library, {.sift_neighbors = 1, .max_sift_distance = kLimit}).match(sift, {});
   std::size_t expected = 0;
   for (const auto& of_object : unlimited)
@@ -151,7 +151,7 @@ TEST(ModelFeatureIndex, RejectsBadInput) {
                std::invalid_argument);
   EXPECT_THROW(ModelFeatureIndex(library, {.sift_neighbors = 0}), std::invalid_argument);
   EXPECT_THROW(ModelFeatureIndex(library, {.max_shot_distance = -1}), std::invalid_argument);
-  library.objects[1].sift = random_features(rng, FeatureType::kSift, 8, 5);
+  library.objects[1].sift = encode(random_features(rng, FeatureType::kSift, 8, 5));
   EXPECT_THROW(ModelFeatureIndex{library}, std::invalid_argument);
 }
 

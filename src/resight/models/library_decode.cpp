@@ -7,7 +7,6 @@
 #include <set>
 
 #include "resight/core/parallel.hpp"
-#include "resight/models/descriptor_code.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
 namespace resight::internal {
@@ -42,7 +41,7 @@ bool read(const schema::Surface* surface, PointCloud& cloud) {
   return true;
 }
 
-bool read(const schema::Features* stored, FeatureType type, int dimension, FeatureSet& features) {
+bool read(const schema::Features* stored, FeatureType type, int dimension, CodedFeatures& features) {
   if (stored == nullptr || stored->descriptors() == nullptr) return false;
   features.type = type;
   features.dimension = stored->dimension();
@@ -54,7 +53,7 @@ bool read(const schema::Features* stored, FeatureType type, int dimension, Featu
     return false;
   const std::span codes(stored->descriptors()->data(), stored->descriptors()->size());
   if (has_zero_row(codes, dimension)) return false;
-  features.descriptors = decode_descriptors(codes, dimension);
+  features.codes.assign(codes.begin(), codes.end());
   return true;
 }
 
@@ -121,7 +120,6 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
   }
   library.objects.resize(objects.size());
   std::vector<std::string> damaged_parts(objects.size());
-  // Most of the time is that of the first touch of the memory of the descriptors.
   parallel_for(objects.size(), num_hardware_threads(), [&](std::size_t i) {
     damaged_parts[i] = read(*objects[static_cast<flatbuffers::uoffset_t>(i)], library.objects[i]);
   });

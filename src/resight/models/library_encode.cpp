@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "resight/models/descriptor_code.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
 namespace resight::internal {
@@ -14,9 +13,7 @@ using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 constexpr std::size_t kMaxPayloadBytes = 2'000'000'000;
 
-std::size_t estimate_bytes(const FeatureSet& f) {
-  return f.descriptors.size() + f.size() * 2 * sizeof(Eigen::Vector3f);
-}
+std::size_t estimate_bytes(const CodedFeatures& f) { return f.codes.size() + f.size() * 2 * sizeof(Eigen::Vector3f); }
 std::size_t estimate_bytes(const ObjectSymmetries& s) { return s.discrete.size() * 96 + s.continuous.size() * 48; }
 std::size_t estimate_bytes(const ModelLibrary& library) {
   std::size_t bytes = 4096;
@@ -40,10 +37,10 @@ Offset<schema::Surface> write(FlatBufferBuilder& builder, const PointCloud& clou
   return schema::CreateSurface(builder, points, normals, colors);
 }
 
-Offset<schema::Features> write(FlatBufferBuilder& builder, const FeatureSet& features) {
+Offset<schema::Features> write(FlatBufferBuilder& builder, const CodedFeatures& features) {
   const auto points = write(builder, features.points);
   const auto normals = write(builder, features.normals);
-  const auto descriptors = builder.CreateVector(encode_descriptors(features.descriptors, features.dimension));
+  const auto descriptors = builder.CreateVector(features.codes);
   return schema::CreateFeatures(builder, features.dimension, points, normals, descriptors);
 }
 

@@ -12,7 +12,6 @@
 
 #include "resight/core/hash.hpp"
 #include "resight/core/random.hpp"
-#include "resight/models/descriptor_code.hpp"
 
 namespace resight {
 namespace {
@@ -51,7 +50,7 @@ Eigen::Vector3f random_vector(Rng& rng) {
   return {static_cast<float>(rng.normal()), static_cast<float>(rng.normal()), static_cast<float>(rng.normal())};
 }
 
-FeatureSet make_features(FeatureType type, int count, Rng& rng) {
+CodedFeatures make_features(FeatureType type, int count, Rng& rng) {
   FeatureSet set{.type = type,
                  .dimension = type == FeatureType::kSift ? 128 : 352,
                  .points = {},
@@ -62,8 +61,7 @@ FeatureSet make_features(FeatureType type, int count, Rng& rng) {
     set.normals.push_back(random_vector(rng).normalized());
     for (int k = 0; k < set.dimension; ++k) set.descriptors.push_back(static_cast<float>(rng.uniform()));
   }
-  quantize_descriptors(set);
-  return set;
+  return encode(set);
 }
 
 ObjectModel make_object(const std::string& name, int bop_id, Rng& rng) {
@@ -96,12 +94,12 @@ ModelLibrary make_library() {
   return library;
 }
 
-void expect_equal(const FeatureSet& a, const FeatureSet& b) {
+void expect_equal(const CodedFeatures& a, const CodedFeatures& b) {
   EXPECT_EQ(a.type, b.type);
   EXPECT_EQ(a.dimension, b.dimension);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.normals, b.normals);
-  EXPECT_EQ(a.descriptors, b.descriptors);
+  EXPECT_EQ(a.codes, b.codes);
 }
 
 void expect_equal(const ObjectSymmetries& a, const ObjectSymmetries& b) {
@@ -280,10 +278,10 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
 
 TEST_F(LibraryFile, RefusesADescriptorOfZeros) {
   ModelLibrary library = make_library();
-  std::ranges::fill(library.objects[0].sift.descriptors, 1.0F / std::sqrt(128.0F));
+  std::ranges::fill(library.objects[0].sift.codes, std::uint8_t{255});
   ASSERT_TRUE(save_library(library, path_).ok());
   Bytes bytes = read();
-  const Bytes row(128, 255);  // how it is coded
+  const Bytes row(128, 255);
   const auto found = std::search(bytes.begin(), bytes.end(), row.begin(), row.end());
   ASSERT_NE(found, bytes.end());
   std::fill(found, found + 128, std::uint8_t{0});
@@ -340,8 +338,8 @@ TEST_F(LibraryFile, SurvivesMaliciousContent) {
     for (const ObjectModel& object : loaded->objects) {
       ASSERT_FALSE(object.name.empty());
       ASSERT_EQ(object.surface.colors.size(), object.surface.size());
-      ASSERT_EQ(object.sift.descriptors.size(), object.sift.size() * 128);
-      ASSERT_EQ(object.shot.descriptors.size(), object.shot.size() * 352);
+      ASSERT_EQ(object.sift.codes.size(), object.sift.size() * 128);
+      ASSERT_EQ(object.shot.codes.size(), object.shot.size() * 352);
     }
   }
   EXPECT_GT(refused, 100);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "resight/features/feature_set.hpp"
+#include "resight/features/coded_features.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/symmetry.hpp"
 
@@ -16,8 +16,8 @@ struct ObjectModel {
   int bop_id = 0;      ///< obj_id of BOP files, >= 1, unique in its library.
   PointCloud surface;  ///< Voxelised complete surface with normals, for verification and drawing; with colours, unless
                        ///< they are not known: then the object is recognised by its shape alone, and has no SIFT.
-  FeatureSet sift;
-  FeatureSet shot;
+  CodedFeatures sift;
+  CodedFeatures shot;
   ObjectSymmetries symmetries;
   ObjectSymmetries shape_symmetries{};  ///< Of the surface whatever its colours (shape_turns()); none if not sought.
   Eigen::Vector3f center =

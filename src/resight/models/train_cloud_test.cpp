@@ -54,7 +54,7 @@ TEST(TrainObjectFromCloud, SurfaceAndFeaturesLieOnTheBall) {
   }
   EXPECT_GT(model->sift.size(), 100U);
   EXPECT_GT(model->shot.size(), 100U);
-  for (const FeatureSet* set : {&model->sift, &model->shot})
+  for (const CodedFeatures* set : {&model->sift, &model->shot})
     for (const Eigen::Vector3f& p : set->points) ASSERT_LT(distance_to_ball(p), 0.003);
 }
 

@@ -24,8 +24,11 @@ Result<ObjectModel> train_from_views(const ModelSource& source, const TrainOptio
     if (!surface.ok()) return surface.error();
     Result<ObjectFeatures> features = train_features(source.name, source.views, options);
     if (!features.ok()) return features.error();
-    ObjectModel model{
-        .name = source.name, .surface = {}, .sift = features->sift, .shot = features->shot, .symmetries = {}};
+    ObjectModel model{.name = source.name,
+                      .surface = {},
+                      .sift = encode(features->sift),
+                      .shot = encode(features->shot),
+                      .symmetries = {}};
     set_surface(model, *std::move(surface));
     return model;
   }

@@ -67,8 +67,8 @@ TEST_F(MeshFolder, IsTrainedIntoALibraryThatAFileGivesBack) {
   const Result<ModelLibrary> loaded = load_library(file, options.hash());
   ASSERT_TRUE(loaded.ok()) << loaded.error().message;
   for (std::size_t i = 0; i < 2; ++i) {  // memory equals file, descriptors included
-    EXPECT_EQ(loaded->objects[i].sift.descriptors, library->objects[i].sift.descriptors);
-    EXPECT_EQ(loaded->objects[i].shot.descriptors, library->objects[i].shot.descriptors);
+    EXPECT_EQ(loaded->objects[i].sift.codes, library->objects[i].sift.codes);
+    EXPECT_EQ(loaded->objects[i].shot.codes, library->objects[i].shot.codes);
     EXPECT_EQ(loaded->objects[i].surface.points, library->objects[i].surface.points);
   }
   TrainOptions other = options;
@@ -256,8 +256,8 @@ TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
   source.mesh = object.mesh;
   const Result<ObjectModel> with_mesh = train_object(source, options);
   ASSERT_TRUE(with_cloud.ok() && with_bare_cloud.ok() && with_mesh.ok());
-  EXPECT_EQ(with_mesh->sift.descriptors, from_views->sift.descriptors);
-  EXPECT_EQ(with_cloud->shot.descriptors, from_views->shot.descriptors);
+  EXPECT_EQ(with_mesh->sift.codes, from_views->sift.codes);
+  EXPECT_EQ(with_cloud->shot.codes, from_views->shot.codes);
   EXPECT_GT(with_mesh->surface.size(), from_views->surface.size());
   EXPECT_GT(with_cloud->surface.size(), from_views->surface.size());
   EXPECT_NEAR(static_cast<double>(with_bare_cloud->surface.size()), static_cast<double>(with_cloud->surface.size()),

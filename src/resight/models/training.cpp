@@ -12,7 +12,6 @@
 #include "resight/geometry/outward_normals.hpp"
 #include "resight/geometry/splat_mesh.hpp"
 #include "resight/models/crop_view.hpp"
-#include "resight/models/descriptor_code.hpp"
 #include "resight/models/surface.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
@@ -104,12 +103,6 @@ ViewPart process_views(std::span<const TrainingView> views, const TrainOptions& 
   return joined;
 }
 
-FeatureSet reduce(const FeatureSet& features, const FeatureMerging& merging, int num_threads) {
-  FeatureSet reduced = merge_similar_features(features, merging, num_threads);
-  quantize_descriptors(reduced);
-  return reduced;
-}
-
 Result<ObjectFeatures> reduce_features(const std::string& name, ObjectFeatures features, bool color_is_known,
                                        const TrainOptions& options) {
   if (!color_is_known) features.sift = ObjectFeatures{}.sift;  // of shading and silhouettes alone
@@ -117,15 +110,15 @@ Result<ObjectFeatures> reduce_features(const std::string& name, ObjectFeatures f
     return fail(name, fmt::format("no SIFT and no SHOT feature in any training view; it could never be recognised{}",
                                   color_is_known ? "" : " (its colours are not known)"));
   }
-  return ObjectFeatures{reduce(features.sift, options.sift_merging, options.num_threads),
-                        reduce(features.shot, options.shot_merging, options.num_threads)};
+  return ObjectFeatures{merge_similar_features(features.sift, options.sift_merging, options.num_threads),
+                        merge_similar_features(features.shot, options.shot_merging, options.num_threads)};
 }
 
-ObjectModel make_model(const std::string& name, ObjectFeatures features, PointCloud surface) {
+ObjectModel make_model(const std::string& name, const ObjectFeatures& features, PointCloud surface) {
   ObjectModel model;
   model.name = name;
-  model.sift = std::move(features.sift);
-  model.shot = std::move(features.shot);
+  model.sift = encode(features.sift);
+  model.shot = encode(features.shot);
   model.surface = std::move(surface);
   model.center = centroid(model.surface.points);
   model.diameter_m = diameter(model.surface.points);
@@ -147,7 +140,7 @@ Result<ObjectModel> train_from_renderings(const std::string& name, const Triangl
   Result<ObjectFeatures> features =
       reduce_features(name, process_views(views, options, false).features, surface.has_colors(), options);
   if (!features.ok()) return features.error();
-  return make_model(name, *std::move(features), std::move(surface));
+  return make_model(name, *features, std::move(surface));
 }
 
 std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
@@ -260,7 +253,7 @@ Result<ObjectModel> train_object(const std::string& name, std::span<const Traini
   if (!features.ok()) return features.error();
   PointCloud surface = fuse_surface(joined.samples, options.surface_voxel_m);
   if (!color_is_known) surface.colors.clear();
-  return make_model(name, *std::move(features), std::move(surface));
+  return make_model(name, *features, std::move(surface));
 }
 
 Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {

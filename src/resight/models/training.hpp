@@ -36,7 +36,7 @@ struct ObjectFeatures {
 };
 
 /// Trains from registered views (frame.world_from_camera is object_from_camera; mask: non-zero = object): SIFT and SHOT
-/// of each view in the object frame, merged (TrainOptions.*_merging) and at 8 bits a component (descriptor_code.hpp),
+/// of each view in the object frame, merged (TrainOptions.*_merging) and at 8 bits a component (coded_features.hpp),
 /// and the surface fused by sensor noise. Symmetries and bop_id are the caller's to set (train_object() of a
 /// ModelSource does).
 ///

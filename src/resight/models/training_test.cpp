@@ -12,7 +12,6 @@
 
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/models/descriptor_code.hpp"
 
 namespace resight {
 namespace {
@@ -116,12 +115,12 @@ void expect_features_on_box(const ObjectModel& model) {
   ASSERT_GT(model.shot.size(), 100U);
   EXPECT_EQ(model.sift.dimension, 128);
   EXPECT_EQ(model.shot.dimension, 352);
-  for (const FeatureSet* set : {&model.sift, &model.shot})
-    for (std::size_t i = 0; i < set->size(); ++i) {
-      ASSERT_LT(std::abs(box_distance(set->points[i])), 0.004F);
-      ASSERT_NEAR(set->normals[i].norm(), 1, 1e-4);
-      const auto row = set->descriptor(i);
-      ASSERT_NEAR(Eigen::Map<const Eigen::VectorXf>(row.data(), set->dimension).norm(), 1, 1e-3);
+  for (const FeatureSet& set : {decode(model.sift), decode(model.shot)})
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      ASSERT_LT(std::abs(box_distance(set.points[i])), 0.004F);
+      ASSERT_NEAR(set.normals[i].norm(), 1, 1e-4);
+      const auto row = set.descriptor(i);
+      ASSERT_NEAR(Eigen::Map<const Eigen::VectorXf>(row.data(), set.dimension).norm(), 1, 1e-3);
     }
 }
 
@@ -182,10 +181,10 @@ void expect_same_bytes(const ObjectModel& a, const ObjectModel& b) {
   EXPECT_EQ(a.surface.normals, b.surface.normals);
   EXPECT_EQ(a.surface.colors, b.surface.colors);
   EXPECT_EQ(a.sift.points, b.sift.points);
-  EXPECT_EQ(a.sift.descriptors, b.sift.descriptors);
+  EXPECT_EQ(a.sift.codes, b.sift.codes);
   EXPECT_EQ(a.shot.points, b.shot.points);
   EXPECT_EQ(a.shot.normals, b.shot.normals);
-  EXPECT_EQ(a.shot.descriptors, b.shot.descriptors);
+  EXPECT_EQ(a.shot.codes, b.shot.codes);
   EXPECT_EQ(a.center, b.center);
   EXPECT_EQ(a.diameter_m, b.diameter_m);
 }
@@ -203,14 +202,6 @@ TEST(TrainObject, SameBytesAgainAndForAnyNumberOfThreads) {
   const Result<ObjectModel> parallel = train_object("box", views, options);
   options.num_threads = 1;
   expect_same_bytes(*train_object("box", views, options), *parallel);
-}
-
-TEST(TrainObject, DescriptorsAreThoseThatAFileKeeps) {
-  const Result<ObjectModel> model = train_object("box", std::span(printed_box_views()).first(3));
-  ASSERT_TRUE(model.ok());
-  for (const FeatureSet* set : {&model->sift, &model->shot})
-    EXPECT_EQ(decode_descriptors(encode_descriptors(set->descriptors, set->dimension), set->dimension),
-              set->descriptors);
 }
 
 TEST(TrainObject, MergingLeavesFewerFeatures) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/models/descriptor_code.hpp"
+#include "resight/features/coded_features.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,17 +85,23 @@ TEST(DescriptorCode, TellsRowsOfZeros) {
   EXPECT_FALSE(has_zero_row({}, 128));
 }
 
-TEST(QuantizeDescriptors, LeavesTheRestOfTheSet) {
+TEST(CodedFeatures, KeepTheRestOfTheSet) {
   FeatureSet set{
       .type = FeatureType::kShot, .dimension = 352, .points = {{1, 2, 3}}, .normals = {{0, 0, 1}}, .descriptors = {}};
   set.descriptors = random_unit_rows(1, 352, 7);
-  const FeatureSet before = set;
-  quantize_descriptors(set);
-  EXPECT_EQ(set.points, before.points);
-  EXPECT_NE(set.descriptors, before.descriptors);
-  const std::vector<float> once = set.descriptors;
-  quantize_descriptors(set);
-  EXPECT_EQ(set.descriptors, once);
+  const CodedFeatures coded = encode(set);
+  EXPECT_EQ(coded.type, set.type);
+  EXPECT_EQ(coded.dimension, 352);
+  EXPECT_EQ(coded.points, set.points);
+  EXPECT_EQ(coded.normals, set.normals);
+  EXPECT_EQ(coded.code(0).size(), 352U);
+  const FeatureSet decoded = decode(coded);
+  EXPECT_EQ(decoded.type, set.type);
+  EXPECT_EQ(decoded.dimension, 352);
+  EXPECT_EQ(decoded.points, set.points);
+  EXPECT_EQ(decoded.normals, set.normals);
+  EXPECT_NE(decoded.descriptors, set.descriptors);
+  EXPECT_EQ(encode(decoded).codes, coded.codes);
 }
 
 }  // namespace

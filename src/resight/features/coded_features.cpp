@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/models/descriptor_code.hpp"
+#include "resight/features/coded_features.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,15 +38,19 @@ std::vector<std::uint8_t> encode_descriptors(std::span<const float> descriptors,
   return codes;
 }
 
+float scale_of_code(std::span<const std::uint8_t> row) {
+  const std::uint32_t norm_sq = sum_of_squares(row);
+  return norm_sq == 0 ? 0.0F : static_cast<float>(1.0 / std::sqrt(static_cast<double>(norm_sq)));
+}
+
 std::vector<float> decode_descriptors(std::span<const std::uint8_t> codes, int dimension) {
   const std::size_t rows = count_rows(codes.size(), dimension);
   std::vector<float> descriptors(codes.size());
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t begin = r * static_cast<std::size_t>(dimension);
     const std::span<const std::uint8_t> row = codes.subspan(begin, static_cast<std::size_t>(dimension));
-    const std::uint32_t norm_sq = sum_of_squares(row);
-    const float inverse_norm = norm_sq == 0 ? 0.0F : static_cast<float>(1.0 / std::sqrt(static_cast<double>(norm_sq)));
-    for (std::size_t i = 0; i < row.size(); ++i) descriptors[begin + i] = static_cast<float>(row[i]) * inverse_norm;
+    const float scale = scale_of_code(row);
+    for (std::size_t i = 0; i < row.size(); ++i) descriptors[begin + i] = static_cast<float>(row[i]) * scale;
   }
   return descriptors;
 }
@@ -60,9 +64,20 @@ bool has_zero_row(std::span<const std::uint8_t> codes, int dimension) {
   return false;
 }
 
-void quantize_descriptors(FeatureSet& features) {
-  features.descriptors =
-      decode_descriptors(encode_descriptors(features.descriptors, features.dimension), features.dimension);
+CodedFeatures encode(const FeatureSet& features) {
+  return {.type = features.type,
+          .dimension = features.dimension,
+          .points = features.points,
+          .normals = features.normals,
+          .codes = encode_descriptors(features.descriptors, features.dimension)};
+}
+
+FeatureSet decode(const CodedFeatures& features) {
+  return {.type = features.type,
+          .dimension = features.dimension,
+          .points = features.points,
+          .normals = features.normals,
+          .descriptors = decode_descriptors(features.codes, features.dimension)};
 }
 
 }  // namespace resight
