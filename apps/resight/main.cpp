@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
+#include "processor.hpp"
 #include "resight/core/allocator.hpp"
 #include "resight/core/parallel.hpp"
 
@@ -225,6 +226,12 @@ std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const 
 }
 
 }  // namespace
+
+#ifdef __AVX2__
+const bool resight::app::kNeedsAvx2 = true;
+#else
+const bool resight::app::kNeedsAvx2 = false;
+#endif
 
 std::string resight::app::format_share(double share) { return std::isnan(share) ? "-" : fmt::format("{:.3f}", share); }
 

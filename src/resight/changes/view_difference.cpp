@@ -32,6 +32,21 @@ struct PixelWindow {
   int begin_v, end_v;
 };
 
+/// A row of the points of a view.
+struct PixelRow {
+  PixelRow(const OrganizedCloud& view, int v)
+      : x(view.x.row(v).data()), y(view.y.row(v).data()), z(view.z.row(v).data()) {}
+  [[nodiscard]] float distance_sq(int u, const Eigen::Vector3f& p) const {
+    const float dx = x[u] - p.x();
+    const float dy = y[u] - p.y();
+    const float dz = z[u] - p.z();
+    return dx * dx + dy * dy + dz * dz;
+  }
+  const float* x;
+  const float* y;
+  const float* z;
+};
+
 /// The search for pixels around points.
 class PixelSearch {
  public:
@@ -61,15 +76,18 @@ class PixelSearch {
                    Image<std::uint8_t>* explained_pixels) const {
     const PixelWindow window = clip(center, reach_px);
     const auto limit = static_cast<float>(tolerance_.distance_m);
+    const float limit_sq = limit * limit;
     bool found = false;
-    for (int v = window.begin_v; v < window.end_v; ++v)
+    for (int v = window.begin_v; v < window.end_v; ++v) {
+      const PixelRow row(view_, v);
+      std::uint8_t* marks = explained_pixels != nullptr ? explained_pixels->row(v).data() : nullptr;
       for (int u = window.begin_u; u < window.end_u; ++u) {
-        const std::size_t i = view_.z.index(u, v);
-        if (!((view_.point(i) - p).squaredNorm() <= limit * limit)) continue;
+        if (!(row.distance_sq(u, p) <= limit_sq)) continue;
         found = true;
-        if (explained_pixels == nullptr) return true;
-        std::atomic_ref((*explained_pixels)[i]).store(1, std::memory_order_relaxed);  // others may write the same
+        if (marks == nullptr) return true;
+        std::atomic_ref(marks[u]).store(1, std::memory_order_relaxed);  // others may write the same
       }
+    }
     return found;
   }
 
@@ -119,16 +137,9 @@ class PixelSearch {
   }
   [[nodiscard]] bool row_has(int v, const PixelWindow& window, const Eigen::Vector3f& p, float radius_sq) const {
     if (v < window.begin_v || v >= window.end_v) return false;
-    const float* x = view_.x.row(v).data();
-    const float* y = view_.y.row(v).data();
-    const float* z = view_.z.row(v).data();
+    const PixelRow row(view_, v);
     int found = 0;
-    for (int u = window.begin_u; u < window.end_u; ++u) {
-      const float dx = x[u] - p.x();
-      const float dy = y[u] - p.y();
-      const float dz = z[u] - p.z();
-      found |= dx * dx + dy * dy + dz * dz <= radius_sq ? 1 : 0;
-    }
+    for (int u = window.begin_u; u < window.end_u; ++u) found |= row.distance_sq(u, p) <= radius_sq ? 1 : 0;
     return found != 0;
   }
 

@@ -46,6 +46,9 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
   });
 }
 
-int num_hardware_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+int num_hardware_threads() {
+  static const int num_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // reads files
+  return num_threads;
+}
 
 }  // namespace resight

@@ -312,17 +312,22 @@ void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList
 void DescriptorIndex::Impl::settle(const Eigen::RowVectorXf& query, float compared_norm_sq, const BestList& candidates,
                                    BestList& nearest) const {
   nearest.clear();
+  const auto original_of = [&](const DescriptorMatch& candidate) {
+    return static_cast<std::size_t>(original[static_cast<std::size_t>(candidate.index)]);
+  };
+  if (is_projected())
+    for (const DescriptorMatch& candidate : candidates.entries()) whole.prefetch(original_of(candidate));
   Eigen::RowVectorXf row(dimension);
   for (const DescriptorMatch& candidate : candidates.entries()) {
-    const int index = original[static_cast<std::size_t>(candidate.index)];
+    const std::size_t index = original_of(candidate);
     if (is_projected()) {
       // Components that were not compared only add to a distance: those that follow are farther still.
       if (!nearest.accepts(candidate.distance_sq + compared_norm_sq - kRounding)) break;
-      whole.read(static_cast<std::size_t>(index), row.data());
+      whole.read(index, row.data());
     } else {
       row = rows.row(candidate.index);
     }
-    nearest.add(index, (query - row).squaredNorm());
+    nearest.add(static_cast<int>(index), (query - row).squaredNorm());
   }
 }
 

@@ -37,24 +37,32 @@ DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(opt
   options_.changes.previous_voxel_m = options_.integrate.voxel_m;  // Psi is our reconstruction.
 }
 
+ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
+  // Psi_{k-1} is what the last K views made of the scene; with K = 0 there is no past to compare with.
+  if (!options_.detect_changes || options_.num_previous_views == 0 || window_.empty()) return {};
+  std::vector<const PreparedView*> earlier_views;
+  for (const View& earlier : window_) earlier_views.push_back(&earlier.cleared);
+  return detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views);
+}
+
+void DynamicScene::clear_from_window(const PointCloud& removed_in_world) {
+  while (static_cast<int>(window_.size()) > options_.num_previous_views) window_.pop_front();
+  if (removed_in_world.empty()) return;
+  parallel_for(window_.size(), options_.integrate.num_threads,
+               [&](std::size_t i) { clear(removed_in_world, options_, window_[i]); });
+}
+
 ChangeResult DynamicScene::add_view(PreparedView view) {
   ChangeResult changes;
-  // Psi_{k-1} is what the last K views made of the scene; with K = 0 there is no past to compare with.
-  if (options_.detect_changes && options_.num_previous_views > 0 && !window_.empty()) {
-    std::vector<const PreparedView*> earlier_views;
-    for (const View& earlier : window_) earlier_views.push_back(&earlier.cleared);
-    changes = detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views);
-  }
-  while (static_cast<int>(window_.size()) > options_.num_previous_views) window_.pop_front();
-  // The new view has no part in the clearing, which numbers no voxels: both at once.
   ViewVoxels voxels;
-  const std::size_t num_cleared = changes.removed_in_world.empty() ? 0 : window_.size();
-  parallel_for(num_cleared + 1, options_.integrate.num_threads, [&](std::size_t task) {
-    if (task == 0)
-      voxels = reduce_to_voxels(view, numbers_, options_.integrate);
-    else
-      clear(changes.removed_in_world, options_, window_[task - 1]);
-  });
+  // Neither changes nor clearing number voxels, and the new view has no part in the clearing: both at once.
+  run_both(
+      options_.integrate.num_threads,
+      [&] {
+        changes = find_changes(view);
+        clear_from_window(changes.removed_in_world);
+      },
+      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); });
   RgbdFrame raw = view.frame;
   window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
                      std::move(voxels)});

@@ -46,6 +46,8 @@ class DynamicScene {
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
+  [[nodiscard]] ChangeResult find_changes(const PreparedView& view) const;
+  void clear_from_window(const PointCloud& removed_in_world);
   void reconstruct();
 
   DynamicSceneOptions options_;

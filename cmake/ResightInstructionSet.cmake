@@ -1,0 +1,19 @@
+# Sets RESIGHT_MARCH, the instruction set on x86-64. All of a program is built for one: Eigen's alignment, and with it our
+# ABI, hangs on it. By default it is x86-64-v3 (AVX2, FMA) where the machine that builds can run that, else the compiler's
+# own default, which any x86-64 processor runs.
+if(DEFINED RESIGHT_MARCH)
+  return()
+endif()
+set(default_march "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
+  include(CheckCXXSourceRuns)
+  check_cxx_source_runs("
+    int main() {
+      return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") && __builtin_cpu_supports(\"bmi2\") ? 0 : 1;
+    }" RESIGHT_RUNS_X86_64_V3)
+  if(RESIGHT_RUNS_X86_64_V3)
+    set(default_march "x86-64-v3")
+  endif()
+endif()
+set(RESIGHT_MARCH "${default_march}" CACHE STRING
+    "Instruction set on x86-64 (-march); empty for the compiler's own default")
