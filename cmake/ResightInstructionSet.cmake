@@ -1,11 +1,8 @@
-# Sets RESIGHT_MARCH, the instruction set on x86-64. All of a program is built for one: Eigen's alignment, and with it our
-# ABI, hangs on it. By default it is x86-64-v3 (AVX2, FMA) where the machine that builds can run that, else the compiler's
-# own default, which any x86-64 processor runs.
-if(DEFINED RESIGHT_MARCH)
-  return()
-endif()
+# RESIGHT_MARCH, the instruction set on x86-64. All of a program is built for one: Eigen's alignment, and with it our ABI,
+# hangs on it. By default it is x86-64-v3 (AVX2, FMA) where the machine that builds can run that, else the compiler's own
+# default, which any x86-64 processor runs.
 set(default_march "")
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
+if(NOT DEFINED RESIGHT_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)
   check_cxx_source_runs("
     int main() {
@@ -13,6 +10,8 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
     }" RESIGHT_RUNS_X86_64_V3)
   if(RESIGHT_RUNS_X86_64_V3)
     set(default_march "x86-64-v3")
+  else()
+    message(STATUS "this machine has no AVX2: built for any x86-64 processor, a third slower")
   endif()
 endif()
 set(RESIGHT_MARCH "${default_march}" CACHE STRING

@@ -115,7 +115,7 @@ CodedFeatures make_features(FeatureType type, int dimension, int count) {
     descriptor.normalize();
     set.descriptors.insert(set.descriptors.end(), descriptor.begin(), descriptor.end());
   }
-  return set;
+  return encode(set);
 }
 
 ModelLibrary make_library(int num_features) {

@@ -10,12 +10,14 @@ namespace {
 // initialisers of other files included. Without it the program would die of an illegal instruction.
 [[gnu::constructor(101)]] void check_processor() {
   __builtin_cpu_init();
-  if (!resight::app::kNeedsAvx2 || (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))) return;
+  if (!resight::app::kNeedsAvx2 ||
+      (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")))
+    return;
   static constexpr char kMessage[] =
       "resight: built for processors with AVX2 and FMA, which this one lacks (build it here, or with "
       "-DRESIGHT_MARCH=)\n";
   (void)!write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
-  _exit(2);
+  _exit(1);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 namespace resight::app {
 
-/// Whether the program was built for processors with AVX2 (and FMA): of any other it is told before main().
+/// Whether the program was built for processors with AVX2 (and FMA). One that lacks them is refused before main().
 extern const bool kNeedsAvx2;
 
 }  // namespace resight::app

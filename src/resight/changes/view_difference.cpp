@@ -34,6 +34,9 @@ struct PixelWindow {
 
 /// A row of the points of a view.
 struct PixelRow {
+  const float* x;
+  const float* y;
+  const float* z;
   PixelRow(const OrganizedCloud& view, int v)
       : x(view.x.row(v).data()), y(view.y.row(v).data()), z(view.z.row(v).data()) {}
   [[nodiscard]] float distance_sq(int u, const Eigen::Vector3f& p) const {
@@ -42,9 +45,6 @@ struct PixelRow {
     const float dz = z[u] - p.z();
     return dx * dx + dy * dy + dz * dz;
   }
-  const float* x;
-  const float* y;
-  const float* z;
 };
 
 /// The search for pixels around points.

@@ -4,13 +4,21 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cstddef>
 #include <cstdlib>
-#include <cstring>
+#include <utility>
 
 namespace resight {
 namespace {
 
-#ifdef __GLIBC__
+// Sanitizers have allocators of their own.
+#if defined(__has_feature)
+#define RESIGHT_HAS_FEATURE(x) __has_feature(x)
+#else
+#define RESIGHT_HAS_FEATURE(x) 0
+#endif
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    !RESIGHT_HAS_FEATURE(address_sanitizer) && !RESIGHT_HAS_FEATURE(thread_sanitizer)
 
 long num_page_faults() {
   rusage usage{};
@@ -29,8 +37,11 @@ long faults_of_large_array() {
 }
 
 TEST(KeepFreedMemory, PagesOfTheLastArrayServeTheNext) {
-  EXPECT_GT(faults_of_large_array(), 20);
-  EXPECT_GT(faults_of_large_array(), 20);
+  static bool is_first_run = true;  // What is set stays set.
+  if (std::exchange(is_first_run, false)) {
+    EXPECT_GT(faults_of_large_array(), 20);
+    EXPECT_GT(faults_of_large_array(), 20);
+  }
   ASSERT_TRUE(keep_freed_memory());
   (void)faults_of_large_array();
   EXPECT_LT(faults_of_large_array(), 10);

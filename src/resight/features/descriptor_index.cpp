@@ -355,6 +355,7 @@ DescriptorIndex::DescriptorIndex(std::span<const float> descriptors, int dimensi
     : DescriptorIndex(DescriptorRows(descriptors, dimension), options) {}
 DescriptorIndex::DescriptorIndex(DescriptorRows descriptors, const DescriptorIndexOptions& options) {
   options.check();
+  check_positive("dimension", descriptors.dimension());
   impl_ = std::make_unique<Impl>(std::move(descriptors), options);
 }
 DescriptorIndex::~DescriptorIndex() = default;

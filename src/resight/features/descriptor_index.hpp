@@ -19,8 +19,8 @@ struct DescriptorIndexOptions {
   int num_cells = 0;       ///< Of the inverted file; 0 = about 4 sqrt(n); 1 = exact search.
   int num_probes = 32;     ///< Cells looked into per query: recall against time.
   int exact_below = 8192;  ///< Smaller sets are searched exactly.
-  int num_components = 0;  ///< Descriptors at least twice as long are looked for by so many principal components of the
-                           ///< set, and only the best few compared whole; 0 = never.
+  int num_components = 0;  ///< Unit descriptors at least twice as long are looked for by so many principal components
+                           ///< of the set, and only the best few compared whole; 0 = never.
   std::uint64_t seed = 1;  ///< Of the k-means start.
   int num_threads = 1;     ///< For building and searching. Same bits for any value >= 1.
   void check() const;

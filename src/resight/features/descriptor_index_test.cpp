@@ -194,6 +194,7 @@ TEST(DescriptorIndex, RefusesNonsense) {
   EXPECT_THROW(DescriptorIndex(std::vector<float>{1, 2, 3}, 2), std::invalid_argument);
   EXPECT_THROW(DescriptorIndex(std::vector<float>{nan, 2}, 2), std::invalid_argument);
   EXPECT_THROW(DescriptorIndex({}, 0), std::invalid_argument);
+  EXPECT_THROW(DescriptorIndex{DescriptorRows{}}, std::invalid_argument);
   const DescriptorIndex index(std::vector<float>{1, 0}, 2);
   EXPECT_THROW((void)index.search(std::vector<float>{nan, 0}, 1), std::invalid_argument);
   EXPECT_THROW((void)index.search(std::vector<float>{1, 0}, 0), std::invalid_argument);

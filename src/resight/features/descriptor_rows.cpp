@@ -32,6 +32,13 @@ DescriptorRows::DescriptorRows(std::vector<const std::uint8_t*> codes, int dimen
   for (const std::uint8_t* row : codes_) scales_.push_back(scale_of_code({row, dimension_}));
 }
 
+void DescriptorRows::prefetch(std::size_t i) const {
+  if (codes_.empty()) return;
+  constexpr std::size_t kCacheLine = 64;
+  for (std::size_t d = 0; d < dimension_; d += kCacheLine) __builtin_prefetch(codes_[i] + d);
+  __builtin_prefetch(codes_[i] + dimension_ - 1);  // Rows begin anywhere in a line.
+}
+
 void DescriptorRows::read(std::size_t i, float* row) const {
   if (codes_.empty()) {
     std::copy_n(values_.data() + i * dimension_, dimension_, row);

@@ -20,11 +20,7 @@ class DescriptorRows {
   [[nodiscard]] int dimension() const { return static_cast<int>(dimension_); }
   [[nodiscard]] std::size_t size() const { return codes_.empty() ? num_rows_of_values_ : codes_.size(); }
   /// Row i is read soon: rows lie anywhere in memory.
-  void prefetch(std::size_t i) const {
-    constexpr std::size_t kCacheLine = 64;
-    if (codes_.empty()) return;
-    for (std::size_t d = 0; d < dimension_; d += kCacheLine) __builtin_prefetch(codes_[i] + d);
-  }
+  void prefetch(std::size_t i) const;
   /// Writes row i, `dimension` floats.
   void read(std::size_t i, float* row) const;
 

@@ -11,7 +11,8 @@ namespace resight {
 
 enum class FeatureType : std::uint8_t { kSift = 0, kShot = 1 };
 
-/// Keypoints with descriptors, n of them, in one frame (camera when extracted, object in a model), metres.
+/// Keypoints with descriptors, n of them, in one frame (that of the camera when extracted), metres. Objects keep theirs
+/// as CodedFeatures.
 struct FeatureSet {
   FeatureType type = FeatureType::kSift;
   int dimension = 0;  ///< 128 (SIFT) or 352 (SHOT).

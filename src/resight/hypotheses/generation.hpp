@@ -21,7 +21,7 @@ struct MatchFeaturesOptions {
   void check() const;
 };
 
-/// The descriptors of all objects, ready to be searched. The library must outlive it.
+/// The descriptors of all objects, ready to be searched. The library must outlive it, unchanged.
 class ModelFeatureIndex {
  public:
   ModelFeatureIndex(const ModelLibrary& library, const MatchFeaturesOptions& options = {});

@@ -151,6 +151,9 @@ TEST(ModelFeatureIndex, RejectsBadInput) {
                std::invalid_argument);
   EXPECT_THROW(ModelFeatureIndex(library, {.sift_neighbors = 0}), std::invalid_argument);
   EXPECT_THROW(ModelFeatureIndex(library, {.max_shot_distance = -1}), std::invalid_argument);
+  library.objects[0].shot.codes.pop_back();
+  EXPECT_THROW(ModelFeatureIndex{library}, std::invalid_argument);
+  library = random_library(rng);
   library.objects[1].sift = encode(random_features(rng, FeatureType::kSift, 8, 5));
   EXPECT_THROW(ModelFeatureIndex{library}, std::invalid_argument);
 }

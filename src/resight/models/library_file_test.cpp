@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -257,6 +256,9 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].surface.colors.pop_back(); }, "surface of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].sift.points.pop_back(); }, "SIFT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].sift.dimension = 64; }, "SIFT features of object 'mug'"},
+      {[](ModelLibrary& l) { l.objects[0].sift.codes.pop_back(); }, "SIFT features of object 'mug'"},
+      {[](ModelLibrary& l) { std::fill_n(l.objects[0].shot.codes.begin(), 352, std::uint8_t{0}); },
+       "SHOT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].shot.normals.pop_back(); }, "SHOT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.discrete[0].rotation *= 1000; }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].axis.setZero(); }, "symmetries"},

@@ -60,7 +60,7 @@ struct ObjectFeatures {
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 
-/// The features alone, as train_object() extracts and merges them.
+/// The features alone, as train_object() extracts and merges them, before they are coded.
 [[nodiscard]] Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
                                                     const TrainOptions& options = {});
 

@@ -58,11 +58,11 @@ ChangeResult DynamicScene::add_view(PreparedView view) {
   // Neither changes nor clearing number voxels, and the new view has no part in the clearing: both at once.
   run_both(
       options_.integrate.num_threads,
+      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },  // first: refuses what is not prepared
       [&] {
         changes = find_changes(view);
         clear_from_window(changes.removed_in_world);
-      },
-      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); });
+      });
   RgbdFrame raw = view.frame;
   window_.push_back({num_views_++, std::move(raw), std::move(view), changes.removed_in_world, changes.novel_in_world,
                      std::move(voxels)});
