@@ -1,12 +1,20 @@
-# resight_add_module(NAME [DEPS module...] [PUBLIC_LIBS lib...] [PRIVATE_LIBS lib...])
+# resight_add_module(NAME [DEPS module...] [PUBLIC_LIBS lib...] [PRIVATE_LIBS lib...]
+#                    [TEST_DEPS module...] [TEST_LIBS lib...])
 #
 # One folder = one target `resight::NAME`: its *.cpp are the sources, its *.hpp the installed headers, its *_test.cpp
-# the tests (one executable `resight_NAME_test`). A module may depend only on modules that stand before it in
-# RESIGHT_LAYERS: an upward edge is a configure error.
+# the tests (one executable `resight_NAME_test`). A module may depend only on modules before it in RESIGHT_LAYERS: an
+# upward edge is a configure error. Only tests may use TEST_DEPS, which may lie higher.
 set(RESIGHT_LAYERS
-    core geometry sensor io simulation features models changes reconstruction hypotheses cameras modelling verification
-    shape_search
-    recognition evaluation report)
+    core
+    geometry appearance
+    sensor segmentation
+    io rendering features evidence
+    registration models changes simulation
+    hypotheses reconstruction training cameras
+    verification shape_search modelling
+    recognition
+    evaluation
+    report)
 
 add_library(resight_build_flags INTERFACE)
 if(RESIGHT_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -30,8 +38,43 @@ function(resight_private_flags target)
   endif()
 endfunction()
 
+# Joins the sources of a target into larger translation units (RESIGHT_UNITY_BUILD) and gives it a precompiled header.
+# The compiler spends two thirds of its time on the same headers: this makes a clean build three times as fast.
+function(resight_speed_up_build target)
+  cmake_parse_arguments(ARG "" "REUSE_FROM" "" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RESIGHT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 12)
+  if(RESIGHT_PRECOMPILED_HEADERS AND ARG_REUSE_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${ARG_REUSE_FROM})
+  endif()
+endfunction()
+
+# A target that only holds a precompiled header. A reused header must be compiled with the flags of its users: libraries
+# share one (-fPIC), test programs another (-fPIE, with gmock).
+function(resight_add_precompiled_header target kind header)
+  cmake_parse_arguments(ARG "" "" "LIBS" ${ARGN})
+  set(source ${CMAKE_BINARY_DIR}/precompiled/${target}.cpp)
+  if(kind STREQUAL "EXECUTABLE")
+    file(CONFIGURE OUTPUT ${source} CONTENT "int main() { return 0; }\n")
+    add_executable(${target} EXCLUDE_FROM_ALL ${source})
+  else()
+    file(CONFIGURE OUTPUT ${source} CONTENT "namespace resight { extern const int ${target}; }\n")
+    add_library(${target} OBJECT EXCLUDE_FROM_ALL ${source})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  resight_private_flags(${target})
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_link_libraries(${target} PRIVATE resight_build_flags ${ARG_LIBS})
+  target_precompile_headers(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${header})
+endfunction()
+if(RESIGHT_PRECOMPILED_HEADERS)
+  resight_add_precompiled_header(resight_pch OBJECT precompiled.hpp LIBS Eigen3::Eigen)
+  if(RESIGHT_BUILD_TESTS)
+    resight_add_precompiled_header(resight_test_pch EXECUTABLE precompiled_test.hpp LIBS Eigen3::Eigen GTest::gmock)
+  endif()
+endif()
+
 function(resight_add_module name)
-  cmake_parse_arguments(ARG "" "" "DEPS;PUBLIC_LIBS;PRIVATE_LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPS;PUBLIC_LIBS;PRIVATE_LIBS;TEST_DEPS;TEST_LIBS" ${ARGN})
   list(FIND RESIGHT_LAYERS ${name} own_layer)
   if(own_layer EQUAL -1)
     message(FATAL_ERROR "resight module '${name}' has no place in RESIGHT_LAYERS")
@@ -57,6 +100,7 @@ function(resight_add_module name)
     resight_private_flags(${target})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${target} PRIVATE ${ARG_PRIVATE_LIBS})
+    resight_speed_up_build(${target} REUSE_FROM resight_pch)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -72,7 +116,9 @@ function(resight_add_module name)
   set_property(GLOBAL APPEND PROPERTY RESIGHT_MODULES ${target})
 
   if(RESIGHT_BUILD_TESTS AND tests)
-    resight_add_test(${target}_test SOURCES ${tests} LIBS ${target} ${ARG_PRIVATE_LIBS})
+    list(TRANSFORM ARG_TEST_DEPS PREPEND resight_)
+    resight_add_test(${target}_test SOURCES ${tests}
+                     LIBS ${target} ${ARG_TEST_DEPS} ${ARG_PRIVATE_LIBS} ${ARG_TEST_LIBS})
   endif()
 endfunction()
 
@@ -87,6 +133,7 @@ function(resight_add_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   resight_private_flags(${name})
+  resight_speed_up_build(${name} REUSE_FROM resight_test_pch)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE RESIGHT_SHARED_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data"
                                              RESIGHT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

@@ -21,7 +21,7 @@
 #include "resight/io/ply.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight {
 namespace {

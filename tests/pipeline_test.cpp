@@ -9,12 +9,12 @@
 
 #include "resight/evaluation/loss.hpp"
 #include "resight/evaluation/match_detections.hpp"
-#include "resight/models/training.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
 #include "resight/report/results.hpp"
 #include "resight/report/view_record.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/simulation.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
-#include "resight/models/train_library.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
 #include "resight/report/view_record.hpp"
+#include "resight/training/train_library.hpp"
 
 namespace resight {
 namespace {

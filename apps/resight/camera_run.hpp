@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "resight/cameras/joint_adjustment.hpp"
-#include "resight/cameras/posed_sequence.hpp"
+#include "resight/sensor/posed_sequence.hpp"
 
 namespace resight::app {
 

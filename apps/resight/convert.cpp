@@ -6,11 +6,11 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
+#include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_models.hpp"
-#include "resight/models/surface.hpp"
-#include "resight/simulation/turntable.hpp"
+#include "resight/rendering/turntable.hpp"
 
 namespace resight::app {
 namespace {

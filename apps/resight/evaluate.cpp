@@ -13,9 +13,9 @@
 #include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
 #include "resight/report/evaluation_report.hpp"
 #include "resight/report/worst_views.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/reconstruction/integration.hpp"
-#include "resight/simulation/view_renderer.hpp"
+#include "resight/rendering/view_renderer.hpp"
 
 namespace resight::app {
 namespace {

@@ -8,9 +8,9 @@
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight::app {
 

@@ -9,7 +9,7 @@
 #include "resight/io/convert.hpp"
 #include "resight/io/trajectory.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight::app {
 namespace {

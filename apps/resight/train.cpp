@@ -6,7 +6,7 @@
 #include "resight/core/files.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/train_library.hpp"
+#include "resight/training/train_library.hpp"
 
 namespace resight::app {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "../quality/arguments.hpp"
-#include "resight/simulation/raycast_scene.hpp"
+#include "resight/rendering/raycast_scene.hpp"
+#include "resight/rendering/view_renderer.hpp"
 #include "resight/simulation/room.hpp"
-#include "resight/simulation/view_renderer.hpp"
 
 namespace resight::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/simulation.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight::bench {
 namespace {

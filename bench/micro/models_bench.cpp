@@ -6,7 +6,7 @@
 
 #include "demo_scene.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/models/training.hpp"
+#include "resight/training/training.hpp"
 
 namespace resight::bench {
 namespace {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "arguments.hpp"
-#include "resight/cameras/view_alignment.hpp"
 #include "resight/core/random.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/registration/view_alignment.hpp"
 
 namespace {
 

@@ -13,10 +13,10 @@
 #include "resight/core/parallel.hpp"
 #include "resight/features/coded_features.hpp"
 #include "resight/io/model_source.hpp"
-#include "resight/models/training.hpp"
+#include "resight/rendering/turntable.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/simulation/procedural_objects.hpp"
-#include "resight/simulation/turntable.hpp"
+#include "resight/training/training.hpp"
 
 namespace {
 

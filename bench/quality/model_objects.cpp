@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "resight/cameras/trajectory_error.hpp"
-#include "resight/cameras/twist.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/modelling/build_model.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace {
 

@@ -27,7 +27,7 @@ struct Switch {
 
 void set_duplicity(RecognizerConfig& c) { c.verify.duplicity_rule = DuplicityRule::kAllWeights; }
 void set_seen_through(RecognizerConfig& c) { c.verify.max_seen_through_share = 1; }
-void set_planes(RecognizerConfig& c) { c.verify.plane_distance_m = 0.02; }
+void set_planes(RecognizerConfig& c) { c.verify.planes.max_distance_m = 0.02; }
 void set_shares(RecognizerConfig& c) { c.verify.min_visible_share = c.verify.min_explained_share = 0; }
 void set_novel(RecognizerConfig& c) { c.changes.novel_needs_free_space = false; }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
-#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 namespace {

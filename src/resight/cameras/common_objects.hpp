@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/cameras/observed_objects.hpp"
+#include "resight/cameras/object_places.hpp"
 
 namespace resight {
 

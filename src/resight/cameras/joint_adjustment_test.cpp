@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "resight/cameras/cameras_test_scenes.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 
 namespace resight {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "resight/features/descriptor_index.hpp"
 #include "resight/features/feature_set.hpp"
-#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 

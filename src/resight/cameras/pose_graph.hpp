@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/cameras/twist.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "resight/cameras/cameras_test_scenes.hpp"
 #include "resight/core/files.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 
 namespace resight {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "resight/core/check.hpp"
-#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "resight/cameras/match_views.hpp"
 #include "resight/cameras/pose_graph.hpp"
-#include "resight/cameras/view_alignment.hpp"
 #include "resight/features/sift.hpp"
+#include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 

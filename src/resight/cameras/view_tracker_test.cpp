@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "resight/cameras/cameras_test_scenes.hpp"
 #include "resight/cameras/trajectory_error.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 
 namespace resight {
 namespace {

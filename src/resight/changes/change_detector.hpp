@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/changes/occlusion.hpp"
+#include "resight/changes/spherical_occlusion.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/sensor/prepared_view.hpp"
 

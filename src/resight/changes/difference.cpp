@@ -15,7 +15,7 @@ namespace {
 constexpr double kCellSlack = 1.0 + 1e-5;
 constexpr double kReachSlack = 1.0 + 1e-6;
 constexpr int kBlockShift = 3;  // a block is 8 cells wide
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kPointsPerTask = 4096;
 
 bool any_in_cell(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& query, float radius_sq) {
   for (const Eigen::Vector3f& p : points)
@@ -67,7 +67,7 @@ bool ProximityGrid::any_within(const Eigen::Vector3f& query, double radius_m) co
 
 std::vector<int> subtract_clouds(std::span<const Eigen::Vector3f> a, const ProximityGrid& b, int num_threads) {
   std::vector<std::uint8_t> left_over(a.size());
-  parallel_for_blocks(a.size(), kGrain, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for_blocks(a.size(), kPointsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) left_over[i] = a[i].allFinite() && !b.any_within(a[i]) ? 1 : 0;
   });
   std::vector<int> indices;

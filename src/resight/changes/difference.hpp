@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/changes/cell_grid.hpp"
+#include "resight/geometry/cell_grid.hpp"
 
 namespace resight {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "resight/changes/cell_grid.hpp"
 #include "resight/core/check.hpp"
+#include "resight/geometry/cell_grid.hpp"
 
 namespace resight {
 namespace {

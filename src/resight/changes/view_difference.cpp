@@ -16,10 +16,10 @@ namespace resight {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kPixelsPerTask = 4096;
 constexpr std::size_t kRowGrain = 16;
 constexpr int kMaxFirstLook_px = 4;
-constexpr double kSlack_px = 1.0;  // For points that project not quite where their pixel is.
+constexpr double kRounding_px = 1.0;  // For points that project not quite where their pixel is.
 
 struct Pixel {
   int u;
@@ -127,8 +127,8 @@ class PixelSearch {
     const Eigen::Vector2d projected = camera_.project(p.cast<double>());
     const double s = p.x() / p.z();
     const double t = p.y() / p.z();
-    const double reach_u = camera_.fx * radius_m * std::sqrt(1 + s * s) / nearest_m + kSlack_px;
-    const double reach_v = camera_.fy * radius_m * std::sqrt(1 + t * t) / nearest_m + kSlack_px;
+    const double reach_u = camera_.fx * radius_m * std::sqrt(1 + s * s) / nearest_m + kRounding_px;
+    const double reach_v = camera_.fy * radius_m * std::sqrt(1 + t * t) / nearest_m + kRounding_px;
     const auto limit = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, double(size))); };
     return {limit(std::floor(projected.x() - reach_u), camera_.width),
             limit(std::ceil(projected.x() + reach_u) + 1, camera_.width),
@@ -194,7 +194,7 @@ std::vector<int> positions_of(const std::vector<std::uint8_t>& is_marked) {
 template <typename Test>
 std::vector<std::uint8_t> test_all(std::size_t count, int num_threads, Test&& test) {
   std::vector<std::uint8_t> result(count);
-  parallel_for_blocks(count, kGrain, num_threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for_blocks(count, kPixelsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result[i] = test(i) ? 1 : 0;
   });
   return result;

@@ -10,7 +10,7 @@
 namespace resight {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
 /// A square cost table: the rows and columns added to fill it, and the forbidden pairs, cost more than all allowed
 /// pairs together, so that the cheapest complete assignment holds as many allowed pairs as there can be.
@@ -57,7 +57,7 @@ class HungarianSolver {
   [[nodiscard]] std::size_t slots() const { return static_cast<std::size_t>(cost_.size); }
 
   void add_row(int start_row) {
-    std::vector<double> slack(slots(), kInfinity);
+    std::vector<double> slack(slots(), kUnreachable);
     std::vector<char> reached(slots(), 0);
     std::fill(previous_column_.begin(), previous_column_.end(), -1);
     row_potential_[static_cast<std::size_t>(start_row)] = 0;

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "resight/core/check.hpp"
-#include "resight/simulation/raycast_scene.hpp"
-#include "resight/simulation/view_renderer.hpp"
+#include "resight/rendering/raycast_scene.hpp"
+#include "resight/rendering/view_renderer.hpp"
 
 namespace resight {
 namespace {

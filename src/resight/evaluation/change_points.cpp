@@ -11,18 +11,18 @@
 namespace resight {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 double ratio(long part, long whole) {
-  return whole == 0 ? kNan : static_cast<double>(part) / static_cast<double>(whole);
+  return whole == 0 ? kNotANumber : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 // How far behind the point the view measures, along z; NaN where it measures nothing.
 double depth_behind(const RgbdFrame& frame, const Eigen::Vector3d& p_in_world) {
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * p_in_world;
-  if (p.z() <= 0) return kNan;
+  if (p.z() <= 0) return kNotANumber;
   const Eigen::Vector2d pixel = frame.camera.project(p);
-  if (!frame.camera.contains(pixel)) return kNan;
+  if (!frame.camera.contains(pixel)) return kNotANumber;
   return frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))) - p.z();
 }
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/model_source.hpp"
-#include "resight/models/surface.hpp"
 
 namespace resight {
 namespace {
@@ -24,7 +24,7 @@ std::optional<ObjectEventKind> kind_from(const std::string& text) {
 }
 
 // 16 numbers row by row, or null.
-std::optional<Rigid3> pose_from(const json& value) {
+std::optional<Rigid3> pose_from_json(const json& value) {
   if (value.is_null()) return std::nullopt;
   if (!value.is_array() || value.size() != 16) throw std::runtime_error("a pose must be 16 numbers or null");
   Rigid3 pose;
@@ -44,8 +44,8 @@ TrueChange change_from(const json& value) {
   change.view = value.at("view").get<int>();
   change.object = value.at("object").get<std::string>();
   change.known = value.at("known").get<bool>();
-  change.world_from_object_before = pose_from(value.at("world_from_object_before"));
-  change.world_from_object_after = pose_from(value.at("world_from_object_after"));
+  change.world_from_object_before = pose_from_json(value.at("world_from_object_before"));
+  change.world_from_object_after = pose_from_json(value.at("world_from_object_after"));
   if (change.world_from_object_before.has_value() != (*kind != ObjectEventKind::kAdded) ||
       change.world_from_object_after.has_value() != (*kind != ObjectEventKind::kRemoved))
     throw std::runtime_error("the poses do not fit the kind");

@@ -10,7 +10,7 @@ namespace resight {
 namespace {
 
 constexpr std::array kBins{0.05, 0.2, 0.4, 0.6, 0.8};
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t bin_of(double visible_share) {
   if (std::isnan(visible_share)) return kBins.size();
@@ -20,7 +20,7 @@ std::size_t bin_of(double visible_share) {
 }
 
 double nearest_rank(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return kNan;
+  if (sorted.empty()) return kUndefined;
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
@@ -113,7 +113,7 @@ ErrorQuantiles error_quantiles(std::vector<double> values) {
 }
 
 double ConfigurationSummary::ghosts_per_change() const {
-  return num_former_places == 0 ? kNan : static_cast<double>(num_ghosts) / num_former_places;
+  return num_former_places == 0 ? kUndefined : static_cast<double>(num_ghosts) / num_former_places;
 }
 
 std::vector<ConfigurationSummary> summarize_runs(std::span<const EvaluatedRun> runs) {

@@ -11,11 +11,11 @@
 namespace resight {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct RunScores {
   RecognitionScore score, strict_score;
-  double ghosts_per_change = kNan;
+  double ghosts_per_change = kUnknown;
 };
 
 RunScores scores_of(const EvaluatedRun& run) {
@@ -54,7 +54,7 @@ PairedDifference paired_difference(std::span<const double> a, std::span<const do
   std::vector<double> differences;
   for (std::size_t i = 0; i < a.size(); ++i)
     if (!std::isnan(a[i]) && !std::isnan(b[i])) differences.push_back(b[i] - a[i]);
-  PairedDifference result{static_cast<int>(differences.size()), kNan, kNan};
+  PairedDifference result{static_cast<int>(differences.size()), kUnknown, kUnknown};
   if (differences.empty()) return result;
   const auto n = static_cast<double>(differences.size());
   double sum = 0;

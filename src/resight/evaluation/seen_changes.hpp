@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "resight/evaluation/change_sight.hpp"
+#include "resight/evaluation/change_visibility.hpp"
 
 namespace resight {
 

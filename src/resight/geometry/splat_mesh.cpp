@@ -16,7 +16,7 @@ namespace {
 constexpr int kCorners = 6;
 constexpr int kVertices = kCorners + 1;  // and the middle
 constexpr std::size_t kSizeNeighbor = 6;
-constexpr std::size_t kPointsPerTask = 256;
+constexpr std::size_t kSplatsPerTask = 256;
 // On a square grid of side s the sixth neighbour is sqrt(2) s away. Sigma s / 2 keeps neighbouring colours apart.
 constexpr float kSigmaPerRadius = 0.3536F;
 
@@ -88,7 +88,7 @@ TriangleMesh make_splat_mesh(const PointCloud& cloud, const SplatMeshOptions& op
   const KdTree tree(cloud.points);
   Neighbors neighbors(cloud.size());
   std::vector<float> radii(cloud.size());
-  parallel_for_blocks(cloud.size(), kPointsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for_blocks(cloud.size(), kSplatsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       neighbors[i] = tree.nearest(cloud.points[i], options.num_neighbors + 1);
       radii[i] = disc_radius(neighbors[i]);
@@ -107,7 +107,7 @@ TriangleMesh make_splat_mesh(const PointCloud& cloud, const SplatMeshOptions& op
   mesh.colors.resize(mesh.vertices.size());
   mesh.faces.resize(cloud.size() * kCorners);
   const DiscMaker maker(cloud, mesh);
-  parallel_for_blocks(cloud.size(), kPointsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for_blocks(cloud.size(), kSplatsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) maker.make(i, neighbors[i], std::clamp(radii[i], min_radius, max_radius));
   });
   return mesh;

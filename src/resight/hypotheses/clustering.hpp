@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
+#include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 

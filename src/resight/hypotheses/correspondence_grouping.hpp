@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "resight/hypotheses/hypothesis.hpp"
-#include "resight/hypotheses/pose_estimation.hpp"
+#include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 

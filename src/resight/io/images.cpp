@@ -15,7 +15,7 @@
 namespace resight {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
@@ -105,7 +105,7 @@ Result<Image<float>> read_depth(const std::filesystem::path& file, double metres
   if (!raw) return raw.error();
   Image<float> depth_m(raw->width(), raw->height());
   for (std::size_t i = 0; i < raw->size(); ++i)
-    depth_m[i] = (*raw)[i] == 0 ? kNaN : static_cast<float>((*raw)[i] * metres_per_unit);
+    depth_m[i] = (*raw)[i] == 0 ? kNoDepth : static_cast<float>((*raw)[i] * metres_per_unit);
   return depth_m;
 }
 

@@ -84,7 +84,7 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
   return {};
 }
 
-constexpr std::string_view kExpected =
+constexpr std::string_view kExpectedModels =
     "expected a TUW model (views/cloud_*.pcd) or a folder of those, a BOP models folder or data set, a folder of "
     "meshes "
     "(ply, obj, glb, stl), a mesh file, or a cloud (ply, pcd)";
@@ -93,7 +93,7 @@ Result<Locations> find_under(const path& where) {
   Locations found;
   if (io::is_file(where)) {
     if (extension_rank(where) == kExtensions.size())
-      return io::file_error(where, fmt::format("is no model file; {}", kExpected));
+      return io::file_error(where, fmt::format("is no model file; {}", kExpectedModels));
     return Locations{{where.stem().string(), 0, where, format_of(where)}};
   }
   if (!io::is_folder(where)) return io::file_error(where, "no such file or directory");
@@ -111,7 +111,7 @@ Result<Locations> find_under(const path& where) {
     return Locations{{io::folder_name(where), extras->bop_id, *mesh, format_of(*mesh)}};
   }
   if (const auto done = collect(where, 1, found); !done) return done.error();
-  if (found.empty()) return io::file_error(where, fmt::format("no model found; {}", kExpected));
+  if (found.empty()) return io::file_error(where, fmt::format("no model found; {}", kExpectedModels));
   return found;
 }
 

@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t kMaxFields = 1000;
 constexpr int kMaxCount = 65536;
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(std::string_view name) : name_(name) {}
+  explicit PcdHeaderParser(std::string_view name) : name_(name) {}
 
   Result<PcdHeader> parse(std::string_view bytes) {
     std::string_view rest = bytes;
@@ -175,7 +175,7 @@ const PcdField* PcdHeader::find(std::string_view name) const {
 }
 
 Result<PcdHeader> parse_pcd_header(std::string_view bytes, std::string_view name) {
-  return HeaderParser(name).parse(bytes);
+  return PcdHeaderParser(name).parse(bytes);
 }
 
 }  // namespace resight::io

@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint32_t>> make_columns(const PcdCloud& cloud) {
   return columns;
 }
 
-std::string make_header(const PcdCloud& cloud, PcdEncoding encoding) {
+std::string make_pcd_header(const PcdCloud& cloud, PcdEncoding encoding) {
   const bool color = !cloud.colors.empty();
   const bool normal = !cloud.normals.empty();
   // PCL wants rgb as a packed float; as text a float would lose it, so that it becomes a whole number there.
@@ -111,7 +111,7 @@ Result<void> write_pcd(const std::filesystem::path& file, const PcdCloud& cloud,
   require(fits(cloud.normals.size()) && fits(cloud.colors.size()),
           "write_pcd: an attribute has not as many entries as there are points");
   require(cloud.viewpoint.is_rigid(), "write_pcd: the viewpoint is not rigid");
-  std::string bytes = make_header(cloud, encoding);
+  std::string bytes = make_pcd_header(cloud, encoding);
   if (encoding == PcdEncoding::kAscii) {
     append_ascii(bytes, cloud);
   } else {

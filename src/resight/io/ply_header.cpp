@@ -63,9 +63,9 @@ std::size_t min_item_bytes(const PlyElement& element, PlyEncoding encoding) {
   return bytes;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(std::string_view name) : name_(name) {}
+  explicit PlyHeaderParser(std::string_view name) : name_(name) {}
 
   Result<PlyHeader> parse(std::string_view bytes) {
     std::string_view rest = bytes;
@@ -182,7 +182,7 @@ std::size_t size_of(PlyType type) {
 }
 
 Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name) {
-  return HeaderParser(name).parse(bytes);
+  return PlyHeaderParser(name).parse(bytes);
 }
 
 bool PlyValueReader::next(PlyType type, double& value) {

@@ -22,7 +22,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-std::string make_header(const VertexArrays& vertices, std::size_t num_faces, const std::string& texture_file) {
+std::string make_ply_header(const VertexArrays& vertices, std::size_t num_faces, const std::string& texture_file) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment written by resight\n";
   if (!texture_file.empty()) header += "comment TextureFile " + texture_file + "\n";
   header += "element vertex " + std::to_string(vertices.points.size()) +
@@ -63,7 +63,7 @@ const std::vector<Rgb8> kNoColors;
 Result<void> write_ply(const std::filesystem::path& file, const PointCloud& cloud, double units_per_metre) {
   const VertexArrays vertices{cloud.points, cloud.normals, kNoUvs, cloud.colors};
   check_attributes(vertices, units_per_metre);
-  std::string bytes = make_header(vertices, 0, "");
+  std::string bytes = make_ply_header(vertices, 0, "");
   append_vertices(bytes, vertices, units_per_metre);
   return io::write_file(file, bytes);
 }
@@ -79,7 +79,7 @@ Result<void> write_ply(const std::filesystem::path& file, const TriangleMesh& me
     texture_file.replace_extension(".png");
     if (const auto done = write_color(texture_file, mesh.texture); !done) return done;
   }
-  std::string bytes = make_header(vertices, mesh.faces.size(), texture_file.filename().string());
+  std::string bytes = make_ply_header(vertices, mesh.faces.size(), texture_file.filename().string());
   append_vertices(bytes, vertices, units_per_metre);
   for (const auto& face : mesh.faces) {
     append(bytes, std::uint8_t{3});

@@ -53,16 +53,12 @@ std::vector<path> find_sequences_below(const path& directory) {
   return found.empty() ? training : found;
 }
 
-constexpr std::string_view kExpected =
+constexpr std::string_view kExpectedSequences =
     "expected a BOP scene (scene_camera.json), a TUM recording (rgb, depth, associations.txt or rgb.txt and "
     "depth.txt), "
     "organised *.pcd views (TUW), or colour and depth images with their camera as docs/formats.md says";
 
 }  // namespace
-
-Result<std::vector<GroundTruthObject>> Sequence::read_ground_truth(int) const {
-  return std::vector<GroundTruthObject>{};
-}
 
 Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
   if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
@@ -73,7 +69,7 @@ Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
   if (below.size() > 1)
     return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
                                                  below.front().string()));
-  return io::file_error(directory, fmt::format("no sequence found; {}", kExpected));
+  return io::file_error(directory, fmt::format("no sequence found; {}", kExpectedSequences));
 }
 
 Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory) {

@@ -5,17 +5,17 @@
 
 namespace resight::io {
 namespace {
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 }  // namespace
 
 std::string normalized_view(std::string_view name) {
   std::string normalized;
   for (std::size_t i = 0; i < name.size(); ++i) {
-    const bool leading_zero =
-        name[i] == '0' && (i == 0 || !is_digit(name[i - 1])) && i + 1 < name.size() && is_digit(name[i + 1]);
+    const bool leading_zero = name[i] == '0' && (i == 0 || !is_decimal_digit(name[i - 1])) && i + 1 < name.size() &&
+                              is_decimal_digit(name[i + 1]);
     // Several zeros: each but the last is a leading one, since the one before it was dropped.
     if (leading_zero) {
-      while (i + 1 < name.size() && name[i] == '0' && is_digit(name[i + 1])) ++i;
+      while (i + 1 < name.size() && name[i] == '0' && is_decimal_digit(name[i + 1])) ++i;
     }
     normalized += name[i];
   }
@@ -32,9 +32,9 @@ std::optional<ObjectInstance> split_object_instance(std::string_view text) {
 
 std::optional<AnnotationName> split_annotation_name(std::string_view stem) {
   std::size_t begin = 0;
-  while (begin < stem.size() && !is_digit(stem[begin])) ++begin;
+  while (begin < stem.size() && !is_decimal_digit(stem[begin])) ++begin;
   std::size_t end = begin;
-  while (end < stem.size() && is_digit(stem[end])) ++end;
+  while (end < stem.size() && is_decimal_digit(stem[end])) ++end;
   if (begin == end || end >= stem.size() || stem[end] != '_') return std::nullopt;
   const auto number = trailing_number(stem.substr(0, end));
   auto what = split_object_instance(stem.substr(end + 1));

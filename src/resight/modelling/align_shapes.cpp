@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "resight/cameras/twist.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/kd_tree.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {

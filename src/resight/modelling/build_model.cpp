@@ -10,8 +10,8 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/models/crop_view.hpp"
-#include "resight/models/surface.hpp"
+#include "resight/geometry/mesh_sampling.hpp"
+#include "resight/sensor/crop_view.hpp"
 
 namespace resight {
 namespace {

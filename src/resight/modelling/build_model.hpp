@@ -11,7 +11,7 @@
 #include "resight/modelling/coverage.hpp"
 #include "resight/modelling/fusion.hpp"
 #include "resight/modelling/mesh_quality.hpp"
-#include "resight/models/symmetry_detection.hpp"
+#include "resight/training/symmetry_detection.hpp"
 
 namespace resight {
 

@@ -10,8 +10,8 @@
 #include "resight/io/model_source.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/modelling/write_model.hpp"
-#include "resight/models/train_library.hpp"
-#include "resight/simulation/turntable.hpp"
+#include "resight/rendering/turntable.hpp"
+#include "resight/training/train_library.hpp"
 
 namespace resight {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "resight/simulation/view_renderer.hpp"
+#include "resight/rendering/view_renderer.hpp"
 
 namespace resight {
 namespace {

@@ -9,7 +9,7 @@
 #include "resight/modelling/internal/distance_volume.hpp"
 #include "resight/modelling/internal/surface_nets.hpp"
 #include "resight/modelling/mesh_quality.hpp"
-#include "resight/models/crop_view.hpp"
+#include "resight/sensor/crop_view.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
 namespace resight {

@@ -8,7 +8,7 @@
 
 #include "resight/modelling/mesh_quality.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
-#include "resight/simulation/turntable.hpp"
+#include "resight/rendering/turntable.hpp"
 
 namespace resight {
 namespace {

@@ -34,7 +34,7 @@ struct Way {
   double shape_score = 0;
 };
 
-bool are_one(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
+bool are_same_motion(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
   return rotation_angle_rad(a.rotation, b.rotation) <= kSameTurnRad && (a * middle - b * middle).norm() <= kSameShiftM;
 }
 
@@ -156,7 +156,7 @@ class TrackJoiner {
       if (!way) continue;
       Way sum{way->first_from_second, 0};
       for (const auto& other : found)
-        if (other && are_one(way->first_from_second, other->first_from_second, middle_))
+        if (other && are_same_motion(way->first_from_second, other->first_from_second, middle_))
           sum.num_matches += other->num_matches;
       sums.push_back(sum);
     }
@@ -164,7 +164,7 @@ class TrackJoiner {
     std::vector<Way> ways;
     for (const Way& way : sums) {
       const bool is_known = std::ranges::any_of(
-          ways, [&](const Way& w) { return are_one(w.first_from_second, way.first_from_second, middle_); });
+          ways, [&](const Way& w) { return are_same_motion(w.first_from_second, way.first_from_second, middle_); });
       if (!is_known && static_cast<int>(ways.size()) < kMaxWays) ways.push_back(way);
     }
     return ways;

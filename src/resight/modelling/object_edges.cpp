@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "resight/cameras/twist.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "resight/geometry/kd_tree.hpp"
+#include "resight/rendering/view_renderer.hpp"
 #include "resight/sensor/training_view.hpp"
 #include "resight/simulation/recording.hpp"
 #include "resight/simulation/surface_sampling.hpp"
-#include "resight/simulation/view_renderer.hpp"
 
 /// How far a model is from the object that it was made of.
 namespace resight::test {

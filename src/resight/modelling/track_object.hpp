@@ -8,11 +8,11 @@
 
 #include "resight/cameras/match_views.hpp"
 #include "resight/cameras/pose_graph.hpp"
-#include "resight/cameras/view_alignment.hpp"
 #include "resight/core/result.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/modelling/fusion.hpp"
 #include "resight/modelling/object_region.hpp"
+#include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "resight/core/parallel.hpp"
-#include "resight/models/crop_view.hpp"
-#include "resight/simulation/view_renderer.hpp"
+#include "resight/rendering/view_renderer.hpp"
+#include "resight/sensor/crop_view.hpp"
 
 namespace resight {
 namespace {
 
-constexpr int kMarginPx = 24;
+constexpr int kCropMarginPx = 24;
 constexpr int kMinWidthPx = 320;  // so that all views have the same number of levels
 // A view that is already about right is not moved farther by the model; else it has slid along a symmetry.
 constexpr double kMaxShiftM = 0.015;
@@ -46,10 +46,10 @@ void drop_insides(const RaycastScene& scene, const Camera& camera, const Rigid3&
 
 TrainingView crop_for_tracking(const TrainingView& view) {
   TrainingView part;
-  int margin_px = kMarginPx;
+  int margin_px = kCropMarginPx;
   do {
     part = crop_to_object(view, margin_px);
-    margin_px += kMarginPx;
+    margin_px += kCropMarginPx;
   } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidthPx, view.mask.width()));
   return part;
 }

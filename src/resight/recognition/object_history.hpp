@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "resight/evidence/object_presence.hpp"
 #include "resight/models/object_model.hpp"
-#include "resight/recognition/depth_memory.hpp"
-#include "resight/recognition/known_object.hpp"
-#include "resight/recognition/object_presence.hpp"
+#include "resight/recognition/body_overlap.hpp"
+#include "resight/recognition/depth_history.hpp"
 #include "resight/recognition/scene_update.hpp"
-#include "resight/recognition/shared_space.hpp"
-#include "resight/recognition/unsure_objects.hpp"
+#include "resight/recognition/tentative_tracks.hpp"
+#include "resight/recognition/tracked_object.hpp"
 
 namespace resight {
 

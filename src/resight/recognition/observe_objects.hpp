@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "resight/cameras/observed_objects.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/models/observed_object.hpp"
 #include "resight/recognition/scene_update.hpp"
 
 namespace resight {

@@ -13,7 +13,7 @@ namespace {
 enum class PlaceEvent : std::uint8_t { kNone, kRemoved, kAppeared };
 
 // Holds all of a hypothesis, and what is near to it.
-struct Ball {
+struct BoundingSphere {
   Eigen::Vector3f center;
   float radius_m = 0;
 };
@@ -32,14 +32,14 @@ class ChangedPoints {
   }
 
   // Most changes are far from most hypotheses.
-  [[nodiscard]] std::vector<std::vector<int>> near(const Ball& ball) const {
+  [[nodiscard]] std::vector<std::vector<int>> near(const BoundingSphere& ball) const {
     std::vector<std::vector<int>> found;
     for (std::size_t c = 0; c < clusters_.size(); ++c)
       if (boxes_[c].squaredExteriorDistance(ball.center) <= ball.radius_m * ball.radius_m)
         found.push_back(clusters_[c]);
     return found;
   }
-  [[nodiscard]] bool any_near(const Ball& ball) const {
+  [[nodiscard]] bool any_near(const BoundingSphere& ball) const {
     return std::ranges::any_of(boxes_, [&](const Eigen::AlignedBox3f& box) {
       return box.squaredExteriorDistance(ball.center) <= ball.radius_m * ball.radius_m;
     });
@@ -69,7 +69,7 @@ std::vector<ClusteredChanges> cluster_changes(std::span<const ViewChanges> windo
   return clustered;
 }
 
-bool any_near(const Ball& ball, const std::vector<ClusteredChanges>& changes) {
+bool any_near(const BoundingSphere& ball, const std::vector<ClusteredChanges>& changes) {
   return std::ranges::any_of(
       changes, [&](const ClusteredChanges& c) { return c.removed.any_near(ball) || c.novel.any_near(ball); });
 }
@@ -78,7 +78,7 @@ bool any_near(const Ball& ball, const std::vector<ClusteredChanges>& changes) {
 struct Place {
   const Hypothesis& hypothesis;
   const ProximityGrid& surface_in_object;
-  Ball ball;
+  BoundingSphere ball;
   Rigid3 object_from_world;
 };
 
@@ -115,7 +115,7 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
   std::vector<std::uint8_t> mask(window.size() * hypotheses.size(), 1);
   if (hypotheses.empty()) return mask;
   const std::vector<ClusteredChanges> clustered = cluster_changes(window, options, num_threads);
-  std::vector<Ball> balls;
+  std::vector<BoundingSphere> balls;
   std::vector<std::uint8_t> changed(hypotheses.size(), 0);
   std::vector<std::unique_ptr<const ProximityGrid>> surfaces(library.objects.size());
   std::vector<std::uint8_t> needed(library.objects.size(), 0);

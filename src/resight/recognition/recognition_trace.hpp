@@ -4,7 +4,7 @@
 
 #include "resight/features/feature_set.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "resight/cameras/camera_corrector.hpp"
 #include "resight/changes/change_detector.hpp"
 #include "resight/changes/removal_support.hpp"
 #include "resight/core/result.hpp"
@@ -13,13 +12,14 @@
 #include "resight/features/sift.hpp"
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
-#include "resight/recognition/attention.hpp"
 #include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/object_history.hpp"
+#include "resight/recognition/view_novelty.hpp"
 #include "resight/reconstruction/integration.hpp"
+#include "resight/registration/camera_corrector.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/shape_search/shape_search.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

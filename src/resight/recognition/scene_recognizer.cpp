@@ -13,15 +13,15 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/deadline.hpp"
-#include "resight/recognition/attention.hpp"
-#include "resight/recognition/color_confirmation.hpp"
 #include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/explained_pixels.hpp"
-#include "resight/recognition/held_correspondences.hpp"
 #include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
+#include "resight/recognition/track_correspondences.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
+#include "resight/recognition/view_novelty.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/verification/appearance_check.hpp"
 #include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight {

@@ -8,7 +8,7 @@
 #include "resight/core/timing.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/recognition/object_event.hpp"
-#include "resight/verification/pose_uncertainty.hpp"
+#include "resight/registration/pose_uncertainty.hpp"
 
 namespace resight {
 

@@ -17,10 +17,12 @@ using Configurations = std::span<const ConfigurationSummary>;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-std::string number(double value, int digits) { return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits); }
+std::string format_number(double value, int digits) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
+}
 // As the paper writes shares: .93
 std::string share(double value) {
-  std::string text = number(value, 3);
+  std::string text = format_number(value, 3);
   return text.starts_with("0.") ? text.substr(1) : text;
 }
 std::string prf(const RecognitionScore& s) {
@@ -38,17 +40,17 @@ std::string recognition_table(Configurations configurations) {
       "rotation median | rotation 95 % | ghosts | per place left |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ConfigurationSummary& c : configurations)
-    text +=
-        fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} |\n", name_of(c),
-                    c.num_previous_views, prf(c.score), prf(c.strict_score), number(1e3 * c.center_error_m.median, 1),
-                    number(1e3 * c.center_error_m.p95, 1), number(kDegrees * c.rotation_error_rad.median, 1),
-                    number(kDegrees * c.rotation_error_rad.p95, 1), c.num_ghosts, number(c.ghosts_per_change(), 2));
+    text += fmt::format(
+        "| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} |\n", name_of(c), c.num_previous_views,
+        prf(c.score), prf(c.strict_score), format_number(1e3 * c.center_error_m.median, 1),
+        format_number(1e3 * c.center_error_m.p95, 1), format_number(kDegrees * c.rotation_error_rad.median, 1),
+        format_number(kDegrees * c.rotation_error_rad.p95, 1), c.num_ghosts, format_number(c.ghosts_per_change(), 2));
   return text;
 }
 
 std::string difference(const PairedDifference& d, int digits) {
   if (std::isnan(d.mean)) return "-";
-  return fmt::format("{:+.{}f} ± {}", d.mean, digits, number(d.standard_error, digits));
+  return fmt::format("{:+.{}f} ± {}", d.mean, digits, format_number(d.standard_error, digits));
 }
 
 std::string comparison_table(std::span<const PresetComparison> comparisons) {
@@ -74,7 +76,7 @@ std::string clustering_table(Configurations configurations) {
         continue;
       rows += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} % |\n", with.preset, with.num_previous_views,
                           prf(without.score), prf(with.score), without.counts.clustered, with.counts.clustered,
-                          number(100.0 * with.counts.clustered / std::max(1, with.counts.merged), 1));
+                          format_number(100.0 * with.counts.clustered / std::max(1, with.counts.merged), 1));
     }
   }
   if (rows.empty()) return {};
@@ -130,7 +132,7 @@ std::string change_table(Configurations configurations) {
                                         static_cast<double>(d.size());
     rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(c),
                         c.num_previous_views, points_cells(c.points.removed), points_cells(c.points.novel),
-                        share(c.events.events.precision()), share(c.events.events.recall()), number(mean, 2),
+                        share(c.events.events.precision()), share(c.events.events.recall()), format_number(mean, 2),
                         share(late), share(c.events.departures.precision()), share(c.events.departures.recall()),
                         share(c.events.arrivals.precision()), share(c.events.arrivals.recall()));
   }

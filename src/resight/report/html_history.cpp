@@ -16,7 +16,7 @@ struct CellLook {
   int weight;  // of several events in one cell, the weightiest is shown
 };
 
-CellLook look_of(ObjectEventKind kind) {
+CellLook style_of_event(ObjectEventKind kind) {
   switch (kind) {
     case ObjectEventKind::kFound:
       return {"found", "●", 2};
@@ -46,7 +46,7 @@ struct Timeline {
     Row& row = rows[event.track];
     row.object = event.object;
     const auto [place, is_new] = row.events.emplace(event.view, event.kind);
-    if (!is_new && look_of(event.kind).weight > look_of(place->second).weight) place->second = event.kind;
+    if (!is_new && style_of_event(event.kind).weight > style_of_event(place->second).weight) place->second = event.kind;
   }
 };
 
@@ -74,7 +74,8 @@ std::string timeline_table(const ReportRun& run, const Timeline& timeline, const
       const auto event = row.events.find(view.update.view);
       html += "<td>";
       if (event != row.events.end()) {
-        html += cell(look_of(event->second), fmt::format("view {}: {}", view.update.view, to_string(event->second)));
+        html +=
+            cell(style_of_event(event->second), fmt::format("view {}: {}", view.update.view, to_string(event->second)));
       } else {
         html += "<span class=\"cell none\"></span>";
       }
@@ -93,7 +94,7 @@ std::string legend() {
                                                              {ObjectEventKind::kRemoved, "removed"},
                                                              {ObjectEventKind::kNotSeen, "not seen"}};
   std::string html = "<p class=\"soft legend\">";
-  for (const auto& [kind, text] : entries) html += "<span>" + cell(look_of(kind), text) + text + "</span>";
+  for (const auto& [kind, text] : entries) html += "<span>" + cell(style_of_event(kind), text) + text + "</span>";
   return html + "</p>\n";
 }
 

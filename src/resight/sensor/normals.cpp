@@ -13,7 +13,7 @@ namespace resight {
 namespace {
 
 constexpr int kBlock = 128;  // columns worked on at a time: their sums stay in the first-level cache
-constexpr int kRowsPerTask = 8;
+constexpr int kNormalRowsPerTask = 8;
 constexpr int kNewtonSteps = 6;
 // Smallest |cross product| / trace^2 of a window that spans a plane. It is about l1 / l2, 0.03 at 80 deg incidence.
 constexpr float kMinSpread = 1e-4F;
@@ -206,7 +206,7 @@ void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options
   require(cloud.x.size() == cloud.z.size() && cloud.y.size() == cloud.z.size(),
           "compute_normals: x, y and z have different sizes");
   for (Image<float>* normal : {&cloud.nx, &cloud.ny, &cloud.nz}) *normal = Image<float>(width, cloud.height(), kNan);
-  parallel_for_blocks(static_cast<std::size_t>(cloud.height()), kRowsPerTask, options.num_threads,
+  parallel_for_blocks(static_cast<std::size_t>(cloud.height()), kNormalRowsPerTask, options.num_threads,
                       [&](std::size_t first_row, std::size_t last_row) {
                         WindowSums sums;
                         for (int v = static_cast<int>(first_row); v < static_cast<int>(last_row); ++v)

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "resight/hypotheses/correspondence_grouping.hpp"
-#include "resight/shape_search/dipole_table.hpp"
+#include "resight/shape_search/point_pair_table.hpp"
 
 namespace resight {
 namespace {

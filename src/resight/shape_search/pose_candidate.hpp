@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "resight/geometry/rigid3.hpp"
-#include "resight/shape_search/pose_probe.hpp"
+#include "resight/shape_search/pose_scorer.hpp"
 
 namespace resight {
 

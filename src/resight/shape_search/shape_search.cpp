@@ -11,10 +11,10 @@
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/symmetry.hpp"
-#include "resight/models/shape_turns.hpp"
-#include "resight/shape_search/dipole_search.hpp"
+#include "resight/hypotheses/white_balance_weights.hpp"
+#include "resight/models/shape_symmetry_motions.hpp"
 #include "resight/shape_search/match_pairs.hpp"
-#include "resight/verification/white_balance_votes.hpp"
+#include "resight/shape_search/point_pair_search.hpp"
 
 namespace resight {
 namespace {

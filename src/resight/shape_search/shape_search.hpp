@@ -8,9 +8,9 @@
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
-#include "resight/shape_search/oriented_points.hpp"
-#include "resight/shape_search/pose_probe.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/shape_search/pose_scorer.hpp"
+#include "resight/shape_search/scene_samples.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

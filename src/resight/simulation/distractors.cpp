@@ -5,17 +5,14 @@
 
 #include "resight/simulation/internal/object_makers.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
 #include "resight/simulation/room.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kMm = 1000.0;
-constexpr double kPi = std::numbers::pi;
 
 // A rotation body with a closed bottom and top; the profile goes from top to bottom.
 TriangleMesh turned(TextureAtlas& atlas, const std::vector<Vector2d>& profile, const PixelRect& side, Rgb8 caps) {
@@ -40,7 +37,7 @@ ProceduralObject make_vase() {
   std::vector<Vector2d> profile;
   for (int i = 0; i <= 24; ++i) {
     const double t = i / 24.0;
-    profile.emplace_back(0.032 + 0.022 * std::sin(kPi * (0.15 + 1.1 * t)) + 0.006 * t, 0.23 * (1 - t));
+    profile.emplace_back(0.032 + 0.022 * std::sin(std::numbers::pi * (0.15 + 1.1 * t)) + 0.006 * t, 0.23 * (1 - t));
   }
   ProceduralObject object{"vase", turned(atlas, profile, side, {30, 40, 60}), {}, "distractor"};
   atlas.finish(object.mesh);
@@ -70,7 +67,7 @@ ProceduralObject make_plant() {
   ProceduralObject object{"plant", turned(atlas, {{0.05, 0.085}, {0.036, 0.0}}, pot, {70, 50, 35}), {}, "distractor"};
   Rng rng(530);
   for (int i = 0; i < 22; ++i) {
-    const double yaw = rng.uniform(0, 2 * kPi);
+    const double yaw = rng.uniform(0, 2 * std::numbers::pi);
     const double tilt = rng.uniform(0.1, 1.2);
     const double length = rng.uniform(0.05, 0.09);
     const Rigid3 pose = Rigid3::from_translation({0, 0, 0.08}) * Rigid3::from_axis_angle(Vector3d::UnitZ(), yaw) *
@@ -102,7 +99,8 @@ ProceduralObject make_speaker() {
 
 ProceduralObject make_globe() {
   TextureAtlas atlas(1024, 1.8);
-  const PixelRect sea = blob_region(atlas, 2 * kPi * 85, kPi * 85, {70, 130, 190}, 90, 55, 40, 40);
+  const PixelRect sea =
+      blob_region(atlas, 2 * std::numbers::pi * 85, std::numbers::pi * 85, {70, 130, 190}, 90, 55, 40, 40);
   const PixelRect foot = atlas.solid({90, 60, 35});
   ProceduralObject object{
       "globe",
@@ -138,8 +136,8 @@ ProceduralObject make_basket() {
   const PixelRect weave = atlas.allocate(480, 110);
   TextureCanvas canvas = atlas.canvas(weave);
   canvas.fill({190, 150, 95});
-  canvas.stripes(16, kPi / 4, {140, 100, 55});
-  canvas.stripes(16, -kPi / 4, {165, 125, 75});
+  canvas.stripes(16, std::numbers::pi / 4, {140, 100, 55});
+  canvas.stripes(16, -std::numbers::pi / 4, {165, 125, 75});
   const PixelRect inside = atlas.solid({120, 90, 55});
   ProceduralObject object{
       "basket", make_lathe_part(std::vector<Vector2d>{{0.085, 0.11}, {0.065, 0.0}}, weave, 48), {}, "distractor"};
@@ -153,7 +151,7 @@ ProceduralObject make_basket() {
 
 ProceduralObject make_thermos() {
   TextureAtlas atlas(1024, 2.5);
-  const PixelRect side = atlas.allocate(2 * kPi * 0.038 * kMm, 240);
+  const PixelRect side = atlas.allocate(2 * std::numbers::pi * 0.038 * kMmPerM, 240);
   TextureCanvas canvas = atlas.canvas(side);
   canvas.fill({40, 95, 75});
   canvas.stripes(30, 1.2, {200, 205, 200});

@@ -11,11 +11,12 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
+#include "resight/geometry/angle.hpp"
+#include "resight/rendering/view_renderer.hpp"
 #include "resight/simulation/internal/footprint.hpp"
 #include "resight/simulation/internal/tabletop_stage.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/room.hpp"
-#include "resight/simulation/view_renderer.hpp"
 
 namespace resight {
 namespace {
@@ -23,7 +24,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kAttempts = 400;
 constexpr double kMinMoveM = 0.10;
 constexpr double kNearMoveM = 0.30;
@@ -43,8 +43,6 @@ constexpr std::array<SequencePlan, 9> kPlan{{{TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kMeeting, 22}}};
 
-double radians(double deg) { return deg * kPi / 180; }
-
 // What a thing covers, upright and laid down, for every model once: drawing a model takes its time.
 class Catalogue {
  public:
@@ -58,7 +56,7 @@ class Catalogue {
 
  private:
   void add(const ProceduralObject& object) {
-    footprints_[object.name] = {footprint_of(object.mesh, 0), footprint_of(object.mesh, kPi / 2)};
+    footprints_[object.name] = {footprint_of(object.mesh, 0), footprint_of(object.mesh, std::numbers::pi / 2)};
   }
   std::map<std::string, std::array<Footprint, 2>> footprints_;
 };
@@ -140,9 +138,9 @@ class SequenceBuilder {
   Spot draw_spot(const Thing& thing, const std::optional<Spot>& wanted, double max_offset_m) {
     Spot spot;
     spot.covered = catalogue_.footprint(thing.model, thing.lying);
-    spot.covered.yaw_rad = rng_.uniform(-kPi, kPi);
+    spot.covered.yaw_rad = rng_.uniform(-std::numbers::pi, std::numbers::pi);
     if (wanted) {
-      const double angle = rng_.uniform(-kPi, kPi);
+      const double angle = rng_.uniform(-std::numbers::pi, std::numbers::pi);
       spot.surface = wanted->surface;
       spot.covered.center = wanted->covered.center +
                             max_offset_m * std::sqrt(rng_.uniform()) * Vector2d(std::cos(angle), std::sin(angle));
@@ -202,7 +200,7 @@ class SequenceBuilder {
     p.support = surface.support;
     p.level = surface.level;
     p.yaw_rad = spot.covered.yaw_rad;
-    p.roll_rad = thing.lying ? kPi / 2 : 0;
+    p.roll_rad = thing.lying ? std::numbers::pi / 2 : 0;
     // The footprint's centre is not the origin.
     const Vector2d own_center = catalogue_.footprint(thing.model, thing.lying).center;
     const Vector2d origin = spot.covered.center - Eigen::Rotation2Dd(p.yaw_rad) * own_center;
@@ -305,15 +303,18 @@ class SequenceBuilder {
   // To and fro around the scene, nearer and farther, looking left and right of its middle.
   void move_camera() {
     const int num_views = kPlan[static_cast<std::size_t>(index_)].num_views;
-    const double middle_rad = -kPi / 2 + rng_.uniform(-0.15, 0.15);
-    const double phase_distance = rng_.uniform(0, 2 * kPi);
-    const double phase_height = rng_.uniform(0, 2 * kPi);
-    const double phase_pan = rng_.uniform(0, 2 * kPi);
+    const double middle_rad = -std::numbers::pi / 2 + rng_.uniform(-0.15, 0.15);
+    const double phase_distance = rng_.uniform(0, 2 * std::numbers::pi);
+    const double phase_height = rng_.uniform(0, 2 * std::numbers::pi);
+    const double phase_pan = rng_.uniform(0, 2 * std::numbers::pi);
     const double side = rng_.uniform() < 0.5 ? -1 : 1;
     for (int view = 0; view < num_views; ++view) {
       const double t = static_cast<double>(view) / (num_views - 1);
-      const auto wave = [&](double cycles, double phase) { return std::sin(2 * kPi * cycles * t + phase); };
-      const double azimuth = middle_rad + side * stage_.half_arc_rad * std::cos(2 * kPi * 0.9 * t) + jitter(0.03);
+      const auto wave = [&](double cycles, double phase) {
+        return std::sin(2 * std::numbers::pi * cycles * t + phase);
+      };
+      const double azimuth =
+          middle_rad + side * stage_.half_arc_rad * std::cos(2 * std::numbers::pi * 0.9 * t) + jitter(0.03);
       const double elevation = radians(32 + 9 * wave(1.3, phase_height)) + jitter(0.02);
       const double middle_m = 0.5 * (options_.min_distance_m + options_.max_distance_m);
       const double swing_m = 0.5 * (options_.max_distance_m - options_.min_distance_m);

@@ -11,6 +11,8 @@
 
 namespace resight {
 
+inline constexpr double kMmPerM = 1000;
+
 /// Collects the printed regions of a texture: shelves from left to right, with a border of repeated pixels around each
 /// region so that a filtered look-up does not see its neighbours.
 class TextureAtlas {

@@ -5,7 +5,7 @@
 
 #include "resight/simulation/internal/object_makers.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
@@ -13,11 +13,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMm = 1000.0;
-
 // Regions of the six sides of a box, in the order in which they are painted.
 BoxRegions allocate_box(TextureAtlas& atlas, const Vector3d& size_m) {
-  const Vector3d mm = size_m * kMm;
+  const Vector3d mm = size_m * kMmPerM;
   BoxRegions r;
   r.front = atlas.allocate(mm.x(), mm.z());
   r.right = atlas.allocate(mm.y(), mm.z());
@@ -30,7 +28,7 @@ BoxRegions allocate_box(TextureAtlas& atlas, const Vector3d& size_m) {
 
 // Pixels per millimetre so that the unfolded box fills an atlas about 1000 px wide.
 double box_scale(const Vector3d& size_m) {
-  const double strip_mm = 2 * (size_m.x() + size_m.y()) * kMm;
+  const double strip_mm = 2 * (size_m.x() + size_m.y()) * kMmPerM;
   return std::min(4.0, (1024.0 - 5 * 16) / strip_mm);
 }
 
@@ -108,11 +106,11 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
 
   // The roof is a prism along x: its cross-section (y, z) is a triangle, so a prism along z is laid on its side.
   const double roof_length = std::hypot(width_m / 2, roof_height_m);
-  const PixelRect roof = atlas.allocate((width_m + 2 * roof_length) * kMm, width_m * kMm);
+  const PixelRect roof = atlas.allocate((width_m + 2 * roof_length) * kMmPerM, width_m * kMmPerM);
   TextureCanvas roof_canvas = atlas.canvas(roof);
   roof_canvas.fill(style.base());
   print_blobs(roof_canvas, style.stream(7), style.hue_deg + 180, 40, 2, 9);
-  const PixelRect gable = atlas.allocate(width_m * kMm, roof_height_m * kMm);
+  const PixelRect gable = atlas.allocate(width_m * kMmPerM, roof_height_m * kMmPerM);
   atlas.canvas(gable).fill(style.light());
   print_blobs(atlas.canvas(gable), style.stream(8), style.hue_deg + 60, 25, 2, 7);
   const std::vector<Vector2d> triangle{{-width_m / 2, 0}, {width_m / 2, 0}, {0, roof_height_m}};
@@ -120,7 +118,7 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
   carton_from_prism.rotation << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // prism x, y, z become carton y, z, x
   carton_from_prism.translation = Vector3d(-width_m / 2, 0, box_height_m);
   object.mesh.append(moved(make_prism_part(triangle, width_m, roof, gable, gable), carton_from_prism));
-  const PixelRect fin = atlas.allocate(width_m * kMm, 15);
+  const PixelRect fin = atlas.allocate(width_m * kMmPerM, 15);
   atlas.canvas(fin).fill(style.accent());
   object.mesh.append(moved(make_box_part({width_m, 0.004, 0.022}, {fin, fin, fin, fin, fin, fin}, 4),
                            Rigid3::from_translation({0, 0, box_height_m + roof_height_m - 0.006})));
@@ -136,14 +134,14 @@ ProceduralObject make_gift_box() {
   for (int i = 0; i < 6; ++i)
     hexagon.emplace_back(kRadius * std::cos(std::numbers::pi * i / 3), kRadius * std::sin(std::numbers::pi * i / 3));
   TextureAtlas atlas(1024, 2.5);
-  const PixelRect side = atlas.allocate(6 * kRadius * kMm, kHeight * kMm);
-  const PixelRect top = atlas.allocate(2 * kRadius * kMm, std::sqrt(3.0) * kRadius * kMm);
-  const PixelRect bottom = atlas.allocate(2 * kRadius * kMm, std::sqrt(3.0) * kRadius * kMm);
+  const PixelRect side = atlas.allocate(6 * kRadius * kMmPerM, kHeight * kMmPerM);
+  const PixelRect top = atlas.allocate(2 * kRadius * kMmPerM, std::sqrt(3.0) * kRadius * kMmPerM);
+  const PixelRect bottom = atlas.allocate(2 * kRadius * kMmPerM, std::sqrt(3.0) * kRadius * kMmPerM);
   for (int i = 0; i < 6; ++i) {
-    TextureCanvas canvas = atlas.canvas(side).part(i * kRadius * kMm, 0, kRadius * kMm, kHeight * kMm);
+    TextureCanvas canvas = atlas.canvas(side).part(i * kRadius * kMmPerM, 0, kRadius * kMmPerM, kHeight * kMmPerM);
     canvas.fill(i % 2 == 0 ? style.base() : style.accent());
     print_blobs(canvas, style.stream(10 + i), style.hue_deg + 60 * i, 16, 2, 10);
-    canvas.text_in_box(4, 32, kRadius * kMm - 8, 22, std::string(1, "JUBILO"[i]), style.light(), 0.2);
+    canvas.text_in_box(4, 32, kRadius * kMmPerM - 8, 22, std::string(1, "JUBILO"[i]), style.light(), 0.2);
   }
   print_lid(atlas.canvas(top), style, 20);
   print_back(atlas.canvas(bottom), style, 21);

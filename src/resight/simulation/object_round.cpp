@@ -5,7 +5,7 @@
 
 #include "resight/simulation/internal/object_makers.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kMm = 1000.0;
 constexpr Rgb8 kSteel{188, 190, 195};
 
 using Profile = std::vector<Vector2d>;
@@ -51,14 +50,14 @@ void add_print_ring(TextureCanvas canvas, const PrintStyle& style, std::uint64_t
 ProceduralObject make_can(const std::string& name, double radius_m, double height_m, const PrintStyle& style,
                           const std::string& kind = "textured") {
   constexpr double kRim = 0.004;
-  const double around_mm = 2 * std::numbers::pi * radius_m * kMm;
+  const double around_mm = 2 * std::numbers::pi * radius_m * kMmPerM;
   TextureAtlas atlas(1024, std::min(4.0, 1000.0 / around_mm));
-  const PixelRect label = atlas.allocate(around_mm, (height_m - 2 * kRim) * kMm);
+  const PixelRect label = atlas.allocate(around_mm, (height_m - 2 * kRim) * kMmPerM);
   print_label(atlas.canvas(label), style, 1);
   const PixelRect rim = atlas.solid(kSteel);
-  const PixelRect top = atlas.allocate(2 * radius_m * kMm, 2 * radius_m * kMm);
+  const PixelRect top = atlas.allocate(2 * radius_m * kMmPerM, 2 * radius_m * kMmPerM);
   add_print_ring(atlas.canvas(top), style, 50);
-  const PixelRect bottom = atlas.allocate(2 * radius_m * kMm, 2 * radius_m * kMm);
+  const PixelRect bottom = atlas.allocate(2 * radius_m * kMmPerM, 2 * radius_m * kMmPerM);
   add_print_ring(atlas.canvas(bottom), style, 51);
   ProceduralObject object{
       name, make_lathe_part(straight({radius_m, height_m - kRim}, {radius_m, kRim}, 16), label), {}, kind};
@@ -78,18 +77,18 @@ struct BottleShape {
 
 ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8 glass, const PrintStyle& style) {
   constexpr double kFoot = 0.012;
-  const double around_mm = 2 * std::numbers::pi * s.radius_m * kMm;
+  const double around_mm = 2 * std::numbers::pi * s.radius_m * kMmPerM;
   TextureAtlas atlas(1024, std::min(4.0, 1000.0 / around_mm));
-  const PixelRect label = atlas.allocate(around_mm, (s.label_top_m - kFoot) * kMm);
+  const PixelRect label = atlas.allocate(around_mm, (s.label_top_m - kFoot) * kMmPerM);
   print_label(atlas.canvas(label), style, 1);
-  const PixelRect shoulder_print = atlas.allocate(around_mm, (s.shoulder_top_m - s.label_top_m) * kMm);
+  const PixelRect shoulder_print = atlas.allocate(around_mm, (s.shoulder_top_m - s.label_top_m) * kMmPerM);
   TextureCanvas shoulder_canvas = atlas.canvas(shoulder_print);
   shoulder_canvas.fill(glass);
   print_blobs(shoulder_canvas.part(0, 0.55 * shoulder_canvas.height(), around_mm, 0.45 * shoulder_canvas.height()),
               style.stream(40), style.hue_deg + 120, 30, 1.5, 6);
   const PixelRect plain = atlas.solid(glass);
   const PixelRect cap = atlas.solid(style.accent());
-  const PixelRect cap_top = atlas.allocate(2 * s.cap_radius_m * kMm, 2 * s.cap_radius_m * kMm);
+  const PixelRect cap_top = atlas.allocate(2 * s.cap_radius_m * kMmPerM, 2 * s.cap_radius_m * kMmPerM);
   print_lid(atlas.canvas(cap_top), style, 41);
 
   const double cap_bottom = s.height_m - 0.022;
@@ -137,9 +136,9 @@ TriangleMesh make_handle(double x_m, double center_z_m, double reach_m, double h
 
 ProceduralObject make_mug(const std::string& name, bool is_plain, const PrintStyle& style) {
   const CupShape shape = is_plain ? CupShape{0.036, 0.043, 0.088, 0.004} : CupShape{0.041, 0.041, 0.095, 0.004};
-  const double around_mm = 2 * std::numbers::pi * 0.041 * kMm;
+  const double around_mm = 2 * std::numbers::pi * 0.041 * kMmPerM;
   TextureAtlas atlas(1024, 3.6);
-  const PixelRect outside = atlas.allocate(around_mm, shape.height_m * kMm);
+  const PixelRect outside = atlas.allocate(around_mm, shape.height_m * kMmPerM);
   TextureCanvas canvas = atlas.canvas(outside);
   canvas.fill(style.light());
   print_blobs(canvas, style.stream(1), style.hue_deg, 90, 2.5, 11);

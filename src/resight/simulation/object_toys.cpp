@@ -4,14 +4,12 @@
 
 #include "resight/simulation/internal/object_makers.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kMm = 1000.0;
 
 BoxRegions same_regions(const PixelRect& r) { return {r, r, r, r, r, r}; }
 
@@ -20,7 +18,7 @@ ProceduralObject make_toy_car() {
   const PrintStyle style{"TURBO", "7", 48, 3131};
   TextureAtlas atlas(1024, 3.0);
   const auto printed = [&](double w_m, double h_m, std::uint64_t part, const std::string& word) {
-    const PixelRect region = atlas.allocate(w_m * kMm, h_m * kMm);
+    const PixelRect region = atlas.allocate(w_m * kMmPerM, h_m * kMmPerM);
     TextureCanvas canvas = atlas.canvas(region);
     canvas.fill(hsv_color(48, 0.85, 0.95));
     canvas.rect(0, 0.42 * canvas.height(), canvas.width(), 0.2 * canvas.height(), {200, 30, 30});
@@ -36,7 +34,7 @@ ProceduralObject make_toy_car() {
                                 printed(0.18, 0.04, 3, "RALLY"),   printed(0.08, 0.04, 4, "XR4"),
                                 printed(0.18, 0.08, 5, ""),        atlas.solid({70, 70, 75})};
   const auto window = [&](double w_m) {
-    const PixelRect region = atlas.allocate(w_m * kMm, 35);
+    const PixelRect region = atlas.allocate(w_m * kMmPerM, 35);
     TextureCanvas canvas = atlas.canvas(region);
     canvas.fill(hsv_color(48, 0.85, 0.9));
     canvas.rounded_rect(5, 5, canvas.width() - 10, 20, 4, {60, 85, 110});
@@ -111,7 +109,7 @@ ProceduralObject make_toy_house() {
   const PrintStyle style{"", "", 15, 3333};
   TextureAtlas atlas(1024, 3.0);
   const auto wall = [&](double w_m, std::uint64_t part, bool has_door) {
-    const PixelRect region = atlas.allocate(w_m * kMm, 80);
+    const PixelRect region = atlas.allocate(w_m * kMmPerM, 80);
     TextureCanvas canvas = atlas.canvas(region);
     canvas.fill({228, 205, 170});
     Rng rng = style.stream(part);
@@ -133,7 +131,7 @@ ProceduralObject make_toy_house() {
                            wall(0.10, 4, true), atlas.solid({120, 90, 70}), atlas.solid({120, 90, 70})};
   ProceduralObject object{"toy_house", make_box_part(block, regions), {}, "textured"};
   const double slope = std::hypot(0.065, 0.055);
-  const PixelRect roof = atlas.allocate((0.13 + 2 * slope) * kMm, 150);
+  const PixelRect roof = atlas.allocate((0.13 + 2 * slope) * kMmPerM, 150);
   TextureCanvas canvas = atlas.canvas(roof);
   canvas.fill({150, 45, 35});
   Rng rng = style.stream(9);
@@ -161,7 +159,7 @@ ProceduralObject make_ball() {
   const PrintStyle style{"BOLIDO", "", 120, 3434};
   constexpr double kRadius = 0.075;
   TextureAtlas atlas(1024, 2.0);
-  const PixelRect skin = atlas.allocate(2 * std::numbers::pi * kRadius * kMm, std::numbers::pi * kRadius * kMm);
+  const PixelRect skin = atlas.allocate(2 * std::numbers::pi * kRadius * kMmPerM, std::numbers::pi * kRadius * kMmPerM);
   TextureCanvas canvas = atlas.canvas(skin);
   const double w = canvas.width();
   const double h = canvas.height();
@@ -180,7 +178,7 @@ ProceduralObject make_sponge() {
   const Vector3d size(0.11, 0.07, 0.035);
   TextureAtlas atlas(512, 2.0);
   const auto pores = [&](double w_m, double h_m, std::uint64_t part, Rgb8 color) {
-    const PixelRect region = atlas.allocate(w_m * kMm, h_m * kMm);
+    const PixelRect region = atlas.allocate(w_m * kMmPerM, h_m * kMmPerM);
     TextureCanvas canvas = atlas.canvas(region);
     canvas.fill(color);
     Rng rng = style.stream(part);

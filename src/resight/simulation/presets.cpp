@@ -7,29 +7,28 @@
 #include <numbers>
 
 #include "resight/core/random.hpp"
+#include "resight/geometry/angle.hpp"
 
 namespace resight {
 namespace {
 
-double radians(double deg) { return deg * std::numbers::pi / 180; }
-
-struct Spot {
+struct DemoPlace {
   const char* model;
   double x_m, y_m, yaw_deg;
 };
 
 // The desk from the left to the right. Spots leave room for the seeded shifts.
-constexpr std::array<Spot, 10> kDemoKnown{{{"cereal_red", -0.42, 0.16, 25},
-                                           {"novel", -0.45, -0.16, 35},
-                                           {"soup_tomato", -0.22, 0.06, 10},
-                                           {"mug", -0.07, -0.13, 200},
-                                           {"soup_pea", 0.06, 0.05, -20},
-                                           {"milk_carton", 0.23, 0.20, -15},
-                                           {"toy_car", 0.25, -0.18, 165},
-                                           {"coffee_tin", 0.45, 0.02, 15},
-                                           {"plain_can", 0.43, -0.18, 0},
-                                           {"brick", -0.22, -0.31, 5}}};
-constexpr std::array<Spot, 3> kDemoUnknown{
+constexpr std::array<DemoPlace, 10> kDemoKnown{{{"cereal_red", -0.42, 0.16, 25},
+                                                {"novel", -0.45, -0.16, 35},
+                                                {"soup_tomato", -0.22, 0.06, 10},
+                                                {"mug", -0.07, -0.13, 200},
+                                                {"soup_pea", 0.06, 0.05, -20},
+                                                {"milk_carton", 0.23, 0.20, -15},
+                                                {"toy_car", 0.25, -0.18, 165},
+                                                {"coffee_tin", 0.45, 0.02, 15},
+                                                {"plain_can", 0.43, -0.18, 0},
+                                                {"brick", -0.22, -0.31, 5}}};
+constexpr std::array<DemoPlace, 3> kDemoUnknown{
     {{"plant", -0.60, -0.02, 0}, {"speaker", 0.46, 0.24, -20}, {"thermos", -0.08, 0.17, 40}}};
 constexpr double kShiftM = 0.012;
 constexpr double kTurnDeg = 8;
@@ -67,7 +66,7 @@ SceneScript make_office() {
 
 SceneScript make_demo_scene(std::uint64_t seed) {
   Rng rng(seed);
-  const auto shifted = [&rng](const Spot& spot) {
+  const auto shifted = [&rng](const DemoPlace& spot) {
     const double x = spot.x_m + rng.uniform(-kShiftM, kShiftM);
     const double y = spot.y_m + rng.uniform(-kShiftM, kShiftM);
     return on_desk(x, y, spot.yaw_deg + rng.uniform(-kTurnDeg, kTurnDeg));
@@ -76,8 +75,9 @@ SceneScript make_demo_scene(std::uint64_t seed) {
   script.name = "demo";
   add_furniture(script, "monitor", "monitor", {0.46, 0.18, 0.36}, on_desk(0.02, 0.32, 0));
   add_furniture(script, "keyboard", "keyboard", {0.34, 0.12, 0.02}, on_desk(0.06, -0.33, 0));
-  for (const Spot& spot : kDemoKnown) script.objects.push_back({spot.model, spot.model, {}, true, shifted(spot)});
-  for (const Spot& spot : kDemoUnknown) script.objects.push_back({spot.model, spot.model, {}, false, shifted(spot)});
+  for (const DemoPlace& spot : kDemoKnown) script.objects.push_back({spot.model, spot.model, {}, true, shifted(spot)});
+  for (const DemoPlace& spot : kDemoUnknown)
+    script.objects.push_back({spot.model, spot.model, {}, false, shifted(spot)});
   script.objects.push_back({"tea_box", "tea_box", {}, true, std::nullopt});
   script.changes = {{3, ChangeKind::kMoved, "toy_car", shifted({"", 0.24, 0.03, 100})},
                     {5, ChangeKind::kAdded, "tea_box", shifted({"", 0.08, -0.15, 15})},

@@ -11,7 +11,7 @@
 #include "resight/core/hash.hpp"
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/simulation/raycast_scene.hpp"
+#include "resight/rendering/raycast_scene.hpp"
 #include "resight/simulation/room.hpp"
 
 namespace resight {

@@ -13,9 +13,8 @@
 namespace resight {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kAttempts = 300;
-constexpr double kMinMoveM = 0.12;
+constexpr int kPlaceAttempts = 300;
+constexpr double kMinMove_m = 0.12;
 const Eigen::Vector2d kHalfArea(0.56, 0.33);  // Of the table top, where the cameras look.
 
 // A laid-down or upright thing seen from above: the circle around its bounding box's centre.
@@ -33,7 +32,7 @@ Disc disc_of(const TriangleMesh& mesh, double roll_rad) {
   return {center, std::sqrt(static_cast<double>(radius_sq))};
 }
 
-struct Thing {
+struct TabletopObject {
   std::string key;
   std::string model;
   bool known = true;
@@ -88,8 +87,8 @@ class TabletopBuilder {
       const int copy = i / static_cast<int>(names.size());
       auto object = known ? make_procedural_object(model) : make_distractor(model);
       require(object.ok(), "RandomTabletopOptions.models: " + (object.ok() ? "" : object.error().message));
-      Thing thing{copy == 0 ? model : model + "_" + std::to_string(copy + 1), model, known, 0, {}, false, {}};
-      if (options_.lay_down && known && rng_.uniform() < 1.0 / 3) thing.roll_rad = kPi / 2;
+      TabletopObject thing{copy == 0 ? model : model + "_" + std::to_string(copy + 1), model, known, 0, {}, false, {}};
+      if (options_.lay_down && known && rng_.uniform() < 1.0 / 3) thing.roll_rad = std::numbers::pi / 2;
       thing.disc = disc_of(object->mesh, thing.roll_rad);
       things_.push_back(std::move(thing));
     }
@@ -97,9 +96,9 @@ class TabletopBuilder {
 
   // The last `num_added` known things wait for their entrance.
   void place_at_start(int num_added) {
-    std::vector<Thing> kept;
+    std::vector<TabletopObject> kept;
     int index = 0;
-    for (Thing& thing : things_) {
+    for (TabletopObject& thing : things_) {
       const bool waits = thing.known && index >= options_.num_known && index < options_.num_known + num_added;
       ++index;
       ObjectScript object{thing.key, thing.model, {}, thing.known, std::nullopt};
@@ -110,18 +109,18 @@ class TabletopBuilder {
       }
       script_.objects.push_back(std::move(object));
       kept.push_back(thing);
-      for (Thing& other : things_)
+      for (TabletopObject& other : things_)
         if (other.key == thing.key) other = thing;
     }
     things_ = std::move(kept);
   }
 
   void add_change(int view, int kind) {
-    std::vector<Thing*> candidates;
-    for (Thing& thing : things_)
+    std::vector<TabletopObject*> candidates;
+    for (TabletopObject& thing : things_)
       if (thing.known && thing.present == (kind != 2)) candidates.push_back(&thing);
     if (candidates.empty()) return;
-    Thing& thing = *candidates[rng_.below(static_cast<std::uint32_t>(candidates.size()))];
+    TabletopObject& thing = *candidates[rng_.below(static_cast<std::uint32_t>(candidates.size()))];
     if (kind == 1) {
       thing.present = false;
       script_.changes.push_back({view, ChangeKind::kRemoved, thing.key, {}});
@@ -134,22 +133,22 @@ class TabletopBuilder {
   }
 
   // A free place for the thing, which is updated; nullopt if none is found.
-  std::optional<Placement> find_place(Thing& thing, bool away_from_old) {
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  std::optional<Placement> find_place(TabletopObject& thing, bool away_from_old) {
+    for (int attempt = 0; attempt < kPlaceAttempts; ++attempt) {
       const double r = thing.disc.radius_m;
       const double x = rng_.uniform(-1, 1) * std::max(0.0, kHalfArea.x() - 0.5 * r);
       const double y = rng_.uniform(-1, 1) * std::max(0.0, kHalfArea.y() - 0.5 * r);
       const Eigen::Vector2d position(x, y);
-      const bool free = std::ranges::all_of(things_, [&](const Thing& other) {
+      const bool free = std::ranges::all_of(things_, [&](const TabletopObject& other) {
         const double reach = r + other.disc.radius_m + options_.gap_m;
         return &other == &thing || other.key == thing.key || !other.present ||
                (other.position - position).norm() >= reach;
       });
-      if (!free || (away_from_old && (thing.position - position).norm() < kMinMoveM)) continue;
+      if (!free || (away_from_old && (thing.position - position).norm() < kMinMove_m)) continue;
       thing.position = position;
       Placement p;
       p.support = "table";
-      p.yaw_rad = rng_.uniform(-kPi, kPi);
+      p.yaw_rad = rng_.uniform(-std::numbers::pi, std::numbers::pi);
       p.roll_rad = thing.roll_rad;
       const Eigen::Vector2d origin = position - Eigen::Rotation2Dd(p.yaw_rad) * thing.disc.center;
       p.x_m = origin.x();
@@ -163,13 +162,13 @@ class TabletopBuilder {
     OrbitScript orbit;
     orbit.num_views = options_.num_views;
     orbit.center_m = {0, 0, 0.80};
-    const double middle_rad = -kPi / 2 + rng_.uniform(-0.3, 0.3);
-    const double half_arc_rad = 0.5 * options_.arc_deg * kPi / 180;
+    const double middle_rad = -std::numbers::pi / 2 + rng_.uniform(-0.3, 0.3);
+    const double half_arc_rad = 0.5 * options_.arc_deg * std::numbers::pi / 180;
     orbit.start_rad = middle_rad - half_arc_rad;
     orbit.end_rad = middle_rad + half_arc_rad;
     const auto set = [&](double& radius, double& height) {
       const double distance = rng_.uniform(options_.min_distance_m, options_.max_distance_m);
-      const double elevation = rng_.uniform(25, 40) * kPi / 180;
+      const double elevation = rng_.uniform(25, 40) * std::numbers::pi / 180;
       radius = distance * std::cos(elevation);
       height = distance * std::sin(elevation);
     };
@@ -185,7 +184,7 @@ class TabletopBuilder {
   Rng rng_;
   const RandomTabletopOptions& options_;
   SceneScript script_;
-  std::vector<Thing> things_;
+  std::vector<TabletopObject> things_;
 };
 
 }  // namespace

@@ -10,24 +10,22 @@
 #include "resight/core/check.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/random.hpp"
+#include "resight/geometry/angle.hpp"
 #include "resight/io/ply.hpp"
+#include "resight/rendering/view_renderer.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
 #include "resight/simulation/room.hpp"
-#include "resight/simulation/view_renderer.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTableHeightM = 0.74;
-constexpr double kMinDistanceM = 0.6;
+constexpr double kMinCameraDistance_m = 0.6;
 constexpr double kDiscMarginM = 0.035;  // of the turntable around the object
 constexpr double kMinDiscRadiusM = 0.10;
-
-double radians(double deg) { return deg * kPi / 180; }
 
 // The object as it was put down: standing on z = 0, its bounding box `off_axis_m` from the z axis.
 struct PutDown {
@@ -37,8 +35,8 @@ struct PutDown {
 };
 
 PutDown put_down(const TriangleMesh& mesh, const RecordingOptions& options, Rng& rng) {
-  const Rigid3 turn = Rigid3::from_axis_angle(Vector3d::UnitZ(), rng.uniform(-kPi, kPi)) *
-                      Rigid3::from_axis_angle(Vector3d::UnitX(), options.upside_down ? kPi : 0);
+  const Rigid3 turn = Rigid3::from_axis_angle(Vector3d::UnitZ(), rng.uniform(-std::numbers::pi, std::numbers::pi)) *
+                      Rigid3::from_axis_angle(Vector3d::UnitX(), options.upside_down ? std::numbers::pi : 0);
   Vector3d low = Vector3d::Constant(1e9);
   Vector3d high = -low;
   for (const Eigen::Vector3f& v : mesh.vertices) {
@@ -46,7 +44,7 @@ PutDown put_down(const TriangleMesh& mesh, const RecordingOptions& options, Rng&
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const double toward = rng.uniform(-kPi, kPi);
+  const double toward = rng.uniform(-std::numbers::pi, std::numbers::pi);
   const Vector3d middle = 0.5 * (low + high);
   const Vector3d shift(options.off_axis_m * std::cos(toward) - middle.x(),
                        options.off_axis_m * std::sin(toward) - middle.y(), -low.z());
@@ -107,7 +105,7 @@ Stage build_stage(const TriangleMesh& mesh, const RecordingOptions& options) {
   Stage stage;
   stage.put = put_down(mesh, options, rng);
   const double half_image = make_kinect_camera().fy * static_cast<double>(diameter(mesh.vertices)) / 240;
-  stage.distance_m = options.distance_m > 0 ? options.distance_m : std::max(kMinDistanceM, half_image);
+  stage.distance_m = options.distance_m > 0 ? options.distance_m : std::max(kMinCameraDistance_m, half_image);
   const double disc_radius_m = std::max(kMinDiscRadiusM, stage.put.radius_m + kDiscMarginM);
   furnish(stage.scene, options, disc_radius_m);
   if (options.kind == RecordingKind::kTurntable) {
@@ -126,7 +124,7 @@ Rigid3 place_camera(const Stage& stage, const RecordingOptions& options, double 
   const double wave = walks ? std::sin(3 * angle_rad) : 0;
   const double elevation_rad = radians(options.elevation_deg + 3 * wave);
   const double distance_m = stage.distance_m * (1 + 0.04 * (walks ? std::cos(2 * angle_rad) : 0));
-  const double azimuth_rad = -kPi / 2 - angle_rad;  // starts in front (-y)
+  const double azimuth_rad = -std::numbers::pi / 2 - angle_rad;  // starts in front (-y)
   const Vector3d target(0, 0, stage.ground_m + 0.5 * stage.put.height_m);
   return look_at(
       target + distance_m * Vector3d(std::cos(elevation_rad) * std::cos(azimuth_rad),

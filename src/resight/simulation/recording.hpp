@@ -8,9 +8,9 @@
 
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/rendering/sensor_model.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 #include "resight/simulation/procedural_objects.hpp"
-#include "resight/simulation/sensor_model.hpp"
 
 namespace resight {
 

@@ -7,14 +7,13 @@
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
 #include "resight/simulation/mesh_parts.hpp"
-#include "resight/simulation/print_designs.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMm = 1000.0;
 constexpr double kBoardM = 0.025;
 
 BoxRegions all_sides(const PixelRect& r) { return {r, r, r, r, r, r}; }
@@ -35,7 +34,7 @@ WoodTones random_wood(Rng& rng) {
 
 PixelRect wood_region(TextureAtlas& atlas, double w_m, double h_m, const Rng& rng, const WoodTones& tones,
                       double plank_mm) {
-  const PixelRect region = atlas.allocate(w_m * kMm, h_m * kMm);
+  const PixelRect region = atlas.allocate(w_m * kMmPerM, h_m * kMmPerM);
   print_wood(atlas.canvas(region), rng, tones.light, tones.dark, plank_mm);
   return region;
 }
@@ -43,7 +42,7 @@ PixelRect wood_region(TextureAtlas& atlas, double w_m, double h_m, const Rng& rn
 Furniture make_table(const Vector3d& size, std::uint64_t seed) {
   Rng rng(seed);
   const WoodTones tones = random_wood(rng);
-  TextureAtlas atlas(1024, 1000.0 / (std::max(size.x(), size.y()) * kMm));
+  TextureAtlas atlas(1024, 1000.0 / (std::max(size.x(), size.y()) * kMmPerM));
   BoxRegions top = all_sides(wood_region(atlas, size.x(), 0.04, Rng::stream(seed, 1), tones, 40));
   top.top = wood_region(atlas, size.x(), size.y(), Rng::stream(seed, 2), tones, 130);
   const BoxRegions leg = all_sides(wood_region(atlas, 0.1, size.z(), Rng::stream(seed, 3), tones, 60));
@@ -81,11 +80,11 @@ Furniture make_cabinet(const Vector3d& size, std::uint64_t seed) {
   Rng rng(seed);
   const Rgb8 paint = hsv_color(rng.uniform(0, 360), 0.15, 0.8);
   TextureAtlas atlas(1024, 0.4);
-  const PixelRect plain = atlas.allocate(size.x() * kMm, size.z() * kMm);
+  const PixelRect plain = atlas.allocate(size.x() * kMmPerM, size.z() * kMmPerM);
   atlas.canvas(plain).fill(paint);
   print_grain(atlas.canvas(plain), Rng::stream(seed, 1), paint, 300, 5, 30);
   BoxRegions regions = all_sides(plain);
-  regions.front = atlas.allocate(size.x() * kMm, size.z() * kMm);
+  regions.front = atlas.allocate(size.x() * kMmPerM, size.z() * kMmPerM);
   TextureCanvas front = atlas.canvas(regions.front);
   front.fill(paint);
   const double drawer = front.height() / 3;
@@ -99,10 +98,10 @@ Furniture make_cabinet(const Vector3d& size, std::uint64_t seed) {
 }
 
 Furniture make_monitor(const Vector3d& size, std::uint64_t seed) {
-  TextureAtlas atlas(1024, std::min(1.5, 900 / (size.x() * kMm)));
+  TextureAtlas atlas(1024, std::min(1.5, 900 / (size.x() * kMmPerM)));
   const BoxRegions black = all_sides(atlas.solid({35, 36, 40}));
   BoxRegions panel = black;
-  panel.front = atlas.allocate(size.x() * kMm, 0.75 * size.z() * kMm);
+  panel.front = atlas.allocate(size.x() * kMmPerM, 0.75 * size.z() * kMmPerM);
   TextureCanvas screen = atlas.canvas(panel.front);
   screen.fill({35, 36, 40});
   TextureCanvas page = screen.part(14, 14, screen.width() - 28, screen.height() - 34);
@@ -119,9 +118,9 @@ Furniture make_monitor(const Vector3d& size, std::uint64_t seed) {
 }
 
 Furniture make_keyboard(const Vector3d& size, std::uint64_t seed) {
-  TextureAtlas atlas(1024, std::min(2.2, 1000 / (size.x() * kMm)));
+  TextureAtlas atlas(1024, std::min(2.2, 1000 / (size.x() * kMmPerM)));
   BoxRegions regions = all_sides(atlas.solid({50, 50, 55}));
-  regions.top = atlas.allocate(size.x() * kMm, size.y() * kMm);
+  regions.top = atlas.allocate(size.x() * kMmPerM, size.y() * kMmPerM);
   TextureCanvas top = atlas.canvas(regions.top);
   top.fill({50, 50, 55});
   Rng rng(seed);
@@ -138,9 +137,9 @@ Furniture make_keyboard(const Vector3d& size, std::uint64_t seed) {
 }
 
 Furniture make_papers(const Vector3d& size, std::uint64_t seed) {
-  TextureAtlas atlas(1024, std::min(3.0, 1000 / (size.x() * kMm)));
+  TextureAtlas atlas(1024, std::min(3.0, 1000 / (size.x() * kMmPerM)));
   BoxRegions regions = all_sides(atlas.solid({222, 220, 212}));
-  regions.top = atlas.allocate(size.x() * kMm, size.y() * kMm);
+  regions.top = atlas.allocate(size.x() * kMmPerM, size.y() * kMmPerM);
   TextureCanvas top = atlas.canvas(regions.top);
   top.fill({240, 240, 236});
   top.text_in_box(15, 12, top.width() - 30, 18, "REPORT", {30, 30, 50});
@@ -188,13 +187,13 @@ Result<Furniture> make_furniture(std::string_view kind, const Vector3d& size_m, 
 TriangleMesh make_room(const Vector3d& size_m, std::uint64_t seed) {
   require(size_m.allFinite() && size_m.minCoeff() > 0, "make_room: size_m must be > 0");
   Rng rng(seed);
-  TextureAtlas atlas(1024, 1000.0 / (size_m.maxCoeff() * kMm));
+  TextureAtlas atlas(1024, 1000.0 / (size_m.maxCoeff() * kMmPerM));
   BoxRegions r;
   const Rgb8 paint = hsv_color(rng.uniform(0, 360), 0.12, 0.85);
   std::uint64_t wall = 10;
   for (PixelRect* region : {&r.front, &r.right, &r.back, &r.left}) {
     const bool along_x = region == &r.front || region == &r.back;
-    *region = atlas.allocate((along_x ? size_m.x() : size_m.y()) * kMm, size_m.z() * kMm);
+    *region = atlas.allocate((along_x ? size_m.x() : size_m.y()) * kMmPerM, size_m.z() * kMmPerM);
     paint_wall(atlas.canvas(*region), Rng::stream(seed, wall), paint, seed + wall);
     ++wall;
   }

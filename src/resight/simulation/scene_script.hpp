@@ -8,7 +8,7 @@
 #include "resight/core/result.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
-#include "resight/simulation/sensor_model.hpp"
+#include "resight/rendering/sensor_model.hpp"
 
 namespace resight {
 

@@ -8,7 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
-#include "resight/simulation/raycast_scene.hpp"
+#include "resight/rendering/raycast_scene.hpp"
 
 namespace resight {
 namespace {

@@ -4,15 +4,13 @@
 #include <numbers>
 #include <utility>
 
+#include "resight/geometry/angle.hpp"
+
 namespace resight {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kPi = std::numbers::pi;
-
-double radians(double deg) { return deg * kPi / 180; }
 
 class Furnisher {
  public:
@@ -61,7 +59,7 @@ class Furnisher {
       const Vector2d at(rng_.uniform(-0.5, 0.5), rng_.uniform(-0.25, 0.1));
       // So thin that things may stand on it.
       add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, stage_.surfaces[0].support, at,
-                    rng_.uniform(-kPi, kPi));
+                    rng_.uniform(-std::numbers::pi, std::numbers::pi));
     }
   }
 

@@ -9,8 +9,8 @@
 
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_changes.hpp"
+#include "resight/rendering/turntable.hpp"
 #include "resight/simulation/simulation.hpp"
-#include "resight/simulation/turntable.hpp"
 
 namespace resight {
 

@@ -7,12 +7,12 @@
 #include <numbers>
 #include <optional>
 
+#include "resight/appearance/pattern_similarity.hpp"
 #include "resight/verification/acceptance.hpp"
-#include "resight/verification/model_look.hpp"
-#include "resight/verification/newest_print.hpp"
-#include "resight/verification/pattern_similarity.hpp"
+#include "resight/verification/newest_view_appearance.hpp"
 #include "resight/verification/pose_refinement.hpp"
-#include "resight/verification/print_turn.hpp"
+#include "resight/verification/scene_association.hpp"
+#include "resight/verification/symmetry_resolution.hpp"
 
 namespace resight {
 namespace {

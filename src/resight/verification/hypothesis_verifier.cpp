@@ -9,10 +9,10 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/symmetry.hpp"
+#include "resight/hypotheses/white_balance_weights.hpp"
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/cues.hpp"
 #include "resight/verification/selection_search.hpp"
-#include "resight/verification/white_balance_votes.hpp"
 
 namespace resight {
 namespace {

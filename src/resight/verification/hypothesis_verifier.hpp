@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "resight/verification/scene_preparation.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

@@ -4,7 +4,7 @@
 namespace resight {
 namespace {
 
-constexpr float kMaxCellsPerAxis = 128;  // A huge model gets coarser cells, never a huge grid.
+constexpr float kMaxBlocksPerAxis = 128;  // A huge model gets coarser cells, never a huge grid.
 
 }  // namespace
 
@@ -21,7 +21,7 @@ LocalScene::LocalScene(std::span<const Eigen::Vector3f> scene, const BlockGrid& 
   min_.array() -= margin_m;
   max.array() += margin_m;
   const Eigen::Vector3f size = max - min_;
-  inverse_cell_ = 1 / std::max(cell_m, size.maxCoeff() / kMaxCellsPerAxis);
+  inverse_cell_ = 1 / std::max(cell_m, size.maxCoeff() / kMaxBlocksPerAxis);
   dims_ = (size * inverse_cell_).cast<int>() + Eigen::Vector3i::Ones();
 
   std::vector<int> found;

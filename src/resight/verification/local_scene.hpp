@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/verification/block_grid.hpp"
+#include "resight/geometry/block_grid.hpp"
 
 namespace resight {
 

@@ -6,15 +6,15 @@
 #include <numbers>
 
 #include "resight/core/check.hpp"
+#include "resight/registration/point_to_plane.hpp"
 #include "resight/verification/local_scene.hpp"
-#include "resight/verification/point_to_plane.hpp"
 #include "resight/verification/scene_preparation.hpp"
 
 namespace resight {
 namespace {
 
 constexpr std::size_t kMaxPoints = 300;
-constexpr int kMinPairs = 20;
+constexpr int kMinRefinedPairs = 20;
 constexpr std::size_t kCoarseStride = 3;       // Every third point until the pose stands still, and then...
 constexpr int kFineIterations = 6;             // ...all points.
 constexpr float kNearShare = 0.4F;             // Of the largest distance: most partners are nearer, and soon found.
@@ -42,7 +42,7 @@ class Refiner {
     constexpr double kMinSigma_m = 3e-4;
     std::vector<int> partners(points_.size(), -1);
     const StepEquations equations = linearize(pose, surroundings(pose), 1, partners);
-    if (equations.num_pairs < kMinPairs) return {};
+    if (equations.num_pairs < kMinRefinedPairs) return {};
     const Eigen::Vector3d middle_to_center = pose.rotation * (center - middle_).cast<double>();
     return pose_uncertainty(equations, radius_m_, middle_to_center, kMinSigma_m, options_.max_distance_m,
                             kPairsPerIndependentOne);
@@ -69,7 +69,7 @@ class Refiner {
     const Eigen::Vector3d middle = middle_.cast<double>();
     for (int i = 0; i < max_iterations; ++i) {
       const StepEquations equations = linearize(pose, local, stride, partners);
-      if (equations.num_pairs * static_cast<int>(stride) < kMinPairs) return false;
+      if (equations.num_pairs * static_cast<int>(stride) < kMinRefinedPairs) return false;
       const double step_m = equations.step(pose, middle, radius_m_);
       if ((pose * middle - start * middle).norm() > options_.max_step_m) return false;
       if (step_m < StepEquations::kStill_m) break;
@@ -163,7 +163,7 @@ class Refiner {
 };
 
 bool has_enough(const PreparedModel& model, std::span<const int> visible, const PreparedScene& scene) {
-  return !model.normals.empty() && !scene.normals.empty() && static_cast<int>(visible.size()) >= kMinPairs;
+  return !model.normals.empty() && !scene.normals.empty() && static_cast<int>(visible.size()) >= kMinRefinedPairs;
 }
 
 }  // namespace

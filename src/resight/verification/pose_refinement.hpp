@@ -4,7 +4,7 @@
 
 #include "resight/geometry/rigid3.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
-#include "resight/verification/pose_uncertainty.hpp"
+#include "resight/registration/pose_uncertainty.hpp"
 
 namespace resight {
 

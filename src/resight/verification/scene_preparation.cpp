@@ -6,7 +6,7 @@
 
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
-#include "resight/models/shape_turns.hpp"
+#include "resight/models/shape_symmetry_motions.hpp"
 
 namespace resight {
 namespace {
@@ -25,6 +25,12 @@ PointCloud keep_finite(const PointCloud& cloud) {
   return result;
 }
 
+template <typename Options>
+Options threaded(Options part, const VerifyOptions& all) {
+  part.num_threads = all.num_threads;
+  return part;
+}
+
 // In the scene thinned further: planes are large.
 std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> points,
                                             std::span<const Eigen::Vector3f> normals, const VerifyOptions& options) {
@@ -32,7 +38,8 @@ std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> poi
   cloud.points.assign(points.begin(), points.end());
   cloud.normals.assign(normals.begin(), normals.end());
   cloud = voxel_downsample(cloud, options.plane_spacing_m);
-  return find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, options).planes;
+  return find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, threaded(options.planes, options))
+      .planes;
 }
 
 // All but the segments and planes.
@@ -52,10 +59,11 @@ PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
 }
 
 void find_surfaces(PreparedScene& scene, const VerifyOptions& options) {
-  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, options);
+  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, threaded(options.segments, options));
   scene.num_segments = segments.num_segments;
   if (options.use_planes) {
-    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options);
+    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options.resolution_m,
+                                           threaded(options.planes, options));
     scene.planes = std::move(planes.planes);
     scene.plane = std::move(planes.plane_of_point);
   }
@@ -96,7 +104,7 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
       [&] { scene = without_surfaces(cloud, options); });
   const bool was_thin = scene.points.size() == cloud.points.size();
   scene.planes = was_thin ? std::move(planes) : find_planes_quickly(scene.points, scene.normals, options);
-  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, options);
+  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, threaded(options.planes, options));
   return scene;
 }
 

@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "resight/appearance/lab_color.hpp"
+#include "resight/geometry/block_grid.hpp"
 #include "resight/geometry/point_cloud.hpp"
-#include "resight/verification/block_grid.hpp"
-#include "resight/verification/lab_color.hpp"
+#include "resight/segmentation/scene_planes.hpp"
 #include "resight/verification/nearest_point_map.hpp"
-#include "resight/verification/scene_planes.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

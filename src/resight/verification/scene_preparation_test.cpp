@@ -220,14 +220,14 @@ TEST(FindSmoothSegments, AgreesWithASlowTwin) {
       normals.insert(normals.end(), {Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitZ()});
     }
   const VerifyOptions options;
-  const SmoothSegments found = find_smooth_segments(points, normals, options);
+  const SmoothSegments found = find_smooth_segments(points, normals, options.segments);
   EXPECT_EQ(found.num_segments, 3);
   std::vector<float> curvature(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     int count = 0;
     for (std::size_t j = 0; j < points.size(); ++j)
-      if ((points[i] - points[j]).norm() <= options.smooth_distance_m) {
+      if ((points[i] - points[j]).norm() <= options.segments.max_distance_m) {
         sum += normals[j];
         ++count;
       }
@@ -236,11 +236,11 @@ TEST(FindSmoothSegments, AgreesWithASlowTwin) {
   int joined = 0;
   int edges = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (curvature[i] > options.max_smooth_curvature) ++edges;
+    if (curvature[i] > options.segments.max_curvature) ++edges;
     EXPECT_GE(found.segment[i], 0);
     for (std::size_t j = 0; j < i; ++j) {
-      if ((points[i] - points[j]).norm() > options.smooth_distance_m) continue;
-      if (curvature[i] > options.max_smooth_curvature || curvature[j] > options.max_smooth_curvature) continue;
+      if ((points[i] - points[j]).norm() > options.segments.max_distance_m) continue;
+      if (curvature[i] > options.segments.max_curvature || curvature[j] > options.segments.max_curvature) continue;
       if (normals[i].dot(normals[j]) < 0.9F)
         EXPECT_NE(found.segment[i], found.segment[j]);
       else

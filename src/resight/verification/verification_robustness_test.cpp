@@ -6,7 +6,7 @@
 
 #include "resight/core/random.hpp"
 #include "resight/verification/testing/verify_fixture.hpp"
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 

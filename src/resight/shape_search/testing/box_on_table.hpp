@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // A printed box on a table, a view of it, and what tests its poses.
-#include "resight/shape_search/pose_probe.hpp"
+#include "resight/shape_search/pose_scorer.hpp"
 #include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight::analytic {

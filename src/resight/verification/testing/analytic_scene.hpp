@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "resight/verification/verification.hpp"
+#include "resight/verification/verify_options.hpp"
 
 namespace resight::analytic {
 

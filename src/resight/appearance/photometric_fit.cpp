@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/appearance/photometric_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kMinPairs = 10;
+constexpr int kMaxPairs = 400;
+constexpr int kIterations = 5;
+constexpr float kScale =
+    0.15F;  // Of the Cauchy weight, in square roots of light: print that does not fit counts little.
+constexpr float kDark = 0.05F;          // Dark pairs weigh more, as they do to the eye, down to this.
+constexpr float kShadingPrior = 0.05F;  // Share of the total weight: normals that hardly differ tell no shading.
+constexpr float kMinGain = 0.05F;
+constexpr double kVotesForNone = 20;
+constexpr float kDim = 0.1F;  // Light of a channel that tells half as much of its gain as much light does.
+
+template <int kColumns>
+using Columns = Eigen::Array<float, Eigen::Dynamic, kColumns, Eigen::ColMajor, kMaxPairs, kColumns>;
+using Column = Columns<1>;
+
+// By columns, for vector code.
+struct Pairs {
+  Columns<3> model;
+  Columns<3> scene;
+  Columns<3> scene_root;
+  Columns<4> normals;  // After a column of ones.
+  Column base_weight;
+  Column weight;
+  Column shade;  // What the shading makes of each.
+};
+
+Pairs make_pairs(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
+                 std::span<const Eigen::Vector3f> normals) {
+  const std::size_t step = (model_linear.size() + kMaxPairs - 1) / kMaxPairs;
+  const auto count = static_cast<Eigen::Index>((model_linear.size() + step - 1) / step);
+  Pairs pairs;
+  pairs.model.resize(count, 3);
+  pairs.scene.resize(count, 3);
+  pairs.normals = Columns<4>::Zero(count, 4);
+  pairs.normals.col(0) = 1;
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::size_t i = static_cast<std::size_t>(row) * step;
+    pairs.model.row(row) = model_linear[i].transpose();
+    pairs.scene.row(row) = scene_linear[i].transpose();
+    if (!normals.empty()) pairs.normals.row(row).tail<3>() = normals[i].transpose();
+  }
+  pairs.scene_root = pairs.scene.sqrt();
+  pairs.base_weight = pairs.weight = 1 / (kDark + pairs.model.rowwise().mean());
+  pairs.shade = Column::Ones(count);
+  return pairs;
+}
+
+// Gain and veil of one channel: a weighted line through (model, scene), its offset within [0, max_veil].
+std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_veil) {
+  const Column& w = pairs.weight;
+  const Column x = pairs.model.col(c) * pairs.shade;
+  const auto y = pairs.scene.col(c);
+  const float total = w.sum();
+  const float mean_x = (w * x).sum() / total;
+  const float mean_y = (w * y).sum() / total;
+  const float variance = (w * (x - mean_x).square()).sum();
+  const float xx = (w * x.square()).sum();
+  const float slope = (w * (x - mean_x) * y).sum() / variance;
+  const float veil = variance > 1e-9F * xx ? std::clamp(mean_y - slope * mean_x, 0.0F, max_veil) : 0;
+  const float gain = xx > 0 ? (w * x * (y - veil)).sum() / xx : 1;
+  return {std::max(gain, kMinGain), veil};
+}
+
+// Brightness that is left, as a function of the normal. The constant part is left to the gains.
+Eigen::Vector3f fit_shading(const Pairs& pairs, const LightFit& fit) {
+  const Column expected = (pairs.model.matrix() * fit.log_gain.exp().matrix()).array();
+  const Column seen = (pairs.scene.rowwise() - fit.veil.transpose()).max(0.0F).rowwise().sum();
+  const Column log_ratio = ((seen + kDark) / (expected + kDark)).log().max(-1.0F).min(1.0F);
+  const Columns<4> weighted = pairs.normals.colwise() * pairs.weight;
+  Eigen::Matrix4f normal_matrix = weighted.matrix().transpose() * pairs.normals.matrix();
+  const Eigen::Vector4f right = weighted.matrix().transpose() * log_ratio.matrix();
+  normal_matrix.diagonal().tail<3>().array() += kShadingPrior * pairs.weight.sum();
+  normal_matrix(0, 0) += 1e-6F;
+  return normal_matrix.ldlt().solve(right).tail<3>();
+}
+
+void limit_exposure(LightFit& fit, const LightLimits& limits) {
+  const float mean = fit.log_gain.mean();
+  fit.log_gain +=
+      std::clamp(mean, -static_cast<float>(limits.max_log_darkening), static_cast<float>(limits.max_log_exposure)) -
+      mean;
+  const float length = fit.shading.norm();
+  if (length > limits.max_log_shading) fit.shading *= static_cast<float>(limits.max_log_shading) / length;
+}
+
+void reweigh(Pairs& pairs, const LightFit& fit) {
+  pairs.shade = (pairs.normals.rightCols<3>().matrix() * fit.shading).array().exp();
+  Column error = Column::Zero(pairs.weight.size());
+  for (int c = 0; c < 3; ++c) {
+    const float gain = std::exp(fit.log_gain[c]);
+    const auto expected = (pairs.model.col(c) * pairs.shade * gain + fit.veil[c]).max(0.0F).min(1.0F);
+    error += (expected.sqrt() - pairs.scene_root.col(c)).square();
+  }
+  pairs.weight = pairs.base_weight / (1 + error / (3 * kScale * kScale));
+}
+
+double trust_in_chroma(const LightFit& fit) {
+  const double share = fit.dimmest_light / (fit.dimmest_light + kDim);
+  return share * share;
+}
+
+float weighted_median(std::vector<std::pair<float, double>> values) {
+  std::sort(values.begin(), values.end());
+  double total = 0;
+  for (const auto& [value, weight] : values) total += weight;
+  double below = 0;
+  for (const auto& [value, weight] : values) {
+    below += weight;
+    if (2 * below >= total) return value;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Eigen::Vector3f to_linear_light(Rgb8 color) {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> linear{};
+    for (int i = 0; i < 256; ++i) {
+      const double s = i / 255.0;
+      linear[static_cast<std::size_t>(i)] =
+          static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    }
+    return linear;
+  }();
+  return {table[color.r], table[color.g], table[color.b]};
+}
+
+std::vector<Eigen::Vector3f> to_linear_light(std::span<const Rgb8> colors) {
+  std::vector<Eigen::Vector3f> result;
+  result.reserve(colors.size());
+  for (const Rgb8 c : colors) result.push_back(to_linear_light(c));
+  return result;
+}
+
+LightFit fit_light(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
+                   std::span<const Eigen::Vector3f> normals, const LightLimits& limits) {
+  if (model_linear.size() < kMinPairs) return {};
+  Pairs pairs = make_pairs(model_linear, scene_linear, normals);
+  LightFit fit;
+  fit.num_pairs = static_cast<int>(model_linear.size());
+  fit.dimmest_light = pairs.model.colwise().mean().minCoeff();
+  for (int i = 0; i < kIterations; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const auto [gain, veil] = fit_channel(pairs, c, static_cast<float>(limits.max_veil));
+      fit.log_gain[c] = std::log(gain);
+      fit.veil[c] = veil;
+    }
+    if (!normals.empty()) fit.shading = fit_shading(pairs, fit);
+    limit_exposure(fit, limits);
+    reweigh(pairs, fit);
+  }
+  return fit;
+}
+
+Eigen::Array3f find_white_balance(std::span<const LightFit> fits, std::span<const float> votes,
+                                  const LightLimits& limits) {
+  Eigen::Array3f balance = Eigen::Array3f::Zero();
+  for (int c = 0; c < 3; ++c) {
+    std::vector<std::pair<float, double>> values{{0.0F, kVotesForNone}};
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      if (fits[i].num_pairs > 0) values.emplace_back(fits[i].chroma()[c], votes[i] * trust_in_chroma(fits[i]));
+    balance[c] = weighted_median(std::move(values));
+  }
+  const float most = static_cast<float>(limits.max_log_white_balance);
+  return balance.max(-most).min(most);
+}
+
+LightFit limit_chroma(LightFit fit, const Eigen::Array3f& white_balance, const LightLimits& limits) {
+  if (fit.num_pairs == 0) return fit;
+  const float most = static_cast<float>(limits.max_log_chroma);
+  fit.log_gain = fit.log_gain.mean() + white_balance + (fit.chroma() - white_balance).max(-most).min(most);
+  return fit;
+}
+
+}  // namespace resight

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/changes/spherical_occlusion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <stdexcept>
+
+#include "resight/changes/analytic_scene_test_util.hpp"
+#include "resight/core/random.hpp"
+#include "resight/sensor/noise_model.hpp"
+
+namespace resight {
+namespace {
+
+using namespace testing_scene;
+using Points = std::vector<Eigen::Vector3f>;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+/// The slow twin of the z-buffer: every query against every blocker, as the text of Sec. III-B1 goes.
+Evidence classify_slowly(const Eigen::Vector3f& query, const Points& blockers, const SphericalBins& bins,
+                         float margin_m) {
+  Evidence evidence = Evidence::kUnobserved;
+  for (const Eigen::Vector3f& blocker : blockers) {
+    if (bins.bin(query) < 0 || bins.bin(blocker) != bins.bin(query)) continue;
+    if (blocker.norm() < query.norm() - margin_m) return Evidence::kOccluded;
+    evidence = Evidence::kSeenThrough;
+  }
+  return evidence;
+}
+
+Points random_points(int count, double extent_m, std::uint64_t seed) {
+  Rng rng(seed);
+  Points points;
+  const auto next = [&] { return static_cast<float>(rng.uniform(-extent_m, extent_m)); };
+  for (int i = 0; i < count; ++i) points.emplace_back(next(), next(), next());
+  return points;
+}
+
+std::array<int, 4> count(const std::vector<Evidence>& evidence) {
+  std::array<int, 4> counts{};
+  for (const Evidence e : evidence) ++counts[static_cast<std::size_t>(e)];
+  return counts;
+}
+int count(const std::vector<Evidence>& evidence, Evidence kind) {
+  return count(evidence)[static_cast<std::size_t>(kind)];
+}
+
+TEST(ClassifyOcclusion, AgreesWithAllPairs) {
+  Points queries = random_points(2000, 2, 1);
+  Points blockers = random_points(1500, 2, 2);
+  queries[5] = {kNaN, 0, 1};
+  queries[6] = {0, 0, 0};
+  blockers[7] = {0, kNaN, 1};
+  for (const double size : {0.0349066, 0.2}) {
+    const SphericalBins bins(size);
+    for (const float margin : {0.0F, 0.3F}) {
+      const std::vector<Evidence> evidence = classify_occlusion(queries, blockers, bins, margin);
+      ASSERT_EQ(evidence.size(), queries.size());
+      for (std::size_t i = 0; i < queries.size(); ++i)
+        EXPECT_EQ(evidence[i], classify_slowly(queries[i], blockers, bins, margin)) << i;
+      const std::array<int, 4> counts = count(evidence);
+      EXPECT_GT(counts[static_cast<std::size_t>(Evidence::kOccluded)], 20);
+      EXPECT_GT(counts[static_cast<std::size_t>(Evidence::kSeenThrough)], 20);
+      EXPECT_GE(counts[static_cast<std::size_t>(Evidence::kUnobserved)], 2);
+      EXPECT_EQ(counts[static_cast<std::size_t>(Evidence::kPresent)], 0);
+    }
+  }
+}
+
+TEST(ClassifyOcclusion, ThreeAnswersAndTheMargin) {
+  const SphericalBins bins;
+  const Points blockers{{0, 0, 1}};
+  const auto ask = [&](float z, double margin) {
+    return classify_occlusion(Points{{0, 0, z}}, blockers, bins, margin).front();
+  };
+  EXPECT_EQ(ask(1.5F, 0), Evidence::kOccluded);
+  EXPECT_EQ(ask(0.5F, 0), Evidence::kSeenThrough);
+  EXPECT_EQ(ask(1, 0), Evidence::kSeenThrough);  // strictly nearer hides
+  EXPECT_EQ(ask(1.25F, 0.25), Evidence::kSeenThrough);
+  EXPECT_EQ(ask(1.375F, 0.25), Evidence::kOccluded);
+  EXPECT_EQ(classify_occlusion(Points{{1, 0, 1}}, blockers, bins, 0).front(), Evidence::kUnobserved);
+  EXPECT_EQ(classify_occlusion(Points{{0, 0, 1}}, Points{}, bins, 0).front(), Evidence::kUnobserved);
+  EXPECT_TRUE(classify_occlusion(Points{}, blockers, bins, 0).empty());
+  EXPECT_THROW((void)classify_occlusion(Points{}, blockers, bins, -0.1), std::invalid_argument);
+}
+
+/// The slow twin of the depth test: all pixels, without the window arithmetic.
+Evidence classify_depth_slowly(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m,
+                               const DepthEvidenceOptions& options) {
+  if (!p.allFinite() || p.z() <= 0) return Evidence::kUnobserved;
+  const Eigen::Vector2d pixel = camera.project(p.cast<double>());
+  if (!camera.contains(pixel)) return Evidence::kUnobserved;
+  bool any = false;
+  bool behind = true;
+  bool in_front = false;
+  const double margin = options.margin_m + options.noise_sigmas * nguyen_noise(p.z(), 0, camera.fx).axial_m;
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) {
+      const double reach = options.window_radius_px + 0.5;
+      if (std::abs(u - pixel.x()) > reach || std::abs(v - pixel.y()) > reach || std::isnan(depth_m(u, v))) continue;
+      // The window is centred on the pixel that the point falls into.
+      if (std::abs(u - std::floor(pixel.x() + 0.5)) > options.window_radius_px) continue;
+      if (std::abs(v - std::floor(pixel.y() + 0.5)) > options.window_radius_px) continue;
+      any = true;
+      behind = behind && depth_m(u, v) > p.z() + margin;
+      in_front = in_front || depth_m(u, v) < p.z() - margin;
+    }
+  if (!any) return Evidence::kUnobserved;
+  if (in_front) return Evidence::kOccluded;
+  return behind ? Evidence::kSeenThrough : Evidence::kPresent;
+}
+
+TEST(ClassifyAgainstDepth, AgreesWithAllPixels) {
+  const Camera camera{32, 24, 30, 31, 14, 12.5};
+  Image<float> depth_m(32, 24);
+  Rng rng(4);
+  for (float& z : depth_m.data()) z = rng.uniform() < 0.3 ? kNaN : static_cast<float>(rng.uniform(0.8, 2.2));
+  Points queries = random_points(10000, 2.5, 5);
+  queries[0] = {kNaN, 0, 1};
+  queries[1] = {0, 0, kNaN};
+  queries[2] = {0, 0, 0};
+  for (const int radius : {0, 1, 2}) {
+    const DepthEvidenceOptions options{.window_radius_px = radius, .margin_m = 0.15, .noise_sigmas = 2};
+    const std::vector<Evidence> evidence = classify_against_depth(queries, camera, depth_m, options);
+    for (std::size_t i = 0; i < queries.size(); ++i)
+      EXPECT_EQ(evidence[i], classify_depth_slowly(queries[i], camera, depth_m, options)) << i;
+    for (const int n : count(evidence)) EXPECT_GT(n, 5) << "radius " << radius;
+  }
+}
+
+TEST(ClassifyAgainstDepth, BordersOfTheImage) {
+  const Camera camera{4, 3, 100, 100, 1.5, 1};
+  const Image<float> depth_m(4, 3, 2.0F);
+  const auto ask = [&](double u, double v, int radius) {
+    return classify_against_depth(Points{camera.unproject(u, v, 1).cast<float>()}, camera, depth_m,
+                                  {.window_radius_px = radius})
+        .front();
+  };
+  for (const int radius : {0, 1}) {
+    EXPECT_EQ(ask(-0.49, -0.49, radius), Evidence::kSeenThrough);
+    EXPECT_EQ(ask(3.49, 2.49, radius), Evidence::kSeenThrough);
+    EXPECT_EQ(ask(-0.51, 1, radius), Evidence::kUnobserved);
+    EXPECT_EQ(ask(1, 2.51, radius), Evidence::kUnobserved);
+  }
+}
+
+TEST(ClassifyAgainstDepth, RefusesNonsense) {
+  const Points queries{{0, 0, 1}};
+  const Image<float> depth_m(320, 240, 1.0F);
+  EXPECT_NO_THROW((void)classify_against_depth(queries, small_camera(), depth_m));
+  EXPECT_THROW((void)classify_against_depth(queries, make_kinect_camera(), depth_m), std::invalid_argument);
+  EXPECT_THROW((void)classify_against_depth(queries, small_camera(), depth_m, {.window_radius_px = -1}),
+               std::invalid_argument);
+  EXPECT_THROW((void)classify_against_depth(queries, small_camera(), depth_m, {.margin_m = -1}), std::invalid_argument);
+}
+
+TEST(OcclusionTests, SerialIsParallel) {
+  const PreparedView view = see(table());
+  const Points queries = random_points(30000, 1.5, 9);
+  const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
+  const SphericalBins bins;
+  EXPECT_EQ(classify_occlusion(queries, blockers.points, bins, 0, 3),
+            classify_occlusion(queries, blockers.points, bins, 0, 1));
+  EXPECT_EQ(classify_against_depth(queries, view.frame.camera, view.frame.depth_m, {.num_threads = 3}),
+            classify_against_depth(queries, view.frame.camera, view.frame.depth_m, {.num_threads = 1}));
+}
+
+/// Points in the air above a slanted table, `height_m` over it, that the camera surely sees past.
+Points points_above_table(double height_m, const Rigid3& world_from_camera) {
+  Points queries;
+  const Rigid3 camera_from_world = world_from_camera.inverse();
+  for (double x = -0.25; x <= 0.25; x += 0.01)
+    for (double y = -0.15; y <= 0.35; y += 0.01)
+      queries.push_back((camera_from_world * Eigen::Vector3d(x, y, height_m)).cast<float>());
+  return queries;
+}
+
+TEST(OcclusionTests, OnASlantTheBinsHideWhatThePixelsSee) {
+  const PreparedView view = see(table());
+  const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
+  const auto share_seen_through = [&](double height_m, OcclusionTest test) {
+    const Points queries = points_above_table(height_m, view.frame.world_from_camera);
+    const std::vector<Evidence> evidence = test == OcclusionTest::kSphericalBins
+                                               ? classify_occlusion(queries, blockers.points, SphericalBins(), 0)
+                                               : classify_against_depth(queries, view.frame.camera, view.frame.depth_m);
+    EXPECT_EQ(count(evidence, Evidence::kUnobserved), 0);
+    return static_cast<double>(count(evidence, Evidence::kSeenThrough)) / static_cast<double>(queries.size());
+  };
+  // At 10 cm both see past them. At 3 cm, the nearest table point of a bin is nearer than many of them.
+  EXPECT_GT(share_seen_through(0.10, OcclusionTest::kSphericalBins), 0.99);
+  EXPECT_GT(share_seen_through(0.10, OcclusionTest::kDepthImage), 0.99);
+  EXPECT_LT(share_seen_through(0.03, OcclusionTest::kSphericalBins), 0.95);
+  EXPECT_GT(share_seen_through(0.03, OcclusionTest::kDepthImage), 0.99);
+}
+
+TEST(OcclusionTests, BehindABoxIsHidden) {
+  const Box box{{0, 0, 0.1}, {0.12, 0.05, 0.1}};
+  Scene scene = table();
+  scene.boxes = {box};
+  const PreparedView view = see(scene);
+  const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+  Points queries;  // 10 cm behind the box, low
+  for (double x = -0.06; x <= 0.06; x += 0.01)
+    queries.push_back((camera_from_world * Eigen::Vector3d(x, 0.1, 0.02)).cast<float>());
+  const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
+  EXPECT_EQ(count(classify_occlusion(queries, blockers.points, SphericalBins(), 0), Evidence::kOccluded),
+            static_cast<int>(queries.size()));
+  EXPECT_EQ(count(classify_against_depth(queries, view.frame.camera, view.frame.depth_m), Evidence::kOccluded),
+            static_cast<int>(queries.size()));
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evaluation/change_visibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace resight {
+namespace {
+
+using Kind = ObjectEventKind;
+
+ModelLibrary make_library() {
+  ModelLibrary library;
+  ObjectModel& mug = library.objects.emplace_back();
+  mug.name = "mug";
+  mug.diameter_m = 0.1F;
+  return library;
+}
+
+Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+
+GroundTruthObject mug_at(double x, double visible_share) {
+  GroundTruthObject mug;
+  mug.object = "mug";
+  mug.camera_from_object = at(x);
+  mug.visible_share = visible_share;
+  return mug;
+}
+
+// A mug that is moved from one place to another before the second view.
+SequenceTruth move_mug(std::size_t num_views) {
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.views.resize(num_views);
+  return truth;
+}
+
+// A camera at the origin that looks along z at a wall.
+RgbdFrame frame_with_wall(float depth_m) {
+  RgbdFrame frame;
+  frame.camera = {64, 48, 50, 50, 31.5, 23.5};
+  frame.depth_m = Image<float>(64, 48, depth_m);
+  return frame;
+}
+
+TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth = move_mug(4);
+  truth.views[0].objects = {mug_at(0, 0.5)};
+  truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // still behind something
+  truth.views[3].objects = {mug_at(0.3, 0.5)};
+  ChangeSightFinder finder(library, truth);
+  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  finder.add_view(frame_with_wall(2.0F));  // before the change
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
+  EXPECT_EQ(finder.sights()[0].last_free_view, 0);
+  finder.add_view(frame_with_wall(0.7F));  // something stands before the place
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, -1);
+  finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_EQ(finder.sights()[0].before_view, 2);
+  EXPECT_EQ(finder.sights()[0].after_view, 3);
+}
+
+// It was seen there once, left, and came back unseen: that it leaves again no view can tell.
+TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth;
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
+                                          {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
+                                          {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
+  truth.views.resize(5);
+  truth.views[0].objects = {mug_at(0, 0.5)};
+  truth.views[2].objects = truth.views[3].objects = {mug_at(0, 0.02)};
+  ChangeSightFinder finder(library, truth);
+  for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
+  EXPECT_EQ(finder.sights()[2].last_there_view, -1);
+}
+
+// Another mug stands at the new place before, and at the old one after: no view shows either without a mug.
+TEST(ChangeSightFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth = move_mug(2);
+  truth.views[0].objects = {mug_at(0.3, 0.5)};
+  truth.views[1].objects = {mug_at(0, 0.5)};
+  ChangeSightFinder finder(library, truth);
+  for (int v = 0; v < 2; ++v) finder.add_view(frame_with_wall(2.0F));
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  EXPECT_EQ(finder.sights()[0].before_view, -1);
+}
+
+TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
+  const ModelLibrary library = make_library();
+  SequenceTruth truth = move_mug(1);
+  truth.views[0].objects = {mug_at(0, 0.02)};
+  ChangeSightFinder finder(library, truth);
+  finder.add_view(frame_with_wall(0.7F));
+  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
+  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+}
+
+}  // namespace
+}  // namespace resight

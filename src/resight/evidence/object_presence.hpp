@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+
+#include "resight/evidence/surface_evidence.hpp"
+#include "resight/geometry/point_cloud.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
+
+namespace resight {
+
+struct PresenceOptions {
+  double depth_margin_m =
+      0.015;  ///< Depth within this of the object's surface (plus three sigma of the sensor) agrees with it.
+  int min_seen_points = 40;      ///< Fewer points that are present or seen through: the view tells nothing.
+  double min_seen_share = 0.10;  ///< Likewise as a share of the points that face the camera.
+  double min_gone_share = 0.6;   ///< Seen through / (seen through + present) above this: the object is not there.
+  void check() const;
+};
+
+/// What one view says about an object at a place.
+struct ObjectPresence {
+  std::array<int, 4> count{};   ///< Surface points that face the camera, by Evidence.
+  double gone_share = 0;        ///< Seen through / (seen through + present); 0 if there are none.
+  bool is_informative = false;  ///< Enough of the place is seen to tell.
+  bool is_gone = false;         ///< Informative, and free space where the object should be.
+};
+
+/// Compares the surface of an object at a pose with the depth of a view. Only points whose normal faces the camera are
+/// asked; the depth behind a point by more than the margin means that one looks through it.
+[[nodiscard]] ObjectPresence assess_presence(const PointCloud& surface_in_object, const Rigid3& world_from_object,
+                                             const RgbdFrame& frame, const PresenceOptions& options = {});
+
+}  // namespace resight

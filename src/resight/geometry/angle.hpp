@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <numbers>
+
+namespace resight {
+
+[[nodiscard]] constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+}  // namespace resight

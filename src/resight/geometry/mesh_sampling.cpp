@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/geometry/mesh_sampling.hpp"
+
+#include <cmath>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+Eigen::Vector3f face_cross(const TriangleMesh& mesh, const std::array<int, 3>& f) {
+  return (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
+}
+
+// +1, or -1 for a mesh that is inside out. Six times the signed volume, taken about the centroid, so that open meshes
+// are judged by where most of their faces look.
+float find_outward_sign(const TriangleMesh& mesh) {
+  const Eigen::Vector3f center = centroid(mesh.vertices);
+  double volume = 0;
+  for (const auto& f : mesh.faces) volume += (mesh.vertices[f[0]] - center).dot(face_cross(mesh, f));
+  return volume < 0 ? -1.0F : 1.0F;
+}
+
+struct Barycentric {
+  float b0 = 0;
+  float b1 = 0;
+};
+
+// The k-th point of the plastic-number sequence (Roberts 2018), folded from the unit square into the triangle.
+Barycentric spread_point(std::size_t k) {
+  const double x = std::fmod(0.5 + 0.7548776662466927 * static_cast<double>(k), 1.0);
+  const double y = std::fmod(0.5 + 0.5698402909980532 * static_cast<double>(k), 1.0);
+  return x + y <= 1 ? Barycentric{static_cast<float>(x), static_cast<float>(y)}
+                    : Barycentric{static_cast<float>(1 - x), static_cast<float>(1 - y)};
+}
+
+Eigen::Vector3f interpolate(const std::vector<Eigen::Vector3f>& values, const std::array<int, 3>& f, Barycentric b) {
+  return b.b0 * values[f[0]] + b.b1 * values[f[1]] + (1 - b.b0 - b.b1) * values[f[2]];
+}
+
+Eigen::Vector3f outward_normal(const TriangleMesh& mesh, const std::array<int, 3>& f, Barycentric b,
+                               const Eigen::Vector3f& face_normal) {
+  if (mesh.normals.size() != mesh.vertices.size()) return face_normal;
+  const Eigen::Vector3f smooth = interpolate(mesh.normals, f, b);
+  if (!(smooth.norm() > 1e-3F)) return face_normal;
+  return (smooth.dot(face_normal) < 0 ? Eigen::Vector3f(-smooth) : smooth).normalized();
+}
+
+}  // namespace
+
+PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
+  check_positive("samples_per_sq_m", samples_per_sq_m);
+  const float sign = find_outward_sign(mesh);
+  PointCloud cloud;
+  double wanted = 0;  // carried from face to face, so that faces smaller than a sample's share get their due as well
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const auto& f = mesh.faces[face];
+    const Eigen::Vector3f cross = face_cross(mesh, f);
+    const float twice_area = cross.norm();
+    if (!(twice_area > 0)) continue;
+    const Eigen::Vector3f face_normal = cross * (sign / twice_area);
+    wanted += 0.5 * twice_area * samples_per_sq_m;
+    while (static_cast<double>(cloud.size()) + 0.5 < wanted) {
+      const Barycentric b = spread_point(cloud.size());
+      cloud.points.push_back(interpolate(mesh.vertices, f, b));
+      cloud.normals.push_back(outward_normal(mesh, f, b, face_normal));
+      cloud.colors.push_back(surface_color(mesh, static_cast<int>(face), b.b0, b.b1));
+    }
+  }
+  return cloud;
+}
+
+}  // namespace resight

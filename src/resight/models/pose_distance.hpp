@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/models/object_model.hpp"
+
+namespace resight {
+
+/// Two poses of an object that are one place of it.
+struct SamePlaceOptions {
+  double max_distance_m = 0.03;   ///< Between its centres.
+  double max_rotation_rad = 0.2;  ///< Up to its symmetries.
+  void check() const;
+};
+
+[[nodiscard]] bool is_same_place(const ObjectModel& model, const Rigid3& a, const Rigid3& b,
+                                 const SamePlaceOptions& options);
+
+}  // namespace resight

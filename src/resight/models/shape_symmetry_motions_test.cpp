@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/models/shape_symmetry_motions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace resight {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+const Eigen::Vector3d kX = Eigen::Vector3d::UnitX();
+const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
+
+ObjectModel colored() {
+  ObjectModel model;
+  model.surface.points = {Eigen::Vector3f::Zero()};
+  model.surface.colors = {Rgb8{}};
+  return model;
+}
+
+ObjectSymmetries round_about(const Eigen::Vector3d& axis) { return {.discrete = {}, .continuous = {{.axis = axis}}}; }
+
+Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kPi); }
+
+TEST(ShapeTurns, OfAPrintedCanGoAllTheWayRoundInSteps) {
+  ObjectModel can = colored();
+  can.shape_symmetries = round_about(kZ);
+  const std::vector<Rigid3> turns = shape_turns(can, kPi / 18);
+  ASSERT_EQ(turns.size(), 36U);
+  EXPECT_EQ(turns[0].matrix(), Rigid3::identity().matrix());
+  for (const Rigid3& turn : turns) EXPECT_NEAR((turn.rotation * kZ - kZ).norm(), 0, 1e-12);
+  for (std::size_t i = 1; i < turns.size(); ++i)
+    EXPECT_NEAR(rotation_angle_rad(turns[i - 1].rotation, turns[i].rotation), kPi / 18, 1e-9);
+}
+
+TEST(ShapeTurns, WhatIsTheSameInPrintAsWellIsNoTurn) {
+  ObjectModel can = colored();
+  can.symmetries = can.shape_symmetries = round_about(kZ);
+  EXPECT_EQ(shape_turns(can, 0.1).size(), 1U);
+  can.shape_symmetries.discrete.push_back(half_turn(kX));  // Only the lid tells what is up.
+  EXPECT_EQ(shape_turns(can, 0.1).size(), 2U);
+}
+
+TEST(ShapeTurns, OfABoxAreTheHalfTurnsThatItsPrintTellsApart) {
+  ObjectModel box = colored();
+  box.shape_symmetries.discrete = {half_turn(kX), half_turn(Eigen::Vector3d::UnitY()), half_turn(kZ)};
+  EXPECT_EQ(shape_turns(box, 0.1).size(), 4U);
+  box.symmetries.discrete = {half_turn(kZ)};
+  EXPECT_EQ(shape_turns(box, 0.1).size(), 2U);
+}
+
+TEST(ShapeTurns, NoneButTheIdentityForABallOrWithoutColors) {
+  ObjectModel model = colored();
+  model.shape_symmetries = {.discrete = {}, .continuous = {{.axis = kZ}, {.axis = kX}}};
+  EXPECT_EQ(shape_turns(model, 0.1).size(), 1U);
+  model.shape_symmetries = round_about(kZ);
+  model.surface.colors.clear();
+  EXPECT_EQ(shape_turns(model, 0.1).size(), 1U);
+}
+
+}  // namespace
+}  // namespace resight

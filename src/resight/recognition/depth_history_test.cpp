@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/depth_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/recognition/square_world_test_util.hpp"
+
+namespace resight {
+namespace {
+
+using test::kLeft;
+using test::kRight;
+using test::make_plate;
+using test::plate_at;
+using test::see_nothing;
+using test::see_plates;
+
+TEST(DepthMemory, KnowsTheLastViewThatSawAPlaceFree) {
+  const PointCloud surface = make_plate("a").surface;
+  DepthMemory memory;
+  EXPECT_FALSE(memory.last_seen_free(surface, kLeft));
+  memory.add(3, see_plates({kRight}));
+  memory.add(5, see_plates({kRight}));
+  memory.add(8, see_plates({kLeft}));
+  memory.add(9, see_nothing());
+  EXPECT_EQ(memory.last_seen_free(surface, kLeft), 5);
+  EXPECT_EQ(memory.last_seen_free(surface, kRight), 8);
+}
+
+TEST(DepthMemory, ForgetsTheOldest) {
+  const PointCloud surface = make_plate("a").surface;
+  DepthMemory memory({.max_views = 2});
+  memory.add(0, see_plates({kRight}));
+  memory.add(1, see_plates({kLeft, kRight}));
+  EXPECT_EQ(memory.last_seen_free(surface, kLeft), 0);
+  memory.add(2, see_plates({kLeft, kRight}));
+  EXPECT_FALSE(memory.last_seen_free(surface, kLeft));
+}
+
+// Each plate is as wide as 26 px: a place next to a plate is free for any thinning that leaves a few pixels of it.
+TEST(DepthMemory, ThinnedViewsSeeTheSamePlaces) {
+  const PointCloud surface = make_plate("a").surface;
+  const RgbdFrame frame = see_plates({kLeft});
+  for (const int step : {1, 2, 3, 4, 5}) {
+    DepthMemory memory({.step_px = step});
+    memory.add(0, frame);
+    for (double x = -0.4; x < 0.42; x += 0.05) {
+      const Rigid3 place = plate_at(x, 0, 1);
+      EXPECT_EQ(memory.last_seen_free(surface, place).has_value(), assess_presence(surface, place, frame).is_gone)
+          << "step " << step << ", x " << x;
+    }
+  }
+}
+
+TEST(DepthMemory, RefusesBadOptions) {
+  EXPECT_THROW(DepthMemory({.max_views = -1}), std::invalid_argument);
+  EXPECT_THROW(DepthMemory({.step_px = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/track_correspondences.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numbers>
+
+namespace resight {
+namespace {
+
+const Eigen::Vector3f kOnModel(0.05F, 0.02F, 0.01F);
+
+// One hypothesis at a pose, with so many correspondences that agree with it.
+std::array<Hypothesis, 1> found_in(int view, int count, const Rigid3& pose = Rigid3::identity()) {
+  Hypothesis h;
+  h.world_from_object = pose;
+  Correspondence c;
+  c.model_point = kOnModel;
+  c.model_normal = c.scene_normal = Eigen::Vector3f::UnitZ();
+  c.scene_point = Rigid3f(pose) * kOnModel;
+  c.scene_feature = view;
+  h.correspondences.assign(static_cast<std::size_t>(count), c);
+  return {h};
+}
+
+std::vector<int> views_of(const std::vector<Correspondence>& correspondences) {
+  std::vector<int> views;
+  for (const Correspondence& c : correspondences) views.push_back(c.scene_feature);
+  return views;
+}
+
+std::vector<int> views_of(const HeldCorrespondences& held, int track, int first_view = 0, int end_view = 100) {
+  return views_of(held.of_views(track, first_view, end_view, Rigid3::identity()));
+}
+
+void add(HeldCorrespondences& held, int track, int view, int count) {
+  held.add(track, view, found_in(view, count), Rigid3::identity(), {});
+}
+
+TEST(HeldCorrespondences, ThoseOfTheLastSearchesAreHeld) {
+  HeldCorrespondences held(2, 0.01);
+  add(held, 7, 0, 3);
+  add(held, 7, 4, 2);
+  add(held, 7, 6, 0);  // Nothing was found: no search that counts.
+  add(held, 7, 8, 1);
+  EXPECT_EQ(views_of(held, 7), (std::vector<int>{4, 4, 8}));
+}
+
+TEST(HeldCorrespondences, WhatTheWindowHoldsAndWhatWasBeforeItsPlaceIsLeftOut) {
+  HeldCorrespondences held(10, 0.01);
+  for (int view = 0; view < 6; ++view) add(held, 1, view, 1);
+  EXPECT_EQ(views_of(held, 1, 2, 5), (std::vector<int>{2, 3, 4}));
+  EXPECT_TRUE(views_of(held, 1, 6).empty());
+}
+
+TEST(HeldCorrespondences, EachTrackHasItsOwnUntilItIsForgotten) {
+  HeldCorrespondences held(3, 0.01);
+  add(held, 1, 0, 1);
+  add(held, 2, 1, 2);
+  EXPECT_EQ(views_of(held, 1).size(), 1U);
+  EXPECT_EQ(views_of(held, 2).size(), 2U);
+  EXPECT_TRUE(views_of(held, 3).empty());
+  held.keep_only(std::array{2});
+  EXPECT_TRUE(views_of(held, 1).empty());
+  EXPECT_EQ(views_of(held, 2).size(), 2U);
+}
+
+TEST(HeldCorrespondences, WhatIsFarFromThePoseIsNotHeld) {
+  const Rigid3 shifted = Rigid3::from_translation({0.02, 0, 0});
+  HeldCorrespondences held(3, 0.01);
+  held.add(1, 0, found_in(0, 1, shifted), Rigid3::identity(), {});
+  EXPECT_TRUE(views_of(held, 1).empty());
+  add(held, 1, 1, 1);
+  EXPECT_TRUE(held.of_views(1, 0, 100, shifted).empty()) << "it was pushed since";
+  EXPECT_EQ(held.of_views(1, 0, 100, Rigid3::from_translation({0.005, 0, 0})).size(), 1U);
+}
+
+TEST(HeldCorrespondences, AHypothesisAtASymmetricPoseIsMovedOver) {
+  ObjectSymmetries half_turn;
+  half_turn.discrete = {Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), std::numbers::pi)};
+  HeldCorrespondences held(3, 0.01);
+  const auto found = found_in(0, 1, half_turn.discrete[0]);
+  held.add(1, 0, found, Rigid3::identity(), {});
+  EXPECT_TRUE(views_of(held, 1).empty()) << "not symmetric: another pose";
+  held.add(1, 0, found, Rigid3::identity(), half_turn);
+  const std::vector<Correspondence> moved = held.of_views(1, 0, 100, Rigid3::identity());
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_LT((moved[0].model_point - found[0].correspondences[0].scene_point).norm(), 1e-6F);
+}
+
+}  // namespace
+}  // namespace resight

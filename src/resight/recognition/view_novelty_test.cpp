@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/view_novelty.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/verification/testing/verify_fixture.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+// A table with a box, looked at from one place after another.
+struct Watch {
+  World world = one_box();
+  std::vector<Rigid3> cameras = circle_of_cameras(12, 0.8, 0.6, 0.6);
+  Attention attention{{.max_unseen_share = 0.003, .full_look_every = 5}};
+
+  bool is_due(const Rigid3& camera, const ChangeResult& changes = {}) {
+    return attention.is_due(prepare_view(render(world, camera).frame), changes);
+  }
+};
+
+TEST(Attention, ALookIsRepeatedAfterSomeViewsOnly) {
+  Watch w;
+  for (int view = 0; view < 12; ++view) EXPECT_EQ(w.is_due(w.cameras[0]), view % 5 == 0) << view;
+}
+
+TEST(Attention, OffItIsAlwaysDue) {
+  Watch w;
+  w.attention = Attention({});
+  for (int view = 0; view < 3; ++view) EXPECT_TRUE(w.is_due(w.cameras[0]));
+}
+
+TEST(Attention, AnotherSideIsNew) {
+  Watch w;
+  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  EXPECT_TRUE(w.is_due(w.cameras[1]));   // 30 deg on
+  EXPECT_FALSE(w.is_due(w.cameras[0]));  // back to what was searched
+  EXPECT_FALSE(w.is_due(w.cameras[1]));
+}
+
+TEST(Attention, SoIsANearerLook) {
+  Watch w;
+  const Eigen::Vector3d eye = w.cameras[0].translation;
+  EXPECT_TRUE(w.is_due(look_at(eye, {0, 0, 0})));
+  EXPECT_FALSE(w.is_due(look_at(0.95 * eye, {0, 0, 0})));
+  EXPECT_TRUE(w.is_due(look_at(0.6 * eye, {0, 0, 0})));
+}
+
+TEST(Attention, WhatWasPutThereOrUncoveredIsNew) {
+  Watch w;
+  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  w.world.solids.clear();
+  EXPECT_TRUE(w.is_due(w.cameras[0]));  // the table behind the box
+  w.world = one_box();
+  ChangeResult changes;
+  changes.novel_mask = Image<std::uint8_t>(320, 240);
+  EXPECT_FALSE(w.is_due(w.cameras[0], changes));
+  for (int v = 100; v < 140; ++v)
+    for (int u = 140; u < 180; ++u) changes.novel_mask(u, v) = 1;
+  EXPECT_TRUE(w.is_due(w.cameras[0], changes));
+}
+
+TEST(Attention, NoiseOfTheDepthIsNothingNew) {
+  const auto shifted = [](const Watch& w, float by_m) {
+    RgbdFrame frame = render(w.world, w.cameras[0]).frame;
+    for (std::size_t i = 0; i < frame.depth_m.size(); ++i) frame.depth_m[i] += by_m;
+    return prepare_view(std::move(frame));
+  };
+  Watch w;
+  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  EXPECT_FALSE(w.attention.is_due(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
+  EXPECT_TRUE(w.attention.is_due(shifted(w, 0.04F), {}));
+}
+
+TEST(Attention, AWrongPoseIsNoReasonToLookAway) {
+  Watch w;
+  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  ChangeResult suspect;
+  suspect.pose_suspect = true;
+  EXPECT_TRUE(w.is_due(w.cameras[0], suspect));
+}
+
+// From recognition on: a view that shows nothing new is not searched, and what is known is found in it all the same.
+TEST(Attention, KnownObjectsAreConfirmedWithoutASearch) {
+  const World world = one_box();
+  const ModelLibrary library = analytic::make_library();
+  auto store = std::make_shared<ViewHypothesisStore>();
+  ViewHypotheses first;
+  const Rigid3 camera = circle_of_cameras(4, 0.8, 0.6, 0.6)[0];
+  first.world_from_camera = camera;
+  first.hypotheses = {make_hypothesis(kBox, world.solids[0].world_from_object)};
+  store->add(0, std::move(first));
+  SceneRecognizer recognizer(library, RecognizerConfig::from_preset("default"), store);
+  for (int view = 0; view < 4; ++view) {
+    const SceneUpdate update = recognizer.add_view(render(world, camera).frame);
+    EXPECT_EQ(update.searched, view == 0) << view;
+    EXPECT_EQ(update.detections.size(), 1U) << view;
+    EXPECT_EQ(update.counts.generated, view == 0 ? 1 : 0) << view;
+  }
+}
+
+// What remembers nothing has to search each view.
+TEST(Attention, SingleViewsAreSearched) {
+  const World world = one_box();
+  const ModelLibrary library = analytic::make_library();
+  for (const bool remember : {false, true}) {
+    RecognizerConfig config = RecognizerConfig::from_preset("default");
+    config.remember_objects = remember;
+    config.num_previous_views = remember ? 0 : 2;
+    SceneRecognizer recognizer(library, config, std::make_shared<ViewHypothesisStore>());
+    const Rigid3 camera = circle_of_cameras(4, 0.8, 0.6, 0.6)[0];
+    for (int view = 0; view < 3; ++view) EXPECT_TRUE(recognizer.add_view(render(world, camera).frame).searched) << view;
+  }
+}
+
+TEST(Attention, RefusesNonsense) {
+  EXPECT_THROW(Attention({.max_unseen_share = 2}), std::invalid_argument);
+  EXPECT_THROW(Attention({.full_look_every = 0}), std::invalid_argument);
+  EXPECT_THROW(Attention({.max_distance_ratio = 0.5}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/registration/alignment_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "resight/core/check.hpp"
+
+namespace resight {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr int kMinWidth = 40;  // Smaller levels hold nothing to align.
+
+Image<float> to_grey(const Image<Rgb8>& color) {
+  Image<float> grey(color.width(), color.height());
+  for (std::size_t i = 0; i < grey.size(); ++i)  // Rec. 601, as grey images of features
+    grey[i] = 0.299F * color[i].r + 0.587F * color[i].g + 0.114F * color[i].b;
+  return grey;
+}
+
+// Every second pixel of the image smoothed by 1 4 6 4 1 (Burt and Adelson 1983): pixel (u, v) stays over pixel (2u,
+// 2v), as with the points.
+Image<float> halve(const Image<float>& image) {
+  constexpr std::array<float, 5> kWeights{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+  const int width = image.width() / 2;
+  const int height = image.height() / 2;
+  Image<float> rows(width, image.height());
+  for (int v = 0; v < image.height(); ++v)
+    for (int u = 0; u < width; ++u)
+      for (int k = 0; k < 5; ++k)
+        rows(u, v) += kWeights[static_cast<std::size_t>(k)] * image(std::clamp(2 * u - 2 + k, 0, image.width() - 1), v);
+  Image<float> half(width, height);
+  for (int v = 0; v < height; ++v)
+    for (int k = 0; k < 5; ++k) {
+      const auto from = rows.row(std::clamp(2 * v - 2 + k, 0, image.height() - 1));
+      const auto to = half.row(v);
+      for (int u = 0; u < width; ++u) to[u] += kWeights[static_cast<std::size_t>(k)] * from[u];
+    }
+  return half;
+}
+
+// The mean over (2 radius + 1)^2 pixels, fewer at the border.
+Image<float> box_mean(const Image<float>& image, int radius) {
+  const int width = image.width();
+  const int height = image.height();
+  Image<double> sums(width + 1, height + 1);
+  for (int v = 0; v < height; ++v) {
+    double row = 0;
+    for (int u = 0; u < width; ++u) {
+      row += image(u, v);
+      sums(u + 1, v + 1) = sums(u + 1, v) + row;
+    }
+  }
+  Image<float> mean(width, height);
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) {
+      const int left = std::max(u - radius, 0), right = std::min(u + radius + 1, width);
+      const int top = std::max(v - radius, 0), bottom = std::min(v + radius + 1, height);
+      const double sum = sums(right, bottom) - sums(left, bottom) - sums(right, top) + sums(left, top);
+      mean(u, v) = static_cast<float>(sum / ((right - left) * (bottom - top)));
+    }
+  return mean;
+}
+
+// The image whose pixel (u, v) is pixel (2u, 2v) of the finer one.
+Camera subsample(const Camera& camera) {
+  return {camera.width / 2, camera.height / 2, camera.fx / 2, camera.fy / 2, camera.cx / 2, camera.cy / 2};
+}
+
+// Depths are never averaged: a mean over an edge is no surface.
+Image<float> subsample(const Image<float>& image) {
+  Image<float> half(image.width() / 2, image.height() / 2);
+  for (int v = 0; v < half.height(); ++v)
+    for (int u = 0; u < half.width(); ++u) half(u, v) = image(2 * u, 2 * v);
+  return half;
+}
+
+AlignmentLevel subsample(const AlignmentLevel& level) {
+  AlignmentLevel half;
+  half.camera = subsample(level.camera);
+  const OrganizedCloud& c = level.cloud;
+  half.cloud = {subsample(c.x), subsample(c.y), subsample(c.z), subsample(c.nx), subsample(c.ny), subsample(c.nz)};
+  half.sigma_m = subsample(level.sigma_m);
+  return half;
+}
+
+Image<float> without_mean(Image<float> grey, double mean_radius) {
+  const Image<float> mean = box_mean(grey, std::max(1, static_cast<int>(std::lround(mean_radius * grey.width()))));
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] -= mean[i];
+  return grey;
+}
+
+// The points of the whole image; those not to be aligned lose their normals.
+AlignmentLevel whole_level(const PreparedView& view, const AlignmentViewOptions& options,
+                           const Image<std::uint8_t>* mask) {
+  AlignmentLevel level;
+  level.camera = view.frame.camera;
+  level.cloud = view.cloud;
+  level.sigma_m = view.noise.axial_m;
+  const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
+  for (std::size_t i = 0; i < level.cloud.nx.size(); ++i)
+    if (view.edge_distance_px[i] < min_edge_distance_px || (mask != nullptr && (*mask)[i] == 0))
+      level.cloud.nx[i] = kNan;
+  return level;
+}
+
+}  // namespace
+
+void AlignmentViewOptions::check() const {
+  check_in_range("num_levels", num_levels, 1, 8);
+  check_not_negative("min_edge_distance_px", min_edge_distance_px);
+  check_positive("mean_radius", mean_radius);
+}
+
+AlignmentView make_alignment_view(const PreparedView& view, const AlignmentViewOptions& options,
+                                  const Image<std::uint8_t>* mask) {
+  options.check();
+  require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
+          "mask: must have the size of the view");
+  require(!view.cloud.nx.empty(), "view: must have normals");
+  AlignmentView pyramid;
+  AlignmentLevel finer = whole_level(view, options, mask);
+  Image<float> grey = to_grey(view.frame.color);
+  for (int l = 0; l < options.num_levels && finer.camera.width / 2 >= kMinWidth; ++l) {
+    AlignmentLevel level = subsample(finer);
+    grey = halve(grey);
+    pyramid.levels.push_back(level);
+    finer = std::move(level);
+    pyramid.levels.back().brightness = without_mean(grey, options.mean_radius);
+  }
+  return pyramid;
+}
+
+}  // namespace resight

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/registration/view_alignment.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/registration/twist.hpp"
+
+namespace resight {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Twistf = Eigen::Matrix<float, 6, 1>;
+
+constexpr std::size_t kBlock = 512;      // Samples of one partial sum.
+constexpr double kConvergedStep = 1e-5;  // Radians and metres: a smaller step has converged.
+// Directions that the data tell less of, compared to the best known one, are open, and left as they are.
+constexpr double kMinEigenvalueRatio = 3e-4;
+constexpr double kBrightnessGate = 4;  // In sigmas.
+constexpr float kMaxPairDistance = 3;  // Of points, in units of the largest distance to the plane.
+
+// The points of one level that are aligned.
+struct Samples {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<float> sigma_m;
+  std::vector<float> brightness;
+};
+
+Samples draw_samples(const AlignmentLevel& level, int max_samples) {
+  const OrganizedCloud& cloud = level.cloud;
+  std::size_t num_usable = 0;
+  for (std::size_t i = 0; i < cloud.z.size(); ++i) num_usable += cloud.has_point(i) && cloud.has_normal(i);
+  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(num_usable) / max_samples))));
+  Samples samples;
+  for (int v = 0; v < cloud.height(); v += step)
+    for (int u = 0; u < cloud.width(); u += step) {
+      const std::size_t i = cloud.z.index(u, v);
+      if (!cloud.has_point(i) || !cloud.has_normal(i)) continue;
+      samples.points.push_back(cloud.point(i));
+      samples.normals.push_back(cloud.normal(i));
+      samples.sigma_m.push_back(level.sigma_m[i]);
+      samples.brightness.push_back(level.brightness[i]);
+    }
+  return samples;
+}
+
+// Normal equations and counts; sums of blocks are added in order.
+struct Sums {
+  Matrix6 h = Matrix6::Zero();  // upper triangle
+  // The same with the view's own normal for one of the two factors. Noise turns every normal a little, so that h has a
+  // plain floor known along itself; the noises of two normals cancel. Not symmetric until the end.
+  Matrix6 unbiased = Matrix6::Zero();
+  Twist g = Twist::Zero();
+  double distance_m = 0;
+  int num_pairs = 0;
+  double brightness[5] = {};  // a, b, a^2, b^2, a b over num_bright pairs
+  int num_bright = 0;
+  int num_matched = 0;  // samples with a pair in some target
+  int num_seen_through = 0;
+
+  void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
+    for (int c = 0; c < 6; ++c) {
+      const double wj = weight * j[c];
+      for (int r = 0; r <= c; ++r) h(r, c) += wj * j[r];
+      for (int r = 0; r < 6; ++r) unbiased(r, c) += wj * other_j[r];
+      g[c] += wj * residual;
+    }
+  }
+  void add_brightness(double a, double b) {
+    const double terms[5] = {a, b, a * a, b * b, a * b};
+    for (int k = 0; k < 5; ++k) brightness[k] += terms[k];
+    ++num_bright;
+  }
+  [[nodiscard]] double brightness_correlation() const {
+    const double n = num_bright;
+    const double variances =
+        (n * brightness[2] - brightness[0] * brightness[0]) * (n * brightness[3] - brightness[1] * brightness[1]);
+    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without print
+  }
+  void add(const Sums& other) {
+    h += other.h;
+    unbiased += other.unbiased;
+    g += other.g;
+    distance_m += other.distance_m;
+    num_pairs += other.num_pairs;
+    for (int k = 0; k < 5; ++k) brightness[k] += other.brightness[k];
+    num_bright += other.num_bright;
+    num_matched += other.num_matched;
+    num_seen_through += other.num_seen_through;
+  }
+};
+
+// How a motion of a point, along `direction` in the view's frame, follows from a twist of the view.
+Twistf jacobian(const Eigen::Vector3f& p, const Eigen::Vector3f& direction) {
+  Twistf j;
+  j << p.cross(direction), direction;
+  return j;
+}
+
+double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
+
+// Value and gradient (per px) of an image between its pixels; false at its border.
+bool interpolate(const Image<float>& image, float u, float v, float& value, float& du, float& dv) {
+  const int u0 = static_cast<int>(std::floor(u));
+  const int v0 = static_cast<int>(std::floor(v));
+  if (u0 < 0 || v0 < 0 || u0 + 1 >= image.width() || v0 + 1 >= image.height()) return false;
+  const float a = u - static_cast<float>(u0);
+  const float b = v - static_cast<float>(v0);
+  const float* top = &image(u0, v0);
+  const float* bottom = &image(u0, v0 + 1);
+  const float du_top = top[1] - top[0];
+  const float du_bottom = bottom[1] - bottom[0];
+  const float at_top = top[0] + a * du_top;
+  const float at_bottom = bottom[0] + a * du_bottom;
+  value = at_top + b * (at_bottom - at_top);
+  du = du_top + b * (du_bottom - du_top);
+  dv = at_bottom - at_top;
+  return true;
+}
+
+// One target at one level, seen from the view.
+class LevelTarget {
+ public:
+  LevelTarget(const AlignmentLevel& level, const Rigid3& target_from_view, const AlignViewOptions& options,
+              double gate_m)
+      : level_(level),
+        pose_(target_from_view),
+        options_(options),
+        gate_m_(static_cast<float>(gate_m)),
+        min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))) {}
+
+  enum class Outcome { kNothing, kPair, kHidden, kInFront };
+
+  Outcome add(const Samples& samples, std::size_t s, Sums& sums) const {
+    const Eigen::Vector3f p = samples.points[s];
+    const Eigen::Vector3f q = pose_ * p;
+    if (!(q.z() > 0.05F)) return Outcome::kNothing;
+    const Camera& camera = level_.camera;
+    const auto u = static_cast<float>(camera.fx * q.x() / q.z() + camera.cx);
+    const auto v = static_cast<float>(camera.fy * q.y() / q.z() + camera.cy);
+    if (!(u > -0.5F && v > -0.5F && u < static_cast<float>(camera.width) - 0.5F &&
+          v < static_cast<float>(camera.height) - 0.5F))
+      return Outcome::kNothing;
+    const std::size_t i = level_.cloud.z.index(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
+    if (!level_.cloud.has_point(i)) return Outcome::kNothing;
+    const float sigma_sq = samples.sigma_m[s] * samples.sigma_m[s] + level_.sigma_m[i] * level_.sigma_m[i];
+    const float gate = std::max(gate_m_, static_cast<float>(options_.max_noise_sigmas) * std::sqrt(sigma_sq));
+    const Eigen::Vector3f offset = q - level_.cloud.point(i);
+    if (level_.cloud.has_normal(i) && offset.squaredNorm() < kMaxPairDistance * gate * kMaxPairDistance * gate) {
+      const Eigen::Vector3f normal = level_.cloud.normal(i);
+      const float distance = normal.dot(offset);
+      if (std::abs(distance) < gate && normal.dot(pose_.rotation * samples.normals[s]) > min_cosine_) {
+        add_pair(samples, s, q, {u, v}, normal, distance, gate, sigma_sq, sums);
+        return Outcome::kPair;
+      }
+    }
+    if (offset.z() > kMaxPairDistance * gate) return Outcome::kHidden;
+    return offset.z() < -kMaxPairDistance * gate ? Outcome::kInFront : Outcome::kNothing;
+  }
+
+ private:
+  void add_pair(const Samples& samples, std::size_t s, const Eigen::Vector3f& q, const Eigen::Vector2f& pixel,
+                const Eigen::Vector3f& normal, float distance, float gate, float sigma_sq, Sums& sums) const {
+    const Eigen::Vector3f p = samples.points[s];
+    const double weight = tukey(distance / gate);
+    sums.add(jacobian(p, pose_.rotation.transpose() * normal), jacobian(p, samples.normals[s]), distance,
+             weight / sigma_sq);
+    sums.distance_m += std::abs(distance);
+    ++sums.num_pairs;
+    if (options_.brightness_sigma <= 0) return;
+    float value = 0, du = 0, dv = 0;
+    if (!interpolate(level_.brightness, pixel.x(), pixel.y(), value, du, dv)) return;
+    sums.add_brightness(value, samples.brightness[s]);
+    const double residual = value - samples.brightness[s];
+    const double sigma = options_.brightness_sigma;
+    const double brightness_weight = weight * tukey(residual / (kBrightnessGate * sigma));
+    if (brightness_weight == 0) return;
+    const auto gu = static_cast<float>(du * level_.camera.fx) / q.z();
+    const auto gv = static_cast<float>(dv * level_.camera.fy) / q.z();
+    const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // of brightness, per metre
+    const Twistf j = jacobian(p, pose_.rotation.transpose() * gradient);
+    sums.add(j, j, residual, brightness_weight / (sigma * sigma));
+  }
+
+  const AlignmentLevel& level_;
+  Rigid3f pose_;
+  const AlignViewOptions& options_;
+  float gate_m_;
+  float min_cosine_;
+};
+
+Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
+               const Rigid3& world_from_camera, double gate_m, const AlignViewOptions& options) {
+  std::vector<LevelTarget> seen;
+  for (const AlignmentTarget& target : targets)
+    seen.emplace_back(target.view->levels[level], target.world_from_camera.inverse() * world_from_camera, options,
+                      gate_m);
+  std::vector<Sums> partial((samples.points.size() + kBlock - 1) / kBlock);
+  parallel_for_blocks(samples.points.size(), kBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+    Sums& sums = partial[begin / kBlock];
+    for (std::size_t s = begin; s < end; ++s) {
+      bool pair = false, hidden = false, in_front = false;
+      for (const LevelTarget& target : seen) {
+        const LevelTarget::Outcome outcome = target.add(samples, s, sums);
+        pair |= outcome == LevelTarget::Outcome::kPair;
+        hidden |= outcome == LevelTarget::Outcome::kHidden;
+        in_front |= outcome == LevelTarget::Outcome::kInFront;
+      }
+      sums.num_matched += pair;
+      sums.num_seen_through += in_front && !pair && !hidden;
+    }
+  });
+  Sums all;
+  for (const Sums& sums : partial) all.add(sums);
+  all.h = Matrix6(all.h.selfadjointView<Eigen::Upper>());
+  all.unbiased = 0.5 * Matrix6(all.unbiased + all.unbiased.transpose());
+  return all;
+}
+
+// A basis of the motions that the information tells of, one a column.
+Eigen::Matrix<double, 6, Eigen::Dynamic> known_motions(const Matrix6& information) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
+  int num_open = 0;
+  while (num_open < 6 && !(solver.eigenvalues()[num_open] > kMinEigenvalueRatio * solver.eigenvalues()[5])) ++num_open;
+  return solver.eigenvectors().rightCols(6 - num_open);
+}
+
+// The least-squares step; what the data (and the prior) leave open stays.
+Twist solve_step(const Matrix6& h, const Matrix6& unbiased, const Twist& g) {
+  const auto motions = known_motions(unbiased);
+  if (motions.cols() == 0) return Twist::Zero();
+  return -motions * (motions.transpose() * h * motions).ldlt().solve(motions.transpose() * g);
+}
+
+Matrix6 known_information(const Matrix6& unbiased) {
+  const auto motions = known_motions(unbiased);
+  const Matrix6 onto_known = motions * motions.transpose();
+  return onto_known * unbiased * onto_known;
+}
+
+Twist prior_information(const AlignViewOptions& options) {
+  const auto inverse_sq = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0.0; };
+  Twist information;
+  information << Eigen::Vector3d::Constant(inverse_sq(options.prior_sigma_rad)),
+      Eigen::Vector3d::Constant(inverse_sq(options.prior_sigma_m));
+  return information;
+}
+
+Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
+                   const Rigid3& given, Rigid3 pose, double gate_m, const AlignViewOptions& options) {
+  const Twist prior = prior_information(options);
+  for (int i = 0; i < options.max_iterations; ++i) {
+    const Sums sums = sum_pairs(samples, targets, level, pose, gate_m, options);
+    if (sums.num_pairs == 0) break;
+    Matrix6 h = options.information_per_pair * sums.h;
+    Matrix6 unbiased = options.information_per_pair * sums.unbiased;
+    h.diagonal() += prior;
+    unbiased.diagonal() += prior;
+    const Twist g = options.information_per_pair * sums.g + prior.cwiseProduct(to_twist(given.inverse() * pose));
+    const Twist step = solve_step(h, unbiased, g);
+    pose = pose * from_twist(step);
+    if (step.cwiseAbs().maxCoeff() < kConvergedStep) break;
+  }
+  pose.rotation = nearest_rotation(pose.rotation);
+  return pose;
+}
+
+void check_targets(const AlignmentView& view, std::span<const AlignmentTarget> targets) {
+  require(!view.levels.empty(), "view: must have a level");
+  for (const AlignmentTarget& target : targets)
+    require(target.view != nullptr && target.view->levels.size() >= view.levels.size(),
+            "targets: must have the levels of the view");
+}
+
+}  // namespace
+
+void AlignViewOptions::check() const {
+  check_positive("max_distance_m", max_distance_m);
+  check_positive("min_distance_m", min_distance_m);
+  check_positive("max_normal_angle_rad", max_normal_angle_rad);
+  check_positive("max_noise_sigmas", max_noise_sigmas);
+  check_not_negative("brightness_sigma", brightness_sigma);
+  check_positive("num_levels", num_levels);
+  check_positive("max_iterations", max_iterations);
+  check_positive("max_samples", max_samples);
+  check_not_negative("prior_sigma_m", prior_sigma_m);
+  check_not_negative("prior_sigma_rad", prior_sigma_rad);
+  check_positive("information_per_pair", information_per_pair);
+  check_positive("num_threads", num_threads);
+}
+
+AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                            const Rigid3& world_from_camera, const AlignViewOptions& options) {
+  options.check();
+  check_targets(view, targets);
+  const Samples samples = draw_samples(view.levels[0], options.max_samples);
+  const Sums sums = sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options);
+  AlignedView aligned;
+  aligned.world_from_camera = world_from_camera;
+  aligned.information = options.information_per_pair * known_information(sums.unbiased);
+  const double num_samples = std::max<double>(1, static_cast<double>(samples.points.size()));
+  aligned.overlap = sums.num_matched / num_samples;
+  aligned.seen_through = sums.num_seen_through / num_samples;
+  aligned.mean_distance_m = sums.num_pairs > 0 ? sums.distance_m / sums.num_pairs : 0;
+  aligned.brightness_correlation = sums.brightness_correlation();
+  aligned.num_pairs = sums.num_pairs;
+  return aligned;
+}
+
+AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                       const Rigid3& world_from_camera, const AlignViewOptions& options) {
+  options.check();
+  check_targets(view, targets);
+  Rigid3 pose = world_from_camera;
+  const std::size_t num_levels = std::min(view.levels.size(), static_cast<std::size_t>(options.num_levels));
+  const double min_m = std::min(options.min_distance_m, options.max_distance_m);
+  for (std::size_t l = num_levels; l-- > 0;) {
+    const double coarseness = num_levels > 1 ? static_cast<double>(l) / static_cast<double>(num_levels - 1) : 0;
+    const double gate_m = min_m * std::pow(options.max_distance_m / min_m, coarseness);
+    const Samples samples = draw_samples(view.levels[l], options.max_samples);
+    pose = align_level(samples, targets, l, world_from_camera, pose, gate_m, options);
+  }
+  return judge_alignment(view, targets, pose, options);
+}
+
+}  // namespace resight

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "resight/rendering/view_renderer.hpp"
+
+namespace resight {
+
+/// A structured-light camera (Kinect v1 and its kin). Each effect can be switched off by itself.
+struct SensorOptions {
+  bool noise_free = false;           ///< Exact depth and colour, whatever the fields below say (even the range).
+  double lateral_noise = 1.0;        ///< Factor on Nguyen's lateral sigma; the ray of each pixel is perturbed. 0 = off.
+  double axial_noise = 1.0;          ///< Factor on Nguyen's axial sigma. 0 = off.
+  double disparity_step_px = 0.125;  ///< Kinect: 1/8 px. 0 = depth is not quantised.
+  double baseline_m = 0.075;         ///< Camera to projector, along the camera's +x (Kinect: 7.5 cm).
+  bool projector_shadow = true;      ///< No return where the projector does not see the surface.
+  double max_incidence_deg =
+      82.0;  ///< No return from surfaces slanted more; returns thin out over the 10 deg before. 90 = off.
+  double edge_dropout = 0.4;          ///< Probability of no return beside a depth discontinuity. 0 = off.
+  double min_depth_m = 0.5;           ///< Nearer: no return.
+  double max_depth_m = 4.0;           ///< Farther: no return.
+  double color_noise = 2.0;           ///< Sigma of each channel of each pixel, of 255. 0 = off.
+  double gain_sigma = 0.05;           ///< Relative sigma of the exposure from view to view. 0 = off.
+  double white_balance_sigma = 0.01;  ///< Relative sigma of each channel from view to view. 0 = off.
+  void check() const;
+};
+
+/// The depth image that the sensor delivers of a rendered view (which must be of this scene, camera and pose): metres,
+/// NaN = no return.
+[[nodiscard]] Image<float> sense_depth(const RaycastScene& scene, const Camera& camera, const Rigid3& world_from_camera,
+                                       const RenderedView& view, const SensorOptions& options, std::uint64_t seed,
+                                       int num_threads = 1);
+
+/// The colour image that the sensor delivers of an ideal one: gain, white balance, pixel noise.
+[[nodiscard]] Image<Rgb8> sense_color(const Image<Rgb8>& ideal, const SensorOptions& options, std::uint64_t seed,
+                                      int num_threads = 1);
+
+/// Depth whose disparity is the nearest multiple of the step; `focal_baseline` = focal length (px) times baseline (m).
+[[nodiscard]] double quantize_depth(double depth_m, double focal_baseline, double disparity_step_px);
+
+}  // namespace resight

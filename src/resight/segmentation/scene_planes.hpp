@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "resight/segmentation/smooth_segments.hpp"
+
+namespace resight {
+
+struct FindPlanesOptions {
+  double max_distance_m = 0.01;     ///< Of a plane's points (V4R: 2 cm, which swallows boxes that lie flat).
+  double max_angle_rad = 0.523599;  ///< Of their normals (V4R: 30 deg).
+  int min_points = 5000;            ///< At the resolution of a full view (1/525 m at 1 m); scaled to the cloud's.
+  int num_threads = 1;              ///< Same bits for any value >= 1.
+  void check() const;
+};
+
+/// A dominant plane of the scene (table, wall, shelf), world frame: normal . p = offset. The normal faces the cameras.
+/// Bounded: a plane says nothing beyond the edge of what was seen of it.
+struct ScenePlane {
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
+  float offset = 0;
+  float extent_m = 0;  ///< Largest distance of two of its points.
+  int num_points = 0;
+
+  [[nodiscard]] float signed_distance(const Eigen::Vector3f& p) const { return normal.dot(p) - offset; }
+  /// Whether the foot of `p` lies within the plane's outline: in a cell between points of its row and of its column,
+  /// holes (under objects) included.
+  [[nodiscard]] bool covers(const Eigen::Vector3f& p) const;
+  /// Whether a surface point with normal is of the plane.
+  [[nodiscard]] bool holds(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float max_distance_m,
+                           float min_dot) const {
+    return std::abs(signed_distance(p)) <= max_distance_m && normal.dot(n) >= min_dot && covers(p);
+  }
+
+  Eigen::Vector3f axis_u = Eigen::Vector3f::UnitX();
+  Eigen::Vector3f axis_v = Eigen::Vector3f::UnitY();
+  Eigen::Vector2f origin_uv = Eigen::Vector2f::Zero();
+  struct Range {
+    int first = 1;
+    int last = 0;  ///< Inclusive; last < first: empty.
+  };
+  std::vector<Range> rows;     ///< Per cell in v: covered cells in u.
+  std::vector<Range> columns;  ///< Per cell in u: covered cells in v.
+};
+
+struct ScenePlanes {
+  std::vector<ScenePlane> planes;
+  std::vector<int> plane_of_point;  ///< -1 = in none.
+};
+
+/// `spacing_m`: of the cloud. Fits planes to the large smooth segments and collects all points within max_distance_m
+/// and max_angle_rad of them (coplanar pieces of one table are one plane). V4R grows regions and wants 5,000 pixels; a
+/// reconstruction has fewer points for the same area, so the count is scaled from the spacing of a full view (1/525 m
+/// at 1 m) to the resolution.
+[[nodiscard]] ScenePlanes find_scene_planes(std::span<const Eigen::Vector3f> points,
+                                            std::span<const Eigen::Vector3f> normals, const SmoothSegments& segments,
+                                            double spacing_m, const FindPlanesOptions& options);
+
+/// The same of a cloud thinned to `spacing_m`, with segments of it.
+[[nodiscard]] ScenePlanes find_planes_of_thinned(std::span<const Eigen::Vector3f> points,
+                                                 std::span<const Eigen::Vector3f> normals, double spacing_m,
+                                                 const FindPlanesOptions& options);
+
+/// Number of the first plane that each point is of, or -1.
+[[nodiscard]] std::vector<int> assign_to_planes(std::span<const Eigen::Vector3f> points,
+                                                std::span<const Eigen::Vector3f> normals,
+                                                std::span<const ScenePlane> planes, const FindPlanesOptions& options);
+
+}  // namespace resight

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/shape_search/pose_scorer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "resight/appearance/pattern_similarity.hpp"
+#include "resight/appearance/photometric_fit.hpp"
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/registration/point_to_plane.hpp"
+#include "resight/shape_search/scene_samples.hpp"
+#include "resight/shape_search/silhouette.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kSpacingShare = 0.05;
+constexpr double kMinSpacing_m = 0.005;
+constexpr float kMinFacing = 0.25F;    // Cosine between normal and viewing ray: steeper ones are measured badly.
+constexpr float kMinNormalDot = 0.5F;  // 60 deg.
+constexpr float kMinDepth_m = 0.05F;
+constexpr int kMinPairs = 15;
+constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of the samples: without holes.
+constexpr float kMaxContinuationOffset_m = 0.005F;
+constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
+constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
+constexpr float kMaxGain = 0.25F;  // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
+constexpr float kMinPlane_m = 0.1F;
+constexpr float kPlaneDistance_m = 0.01F;
+constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
+constexpr float kLargerThan = 1.2F;    // As the verification has it: a plane no larger may be the object's own face.
+const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+
+// Mean distance to the nearest other sample.
+float spacing_of(const std::vector<Eigen::Vector3f>& points) {
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    float nearest_sq = std::numeric_limits<float>::infinity();
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j != i) nearest_sq = std::min(nearest_sq, (points[i] - points[j]).squaredNorm());
+    sum += std::sqrt(static_cast<double>(nearest_sq));
+  }
+  return points.size() < 2 ? 0 : static_cast<float>(sum / static_cast<double>(points.size()));
+}
+
+std::vector<SampleBlock> to_blocks(const std::vector<Eigen::Vector3f>& points,
+                                   const std::vector<Eigen::Vector3f>& normals) {
+  constexpr std::size_t kSize = SampleBlock::kSize;
+  std::vector<SampleBlock> blocks((points.size() + kSize - 1) / kSize);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SampleBlock& block = blocks[i / kSize];
+    const std::size_t k = i % kSize;
+    block.x[k] = points[i].x();
+    block.y[k] = points[i].y();
+    block.z[k] = points[i].z();
+    block.nx[k] = normals[i].x();
+    block.ny[k] = normals[i].y();
+    block.nz[k] = normals[i].z();
+  }
+  return blocks;
+}
+
+// The extent of the largest plane that a pixel lies on.
+float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes) {
+  float extent_m = 0;
+  if (!cloud.has_normal(pixel)) return extent_m;
+  const Eigen::Vector3f p = cloud.point(pixel);
+  const Eigen::Vector3f n = cloud.normal(pixel);
+  for (const ScenePlane& plane : planes)
+    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && std::abs(plane.signed_distance(p)) <= kPlaneDistance_m &&
+        plane.normal.dot(n) >= kMinPlaneDot && plane.covers(p))
+      extent_m = plane.extent_m;
+  return extent_m;
+}
+
+}  // namespace
+
+void CountSamplesOptions::check() const {
+  check_positive("CountSamplesOptions.max_samples", max_samples);
+  check_not_negative("CountSamplesOptions.max_wrong", max_wrong);
+  check_positive("CountSamplesOptions.tolerance_m", tolerance_m);
+  check_not_negative("CountSamplesOptions.tolerance_sigmas", tolerance_sigmas);
+  check_positive("CountSamplesOptions.max_chroma_difference", max_chroma_difference);
+}
+
+ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
+  const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
+  PointCloud samples = sample_surface(model.surface, spacing_m, max_samples);
+  ProbeModel result;
+  if (samples.has_colors()) result.linear_light = to_linear_light(samples.colors);
+  set_white_balance(result, Eigen::Array3f::Zero());
+  result.points = std::move(samples.points);
+  result.normals = std::move(samples.normals);
+  result.blocks = to_blocks(result.points, result.normals);
+  result.spacing_m = spacing_of(result.points);
+  result.center = model.center;
+  result.diameter_m = model.diameter_m;
+  for (const Eigen::Vector3f& p : result.points)
+    result.radius_m = std::max<double>(result.radius_m, (p - result.center).norm());
+  return result;
+}
+
+PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
+    : view_(view),
+      pixels_(view.cloud.width(), view.cloud.height()),
+      oriented_(view.cloud.width(), view.cloud.height()),
+      lab_(view.cloud.width(), view.cloud.height()),
+      fx_(static_cast<float>(view.frame.camera.fx)),
+      fy_(static_cast<float>(view.frame.camera.fy)),
+      cx_(static_cast<float>(view.frame.camera.cx) + 0.5F),
+      cy_(static_cast<float>(view.frame.camera.cy) + 0.5F) {
+  parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      lab_[i] = to_lab(view.frame.color[i]);
+      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes), chroma(lab_[i])};
+      const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
+      oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
+    }
+  });
+}
+
+Image<std::uint8_t> PoseProbe::off_larger_planes(float diameter_m) const {
+  Image<std::uint8_t> mask(pixels_.width(), pixels_.height());
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    mask[i] = pixels_[i].plane_extent_m > kLargerThan * diameter_m ? 0 : 255;
+  return mask;
+}
+
+int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
+  if (!(p.z() > kMinDepth_m)) return -1;
+  const float u = fx_ * p.x() / p.z() + cx_;
+  const float v = fy_ * p.y() / p.z() + cy_;
+  if (!(u >= 0 && v >= 0 && u < static_cast<float>(lab_.width()) && v < static_cast<float>(lab_.height()))) return -1;
+  return static_cast<int>(lab_.index(static_cast<int>(u), static_cast<int>(v)));
+}
+
+float PoseProbe::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
+  const double seen_z_m = std::max(kMinDepth_m, z_m);  // The centre may lie behind the camera.
+  return static_cast<float>(tolerance_m + sigmas * nguyen_noise(seen_z_m, 0, view_.frame.camera.fx).axial_m);
+}
+
+// No branches in its loops: the compiler makes vector code of them.
+SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object,
+                              const CountSamplesOptions& options, double min_score) const {
+  SampleCounts counts;
+  const bool has_colors = !model.chroma.empty();
+  const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
+  const float max_plane_m = kLargerThan * model.diameter_m;
+  const float tolerance =
+      tolerance_at((camera_from_object * model.center).z(), options.tolerance_m, options.tolerance_sigmas);
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const PosedBlock posed = project(model.blocks[b], camera_from_object);
+    std::array<Pixel, SampleBlock::kSize> pixels;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) pixels[k] = pixels_[static_cast<std::size_t>(posed.pixel[k])];
+    const Eigen::Vector2f* chroma = has_colors ? &model.chroma[b * SampleBlock::kSize] : nullptr;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
+      const Pixel& pixel = pixels[k];
+      const float ahead_m = pixel.z_m - posed.samples.z[k];  // NaN: no comparison holds.
+      const int measured = posed.faces[k] & posed.inside[k];
+      const int near = measured & int{std::abs(ahead_m) <= tolerance};
+      const int on_plane = int{pixel.plane_extent_m > max_plane_m};
+      const int confirmed = near & ~on_plane;
+      counts.facing += posed.faces[k];
+      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -tolerance});
+      counts.through += (measured & int{ahead_m > tolerance}) | (near & on_plane);
+      counts.confirmed += confirmed;
+      if (has_colors) counts.off_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
+    }
+    const float share_left = 1 - static_cast<float>(counts.facing) / static_cast<float>(options.max_samples);
+    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4 ||
+                     counts.score() < static_cast<float>(min_score) - kMaxGain * std::max(0.0F, share_left);
+    if (counts.gave_up || counts.facing >= options.max_samples) break;
+  }
+  return counts;
+}
+
+PoseProbe::PosedBlock PoseProbe::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
+  const Eigen::Matrix3f& r = camera_from_object.rotation;
+  const Eigen::Vector3f& t = camera_from_object.translation;
+  const auto width = static_cast<float>(lab_.width());
+  const auto height = static_cast<float>(lab_.height());
+  PosedBlock posed;
+  for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
+    const float x = r(0, 0) * block.x[k] + r(0, 1) * block.y[k] + r(0, 2) * block.z[k] + t.x();
+    const float y = r(1, 0) * block.x[k] + r(1, 1) * block.y[k] + r(1, 2) * block.z[k] + t.y();
+    const float z = r(2, 0) * block.x[k] + r(2, 1) * block.y[k] + r(2, 2) * block.z[k] + t.z();
+    const float nx = r(0, 0) * block.nx[k] + r(0, 1) * block.ny[k] + r(0, 2) * block.nz[k];
+    const float ny = r(1, 0) * block.nx[k] + r(1, 1) * block.ny[k] + r(1, 2) * block.nz[k];
+    const float nz = r(2, 0) * block.nx[k] + r(2, 1) * block.ny[k] + r(2, 2) * block.nz[k];
+    const float facing = -(nx * x + ny * y + nz * z);
+    const float least = kMinFacing * kMinFacing * (x * x + y * y + z * z);
+    const float inverse_z = 1 / std::max(z, kMinDepth_m);
+    const float u = fx_ * x * inverse_z + cx_;
+    const float v = fy_ * y * inverse_z + cy_;
+    const bool inside = (z > kMinDepth_m) & (u >= 0) & (v >= 0) & (u < width) & (v < height);
+    posed.faces[k] = int{(facing > 0) & (facing * facing > least)};
+    posed.inside[k] = int{inside};
+    posed.column[k] = static_cast<int>(inside ? u : 0.0F);
+    posed.row[k] = static_cast<int>(inside ? v : 0.0F);
+    posed.pixel[k] = posed.row[k] * lab_.width() + posed.column[k];
+    posed.samples.x[k] = x;
+    posed.samples.y[k] = y;
+    posed.samples.z[k] = z;
+    posed.samples.nx[k] = nx;
+    posed.samples.ny[k] = ny;
+    posed.samples.nz[k] = nz;
+  }
+  return posed;
+}
+
+StepEquations PoseProbe::linearize(const ProbeModel& model, const Rigid3& camera_from_object,
+                                   double max_distance_m) const {
+  const Rigid3f motion(camera_from_object);
+  const Eigen::Vector3f middle = motion * model.center;
+  const float inverse_distance_sq = static_cast<float>(1 / (max_distance_m * max_distance_m));
+  BlockEquations equations(model.radius_m);
+  for (const SampleBlock& block : model.blocks) {
+    const PosedBlock posed = project(block, motion);
+    const SampleBlock& p = posed.samples;
+    std::array<OrientedPixel, SampleBlock::kSize> pixels;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
+      pixels[k] = oriented_[static_cast<std::size_t>(posed.pixel[k])];
+    PairBlock pairs;
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k) {
+      const OrientedPixel& m = pixels[k];
+      const float dx = (static_cast<float>(posed.column[k]) + 0.5F - cx_) / fx_ * m.z_m - p.x[k];
+      const float dy = (static_cast<float>(posed.row[k]) + 0.5F - cy_) / fy_ * m.z_m - p.y[k];
+      const float dz = m.z_m - p.z[k];
+      const float u = 1 - (dx * dx + dy * dy + dz * dz) * inverse_distance_sq;
+      const float dot = m.nx * p.nx[k] + m.ny * p.ny[k] + m.nz * p.nz[k];
+      const bool is_pair = ((posed.faces[k] & posed.inside[k]) != 0) & (u > 0) & (dot >= kMinNormalDot);  // False: NaN.
+      pairs.arm[0][k] = p.x[k] - middle.x();
+      pairs.arm[1][k] = p.y[k] - middle.y();
+      pairs.arm[2][k] = p.z[k] - middle.z();
+      pairs.normal[0][k] = is_pair ? m.nx : 0;
+      pairs.normal[1][k] = is_pair ? m.ny : 0;
+      pairs.normal[2][k] = is_pair ? m.nz : 0;
+      pairs.residual[k] = is_pair ? m.nx * dx + m.ny * dy + m.nz * dz : 0;
+      pairs.weight[k] = is_pair ? u * u : 0;
+    }
+    equations.add(pairs);
+  }
+  return equations.sum();
+}
+
+Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
+                         double max_distance_m) const {
+  Rigid3 pose = camera_from_object;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    const StepEquations equations = linearize(model, pose, max_distance_m);
+    if (equations.num_pairs < kMinPairs) break;
+    if (equations.step(pose, model.center.cast<double>(), model.radius_m) < StepEquations::kStill_m) break;
+  }
+  return pose;
+}
+
+PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& camera_from_object,
+                                        double tolerance_m) const {
+  const Rigid3f motion(camera_from_object);
+  const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
+  Confirmed confirmed;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const PosedBlock posed = project(model.blocks[b], motion);
+    for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
+      if (posed.faces[k] != 0) confirm_sample(model, b * SampleBlock::kSize + k, posed, k, tolerance, confirmed);
+  }
+  return confirmed;
+}
+
+void PoseProbe::confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
+                               float tolerance, Confirmed& confirmed) const {
+  ++confirmed.facing;
+  if (posed.inside[k] == 0) {
+    ++confirmed.hidden;
+    return;
+  }
+  const auto at = static_cast<std::size_t>(posed.pixel[k]);
+  confirmed.outline.emplace_back(posed.column[k], posed.row[k]);
+  const Pixel& pixel = pixels_[at];
+  if (std::isnan(pixel.z_m)) return;
+  const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
+  const float ahead_m = pixel.z_m - posed.samples.z[k];
+  if (ahead_m < -tolerance) {
+    ++confirmed.hidden;
+  } else if (ahead_m > tolerance || pixel.plane_extent_m > kLargerThan * model.diameter_m ||
+             oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
+    ++confirmed.wrong;
+  } else {
+    confirmed.samples.push_back(static_cast<int>(sample));
+    confirmed.pixels.push_back(at);
+    confirmed.normals.push_back(normal);
+    if (model.linear_light.empty()) return;
+    confirmed.model_light.push_back(model.linear_light[sample]);
+    confirmed.scene_light.push_back(to_linear_light(view_.frame.color[at]));
+  }
+}
+
+LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                             const LightLimits& limits) const {
+  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
+  return fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, limits);
+}
+
+// Counts as explained only what is of like colour, too.
+void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
+  const LightFit light = fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
+  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
+  const auto max_exponent = static_cast<float>(-std::log(options.min_inlier_weight));
+  std::vector<LabColor> seen;
+  std::vector<LabColor> expected;
+  seen.reserve(confirmed.samples.size());
+  expected.reserve(confirmed.samples.size());
+  fit.num_explained = 0;
+  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
+    expected.push_back(to_lab(light(confirmed.model_light[k], confirmed.normals[k])));
+    seen.push_back(lab_[confirmed.pixels[k]]);
+    if (tolerance.exponent(expected[k], seen[k]) < max_exponent) ++fit.num_explained;
+  }
+  fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
+}
+
+double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& confirmed,
+                                   const VerifyOptions& options) const {
+  const float z = view_.cloud.z[confirmed.pixels.front()];
+  const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
+  Silhouette silhouette(confirmed.outline, cell_px);
+  for (std::size_t k = 0; k < confirmed.pixels.size(); ++k) {
+    const auto pixel = static_cast<int>(confirmed.pixels[k]);
+    silhouette.set_known(Eigen::Vector2f(pixel % lab_.width(), pixel / lab_.width()), pixel);
+  }
+  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
+  const auto continues = [&](std::size_t from, std::size_t to) {
+    if (!view_.cloud.has_normal(from) || !view_.cloud.has_normal(to)) return false;
+    const Eigen::Vector3f normal = view_.cloud.normal(from);
+    return std::abs(normal.dot(view_.cloud.point(to) - view_.cloud.point(from))) < kMaxContinuationOffset_m &&
+           normal.dot(view_.cloud.normal(to)) > kMinContinuationDot &&
+           tolerance.exponent(lab_[from], lab_[to]) < kMaxContinuationExponent;
+  };
+  int num_cells = 0;
+  silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
+    const int u = static_cast<int>(px.x());
+    const int v = static_cast<int>(px.y());
+    if (px.x() < 0 || px.y() < 0 || u >= lab_.width() || v >= lab_.height()) return false;
+    const bool goes_on = continues(static_cast<std::size_t>(known_pixel), lab_.index(u, v));
+    num_cells += goes_on ? 1 : 0;
+    return goes_on;
+  });
+  return num_cells * static_cast<double>(kCellSpacings * kCellSpacings);
+}
+
+PoseFit PoseProbe::shape_fit(const Confirmed& confirmed) {
+  PoseFit fit;
+  if (confirmed.samples.empty()) return fit;
+  fit.num_explained = static_cast<int>(confirmed.samples.size());
+  fit.explained_share = static_cast<double>(fit.num_explained) / (fit.num_explained + confirmed.wrong);
+  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  return fit;
+}
+
+bool PoseProbe::fits_in_shape(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                              const PoseFit& least) const {
+  return shape_fit(confirm(model, camera_from_object, tolerance_m)).reaches(least);
+}
+
+PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                         const VerifyOptions& colors, const PoseFit& least) const {
+  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
+  PoseFit fit = shape_fit(confirmed);
+  if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
+  const double num_visible = fit.num_explained + confirmed.wrong;
+  if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
+  fit.explained_share = fit.num_explained / num_visible;
+  if (!fit.reaches(least)) return fit;
+  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, colors));
+  return fit;
+}
+
+void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance) {
+  model.chroma.clear();
+  for (const Eigen::Vector3f& color : model.linear_light)
+    model.chroma.push_back(chroma(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval())));
+  constexpr std::size_t kSize = SampleBlock::kSize;
+  model.chroma.resize((model.chroma.size() + kSize - 1) / kSize * kSize, Eigen::Vector2f::Zero());
+}
+
+}  // namespace resight

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/shape_search/pose_scorer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/shape_search/scene_samples.hpp"
+#include "resight/shape_search/testing/box_on_table.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+TEST(SampleSurface, PointsAreApartAndNoMoreThanAllowed) {
+  const BoxOnTable c;
+  const PointCloud samples = sample_surface(c.model.surface, 0.01, 10000);
+  ASSERT_GT(samples.size(), 200U);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool alike = samples.normals[i].dot(samples.normals[j]) > 0.9F;
+      EXPECT_TRUE(!alike || (samples.points[i] - samples.points[j]).norm() >= 0.0099F);
+    }
+  EXPECT_LE(sample_surface(c.model.surface, 0.01, 50).size(), 50U);
+  EXPECT_GE(sample_surface(c.model.surface, 0.01, 50).size(), 25U);
+  // Faces that look six ways never cover each other, nor do normals that are none.
+  EXPECT_EQ(sample_surface(c.model.surface, 0.01, 1).size(), 1U);
+  PointCloud broken = c.model.surface;
+  for (Eigen::Vector3f& n : broken.normals) n.setConstant(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_TRUE(sample_surface(broken, 0.01, 50).empty());
+  PointCloud bare = c.model.surface;
+  bare.normals.clear();
+  EXPECT_TRUE(sample_surface(bare, 0.01, 50).empty());
+}
+
+TEST(SampleScene, LeavesTheTableOutAndKeepsWhatStandsOnIt) {
+  const BoxOnTable c;
+  const PointCloud scene = sample_scene(c.view).points;
+  ASSERT_GT(scene.size(), 100U);
+  const Rigid3f world_from_camera(c.view.frame.world_from_camera);
+  int on_table = 0;
+  for (const Eigen::Vector3f& p : scene.points) on_table += (world_from_camera * p).z() < 0.005F ? 1 : 0;
+  EXPECT_LT(on_table, static_cast<int>(scene.size() / 10));
+}
+
+TEST(SampleScene, NothingSeenNothingSampled) {
+  BoxOnTable c;
+  RgbdFrame frame = c.view.frame;
+  for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(sample_scene(prepare_view(frame)).points.empty());
+}
+
+TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
+  const BoxOnTable c;
+  CountSamplesOptions options;
+  options.max_wrong = 1000;
+  const SampleCounts right = c.probe.count(c.samples, Rigid3f(c.truth), options);
+  EXPECT_GE(right.facing, options.max_samples);
+  EXPECT_LT(right.facing, options.max_samples + SampleBlock::kSize);
+  EXPECT_GT(right.confirmed, 0.9 * right.facing);
+  EXPECT_LT(right.off_color, 0.25 * right.facing);
+
+  const auto along_view = [&](double shift_m) {
+    Rigid3 pose = c.truth;
+    pose.translation += shift_m * pose.translation.normalized();
+    return c.probe.count(c.samples, Rigid3f(pose), options);
+  };
+  EXPECT_GT(along_view(-0.1).through, 0.9 * options.max_samples);
+  EXPECT_GT(along_view(0.1).hidden, 0.9 * options.max_samples);
+
+  Rigid3 outside = c.truth;
+  outside.translation.x() += 5;
+  const SampleCounts none = c.probe.count(c.samples, Rigid3f(outside), options);
+  EXPECT_GT(none.facing, 0);
+  EXPECT_EQ(none.hidden, none.facing);
+
+  // Behind the camera, at whatever distance: nothing is known there.
+  for (const double z : {-0.2, -1.0, -3.0}) {
+    Rigid3 behind = c.truth;
+    behind.translation.z() = z;
+    const SampleCounts counts = c.probe.count(c.samples, Rigid3f(behind), options);
+    EXPECT_GT(counts.facing, 0);
+    EXPECT_EQ(counts.hidden, counts.facing) << z;
+    EXPECT_EQ(c.probe.judge(c.samples, behind, 0.008, {}).num_explained, 0) << z;
+  }
+
+  options.max_wrong = 3;
+  Rigid3 near = c.truth;
+  near.translation *= 0.8;
+  const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(near), options);
+  EXPECT_TRUE(stopped.gave_up);
+  EXPECT_LT(stopped.facing, 10);
+}
+
+TEST(PoseProbe, RefinesARoughPose) {
+  const BoxOnTable c;
+  const Rigid3 rough = disturb(c.truth, {0.006, -0.005, 0.007}, {1, 2, 0.5}, 0.1);
+  const Rigid3 refined = c.probe.refine(c.samples, rough, 20, 0.02);
+  const auto error_m = [&](const Rigid3& pose) {
+    double worst = 0;
+    for (const Eigen::Vector3f& p : c.samples.points)
+      worst = std::max(worst, ((pose * p.cast<double>().eval()) - (c.truth * p.cast<double>().eval())).norm());
+    return worst;
+  };
+  EXPECT_GT(error_m(rough), 0.008);
+  EXPECT_LT(error_m(refined), 0.003);
+  EXPECT_EQ(c.probe.refine(c.samples, rough, 0, 0.02).translation, rough.translation);
+}
+
+TEST(PoseProbe, JudgesDepthAndColour) {
+  const BoxOnTable c;
+  VerifyOptions colors;
+  const PoseFit right = c.probe.judge(c.samples, c.truth, 0.008, colors);
+  EXPECT_GT(right.explained_share, 0.85);
+  EXPECT_GT(right.visible_share, 0.95);
+  EXPECT_GT(right.pattern_similarity, 0.7);
+
+  Solid other = c.box;
+  other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
+  const PoseFit wrong_print = c.probe.judge(make_probe_model(make_model("other", other), 300), c.truth, 0.008, colors);
+  EXPECT_LT(wrong_print.explained_share, right.explained_share - 0.2);
+
+  Rigid3 through = c.truth;
+  through.translation *= 0.85;
+  EXPECT_LT(c.probe.judge(c.samples, through, 0.008, colors).explained_share, 0.3);
+}
+
+TEST(PoseProbe, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
+  const BoxOnTable c;
+  CountSamplesOptions options;
+  options.max_wrong = 1000;
+  Rigid3 hidden = c.truth;
+  hidden.translation *= 1.2;
+  EXPECT_FALSE(c.probe.count(c.samples, Rigid3f(hidden), options).gave_up);
+  const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(hidden), options, 0.6);
+  EXPECT_TRUE(stopped.gave_up);
+  EXPECT_LT(stopped.facing, options.max_samples);
+  EXPECT_FALSE(c.probe.count(c.samples, Rigid3f(c.truth), options, 0.6).gave_up);
+}
+
+TEST(PoseProbe, JudgesToTheEndWhatReachesTheLeastFit) {
+  const BoxOnTable c;
+  const PoseFit whole = c.probe.judge(c.samples, c.truth, 0.008, {});
+  const PoseFit judged = c.probe.judge(c.samples, c.truth, 0.008, {}, {.explained_share = 0.5});
+  EXPECT_EQ(judged.explained_share, whole.explained_share);
+  EXPECT_EQ(judged.pattern_similarity, whole.pattern_similarity);
+  Rigid3 off = c.truth;
+  off.translation *= 0.85;
+  const PoseFit cut = c.probe.judge(c.samples, off, 0.008, {}, {.explained_share = 0.5});
+  EXPECT_FALSE(cut.reaches({.explained_share = 0.5}));
+  EXPECT_GE(cut.explained_share, c.probe.judge(c.samples, off, 0.008, {}).explained_share);
+}
+
+TEST(PoseProbe, WhatLiesOnALargerPlaneIsNotTheObjects) {
+  // A card of the table's colour, in the table.
+  const Solid card{Shape::kBox, {0.12, 0.08, 0.01}, plain({150, 140, 130}), on_table(0, 0, -0.005)};
+  const World table{.solids = {}};
+  const PreparedView view = prepare_view(render(table, circle_of_cameras(3)[0]).frame);
+  const SceneSamples scene = sample_scene(view);
+  ASSERT_FALSE(scene.planes.empty());
+  const ProbeModel samples = make_probe_model(make_model("card", card), 300);
+  const Rigid3 pose = view.frame.world_from_camera.inverse() * card.world_from_object;
+  const PoseProbe blind(view, {}, 1);
+  const PoseProbe probe(view, scene.planes, 1);
+  EXPECT_GT(blind.count(samples, Rigid3f(pose), {}).confirmed, 20);
+  const SampleCounts counts = probe.count(samples, Rigid3f(pose), {});
+  EXPECT_TRUE(counts.gave_up);
+  EXPECT_EQ(counts.confirmed, 0);
+  EXPECT_EQ(probe.judge(samples, pose, 0.008, {}).explained_share, 0);
+  // A plane no larger than the object may be its own face.
+  std::vector<ScenePlane> small = scene.planes;
+  for (ScenePlane& plane : small) plane.extent_m = 0.15F;
+  EXPECT_GT(PoseProbe(view, small, 1).count(samples, Rigid3f(pose), {}).confirmed, 20);
+}
+
+TEST(PoseProbe, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
+  // A small box in a corner of a crate of the same colour; the same box alone, and beside one of another colour.
+  const Solid small{Shape::kBox, {0.08, 0.08, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
+  const Solid crate{Shape::kBox, {0.2, 0.2, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
+  Solid beside = small;
+  beside.paint = plain({60, 80, 190});
+  beside.world_from_object = small.world_from_object * Rigid3::from_translation({0.08, 0, 0});
+  const ProbeModel samples = make_probe_model(make_model("small", small), 300);
+  const auto explained = [&](const World& world) {
+    const PreparedView view = prepare_view(render(world, circle_of_cameras(3)[0]).frame);
+    const Rigid3 pose = view.frame.world_from_camera.inverse() * small.world_from_object;
+    return PoseProbe(view, {}, 1).judge(samples, pose, 0.008, {}).explained_share;
+  };
+  EXPECT_GT(explained({.solids = {small}}), 0.85);
+  EXPECT_GT(explained({.solids = {small, beside}}), 0.75);
+  EXPECT_LT(explained({.solids = {crate}}), 0.6);
+}
+
+TEST(PoseProbe, PixelsOutsideAndBehindAreNone) {
+  const BoxOnTable c;
+  EXPECT_EQ(c.probe.pixel_of({0, 0, -1}), -1);
+  EXPECT_EQ(c.probe.pixel_of({10, 0, 1}), -1);
+  EXPECT_EQ(c.probe.pixel_of({std::numeric_limits<float>::quiet_NaN(), 0, 1}), -1);
+  const Camera& camera = c.view.frame.camera;
+  const Eigen::Vector3d corner = camera.unproject(camera.width - 0.51, camera.height - 0.51, 1);
+  EXPECT_EQ(c.probe.pixel_of(corner.cast<float>()), camera.width * camera.height - 1);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "resight/geometry/point_cloud.hpp"
+#include "resight/segmentation/scene_planes.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+
+struct SampleSceneOptions {
+  double spacing_m = 0.008;         ///< One point a voxel of this size.
+  double max_depth_m = 2.0;         ///< Normals of farther points say little.
+  double max_plane_m = 0.4;         ///< Points of planes whose extent is larger (tables, walls) are left out.
+  double min_edge_distance_px = 2;  ///< Nearer to a depth edge, normals are bent.
+  int num_threads = 1;              ///< Same bits for any value >= 1.
+  void check() const;
+};
+
+/// A view thinned, with mean normals and colours. Camera frame.
+struct SceneSamples {
+  PointCloud points;               ///< Those that may belong to an object: not of large planes.
+  std::vector<ScenePlane> planes;  ///< Of any size.
+};
+
+[[nodiscard]] SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options = {});
+
+/// A subset of a surface with normals, no two points of similar normal nearer than `spacing_m`; normals are means over
+/// the surroundings of `spacing_m`, so that edges are as round as a sensor sees them. The spacing grows until at most
+/// `max_points` are left. In random order: any first part of them is spread over the whole surface.
+[[nodiscard]] PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_points);
+
+}  // namespace resight

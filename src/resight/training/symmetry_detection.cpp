@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/training/symmetry_detection.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <tuple>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+#include "resight/training/internal/rotation_group.hpp"
+#include "resight/training/internal/self_overlap.hpp"
+
+namespace resight {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using internal::SelfOverlap;
+using internal::turn_about;
+using internal::TurnAxis;
+using Axes = std::vector<TurnAxis>;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kGoldenAngle_rad = 2.399963;  // of its multiples no two are ever the same turn
+constexpr int kContinuousTurns = 16;
+constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not what the other half looks like
+constexpr double kAlike = 0.8;           // principal moments whose quotient is above this do not tell their axes apart
+constexpr int kCircleDirections = 36;
+constexpr int kSphereDirections = 800;        // of which half are tried: 7 deg apart
+constexpr double kDirectionError_rad = 0.07;  // of the nearest direction that is tried
+constexpr double kMinRoughShare = 0.8;
+constexpr double kMinSeparation_rad = 0.12;  // of candidates: nearer ones are refined to the same axis
+constexpr std::size_t kMaxRefined = 24;      // candidates of an order; an icosahedron has 15 axes of half turns
+constexpr std::array kOrders = {12, 10, 8, 6, 5, 4, 3, 2};
+constexpr double kMinGain = 0.02;
+constexpr double kSameAxis_rad = 0.17;
+constexpr std::array<double, 3> kSpinAngles_rad = {kGoldenAngle_rad, 2 * kGoldenAngle_rad, 3 * kGoldenAngle_rad};
+
+bool is_usable(const PointCloud& surface) {
+  const auto is_finite = [](const Eigen::Vector3f& v) { return v.allFinite(); };
+  return surface.size() >= SelfOverlap::kMinPoints && surface.has_normals() &&
+         std::ranges::all_of(surface.points, is_finite) && std::ranges::all_of(surface.normals, is_finite);
+}
+
+/// Directions that an axis of symmetry may have: orders above 2 and continuous ones only in `main`.
+struct Directions {
+  std::vector<Vector3d> main;
+  std::vector<Vector3d> half_turn;
+};
+
+std::vector<Vector3d> half_sphere() {
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < kSphereDirections / 2; ++i) {  // a spiral from pole to equator
+    const double z = 1 - (i + 0.5) * 2 / kSphereDirections;
+    const double r = std::sqrt(1 - z * z);
+    directions.emplace_back(r * std::cos(kGoldenAngle_rad * i), r * std::sin(kGoldenAngle_rad * i), z);
+  }
+  return directions;
+}
+
+// A symmetry leaves the tensor of second moments as it is: its axis is an eigenvector, and if it turns by less than
+// half the other two moments are equal.
+Directions find_directions(const Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
+  const Vector3d moments = solver.eigenvalues().cwiseMax(1e-12);  // ascending
+  const Matrix3d axes = solver.eigenvectors();
+  const bool low_alike = moments(0) > kAlike * moments(1);
+  const bool high_alike = moments(1) > kAlike * moments(2);
+  Directions directions;
+  for (int k = 0; k < 3; ++k) directions.half_turn.emplace_back(axes.col(k));
+  if (low_alike && high_alike) {
+    directions.main = directions.half_turn;
+    for (const Vector3d& d : half_sphere()) directions.main.push_back(d);
+    directions.half_turn = directions.main;
+  } else if (low_alike || high_alike) {
+    directions.main = {axes.col(low_alike ? 2 : 0)};
+    for (int i = 0; i < kCircleDirections; ++i) {
+      const double angle = kPi * i / kCircleDirections;
+      directions.half_turn.emplace_back(std::cos(angle) * axes.col(1) + std::sin(angle) * axes.col(low_alike ? 0 : 2));
+    }
+  }
+  return directions;
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))); }
+
+// The directions of the highest shares (0 = none), best first, none beside a better one.
+std::vector<Vector3d> pick_best(const std::vector<Vector3d>& directions, const std::vector<double>& shares) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    if (shares[i] > 0) order.push_back(i);
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return shares[a] > shares[b]; });
+  std::vector<Vector3d> picked;
+  for (const std::size_t i : order) {
+    if (picked.size() == kMaxRefined) break;
+    const auto is_near = [&](const Vector3d& other) {
+      return angle_between(directions[i], other) < kMinSeparation_rad;
+    };
+    if (std::ranges::none_of(picked, is_near)) picked.push_back(directions[i]);
+  }
+  return picked;
+}
+
+// The axes through the centre about which turns by all the angles may be symmetries, the best first.
+Axes find_rough_axes(const SelfOverlap& overlap, const std::vector<Vector3d>& directions,
+                     std::span<const double> angles_rad, int num_threads) {
+  std::vector<double> shares(directions.size(), 1.0);
+  parallel_for(directions.size(), num_threads, [&](std::size_t i) {
+    for (const double angle : angles_rad) {
+      if (shares[i] == 0) return;
+      // An axis that is off by e puts what is turned about it off by 2 sin(angle / 2) e.
+      const double slack_rad = 2 * std::abs(std::sin(angle / 2)) * kDirectionError_rad;
+      const Rigid3 turn = turn_about({directions[i], overlap.center()}, angle);
+      shares[i] = std::min(shares[i], overlap.rough_share(turn, slack_rad, kMinRoughShare));
+    }
+  });
+  Axes axes;
+  for (const Vector3d& direction : pick_best(directions, shares)) axes.push_back({direction, overlap.center()});
+  return axes;
+}
+
+// Rough axes refined, of which those stay about which a test holds; of axes that have become the same the first.
+template <typename Test>
+Axes keep_true_axes(const SelfOverlap& overlap, Axes axes, std::span<const double> angles_rad, int num_threads,
+                    const Test& test) {
+  std::vector<char> holds(axes.size());
+  parallel_for(axes.size(), num_threads, [&](std::size_t i) {
+    axes[i] = overlap.refine(axes[i], angles_rad);
+    holds[i] = test(axes[i]) ? 1 : 0;
+  });
+  Axes kept;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto is_same = [&](const TurnAxis& other) {
+      return angle_between(axes[i].direction, other.direction) < kSameAxis_rad;
+    };
+    if (holds[i] != 0 && std::ranges::none_of(kept, is_same)) kept.push_back(axes[i]);
+  }
+  return kept;
+}
+
+bool is_continuous(const SelfOverlap& overlap, const TurnAxis& axis) {
+  for (int k = 1; k <= kContinuousTurns; ++k)
+    if (!overlap.is_symmetry(turn_about(axis, k * kGoldenAngle_rad))) return false;
+  return true;
+}
+
+/// The point nearest to all axes; where they leave it free, as near as possible to `center`.
+Vector3d meeting_point(const Axes& axes, const Vector3d& center) {
+  constexpr double kPull = 1e-6;
+  Matrix3d a = kPull * Matrix3d::Identity();
+  Vector3d b = kPull * center;
+  for (const TurnAxis& axis : axes) {
+    const Matrix3d off_axis = Matrix3d::Identity() - axis.direction * axis.direction.transpose();
+    a += off_axis;
+    b += off_axis * axis.point;
+  }
+  return a.ldlt().solve(b);
+}
+
+Vector3d any_perpendicular(const Vector3d& direction) {
+  const Vector3d least = std::abs(direction.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
+  return (least - least.dot(direction) * direction).normalized();
+}
+
+// The sign that makes the largest component positive.
+Vector3d canonical(const Vector3d& direction) {
+  Eigen::Index largest = 0;
+  direction.cwiseAbs().maxCoeff(&largest);
+  return direction(largest) < 0 ? Vector3d(-direction) : direction;
+}
+
+ObjectSymmetries::Continuous to_continuous(const Vector3d& direction, const Vector3d& point) {
+  return {.axis = canonical(direction), .offset = point};
+}
+
+// A second axis across the first one: then it is a ball.
+std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const TurnAxis& axis) {
+  const TurnAxis across =
+      overlap.refine({any_perpendicular(axis.direction), meeting_point({axis}, overlap.center())}, kSpinAngles_rad);
+  if (!is_continuous(overlap, across)) return std::nullopt;
+  const Vector3d center = meeting_point({axis, across}, overlap.center());
+  const Vector3d second = (across.direction - across.direction.dot(axis.direction) * axis.direction).normalized();
+  const Vector3d third = axis.direction.cross(second);
+  for (const Vector3d& direction : {axis.direction, second, third})
+    if (!is_continuous(overlap, {direction, center})) return std::nullopt;
+  ObjectSymmetries ball;
+  ball.continuous = {to_continuous(axis.direction, center), to_continuous(second, center)};
+  return ball;
+}
+
+// A half turn across the axis, if the object is the same upside down.
+std::optional<Rigid3> find_flip(const SelfOverlap& overlap, const TurnAxis& axis) {
+  const Vector3d start = meeting_point({axis}, overlap.center());
+  const TurnAxis across = overlap.refine({any_perpendicular(axis.direction), start}, std::array{kPi});
+  // Where along the axis it lies is what has been sought; the rest follows from the axis.
+  const Vector3d point = axis.point + axis.direction.dot(across.point - axis.point) * axis.direction;
+  const Rigid3 flip = turn_about({any_perpendicular(axis.direction), point}, kPi);
+  return overlap.is_symmetry(flip) ? std::optional(flip) : std::nullopt;
+}
+
+std::optional<ObjectSymmetries> find_round(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
+  const Axes rough = find_rough_axes(overlap, directions.main, kSpinAngles_rad, num_threads);
+  const Axes axes = keep_true_axes(overlap, rough, kSpinAngles_rad, num_threads,
+                                   [&](const TurnAxis& axis) { return is_continuous(overlap, axis); });
+  if (axes.empty()) return std::nullopt;
+  if (std::optional<ObjectSymmetries> ball = complete_ball(overlap, axes.front())) return ball;
+  ObjectSymmetries round;
+  round.continuous.push_back(to_continuous(axes.front().direction, meeting_point({axes.front()}, overlap.center())));
+  if (const std::optional<Rigid3> flip = find_flip(overlap, axes.front())) round.discrete.push_back(*flip);
+  return round;
+}
+
+/// An axis and the order of the turns about it.
+struct OrderedAxis {
+  TurnAxis axis;
+  int order = 2;
+};
+
+// A turn that fits no better than half of it tells nothing about the order: a round thing whose colours vary a little
+// passes at some angles and fails at others.
+bool is_of_order(const SelfOverlap& overlap, const TurnAxis& axis, int order) {
+  const Rigid3 turn = turn_about(axis, 2 * kPi / order);
+  return overlap.is_symmetry(turn) && overlap.share(turn) > overlap.share(turn_about(axis, kPi / order)) + kMinGain;
+}
+
+// In descending order; of each axis only the turns that do not follow from those found before.
+std::vector<OrderedAxis> find_ordered_axes(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
+  std::vector<OrderedAxis> found;
+  for (const int order : kOrders) {
+    const std::array<double, 1> angle = {2 * kPi / order};
+    const Axes rough =
+        find_rough_axes(overlap, order == 2 ? directions.half_turn : directions.main, angle, num_threads);
+    const Axes axes = keep_true_axes(overlap, rough, angle, num_threads,
+                                     [&](const TurnAxis& axis) { return is_of_order(overlap, axis, order); });
+    for (const TurnAxis& axis : axes) {
+      const auto follows = [&](const OrderedAxis& other) {
+        return other.order % order == 0 && angle_between(axis.direction, other.axis.direction) < kSameAxis_rad;
+      };
+      if (std::ranges::none_of(found, follows)) found.push_back({axis, order});
+    }
+  }
+  return found;
+}
+
+// All motions of the group that the turns generate, without the identity, if each of them is a symmetry.
+std::optional<std::vector<Rigid3>> complete_group(const SelfOverlap& overlap, const std::vector<OrderedAxis>& turns) {
+  std::vector<Matrix3d> generators;
+  Axes axes;
+  for (const auto& [axis, order] : turns) {
+    generators.push_back(Rigid3::from_axis_angle(axis.direction, 2 * kPi / order).rotation);
+    axes.push_back(axis);
+  }
+  const auto rotations = internal::generate_rotation_group(generators);
+  if (!rotations) return std::nullopt;
+  const Vector3d center = meeting_point(axes, overlap.center());
+  std::vector<Rigid3> motions;
+  for (std::size_t i = 1; i < rotations->size(); ++i) {
+    const Matrix3d& rotation = (*rotations)[i];
+    motions.push_back({rotation, center - rotation * center});
+    if (!overlap.is_symmetry(motions.back())) return std::nullopt;
+  }
+  return motions;
+}
+
+// By axis (those of most turns first, then x before y before z), and about each axis by angle.
+void sort_motions(std::vector<Rigid3>& motions) {
+  struct Entry {
+    Rigid3 motion;
+    Vector3d axis;
+    double angle_rad = 0;
+    std::ptrdiff_t order = 0;
+  };
+  std::vector<Entry> entries;
+  for (const Rigid3& motion : motions) {
+    const Eigen::AngleAxisd turn(motion.rotation);
+    const Vector3d axis = canonical(turn.axis());
+    const double angle = axis.dot(turn.axis()) < 0 ? 2 * kPi - turn.angle() : turn.angle();
+    entries.push_back({motion, axis, angle});
+  }
+  for (Entry& entry : entries)
+    entry.order =
+        std::ranges::count_if(entries, [&](const Entry& other) { return other.axis.cross(entry.axis).norm() < 1e-6; });
+  const auto key = [](const Entry& e) {
+    const auto rounded = [](double x) { return std::lround(-1e4 * x); };
+    return std::tuple(-e.order, rounded(e.axis.x()), rounded(e.axis.y()), rounded(e.axis.z()), e.angle_rad);
+  };
+  std::ranges::stable_sort(entries, {}, key);
+  for (std::size_t i = 0; i < entries.size(); ++i) motions[i] = entries[i].motion;
+}
+
+// The largest group, as far as taking turns in one by one finds it.
+std::vector<Rigid3> find_discrete(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
+  std::vector<OrderedAxis> turns;
+  std::vector<Rigid3> motions;
+  for (const OrderedAxis& turn : find_ordered_axes(overlap, directions, num_threads)) {
+    turns.push_back(turn);
+    if (auto group = complete_group(overlap, turns))
+      motions = *std::move(group);
+    else
+      turns.pop_back();
+  }
+  sort_motions(motions);
+  return motions;
+}
+
+}  // namespace
+
+void SymmetryOptions::check() const {
+  check_in_range("SymmetryOptions.min_agreement", min_agreement, 0.5, 1);
+  check_in_range("SymmetryOptions.min_close_agreement", min_close_agreement, 0, 1);
+  check_positive("SymmetryOptions.max_distance_m", max_distance_m);
+  check_in_range("SymmetryOptions.max_distance_share", max_distance_share, 0, 0.1);
+  check_in_range("SymmetryOptions.max_normal_angle_rad", max_normal_angle_rad, 0, kPi / 2);
+  check_in_range("SymmetryOptions.blur_share", blur_share, 0, 0.5);
+  check_positive("SymmetryOptions.max_brightness_difference", max_brightness_difference);
+  check_positive("SymmetryOptions.max_chroma_difference", max_chroma_difference);
+  check_in_range("SymmetryOptions.num_samples", num_samples, 100, 100000);
+  check_positive("SymmetryOptions.num_threads", num_threads);
+}
+
+ObjectSymmetries find_symmetries(const PointCloud& surface, const SymmetryOptions& options) {
+  options.check();
+  if (!is_usable(surface)) return {};
+  const SelfOverlap overlap(surface, options);
+  if (!(overlap.mean_normal_length() < kMaxMeanNormal)) return {};
+  const Directions directions = find_directions(overlap.covariance());
+  if (std::optional<ObjectSymmetries> round = find_round(overlap, directions, options.num_threads)) return *round;
+  ObjectSymmetries symmetries;
+  symmetries.discrete = find_discrete(overlap, directions, options.num_threads);
+  return symmetries;
+}
+
+}  // namespace resight

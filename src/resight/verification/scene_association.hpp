@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "resight/appearance/photometric_fit.hpp"
+#include "resight/verification/local_scene.hpp"
+#include "resight/verification/scene_preparation.hpp"
+#include "resight/verification/visibility.hpp"
+
+namespace resight {
+
+/// Zero, which no shading applies to, where there are no normals.
+[[nodiscard]] inline Eigen::Vector3f normal_at(const std::vector<Eigen::Vector3f>& normals, std::size_t i) {
+  if (normals.empty()) return Eigen::Vector3f::Zero();
+  return normals[i];
+}
+
+/// A visible model point and a scene point within the inlier distance.
+struct PointMatch {
+  int visible;  ///< Position in ModelVisibility::visible.
+  int local;    ///< Index into the LocalScene.
+  float distance_sq;
+};
+
+/// What views and scene show where a model is said to be: which of its points are visible, their neighbours in the
+/// scene, and the light on them. World frame.
+class ModelLook {
+ public:
+  /// `allowed`: per view, non-zero = the object may be present there. Model, scene and options must outlive it.
+  ModelLook(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+            std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+
+  /// How well the colours agree where model and scene meet: as patterns, and one by one. What the scene's white balance
+  /// is the other hypotheses have still to say; until then there is none.
+  [[nodiscard]] double color_fit() const;
+  /// At most so large a share of the visible points can be explained, whatever their colours.
+  [[nodiscard]] double supported_share() const;
+  /// Cosine between the normals of a match; 1 where there are none.
+  [[nodiscard]] float normal_dot(const PointMatch& match) const {
+    return local_normals.empty()
+               ? 1.0F
+               : normals[static_cast<std::size_t>(visibility.visible[static_cast<std::size_t>(match.visible)])].dot(
+                     local_normals[static_cast<std::size_t>(match.local)]);
+  }
+
+  Rigid3 world_from_object;
+  std::vector<Eigen::Vector3f> points;   ///< Of the model.
+  std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
+  ModelVisibility visibility;
+  float depth_noise_m = 0;                     ///< Standard deviation, of the farthest view that sees it where it is.
+  std::optional<LocalScene> local;             ///< The scene around it; none if nothing of it is visible.
+  std::vector<Eigen::Vector3f> local_normals;  ///< Of its points; empty if model or scene has none.
+  std::vector<LabColor> local_lab;             ///< Likewise.
+  std::vector<PointMatch> matches;             ///< Those of one visible point stand side by side.
+  std::vector<PointMatch> nearest;             ///< Of each visible point that has one of similar normal.
+  LightFit light;                              ///< As the colours of this model alone would have it.
+
+ private:
+  [[nodiscard]] float largest_depth_noise(std::span<const DepthView> views) const;
+  void compare_with_scene();
+  void find_matches();
+  void fit_light_of_matches();
+
+  const PreparedModel* model_;
+  const PreparedScene* scene_;
+  const VerifyOptions* options_;
+};
+
+/// Of up to two thousand points of the model at this pose those that are visible: enough to refine a pose with.
+[[nodiscard]] std::vector<int> find_roughly_visible(const PreparedModel& model, const Rigid3& world_from_object,
+                                                    std::span<const DepthView> views,
+                                                    std::span<const std::uint8_t> allowed,
+                                                    const VerifyOptions& options);
+
+}  // namespace resight

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/symmetry_resolution.hpp"
+
+#include "resight/appearance/pattern_similarity.hpp"
+#include "resight/verification/scene_preparation.hpp"
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kMaxComparedPoints = 150;
+constexpr std::size_t kMinComparedPoints = 20;
+constexpr double kMinSimilarityGain = 0.05;  // Of the likeness: noise alone does not turn what was found by its print.
+
+// Two prints whose mean hues differ are not alike, however well their patterns agree.
+double likeness(std::span<const LabColor> model, std::span<const LabColor> scene, double chroma_weight) {
+  constexpr double kHueWeight = 8;
+  double da = 0;
+  double db = 0;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    da += model[i].a - scene[i].a;
+    db += model[i].b - scene[i].b;
+  }
+  const auto n = static_cast<double>(model.size());
+  return pattern_similarity(model, scene, chroma_weight) - kHueWeight * (da * da + db * db) / (n * n);
+}
+
+}  // namespace
+
+Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points, double chroma_weight) {
+  Rigid3 best = Rigid3::identity();
+  if (model.turns.size() < 2 || points.size() < kMinComparedPoints) return best;
+  const std::size_t step = (points.size() + kMaxComparedPoints - 1) / kMaxComparedPoints;
+  std::vector<LabColor> seen;
+  for (std::size_t i = 0; i < points.size(); i += step) seen.push_back(points[i].color);
+  std::vector<LabColor> expected(seen.size());
+  double best_likeness = 0;
+  for (const Rigid3& turn : model.turns) {
+    const Rigid3f turned_from_object(turn.inverse());
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const int nearest = model.nearest.nearest(turned_from_object * points[k * step].p_in_object);
+      expected[k] = nearest < 0 ? LabColor{} : model.lab[static_cast<std::size_t>(nearest)];
+    }
+    const double found = likeness(expected, seen, chroma_weight);
+    const bool is_first = &turn == &model.turns.front();
+    if (!is_first && found <= best_likeness) continue;
+    best_likeness = found + (is_first ? kMinSimilarityGain : 0);
+    best = turn;
+  }
+  return best;
+}
+
+}  // namespace resight

@@ -1,0 +1,504 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/verify_options.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "resight/core/random.hpp"
+#include "resight/verification/testing/verify_fixture.hpp"
+
+namespace resight {
+namespace {
+
+using namespace analytic;
+
+TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
+  const Fixture f(one_box(), circle_of_cameras(3, 0.8, 0.6, 2.0));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  std::vector<Hypothesis> hypotheses;
+  Rng rng(3);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d shift(rng.uniform(0.02, 0.06), rng.uniform(-0.06, 0.06), 0);
+    hypotheses.push_back(make_hypothesis(kBox, disturb(truth, shift, kZ, rng.uniform(0.3, 2.0))));
+  }
+  hypotheses.push_back(make_hypothesis(kCylinder, on_table(0, 0, 0.06)));
+  hypotheses.push_back(make_hypothesis(kSphere, on_table(0.02, 0, 0.045)));
+  hypotheses.insert(hypotheses.begin() + 4,
+                    make_hypothesis(kBox, disturb(truth, {0.002, -0.001, 0.001}, Eigen::Vector3d(1, 2, 3), 0.03)));
+  const VerifyResult result = f.verify(hypotheses, make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(4));
+  EXPECT_GT(result.evidence[4].fit, 0.85);
+  EXPECT_GE(result.num_planes, 1);
+  EXPECT_LT(result.cost, 0);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
+    EXPECT_GE(result.evidence[i].fit, 0);
+    EXPECT_LE(result.evidence[i].fit, 1);
+    if (result.evidence[i].verdict == Verdict::kOutvoted) {
+      EXPECT_EQ(result.evidence[i].outvoted_by, 4);
+    }
+  }
+}
+
+TEST(VerifyHypotheses, RejectsAnAbsentObject) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const VerifyResult result = f.verify(
+      {make_hypothesis(kCylinder, on_table(0.25, 0.1, 0.06)), make_hypothesis(kSphere, on_table(-0.2, 0, 0.3))},
+      make_library());
+  EXPECT_THAT(accepted(result), testing::IsEmpty());
+  EXPECT_EQ(result.cost, 0);
+  for (const HypothesisEvidence& e : result.evidence) {
+    EXPECT_EQ(e.verdict, Verdict::kNoSupport);
+    EXPECT_GT(e.num_visible, 100);
+    EXPECT_LT(e.explained_share, 0.2);
+  }
+}
+
+TEST(VerifyHypotheses, AcceptsTwoInstancesSideBySide) {
+  // A gap of 5 mm: each one's explained points reach over to the other.
+  const Rigid3 left = on_table(0, -0.0375, 0.07);
+  const Rigid3 right = on_table(0, 0.0375, 0.07);
+  const Fixture f({.solids = {placed(make_box(), left), placed(make_box(), right)}}, circle_of_cameras(4));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, left), make_hypothesis(kBox, on_table(0, 0, 0.07)), make_hypothesis(kBox, right)},
+               make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0, 2));
+}
+
+TEST(VerifyHypotheses, AcceptsTouchingAndStackedObjects) {
+  const Rigid3 box = on_table(0, 0, 0.07);
+  const Rigid3 on_top = on_table(0, 0, 0.20);              // Stands on the box.
+  const Rigid3 beside = on_table(0.05 + 0.045, 0, 0.045);  // Touches its side.
+  const Fixture f({.solids = {placed(make_box(), box), placed(make_cylinder(), on_top), placed(make_sphere(), beside)}},
+                  circle_of_cameras(5));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, box), make_hypothesis(kCylinder, on_top), make_hypothesis(kSphere, beside)},
+               make_library());
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0, 1, 2));
+}
+
+TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  for (const DuplicityRule rule : {DuplicityRule::kBeyondBest, DuplicityRule::kAllWeights}) {
+    const VerifyResult result =
+        f.verify({make_hypothesis(kBox, disturb(truth, {0.002, 0, 0}, kZ, 0)), make_hypothesis(kBox, truth),
+                  make_hypothesis(kBox, disturb(truth, {0, 0.002, 0}, kZ, 0.02))},
+                 make_library(), {.duplicity_rule = rule});
+    ASSERT_EQ(accepted(result).size(), 1U);
+    const int winner = accepted(result)[0];
+    for (int i = 0; i < 3; ++i) {
+      if (i == winner) continue;
+      EXPECT_EQ(result.evidence[i].verdict, Verdict::kOutvoted);
+      EXPECT_EQ(result.evidence[i].outvoted_by, winner);
+      EXPECT_LT(result.evidence[i].cost_alone, 0);
+    }
+  }
+}
+
+TEST(VerifyHypotheses, TellsLookAlikesByColor) {
+  ModelLibrary library = make_library();
+  Solid wrong = make_box();
+  wrong.paint = checks({40, 160, 60}, {60, 60, 180}, 0.03);
+  library.objects.push_back(make_model("green box", wrong));
+  for (const double brightness : {1.0, 0.7}) {
+    World world = one_box();
+    world.brightness = brightness;
+    const Fixture f(world, circle_of_cameras(4));
+    const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+    const std::vector<Hypothesis> both = {make_hypothesis(3, truth), make_hypothesis(kBox, truth)};
+    const VerifyResult result = f.verify(both, library);
+    EXPECT_THAT(accepted(result), testing::ElementsAre(1)) << "brightness " << brightness;
+    EXPECT_GT(result.evidence[1].fit, result.evidence[0].fit + 0.2);
+    // Even without a rival, and accepted when colour is not looked at.
+    EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
+    EXPECT_THAT(accepted(f.verify({both[0]}, library, {.use_color = false})), testing::ElementsAre(0));
+  }
+}
+
+TEST(VerifyHypotheses, AcceptsAHalfOccludedObject) {
+  // One camera from the front, low; a wide board in front hides the lower half of the box.
+  const Rigid3 truth = on_table(0, 0, 0.07);
+  const Rigid3 camera = look_at({0, -0.9, 0.12}, {0, 0, 0.07});
+  const Solid board{Shape::kBox, {0.4, 0.02, 0.075}, plain({90, 90, 90}), on_table(0, -0.12, 0.0375)};
+  World world{.solids = {placed(make_box(), truth)}};
+  const Fixture open(world, {camera});
+  world.solids.push_back(board);
+  const Fixture hidden(world, {camera});
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  const VerifyResult before = open.verify(hypotheses, make_library());
+  const VerifyResult after = hidden.verify(hypotheses, make_library());
+  EXPECT_THAT(accepted(before), testing::ElementsAre(0));
+  EXPECT_THAT(accepted(after), testing::ElementsAre(0));
+  // Front face 10 x 14 cm of a surface of 616 cm^2 = 0.227; the top face is seen at a cosine of about 0.13 or less.
+  EXPECT_NEAR(before.evidence[0].visible_share, 0.227, 0.03);
+  // The ray over the board's rear edge (0, -0.11, 0.075) meets the front face y = -0.035 at z = 0.071 (less 2 cm margin
+  // behind the board: none).
+  EXPECT_NEAR(after.evidence[0].visible_share, 0.227 * (0.14 - 0.0707) / 0.14, 0.03);
+  EXPECT_GT(after.evidence[0].fit, 0.8);
+}
+
+TEST(VerifyHypotheses, ThePresenceMaskTakesTheEvidenceAway) {
+  const Fixture f(one_box(), circle_of_cameras(3));
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth), make_hypothesis(kBox, truth)};
+  // View-major: hypothesis 0 nowhere, hypothesis 1 in view 1 only.
+  const VerifyResult result = f.verify(hypotheses, make_library(), {}, {0, 0, 0, 1, 0, 0});
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kTooFewVisible);
+  EXPECT_EQ(result.evidence[0].num_visible, 0);
+  EXPECT_THAT(result.evidence[0].visible_share_per_view, testing::Each(0.0F));
+  EXPECT_EQ(result.evidence[1].visible_share_per_view[0], 0);
+  EXPECT_GT(result.evidence[1].visible_share_per_view[1], 0.2);
+  EXPECT_GT(result.evidence[1].explained_share_per_view[1], 0.85);
+  EXPECT_EQ(result.evidence[1].visible_share_per_view[2], 0);
+  EXPECT_NEAR(result.evidence[1].visible_share, result.evidence[1].visible_share_per_view[1], 1e-6);
+}
+
+TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
+  // Its top face lies in the table's surface and has the table's colour: all that is visible of it is explained by the
+  // plane.
+  ModelLibrary library = make_library();
+  library.objects.push_back(make_model("slab", {Shape::kBox, {0.15, 0.12, 0.05}, plain({140, 120, 100}), {}}));
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, on_table(0.25, 0.1, -0.025)),
+                                              make_hypothesis(3, on_table(-0.25, 0.1, -0.02))};
+  const VerifyResult result = f.verify(hypotheses, library);
+  EXPECT_THAT(accepted(result), testing::IsEmpty());
+  EXPECT_GT(result.evidence[0].fit, 0.7);  // Its sides count as visible down to the margin.
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
+  EXPECT_GT(result.evidence[0].plane_cost, 100);
+  // The planes are what rejects it.
+  EXPECT_FALSE(
+      accepted(f.verify(hypotheses, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false}))
+          .empty());
+}
+
+TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
+  const Fixture f(one_box(), circle_of_cameras(4));
+  const VerifyResult result =
+      f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
+               make_library(), {.min_explained_share = 0.1});
+  EXPECT_LT(result.evidence[0].plane_cost, 60);
+  EXPECT_GT(result.evidence[1].plane_cost, 300);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, FollowsAMovedObject) {
+  // Views 0 and 1 saw the box at its old place and were cleared there (no depth); views 2 and 3 see it at the new one.
+  const Rigid3 old_place = on_table(-0.12, 0, 0.07, 0.4);
+  const Rigid3 new_place = on_table(0.15, 0.05, 0.07, 1.2);
+  const std::vector<Rigid3> cameras = circle_of_cameras(4, 0.8, 0.6, 1.5);
+  const World before{.solids = {placed(make_box(), old_place)}};
+  const World after{.solids = {placed(make_box(), new_place)}};
+  std::vector<PreparedView> views = {render(before, cameras[0]), render(before, cameras[1]), render(after, cameras[2]),
+                                     render(after, cameras[3])};
+  for (int v = 0; v < 2; ++v)
+    for (std::size_t i = 0; i < views[v].cloud.z.size(); ++i) {
+      if (!views[v].cloud.has_point(i)) continue;
+      const Eigen::Vector3d p = views[v].frame.world_from_camera * views[v].cloud.point(i).cast<double>();
+      if ((p - old_place.translation).norm() > 0.11) continue;
+      for (Image<float>* image : {&views[v].cloud.x, &views[v].cloud.y, &views[v].cloud.z, &views[v].cloud.nx,
+                                  &views[v].cloud.ny, &views[v].cloud.nz, &views[v].frame.depth_m})
+        (*image)[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+  const std::vector<VerificationView> refs = references(views);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, old_place), make_hypothesis(kBox, new_place)};
+  const std::vector<std::uint8_t> new_only_later = {1, 0, 1, 0, 1, 1, 1, 1};
+  const VerifyResult result = verify_hypotheses(hypotheses, make_library(), merge(views), refs, new_only_later);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kNoSupport);
+  EXPECT_LT(result.evidence[0].explained_share_per_view[3], 0.3);
+}
+
+TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
+  // The scene still holds the box's points (the change was missed), but two of three views look through it.
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
+  const std::vector<PreparedView> views = {render(one_box(), cameras[0]), render({}, cameras[1]),
+                                           render({}, cameras[2])};
+  const std::vector<VerificationView> refs = references(views);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  EXPECT_THAT(accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {})), testing::IsEmpty());
+  EXPECT_THAT(
+      accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {}, {.max_seen_through_share = 1})),
+      testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
+  const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
+  const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
+  const VerifyOptions newest{.newest_view_decides = true};
+  const auto accepts = [&](const std::vector<PreparedView>& views, const VerifyOptions& options) {
+    return !accepted(verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options))
+                .empty();
+  };
+  // Two older views look through the place of what has just come.
+  const std::vector<PreparedView> came = {render({}, cameras[0]), render({}, cameras[1]),
+                                          render(one_box(), cameras[2])};
+  EXPECT_TRUE(accepts(came, newest));
+  EXPECT_FALSE(accepts(came, {}));
+  // Two older views still show what the newest looks through.
+  const std::vector<PreparedView> gone = {render(one_box(), cameras[0]), render(one_box(), cameras[1]),
+                                          render({}, cameras[2])};
+  EXPECT_FALSE(accepts(gone, newest));
+  EXPECT_TRUE(accepts(gone, {}));
+}
+
+TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
+  // They look through what the newest view cannot see: the far sides of the box.
+  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
+  const std::vector<Rigid3> cameras = circle_of_cameras(3);
+  const auto evidence = [&](const std::vector<World>& worlds, double max_absent_share) {
+    std::vector<PreparedView> views;
+    for (std::size_t v = 0; v < 3; ++v) views.push_back(render(worlds[v], cameras[v]));
+    const VerifyOptions options{.newest_view_decides = true, .max_absent_share = max_absent_share};
+    return verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options).evidence[0];
+  };
+  const HypothesisEvidence came = evidence({{}, {}, one_box()}, 0.6);
+  EXPECT_TRUE(came.accepted);
+  EXPECT_GT(came.explained_share, 0.95);
+  EXPECT_EQ(came.visible_share_per_view[0], 0);
+  EXPECT_EQ(came.visible_share_per_view[1], 0);
+  EXPECT_EQ(evidence({{}, {}, one_box()}, 1).verdict, Verdict::kNoSupport);
+  // What came and went: the newest view looks through it, and nothing excuses that.
+  const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
+  EXPECT_FALSE(gone.accepted);
+  EXPECT_GT(gone.visible_share_per_view[2], 0.1);
+  EXPECT_GT(gone.visible_share_per_view[0], 0);
+}
+
+TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
+  // The box is measured at its place and up to 14 mm too near.
+  const auto clutter = [](double distance_m, double clutter_sigmas) {
+    const Rigid3 camera = look_at({distance_m, 0, 0.1}, {0, 0, 0.05});
+    const Rigid3 pose = on_table(0, 0, 0.07);
+    const Fixture f({.solids = {placed(make_box(), pose)}, .has_table = false}, {camera});
+    const Eigen::Vector3f towards = (camera.translation - pose.translation).normalized().cast<float>();
+    PointCloud scene = f.scene;
+    for (std::size_t i = 0; i < f.scene.size(); ++i) scene.points[i] += 0.0035F * static_cast<float>(i % 5) * towards;
+    const VerifyOptions options{.inlier_distance_m = 0.01,
+                                .clutter_weight = 6,
+                                .continuation_offset_m = 0.005,
+                                .clutter_sigmas = clutter_sigmas,
+                                .refine = {.max_iterations = 0},
+                                .use_planes = false};
+    const std::vector<VerificationView> refs = references(f.views);
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, pose)};
+    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].clutter_cost;
+  };
+  EXPECT_GT(clutter(2.2, 0), 100);
+  EXPECT_LT(clutter(2.2, 3), 0.2 * clutter(2.2, 0));
+  EXPECT_GT(clutter(0.8, 0), 100);
+  EXPECT_EQ(clutter(0.8, 3), clutter(0.8, 0));  // 14 mm are more than noise there.
+}
+
+TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
+  ModelLibrary library = make_library();
+  const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  library.objects.push_back(make_model("small", small));
+  VerifyOptions options{
+      .clutter_weight = 6, .continuation_offset_m = 0.005, .use_planes = false, .min_explained_share = 0};
+  const auto clutter = [&](const World& world, const Rigid3& pose) {
+    const Fixture f(world, circle_of_cameras(4));
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
+    const HypothesisEvidence e = f.verify(hypotheses, library, options).evidence[0];
+    EXPECT_GT(e.explained_scene, 100);
+    return e.clutter_cost / e.explained_scene;
+  };
+  // Alone, and beside a lower box and one of another colour that touch it.
+  EXPECT_LT(clutter({.solids = {small}}, small.world_from_object), 0.2);
+  const Solid lower{Shape::kBox, {0.1, 0.1, 0.05}, plain({180, 170, 60}), on_table(0.1, 0, 0.025)};
+  const Solid other{Shape::kBox, {0.1, 0.1, 0.08}, plain({60, 80, 190}), on_table(-0.1, 0, 0.04)};
+  EXPECT_LT(clutter({.solids = {small, lower, other}}, small.world_from_object), 0.35);
+  // Within a board of the same height and colour.
+  const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
+  EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
+}
+
+TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
+  const auto evidence = [](const Paint& paint, double contrast) {
+    const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, paint, on_table(0, 0, 0.04)};
+    const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, paint, on_table(0, 0, 0.04)};
+    const ModelLibrary library{.objects = {make_model("small", small)}};
+    const Fixture f({.solids = {board}}, circle_of_cameras(4));
+    const VerifyOptions options{.clutter_weight = 6,
+                                .continuation_offset_m = 0.005,
+                                .continuation_contrast = contrast,
+                                .refine = {.max_iterations = 0},
+                                .use_planes = false};
+    return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
+  };
+  const Paint yellow = plain({180, 170, 60});
+  const double full = evidence(yellow, 0).clutter_cost;
+  EXPECT_GT(full, 100);
+  EXPECT_LT(evidence(yellow, 0.5).shared_contrast, 0.01);
+  EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
+  const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
+  const double full_of_printed = evidence(printed, 0).clutter_cost;
+  EXPECT_GT(full_of_printed, 100);
+  const HypothesisEvidence e = evidence(printed, 0.5);
+  EXPECT_GT(e.shared_contrast, 0.5);
+  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_contrast / 0.5, 2)), 1e-2 * full_of_printed);
+}
+
+// Painted all round, so that each turn looks different.
+Solid printed_can() {
+  const Paint paint = [](const Eigen::Vector3d& p) {
+    const double angle = std::atan2(p.y(), p.x());
+    return angle < -1.5 ? Rgb8{200, 40, 40} : angle < 0.3 ? Rgb8{230, 220, 200} : Rgb8{50, 80, 180};
+  };
+  return {Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0, 0, 0.06, 0.4)};
+}
+
+TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
+  const Solid can = printed_can();
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
+  const auto angle_left_deg = [&](double turned_deg, double step_rad) {
+    const Rigid3 pose = can.world_from_object * Rigid3::from_axis_angle(kZ, turned_deg / 57.29578);
+    const VerifyResult result = f.verify({make_hypothesis(0, pose)}, library, {.turn_step_rad = step_rad});
+    return 57.29578 * rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation);
+  };
+  for (const double turned_deg : {-100.0, 37.0, 170.0}) {
+    EXPECT_NEAR(angle_left_deg(turned_deg, 0), std::abs(turned_deg), 5) << turned_deg;  // Shape says nothing of it.
+    EXPECT_LT(angle_left_deg(turned_deg, 0.1745), 12) << turned_deg;
+  }
+  EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
+}
+
+TEST(VerifyHypotheses, NoTurnToAWorseFit) {
+  // In blue light the yellowish side looks as blue as the other; its print is its own.
+  const auto painted = [](double blue) -> Paint {
+    return [=](const Eigen::Vector3d& p) {
+      const bool front = p.x() > 0;
+      const bool dark = std::fmod(std::abs(p.z()) + (front ? 0.0 : 0.0015), 0.02) < 0.01;
+      const double grey = dark ? 130 : 170;
+      return Rgb8{static_cast<std::uint8_t>(grey * (front ? 1 : 0.8) / blue), static_cast<std::uint8_t>(grey),
+                  static_cast<std::uint8_t>(std::min(255.0, grey * (front ? 0.8 : 1) * blue))};
+    };
+  };
+  Solid can = printed_can();
+  can.world_from_object = on_table(0, 0, 0.06);
+  can.paint = painted(1);
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  can.paint = painted(1.7);
+  const Fixture f({.solids = {can}}, {look_at({0.8, 0, 0.4}, {0, 0, 0.05})});
+  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
+}
+
+TEST(VerifyHypotheses, APlainCanIsNotTurned) {
+  // Scan and scene each have stains of their own, of which some turn fits a little better.
+  const auto stained = [](double frequency) -> Paint {
+    return [=](const Eigen::Vector3d& p) {
+      const double stain = std::sin(frequency * p.x() + 40 * p.z()) * std::cos(1.3 * frequency * p.y());
+      const auto grey = static_cast<std::uint8_t>(150 + 15 * stain);
+      return Rgb8{grey, grey, static_cast<std::uint8_t>(grey + 10)};
+    };
+  };
+  Solid can = printed_can();
+  can.paint = stained(90);
+  ModelLibrary library{.objects = {make_model("can", can)}};
+  can.paint = stained(120);
+  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});  // As if its own had been overlooked.
+  const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
+  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
+}
+
+TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
+  // A small box claims a part of a large box's side and top.
+  ModelLibrary library = make_library();
+  const Solid large{Shape::kBox, {0.3, 0.2, 0.2}, plain({180, 170, 60}), on_table(0, 0, 0.1)};
+  library.objects.push_back(make_model("crate", large));
+  library.objects.push_back(make_model("small", {Shape::kBox, {0.06, 0.06, 0.06}, plain({180, 170, 60}), {}}));
+  const Fixture f({.solids = {large}}, circle_of_cameras(4));
+  const Rigid3 corner = Rigid3::from_translation({0.12, 0.07, 0.17});
+  const std::vector<Hypothesis> both = {make_hypothesis(3, large.world_from_object), make_hypothesis(4, corner)};
+  // The crate's faces are planes, larger than the small box.
+  const VerifyResult with_planes = f.verify(both, library);
+  EXPECT_THAT(accepted(with_planes), testing::ElementsAre(0));
+  EXPECT_GT(with_planes.evidence[1].plane_cost, 50);
+  const VerifyResult segments_only = f.verify(both, library, {.use_planes = false});
+  EXPECT_THAT(accepted(segments_only), testing::ElementsAre(0));
+  EXPECT_GT(segments_only.evidence[1].clutter_cost, 200);
+  EXPECT_LT(segments_only.evidence[0].clutter_cost, 50);
+  // Also without the rival, and it is the clutter cue that does it.
+  const std::vector<Hypothesis> small = {both[1]};
+  EXPECT_THAT(accepted(f.verify(small, library, {.use_planes = false})), testing::IsEmpty());
+  EXPECT_THAT(accepted(f.verify(small, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false})),
+              testing::ElementsAre(0));
+}
+
+TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
+  // Black for white: the similarity is negative.
+  const Rgb8 dark{80, 80, 80};
+  const Rgb8 bright{200, 200, 200};
+  Solid box{Shape::kBox, {0.1, 0.1, 0.1}, checks(dark, bright, 0.02), on_table(0, 0, 0.05)};
+  ModelLibrary library;
+  library.objects = {make_model("negative", box)};
+  box.paint = checks(bright, dark, 0.02);
+  const Fixture f({.solids = {box}}, circle_of_cameras(4));
+  const std::vector<Hypothesis> negative = {make_hypothesis(0, box.world_from_object)};
+  const HypothesisEvidence evidence =
+      f.verify(negative, library, {.light = {0, 0, 0, 0, 0}, .min_explained_share = 0}).evidence[0];
+  EXPECT_LT(evidence.pattern_similarity, 0);
+  EXPECT_GT(evidence.num_explained, 0);
+  EXPECT_NE(evidence.verdict, Verdict::kOtherPattern);
+}
+
+TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
+  // A can stands where another stood, of the same shape: the scene keeps colours of both, the newest view shows one.
+  const auto rings = [](Rgb8 even, Rgb8 odd) -> Paint {
+    return [=](const Eigen::Vector3d& p) { return std::fmod(p.z() + 1, 0.04) < 0.02 ? even : odd; };
+  };
+  Solid can{Shape::kCylinder, {0.07, 0.07, 0.12}, rings({190, 60, 60}, {220, 220, 220}), on_table(0, 0, 0.06)};
+  ModelLibrary library;
+  library.objects = {make_model("before", can)};
+  const std::vector<Rigid3> cameras = circle_of_cameras(4);
+  Fixture f({.solids = {can}}, cameras);
+  can.paint = rings({220, 220, 220}, {60, 160, 60});
+  library.objects.push_back(make_model("after", can));
+  const PreparedView newest = render_all({.solids = {can}}, {cameras[0]}).front();
+  f.views.push_back(newest);  // And the scene as older views have it.
+  const auto before = [&](double min_newest_similarity) {
+    const std::vector<Hypothesis> hypotheses = {make_hypothesis(0, can.world_from_object)};
+    return f.verify(hypotheses, library, {.min_newest_similarity = min_newest_similarity}).evidence[0];
+  };
+  EXPECT_TRUE(before(-1).accepted);
+  EXPECT_GT(before(-1).pattern_similarity, 0.8);
+  EXPECT_EQ(before(0.4).verdict, Verdict::kOtherPattern);
+  EXPECT_LT(before(0.4).newest_similarity, 0.2);
+  f.views.pop_back();
+  EXPECT_TRUE(before(0.4).accepted) << "no view shows another";
+  EXPECT_GT(before(0.4).newest_similarity, 0.8);
+}
+
+TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
+  // The same can, once striped and once in the stripes' mean colour.
+  const auto striped = [](const Eigen::Vector3d& p) {
+    return std::fmod(std::abs(p.z()), 0.02) < 0.01 ? Rgb8{200, 200, 200} : Rgb8{140, 140, 140};
+  };
+  Solid can{Shape::kCylinder, {0.07, 0.07, 0.12}, striped, on_table(0, 0, 0.06)};
+  ModelLibrary library;
+  library.objects = {make_model("striped", can)};
+  can.paint = plain({172, 172, 172});
+  library.objects.push_back(make_model("plain", can));
+  const Fixture f({.solids = {can}}, circle_of_cameras(4));
+  const std::vector<Hypothesis> either = {make_hypothesis(0, can.world_from_object),
+                                          make_hypothesis(1, can.world_from_object)};
+  const VerifyOptions options{.min_pattern_similarity = 0.8};
+  const VerifyResult result = f.verify(either, library, options);
+  EXPECT_THAT(accepted(result), testing::ElementsAre(1));
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kOtherPattern);
+  EXPECT_LT(result.evidence[0].pattern_similarity, result.evidence[1].pattern_similarity - 0.2);
+}
+
+}  // namespace
+}  // namespace resight
