@@ -68,7 +68,7 @@ std::vector<SceneUpdate> recognize(const std::string& preset, int num_previous_v
   for (ObjectEvent& event : recognizer.finish()) updates.back().events.push_back(std::move(event));
   std::vector<std::vector<ObjectEvent>*> events;
   for (SceneUpdate& update : updates) events.push_back(&update.events);
-  drop_replaced(events);
+  drop_superseded(events);
   return updates;
 }
 
@@ -95,7 +95,7 @@ std::string describe_loss(std::size_t view, const GroundTruthObject& truth, cons
   if (loss.best) text << ", best " << 1e3 * loss.best->center_distance_m << " mm " << loss.best->rotation_rad << " rad";
   if (loss.evidence)
     text << ", " << to_string(loss.evidence->verdict) << ", explained " << loss.evidence->explained_share << ", alone "
-         << loss.evidence->cost_alone;
+         << loss.evidence->unary_cost;
   text << "\n";
   return text.str();
 }
@@ -163,8 +163,8 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
                            return goal.param.preset == "default" ? std::string("best") : std::string("chd");
                          });
 
-// Attention within a view: of the third view on, a confirmed object gives no keypoints but in one of four views; unless
-// more of it must be explained than ever is.
+// ViewNovelty within a view: of the third view on, a confirmed object gives no keypoints but in one of four views;
+// unless more of it must be explained than ever is.
 TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
   constexpr std::size_t kViews = 3;
   RecognizerConfig config = RecognizerConfig::from_preset("default");
@@ -176,12 +176,12 @@ TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
   config.attention.min_sure_share = 0;
   SceneRecognizer attentive(world().library, config);
   config.attention.min_sure_share = 1;
-  SceneRecognizer unsure(world().library, config);
+  SceneRecognizer tentative(world().library, config);
   for (std::size_t v = 0; v < kViews; ++v) {
     RecognitionTrace all, less, again;
     const SceneUpdate a = everywhere.add_view(world().views[v].frame, &all);
     const SceneUpdate b = attentive.add_view(world().views[v].frame, &less);
-    (void)unsure.add_view(world().views[v].frame, &again);
+    (void)tentative.add_view(world().views[v].frame, &again);
     EXPECT_EQ(a.detections.size(), b.detections.size()) << v;
     EXPECT_EQ(all.sift.size(), again.sift.size()) << v;
     if (v + 1 < kViews) {

@@ -78,7 +78,7 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
   }
   std::vector<std::vector<ObjectEvent>*> events;
   for (ViewRecord& view : run.views) events.push_back(&view.update.events);
-  drop_replaced(events);
+  drop_superseded(events);
   run.peak_memory_bytes = peak_memory_bytes();
   return run;
 }

@@ -66,9 +66,9 @@ void compare_grouping(const StageInput& input) {
                                             consistency_m, options.min_group_size);
   };
   const auto by_votes = [&](const Pairs& pairs, const ObjectModel& model) {
-    const PointCloud thinned = voxel_downsample(model.surface, shot.support_voxel_m);
+    const PointCloud downsampled = voxel_downsample(model.surface, shot.support_voxel_m);
     return pcl_peers::group_by_votes(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,
-                                     to_plain(thinned.points), to_plain(surface.points),
+                                     to_plain(downsampled.points), to_plain(surface.points),
                                      static_cast<float>(shot.support_radius_m), consistency_m, options.min_group_size);
   };
   Posed ours, consistent, voted;

@@ -76,7 +76,7 @@ struct Replay {
 };
 
 Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& library, const std::string& preset,
-              ChangeSightFinder& sights) {
+              ChangeVisibilityFinder& sights) {
   Replay replay;
   ObjectHistory history(library, preset_or_exit(preset).history);
   std::vector<std::vector<ObjectEvent>> events;
@@ -93,7 +93,7 @@ Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& lib
   events.push_back(history.finish());
   std::vector<std::vector<ObjectEvent>*> all;
   for (auto& of_view : events) all.push_back(&of_view);
-  drop_replaced(all);
+  drop_superseded(all);
   for (const auto& of_view : events)
     for (const ObjectEvent& e : of_view)
       if (is_change(e.kind))
@@ -115,15 +115,15 @@ void print_missed(const SeenChange& c, const Replay& replay, const ModelLibrary&
              views(c.world_from_object_after, c.view - kViews), views(c.world_from_object_after, c.view));
 }
 
-void print_losses(const Replay& replay, const std::vector<TrueChange>& changes, const std::vector<ChangeSight>& sights,
-                  const ModelLibrary& library) {
+void print_losses(const Replay& replay, const std::vector<TrueChange>& changes,
+                  const std::vector<ChangeVisibility>& sights, const ModelLibrary& library) {
   std::vector<SeenChange> truths;
   for (std::size_t i = 0; i < changes.size(); ++i)
     if (changes[i].known && library.find(changes[i].object) >= 0) truths.push_back({changes[i], sights[i]});
   std::ranges::stable_sort(truths, {}, &SeenChange::view);
   const MatchDetectionsOptions options;
   const ChangeMatcher matcher(library, options);
-  truths = retell_as_reported(std::move(truths), replay.reported, matcher);
+  truths = reconcile_with_reports(std::move(truths), replay.reported, matcher);
   const std::vector<int> truth_of = match_in_order(
       truths, replay.reported, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); });
   for (std::size_t t = 0; t < truths.size(); ++t)
@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argv[4], ""));
   if (!truth.changes) exit_with(fmt::format("no changes in {}", argv[4]));
-  ChangeSightFinder sights(library, truth);
+  ChangeVisibilityFinder sights(library, truth);
   try {
     std::ifstream file(argv[3]);
     const Replay run = replay(*sequence, Json::parse(file), library, argc > 5 ? argv[5] : "default", sights);

@@ -179,7 +179,7 @@ LabelledFeatures merge(const LabelledFeatures& all, const FeatureMerging& mergin
 }
 
 // Every n-th, so that no more than kMaxQueries are left.
-LabelledFeatures thin_out(const LabelledFeatures& all) {
+LabelledFeatures downsample(const LabelledFeatures& all) {
   const std::size_t step = (all.features.size() + kMaxQueries - 1) / kMaxQueries;
   LabelledFeatures some;
   some.features.type = all.features.type;
@@ -227,8 +227,8 @@ int main(int argc, char** argv) {
   fmt::print("{} objects; right matches of queries at", objects.size());
   for (const double distance_m : kQueryDistances_m) {
     const Both queries = extract_queries(objects, distance_m, options.num_threads);
-    sift.push_back(thin_out(queries.sift));
-    shot.push_back(thin_out(queries.shot));
+    sift.push_back(downsample(queries.sift));
+    shot.push_back(downsample(queries.shot));
     fmt::print(" {} m ({} SIFT, {} SHOT)", distance_m, sift.back().features.size(), shot.back().features.size());
   }
   fmt::print("\ntraining views | kind | merging | features | nearest %, among three % (each distance)\n");

@@ -29,9 +29,9 @@ void print_evidence(const HypothesisEvidence& e) {
       "{:.0f} plane "
       "{:.0f} alone "
       "{:.0f}\n",
-      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_contrast,
-      e.print_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
-      e.plane_cost, e.cost_alone);
+      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_texture,
+      e.texture_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
+      e.plane_cost, e.unary_cost);
   if (e.accepted) return;
   fmt::print("    visible and explained per view:");
   for (std::size_t v = 0; v < e.visible_share_per_view.size(); ++v)
@@ -45,8 +45,8 @@ void print_loss(int view, const GroundTruthObject& truth, const Loss& loss, cons
              truth.visible_share, to_string(loss.stage), loss.num_keypoints, loss.num_correspondences, loss.num_right);
   if (loss.best)
     fmt::print(" best {:.1f} mm {:.1f} deg", 1e3 * loss.best->center_distance_m, 57.2958 * loss.best->rotation_rad);
-  if (loss.evidence && loss.evidence->outvoted_by >= 0)
-    fmt::print(" by {}", library.objects[trace.verified[loss.evidence->outvoted_by].object].name);
+  if (loss.evidence && loss.evidence->suppressed_by >= 0)
+    fmt::print(" by {}", library.objects[trace.verified[loss.evidence->suppressed_by].object].name);
   if (loss.evidence)
     print_evidence(*loss.evidence);
   else

@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   for (int v = 0; v < sequence->num_views(); v += every) {
     const PreparedView view = prepare_view(value_or_exit(sequence->read_view(v)), config.prepare);
     const auto begin = std::chrono::steady_clock::now();
-    const SearchedView searched(view, config.shape);
+    const SearchView searched(view, config.shape);
     const auto candidates = search.search(searched);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++views;
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
         }
         ++rank;
       }
-      const auto trial = search.try_pose(searched, object, truth.camera_from_object);
+      const auto trial = search.score_pose(searched, object, truth.camera_from_object);
       fmt::print(
           "view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} off {} through {} hidden | explained {:.2f} of "
           "{:.2f} pattern {:.2f} |{}\n",

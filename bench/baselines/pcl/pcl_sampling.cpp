@@ -9,14 +9,14 @@ namespace resight::bench::pcl_peers {
 
 Timed<std::vector<float>> voxel_grid(Points points, float leaf_m) {
   const XyzCloud::Ptr cloud = make_cloud(points);
-  XyzCloud thinned;
+  XyzCloud downsampled;
   const CpuClock clock;
   pcl::VoxelGrid<pcl::PointXYZ> grid;
   grid.setInputCloud(cloud);
   grid.setLeafSize(leaf_m, leaf_m, leaf_m);
-  grid.filter(thinned);
+  grid.filter(downsampled);
   const double cpu_s = clock.elapsed_s();
-  return {to_floats(thinned), cpu_s};
+  return {to_floats(downsampled), cpu_s};
 }
 
 Timed<std::vector<float>> uniform_sampling(Points points, float spacing_m) {

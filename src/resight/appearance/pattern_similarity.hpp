@@ -8,9 +8,9 @@ namespace resight {
 
 /// Two patterns of colour at the same places.
 struct PatternMatch {
-  double similarity = 1;       ///< 1: the same pattern, or two plain surfaces; about 0: unlike, or only one is plain.
-  double shared_contrast = 0;  ///< Covariance, in units of what light, gloss and registration leave; 0 for what is
-                               ///< plain: then the similarity says little.
+  double similarity = 1;      ///< 1: the same pattern, or two plain surfaces; about 0: unlike, or only one is plain.
+  double shared_texture = 0;  ///< Covariance, in units of what light, gloss and registration leave; 0 for what is
+                              ///< plain: then the similarity says little.
 };
 
 /// How alike two patterns of colour are, whatever the exposure: contrast and structure terms of the structural

@@ -61,11 +61,11 @@ TEST(MatchPatterns, OnlyPrintsThatAreAlikeShareContrast) {
   const auto pattern = print(1, 0.8);
   const std::vector<LabColor> plain(pattern.size(), LabColor{0.1F, 0, 0});
   const PatternMatch alike = match_patterns(pattern, brighter(pattern, 0.2F), 2);
-  EXPECT_GT(alike.shared_contrast, 3);  // Variance of a uniform print: 0.8^2 / 3, and as much of its hues.
-  EXPECT_NEAR(match_patterns(pattern, print(1, 0.4), 2).shared_contrast, 0.5 * alike.shared_contrast, 1e-4);
-  EXPECT_LT(match_patterns(pattern, print(2, 0.8), 2).shared_contrast, 0.3);
-  EXPECT_EQ(match_patterns(pattern, plain, 2).shared_contrast, 0);
-  EXPECT_EQ(match_patterns({}, {}, 2).shared_contrast, 0);
+  EXPECT_GT(alike.shared_texture, 3);  // Variance of a uniform print: 0.8^2 / 3, and as much of its hues.
+  EXPECT_NEAR(match_patterns(pattern, print(1, 0.4), 2).shared_texture, 0.5 * alike.shared_texture, 1e-4);
+  EXPECT_LT(match_patterns(pattern, print(2, 0.8), 2).shared_texture, 0.3);
+  EXPECT_EQ(match_patterns(pattern, plain, 2).shared_texture, 0);
+  EXPECT_EQ(match_patterns({}, {}, 2).shared_texture, 0);
 }
 
 TEST(PatternSimilarity, NothingSpeaksAgainstNoPairs) { EXPECT_EQ(pattern_similarity({}, {}, 2), 1); }

@@ -57,8 +57,8 @@ Pairs make_pairs(std::span<const Eigen::Vector3f> model_linear, std::span<const 
   return pairs;
 }
 
-// Gain and veil of one channel: a weighted line through (model, scene), its offset within [0, max_veil].
-std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_veil) {
+// Gain and veil of one channel: a weighted line through (model, scene), its offset within [0, max_offset].
+std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_offset) {
   const Column& w = pairs.weight;
   const Column x = pairs.model.col(c) * pairs.shade;
   const auto y = pairs.scene.col(c);
@@ -68,15 +68,15 @@ std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_veil) {
   const float variance = (w * (x - mean_x).square()).sum();
   const float xx = (w * x.square()).sum();
   const float slope = (w * (x - mean_x) * y).sum() / variance;
-  const float veil = variance > 1e-9F * xx ? std::clamp(mean_y - slope * mean_x, 0.0F, max_veil) : 0;
-  const float gain = xx > 0 ? (w * x * (y - veil)).sum() / xx : 1;
-  return {std::max(gain, kMinGain), veil};
+  const float offset = variance > 1e-9F * xx ? std::clamp(mean_y - slope * mean_x, 0.0F, max_offset) : 0;
+  const float gain = xx > 0 ? (w * x * (y - offset)).sum() / xx : 1;
+  return {std::max(gain, kMinGain), offset};
 }
 
 // Brightness that is left, as a function of the normal. The constant part is left to the gains.
-Eigen::Vector3f fit_shading(const Pairs& pairs, const LightFit& fit) {
+Eigen::Vector3f fit_shading(const Pairs& pairs, const PhotometricFit& fit) {
   const Column expected = (pairs.model.matrix() * fit.log_gain.exp().matrix()).array();
-  const Column seen = (pairs.scene.rowwise() - fit.veil.transpose()).max(0.0F).rowwise().sum();
+  const Column seen = (pairs.scene.rowwise() - fit.offset.transpose()).max(0.0F).rowwise().sum();
   const Column log_ratio = ((seen + kDark) / (expected + kDark)).log().max(-1.0F).min(1.0F);
   const Columns<4> weighted = pairs.normals.colwise() * pairs.weight;
   Eigen::Matrix4f normal_matrix = weighted.matrix().transpose() * pairs.normals.matrix();
@@ -86,7 +86,7 @@ Eigen::Vector3f fit_shading(const Pairs& pairs, const LightFit& fit) {
   return normal_matrix.ldlt().solve(right).tail<3>();
 }
 
-void limit_exposure(LightFit& fit, const LightLimits& limits) {
+void limit_exposure(PhotometricFit& fit, const PhotometricLimits& limits) {
   const float mean = fit.log_gain.mean();
   fit.log_gain +=
       std::clamp(mean, -static_cast<float>(limits.max_log_darkening), static_cast<float>(limits.max_log_exposure)) -
@@ -95,18 +95,18 @@ void limit_exposure(LightFit& fit, const LightLimits& limits) {
   if (length > limits.max_log_shading) fit.shading *= static_cast<float>(limits.max_log_shading) / length;
 }
 
-void reweigh(Pairs& pairs, const LightFit& fit) {
+void reweigh(Pairs& pairs, const PhotometricFit& fit) {
   pairs.shade = (pairs.normals.rightCols<3>().matrix() * fit.shading).array().exp();
   Column error = Column::Zero(pairs.weight.size());
   for (int c = 0; c < 3; ++c) {
     const float gain = std::exp(fit.log_gain[c]);
-    const auto expected = (pairs.model.col(c) * pairs.shade * gain + fit.veil[c]).max(0.0F).min(1.0F);
+    const auto expected = (pairs.model.col(c) * pairs.shade * gain + fit.offset[c]).max(0.0F).min(1.0F);
     error += (expected.sqrt() - pairs.scene_root.col(c)).square();
   }
   pairs.weight = pairs.base_weight / (1 + error / (3 * kScale * kScale));
 }
 
-double trust_in_chroma(const LightFit& fit) {
+double trust_in_chroma(const PhotometricFit& fit) {
   const double share = fit.dimmest_light / (fit.dimmest_light + kDim);
   return share * share;
 }
@@ -145,18 +145,19 @@ std::vector<Eigen::Vector3f> to_linear_light(std::span<const Rgb8> colors) {
   return result;
 }
 
-LightFit fit_light(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
-                   std::span<const Eigen::Vector3f> normals, const LightLimits& limits) {
+PhotometricFit fit_photometry(std::span<const Eigen::Vector3f> model_linear,
+                              std::span<const Eigen::Vector3f> scene_linear, std::span<const Eigen::Vector3f> normals,
+                              const PhotometricLimits& limits) {
   if (model_linear.size() < kMinPairs) return {};
   Pairs pairs = make_pairs(model_linear, scene_linear, normals);
-  LightFit fit;
+  PhotometricFit fit;
   fit.num_pairs = static_cast<int>(model_linear.size());
   fit.dimmest_light = pairs.model.colwise().mean().minCoeff();
   for (int i = 0; i < kIterations; ++i) {
     for (int c = 0; c < 3; ++c) {
-      const auto [gain, veil] = fit_channel(pairs, c, static_cast<float>(limits.max_veil));
+      const auto [gain, offset] = fit_channel(pairs, c, static_cast<float>(limits.max_offset));
       fit.log_gain[c] = std::log(gain);
-      fit.veil[c] = veil;
+      fit.offset[c] = offset;
     }
     if (!normals.empty()) fit.shading = fit_shading(pairs, fit);
     limit_exposure(fit, limits);
@@ -165,8 +166,8 @@ LightFit fit_light(std::span<const Eigen::Vector3f> model_linear, std::span<cons
   return fit;
 }
 
-Eigen::Array3f find_white_balance(std::span<const LightFit> fits, std::span<const float> votes,
-                                  const LightLimits& limits) {
+Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::span<const float> votes,
+                                  const PhotometricLimits& limits) {
   Eigen::Array3f balance = Eigen::Array3f::Zero();
   for (int c = 0; c < 3; ++c) {
     std::vector<std::pair<float, double>> values{{0.0F, kVotesForNone}};
@@ -178,7 +179,8 @@ Eigen::Array3f find_white_balance(std::span<const LightFit> fits, std::span<cons
   return balance.max(-most).min(most);
 }
 
-LightFit limit_chroma(LightFit fit, const Eigen::Array3f& white_balance, const LightLimits& limits) {
+PhotometricFit limit_chromaticity(PhotometricFit fit, const Eigen::Array3f& white_balance,
+                                  const PhotometricLimits& limits) {
   if (fit.num_pairs == 0) return fit;
   const float most = static_cast<float>(limits.max_log_chroma);
   fit.log_gain = fit.log_gain.mean() + white_balance + (fit.chroma() - white_balance).max(-most).min(most);

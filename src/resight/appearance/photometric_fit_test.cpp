@@ -16,7 +16,7 @@ struct Pairs {
   std::vector<Eigen::Vector3f> model, scene, normals;
 };
 
-Pairs make_pairs(const LightFit& light, int count, float wrong_share = 0) {
+Pairs make_pairs(const PhotometricFit& light, int count, float wrong_share = 0) {
   Rng rng(7);
   const auto draw = [&](double low, double high) { return static_cast<float>(rng.uniform(low, high)); };
   Pairs pairs;
@@ -30,10 +30,10 @@ Pairs make_pairs(const LightFit& light, int count, float wrong_share = 0) {
   return pairs;
 }
 
-const LightFit kLamp{{0.35F, 0.25F, 0.15F}, {0.02F, 0.0F, 0.05F}, {0.2F, -0.1F, -0.25F}, 0};
+const PhotometricFit kLamp{{0.35F, 0.25F, 0.15F}, {0.02F, 0.0F, 0.05F}, {0.2F, -0.1F, -0.25F}, 0};
 
 // Root mean square, in log units.
-double rms_error(const LightFit& fit, const Pairs& pairs) {
+double rms_error(const PhotometricFit& fit, const Pairs& pairs) {
   double sum = 0;
   for (std::size_t i = 0; i < pairs.model.size(); ++i) {
     const Eigen::Array3f expected = kLamp(pairs.model[i], pairs.normals[i]).array().log();
@@ -42,39 +42,40 @@ double rms_error(const LightFit& fit, const Pairs& pairs) {
   return std::sqrt(sum / static_cast<double>(pairs.model.size()));
 }
 
-TEST(FitLight, FindsExposureWhiteBalanceVeilAndShading) {
+TEST(FitPhotometry, FindsExposureWhiteBalanceVeilAndShading) {
   const Pairs pairs = make_pairs(kLamp, 300);
-  EXPECT_LT(rms_error(fit_light(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.05);
+  EXPECT_LT(rms_error(fit_photometry(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.05);
 }
 
-TEST(FitLight, IsNotLedAstrayByAThirdOfWrongPairs) {
+TEST(FitPhotometry, IsNotLedAstrayByAThirdOfWrongPairs) {
   const Pairs pairs = make_pairs(kLamp, 1000, 0.33F);
-  EXPECT_LT(rms_error(fit_light(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.1);
+  EXPECT_LT(rms_error(fit_photometry(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.1);
 }
 
-TEST(FitLight, StaysWithinWhatLightCanDo) {
+TEST(FitPhotometry, StaysWithinWhatLightCanDo) {
   const std::vector<Eigen::Vector3f> black(100, {0.01F, 0.01F, 0.01F});
   const std::vector<Eigen::Vector3f> white(100, {0.9F, 0.9F, 0.9F});
-  const LightLimits limits;
-  EXPECT_NEAR(fit_light(black, white, {}, limits).log_gain.mean(), limits.max_log_exposure, 1e-5);
+  const PhotometricLimits limits;
+  EXPECT_NEAR(fit_photometry(black, white, {}, limits).log_gain.mean(), limits.max_log_exposure, 1e-5);
 }
 
 TEST(LimitChroma, AGreenCanIsNoGreyOne) {
   const std::vector<Eigen::Vector3f> green(100, {0.1F, 0.5F, 0.1F});
   const std::vector<Eigen::Vector3f> grey(100, {0.25F, 0.25F, 0.25F});
-  const LightLimits limits;
-  const LightFit fit = limit_chroma(fit_light(green, grey, {}, limits), Eigen::Array3f::Zero(), limits);
+  const PhotometricLimits limits;
+  const PhotometricFit fit =
+      limit_chromaticity(fit_photometry(green, grey, {}, limits), Eigen::Array3f::Zero(), limits);
   EXPECT_LE(fit.chroma().abs().maxCoeff(), 2 * limits.max_log_chroma);
   const Eigen::Vector3f seen = fit(green[0], Eigen::Vector3f::Zero());
   EXPECT_GT(seen.y(), 1.5F * seen.x());
 }
 
 TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
-  const LightLimits limits;
-  const LightFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
-  const LightFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
-  const LightFit none;
-  const std::vector<LightFit> fits{blue, wrong, none, blue, wrong, wrong};
+  const PhotometricLimits limits;
+  const PhotometricFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
+  const PhotometricFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
+  const PhotometricFit none;
+  const std::vector<PhotometricFit> fits{blue, wrong, none, blue, wrong, wrong};
   const std::vector<float> votes{900, 300, 1e6F, 900, 300, 300};
   EXPECT_TRUE(find_white_balance(fits, votes, limits).isApprox(blue.chroma()));
   const std::vector<float> weak{3, 3, 3, 3, 3, 3};
@@ -89,28 +90,29 @@ TEST(FindWhiteBalance, AYellowObjectDoesNotTellHowBlueTheLightIs) {
   const std::vector<Eigen::Vector3f> yellow(100, {0.4F, 0.4F, 0.02F});
   const std::vector<Eigen::Vector3f> darker(100, {0.4F, 0.4F, 0.005F});
   const std::vector<Eigen::Vector3f> white(100, {0.4F, 0.4F, 0.4F});
-  const LightLimits limits;
-  const std::vector<LightFit> fits{fit_light(yellow, darker, {}, limits), fit_light(white, white, {}, limits)};
+  const PhotometricLimits limits;
+  const std::vector<PhotometricFit> fits{fit_photometry(yellow, darker, {}, limits),
+                                         fit_photometry(white, white, {}, limits)};
   EXPECT_GT(fits[0].chroma().abs().maxCoeff(), 0.3F);
   EXPECT_FLOAT_EQ(fits[1].dimmest_light, 0.4F);
   const std::vector<float> votes{9000, 900};
   EXPECT_LT(find_white_balance(fits, votes, limits).abs().maxCoeff(), 0.01F);
 }
 
-TEST(FitLight, OneNormalLeavesTheShadingOpen) {
+TEST(FitPhotometry, OneNormalLeavesTheShadingOpen) {
   Pairs pairs = make_pairs(kLamp, 200);
   for (std::size_t i = 0; i < pairs.model.size(); ++i) {
     pairs.normals[i] = Eigen::Vector3f::UnitZ();
     pairs.scene[i] = kLamp(pairs.model[i], pairs.normals[i]);
   }
-  const LightFit fit = fit_light(pairs.model, pairs.scene, pairs.normals, {});
+  const PhotometricFit fit = fit_photometry(pairs.model, pairs.scene, pairs.normals, {});
   EXPECT_LT(rms_error(fit, pairs), 0.05);
   EXPECT_LT(fit.shading.head<2>().norm(), 1e-3);
 }
 
-TEST(FitLight, LeavesFewPairsAlone) {
+TEST(FitPhotometry, LeavesFewPairsAlone) {
   const Pairs pairs = make_pairs(kLamp, 9);
-  const LightFit fit = fit_light(pairs.model, pairs.scene, pairs.normals, {});
+  const PhotometricFit fit = fit_photometry(pairs.model, pairs.scene, pairs.normals, {});
   EXPECT_TRUE((fit.log_gain == 0).all());
   EXPECT_EQ(fit.shading, Eigen::Vector3f::Zero());
 }

@@ -187,9 +187,9 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
   if (previous_in_world.empty()) return result;
 
   // All in the camera frame: moving Psi there is cheaper than moving the view's points to the world.
-  const bool thin = options.previous_voxel_m == options.voxel_m || is_thin(previous_in_world, options.voxel_m);
-  const PointCloud thinned = thin ? PointCloud{} : voxel_downsample(previous_in_world, options.voxel_m);
-  const PointCloud& psi_in_world = thin ? previous_in_world : thinned;
+  const bool thin = options.previous_voxel_m == options.voxel_m || is_downsampled(previous_in_world, options.voxel_m);
+  const PointCloud downsampled = thin ? PointCloud{} : voxel_downsample(previous_in_world, options.voxel_m);
+  const PointCloud& psi_in_world = thin ? previous_in_world : downsampled;
   const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
   const Points psi_in_camera = transform_points(camera_from_world, psi_in_world.points, options.num_threads);
 

@@ -22,15 +22,15 @@ bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const Obj
 
 }  // namespace
 
-ChangeSightFinder::ChangeSightFinder(const ModelLibrary& library, const SequenceTruth& truth,
-                                     const MatchDetectionsOptions& options)
+ChangeVisibilityFinder::ChangeVisibilityFinder(const ModelLibrary& library, const SequenceTruth& truth,
+                                               const MatchDetectionsOptions& options)
     : library_(library), truth_(truth), options_(options) {
   require(truth.changes.has_value(), "ChangeSightFinder: the truth holds no changes");
   sights_.resize(truth.changes->size(), {-1, -1, -1, -1});
   for (const TrueChange& change : *truth.changes) stands_since_.push_back(find_arrival_before(change));
 }
 
-void ChangeSightFinder::add_view(const RgbdFrame& frame) {
+void ChangeVisibilityFinder::add_view(const RgbdFrame& frame) {
   for (std::size_t i = 0; i < sights_.size(); ++i) {
     const TrueChange& change = (*truth_.changes)[i];
     const int object = library_.find(change.object);
@@ -38,7 +38,7 @@ void ChangeSightFinder::add_view(const RgbdFrame& frame) {
     const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
     const std::optional<Rigid3>& before = change.world_from_object_before;
     const std::optional<Rigid3>& after = change.world_from_object_after;
-    ChangeSight& sight = sights_[i];
+    ChangeVisibility& sight = sights_[i];
     if (change.view > view_) {
       if (before && view_ >= stands_since_[i] && shows(frame, change.object, *before, model))
         sight.last_there_view = view_;
@@ -55,7 +55,7 @@ void ChangeSightFinder::add_view(const RgbdFrame& frame) {
 }
 
 // The last change that brought the object to where it leaves; 0 if it was there from the first view on.
-int ChangeSightFinder::find_arrival_before(const TrueChange& change) const {
+int ChangeVisibilityFinder::find_arrival_before(const TrueChange& change) const {
   const int object = library_.find(change.object);
   if (object < 0 || !change.world_from_object_before) return 0;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
@@ -67,8 +67,8 @@ int ChangeSightFinder::find_arrival_before(const TrueChange& change) const {
   return since;
 }
 
-bool ChangeSightFinder::shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
-                              const ObjectModel& model) const {
+bool ChangeVisibilityFinder::shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
+                                   const ObjectModel& model) const {
   const std::vector<GroundTruthObject>& objects = truth_.views.at(static_cast<std::size_t>(view_)).objects;
   return std::ranges::any_of(objects, [&](const GroundTruthObject& truth) {
     return truth.object == object && !(truth.visible_share < options_.min_visible_share) &&

@@ -10,7 +10,7 @@
 namespace resight {
 
 /// What the views show of a change, and since when; -1 = never.
-struct ChangeSight {
+struct ChangeVisibility {
   int before_view = -1;  ///< First view, from the change on, that looks at the place left: its centre is in the image
                          ///< and not hidden, and none of its kind is there again.
   int after_view = -1;   ///< First view, from the change on, with the object visible at its new place.
@@ -19,13 +19,13 @@ struct ChangeSight {
 };
 
 /// Finds the sight of each change, view by view (in order). The views up to the last one added count.
-class ChangeSightFinder {
+class ChangeVisibilityFinder {
  public:
   /// All must outlive the finder; truth.changes must be there.
-  ChangeSightFinder(const ModelLibrary& library, const SequenceTruth& truth,
-                    const MatchDetectionsOptions& options = {});
+  ChangeVisibilityFinder(const ModelLibrary& library, const SequenceTruth& truth,
+                         const MatchDetectionsOptions& options = {});
   void add_view(const RgbdFrame& frame);
-  [[nodiscard]] const std::vector<ChangeSight>& sights() const { return sights_; }
+  [[nodiscard]] const std::vector<ChangeVisibility>& sights() const { return sights_; }
 
  private:
   [[nodiscard]] bool shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
@@ -35,7 +35,7 @@ class ChangeSightFinder {
   const ModelLibrary& library_;
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
-  std::vector<ChangeSight> sights_;
+  std::vector<ChangeVisibility> sights_;
   std::vector<int> stands_since_;  // by change: the first view with the object at the place that it leaves
   int view_ = 0;
 };

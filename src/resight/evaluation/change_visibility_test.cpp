@@ -44,13 +44,13 @@ RgbdFrame frame_with_wall(float depth_m) {
   return frame;
 }
 
-TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
+TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
   const ModelLibrary library = make_library();
   SequenceTruth truth = move_mug(4);
   truth.views[0].objects = {mug_at(0, 0.5)};
   truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // still behind something
   truth.views[3].objects = {mug_at(0.3, 0.5)};
-  ChangeSightFinder finder(library, truth);
+  ChangeVisibilityFinder finder(library, truth);
   EXPECT_EQ(finder.sights()[0].last_there_view, -1);
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);
   finder.add_view(frame_with_wall(2.0F));  // before the change
@@ -68,7 +68,7 @@ TEST(ChangeSightFinder, AHiddenPlaceIsNotSeen) {
 }
 
 // It was seen there once, left, and came back unseen: that it leaves again no view can tell.
-TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
+TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   const ModelLibrary library = make_library();
   SequenceTruth truth;
   truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
@@ -77,29 +77,29 @@ TEST(ChangeSightFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   truth.views.resize(5);
   truth.views[0].objects = {mug_at(0, 0.5)};
   truth.views[2].objects = truth.views[3].objects = {mug_at(0, 0.02)};
-  ChangeSightFinder finder(library, truth);
+  ChangeVisibilityFinder finder(library, truth);
   for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].last_there_view, 0);
   EXPECT_EQ(finder.sights()[2].last_there_view, -1);
 }
 
 // Another mug stands at the new place before, and at the old one after: no view shows either without a mug.
-TEST(ChangeSightFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
+TEST(ChangeVisibilityFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
   const ModelLibrary library = make_library();
   SequenceTruth truth = move_mug(2);
   truth.views[0].objects = {mug_at(0.3, 0.5)};
   truth.views[1].objects = {mug_at(0, 0.5)};
-  ChangeSightFinder finder(library, truth);
+  ChangeVisibilityFinder finder(library, truth);
   for (int v = 0; v < 2; ++v) finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);
   EXPECT_EQ(finder.sights()[0].before_view, -1);
 }
 
-TEST(ChangeSightFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
+TEST(ChangeVisibilityFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
   const ModelLibrary library = make_library();
   SequenceTruth truth = move_mug(1);
   truth.views[0].objects = {mug_at(0, 0.02)};
-  ChangeSightFinder finder(library, truth);
+  ChangeVisibilityFinder finder(library, truth);
   finder.add_view(frame_with_wall(0.7F));
   EXPECT_EQ(finder.sights()[0].last_there_view, -1);
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);

@@ -63,7 +63,7 @@ class SequenceEvaluator {
   EvaluatedRun finish() {
     keep_changes(recognizer_.finish());
     std::vector<ObjectEvent>* const all[] = {&changes_};
-    drop_replaced(all);
+    drop_superseded(all);
     if (sights_)
       run_.events = score_events(*truth_.changes, sights_->sights(), reported_changes(), library_, options_.match);
     return std::move(run_);
@@ -84,7 +84,7 @@ class SequenceEvaluator {
 
   void keep_changes(const std::vector<ObjectEvent>& events) {
     std::ranges::copy_if(events, std::back_inserter(changes_),
-                         [](const ObjectEvent& e) { return is_change(e.kind) || e.replaces; });
+                         [](const ObjectEvent& e) { return is_change(e.kind) || e.supersedes; });
   }
 
   [[nodiscard]] std::vector<ReportedChange> reported_changes() const {
@@ -101,7 +101,7 @@ class SequenceEvaluator {
   SceneRecognizer recognizer_;
   bool has_changes_;
   std::optional<ChangePointScorer> points_;
-  std::optional<ChangeSightFinder> sights_;
+  std::optional<ChangeVisibilityFinder> sights_;
   std::vector<ObjectEvent> changes_;
   EvaluatedRun run_;
 };

@@ -59,7 +59,7 @@ EventScore& EventScore::operator+=(const EventScore& other) {
   return *this;
 }
 
-EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeSight> sights,
+EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> sights,
                         std::span<const ReportedChange> reported, const ModelLibrary& library,
                         const MatchDetectionsOptions& options) {
   require(changes.size() == sights.size(), "score_events: one sight a change is needed");
@@ -89,7 +89,7 @@ EventScore score_events(std::span<const TrueChange> changes, std::span<const Cha
   const ChangeMatcher matcher(library, options);
   EventScore score;
   score.events = score_matches(
-      retell_as_reported(truths, events, matcher), events,
+      reconcile_with_reports(truths, events, matcher), events,
       [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); },
       [](const SeenChange& t) { return t.counts(); },
       [&](const SeenChange& t, const ReportedChange& r) {

@@ -17,10 +17,10 @@ struct EventScore {
 };
 
 /// Scores the reported changes against the true ones of known objects. Pairs are chosen in the order of their views,
-/// one to one; a report before the change is wrong. A move of which the views show only one side (see ChangeSight) is
-/// to them a removal or an addition, and right as that, too; what the views cannot tell from what happened is right as
-/// well (retell_as_reported()). Changes that no view shows are neither hits nor misses, nor are reports of them.
-[[nodiscard]] EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeSight> sights,
+/// one to one; a report before the change is wrong. A move of which the views show only one side (see ChangeVisibility)
+/// is to them a removal or an addition, and right as that, too; what the views cannot tell from what happened is right
+/// as well (reconcile_with_reports()). Changes that no view shows are neither hits nor misses, nor are reports of them.
+[[nodiscard]] EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> sights,
                                       std::span<const ReportedChange> reported, const ModelLibrary& library,
                                       const MatchDetectionsOptions& options = {});
 

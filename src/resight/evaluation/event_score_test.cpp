@@ -21,9 +21,9 @@ Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 
 const TrueChange kMove{4, Kind::kMoved, "mug", true, at(0), at(0.3)};
 const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, at(-0.3), std::nullopt};
-const ChangeSight kAtOnce{4, 5, 3, 3};
+const ChangeVisibility kAtOnce{4, 5, 3, 3};
 
-EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeSight>& sights,
+EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeVisibility>& sights,
                  const std::vector<ReportedChange>& reported) {
   return score_events(truth, sights, reported, make_library());
 }
@@ -58,12 +58,12 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
   const ReportedChange as_removal{5, Kind::kRemoved, "mug", at(0), {}};
   const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, at(0.3)};
   const ReportedChange as_move{5, Kind::kMoved, "mug", at(0), at(0.3)};
-  const ChangeSight only_left{4, -1, 3, 3};
+  const ChangeVisibility only_left{4, -1, 3, 3};
   EXPECT_EQ(score({kMove}, {only_left}, {as_removal}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_addition}).events, (RecognitionScore{0, 1, 1}));
   EXPECT_EQ(score({kMove}, {only_left}, {}).arrivals, (RecognitionScore{0, 0, 0}));
-  const ChangeSight never_seen_before{4, 5, -1, 3};
+  const ChangeVisibility never_seen_before{4, 5, -1, 3};
   const EventScore s = score({kMove}, {never_seen_before}, {as_addition});
   EXPECT_EQ(s.events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{0, 0, 0}));
@@ -71,17 +71,17 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
 }
 
 TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
-  const ChangeSight nothing{-1, -1};
+  const ChangeVisibility nothing{-1, -1};
   EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
-  const ChangeSight came_unseen{-1, 5, -1, -1};
+  const ChangeVisibility came_unseen{-1, 5, -1, -1};
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", at(0), {}}}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
   const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
   EXPECT_EQ(score({addition}, {{-1, 5, -1, 3}}, {}).events, (RecognitionScore{0, 0, 1}));
-  const ChangeSight first_look{-1, 5, 0, -1};  // It may have been there.
+  const ChangeVisibility first_look{-1, 5, 0, -1};  // It may have been there.
   EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({addition}, {first_look}, {}).arrivals, (RecognitionScore{0, 0, 0}));
 }

@@ -111,8 +111,9 @@ bool ChangeMatcher::fits(const SeenChange& truth, const ReportedChange& report) 
          (!truth.shows_departure() && same_change(truth.arrival(), report));
 }
 
-std::vector<SeenChange> retell_as_reported(std::vector<SeenChange> truths, const std::vector<ReportedChange>& reports,
-                                           const ChangeMatcher& matcher) {
+std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
+                                               const std::vector<ReportedChange>& reports,
+                                               const ChangeMatcher& matcher) {
   // Ends: no step takes a truth from the reports, and one that gives none more leaves them earlier ones.
   for (bool changed = true; changed;) {
     changed = false;

@@ -20,7 +20,7 @@ struct ReportedChange {
 
 /// A change, and what the views show of it.
 struct SeenChange : TrueChange {
-  ChangeSight sight;
+  ChangeVisibility sight;
   [[nodiscard]] bool shows_departure() const;
   /// What comes where no view looked before may have been there, unless it was seen to leave elsewhere.
   [[nodiscard]] bool shows_arrival() const;
@@ -72,8 +72,8 @@ template <typename Truth, typename Report, typename Fits>
 /// sides if it can have happened at one moment: after the last views that show the one still there and the other free,
 /// and before the first ones that show it gone and come. What remains of the two changes are changes of their own. Both
 /// ordered by view.
-[[nodiscard]] std::vector<SeenChange> retell_as_reported(std::vector<SeenChange> truths,
-                                                         const std::vector<ReportedChange>& reports,
-                                                         const ChangeMatcher& matcher);
+[[nodiscard]] std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
+                                                             const std::vector<ReportedChange>& reports,
+                                                             const ChangeMatcher& matcher);
 
 }  // namespace resight

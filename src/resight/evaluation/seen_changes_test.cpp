@@ -31,7 +31,7 @@ class SeenChangesTest : public ::testing::Test {
   }
   ModelLibrary library_;
   std::vector<TrueChange> changes_;
-  std::vector<ChangeSight> sights_;
+  std::vector<ChangeVisibility> sights_;
 };
 
 TEST_F(SeenChangesTest, WhichOfTwoThatLeftCameNobodyCanSee) {
@@ -99,10 +99,10 @@ TEST_F(SeenChangesTest, WithoutAReportTheChangesAreAsTheyWere) {
   std::vector<SeenChange> truths;
   for (std::size_t i = 0; i < changes_.size(); ++i) truths.push_back({changes_[i], sights_[i]});
   const MatchDetectionsOptions options;
-  const auto told = retell_as_reported(truths, {}, ChangeMatcher(library_, options));
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0].kind, Kind::kMoved);
-  EXPECT_EQ(told[1].kind, Kind::kRemoved);
+  const auto reported = reconcile_with_reports(truths, {}, ChangeMatcher(library_, options));
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_EQ(reported[0].kind, Kind::kMoved);
+  EXPECT_EQ(reported[1].kind, Kind::kRemoved);
 }
 
 }  // namespace

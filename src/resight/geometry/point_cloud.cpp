@@ -40,7 +40,7 @@ PointCloud select(const PointCloud& cloud, std::span<const int> indices) {
   return result;
 }
 
-bool is_thin(const PointCloud& cloud, double voxel_size_m) {
+bool is_downsampled(const PointCloud& cloud, double voxel_size_m) {
   const auto inverse_size = static_cast<float>(1.0 / voxel_size_m);
   VoxelMap voxels(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)

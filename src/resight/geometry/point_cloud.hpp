@@ -30,7 +30,7 @@ struct PointCloud {
 [[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const int> indices);
 
 /// No two points in one cube of side `voxel_size_m`: voxel_downsample() would find nothing to average.
-[[nodiscard]] bool is_thin(const PointCloud& cloud, double voxel_size_m);
+[[nodiscard]] bool is_downsampled(const PointCloud& cloud, double voxel_size_m);
 
 /// One point per occupied cube of side `voxel_size_m`: the mean of its points, normals (renormalised) and colours, in
 /// the order of each voxel's first point.

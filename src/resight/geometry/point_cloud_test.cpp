@@ -105,8 +105,8 @@ TEST(VoxelDownsample, AgreesWithAMapOfCubes) {
   ASSERT_EQ(thin.size(), cubes.size());
   ASSERT_GT(thin.size(), 500U);
   ASSERT_LT(thin.size(), 1500U);
-  EXPECT_FALSE(is_thin(cloud, kVoxel));
-  EXPECT_TRUE(is_thin(thin, kVoxel));  // Means stay in their cubes.
+  EXPECT_FALSE(is_downsampled(cloud, kVoxel));
+  EXPECT_TRUE(is_downsampled(thin, kVoxel));  // Means stay in their cubes.
   for (std::size_t k = 0; k < thin.size(); ++k) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();

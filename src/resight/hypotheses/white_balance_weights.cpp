@@ -3,7 +3,7 @@
 
 namespace resight {
 
-std::vector<float> white_balance_votes(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
+std::vector<float> white_balance_weights(std::span<const Hypothesis> hypotheses, std::size_t num_models) {
   const auto size = [&](int h) { return h < 0 ? 0 : hypotheses[h].correspondences.size(); };
   std::vector<int> voter(num_models, -1);
   for (int h = 0; h < static_cast<int>(hypotheses.size()); ++h)

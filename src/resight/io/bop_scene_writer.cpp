@@ -55,13 +55,13 @@ Result<int> BopSceneWriter::find_id(const GroundTruthObject& object) {
     return known->second;
   }
   int id = object.bop_id;
-  const auto is_taken = [&](int candidate) {
+  const auto is_replaced = [&](int candidate) {
     return std::ranges::any_of(ids_, [&](const auto& entry) { return entry.second == candidate; });
   };
-  if (id > 0 && is_taken(id))
+  if (id > 0 && is_replaced(id))
     return file_error(directory_, fmt::format("the id {} of object '{}' belongs to another one", id, object.object));
   if (id <= 0)
-    for (id = 1; is_taken(id);) ++id;
+    for (id = 1; is_replaced(id);) ++id;
   ids_[object.object] = id;
   return id;
 }

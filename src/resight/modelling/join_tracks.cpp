@@ -63,9 +63,9 @@ class TrackJoiner {
   Result<Rigid3> find() {
     const std::vector<Way> matched = find_ways();
     if (const std::optional<Rigid3> best = choose(matched, options_.min_correlation)) return *best;
-    const bool has_print = num_keypoints_ >= kFewKeypoints;
+    const bool has_texture = num_keypoints_ >= kFewKeypoints;
     const std::vector<Way> shaped = find_ways_by_shape();
-    if (const std::optional<Rigid3> best = choose(shaped, has_print ? options_.min_correlation : -1)) return *best;
+    if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.min_correlation : -1)) return *best;
     return Error{fmt::format(
         "the recordings cannot be joined: {} matches at best, {}", matched.empty() ? 0 : matched.front().num_matches,
         shaped.empty() ? "nothing in common of shape" : "and no way by shape that the print agrees with")};

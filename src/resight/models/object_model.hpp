@@ -19,7 +19,8 @@ struct ObjectModel {
   CodedFeatures sift;
   CodedFeatures shot;
   ObjectSymmetries symmetries;
-  ObjectSymmetries shape_symmetries{};  ///< Of the surface whatever its colours (shape_turns()); none if not sought.
+  ObjectSymmetries
+      shape_symmetries{};  ///< Of the surface whatever its colours (shape_symmetry_motions()); none if not sought.
   Eigen::Vector3f center =
       Eigen::Vector3f::Zero();  ///< Centroid of the surface: poses are compared there, not at the origin.
   float diameter_m = 0;

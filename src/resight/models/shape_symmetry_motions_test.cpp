@@ -23,40 +23,40 @@ ObjectSymmetries round_about(const Eigen::Vector3d& axis) { return {.discrete = 
 
 Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kPi); }
 
-TEST(ShapeTurns, OfAPrintedCanGoAllTheWayRoundInSteps) {
+TEST(ShapeSymmetryMotions, OfAPrintedCanGoAllTheWayRoundInSteps) {
   ObjectModel can = colored();
   can.shape_symmetries = round_about(kZ);
-  const std::vector<Rigid3> turns = shape_turns(can, kPi / 18);
-  ASSERT_EQ(turns.size(), 36U);
-  EXPECT_EQ(turns[0].matrix(), Rigid3::identity().matrix());
-  for (const Rigid3& turn : turns) EXPECT_NEAR((turn.rotation * kZ - kZ).norm(), 0, 1e-12);
-  for (std::size_t i = 1; i < turns.size(); ++i)
-    EXPECT_NEAR(rotation_angle_rad(turns[i - 1].rotation, turns[i].rotation), kPi / 18, 1e-9);
+  const std::vector<Rigid3> symmetry_motions = shape_symmetry_motions(can, kPi / 18);
+  ASSERT_EQ(symmetry_motions.size(), 36U);
+  EXPECT_EQ(symmetry_motions[0].matrix(), Rigid3::identity().matrix());
+  for (const Rigid3& turn : symmetry_motions) EXPECT_NEAR((turn.rotation * kZ - kZ).norm(), 0, 1e-12);
+  for (std::size_t i = 1; i < symmetry_motions.size(); ++i)
+    EXPECT_NEAR(rotation_angle_rad(symmetry_motions[i - 1].rotation, symmetry_motions[i].rotation), kPi / 18, 1e-9);
 }
 
-TEST(ShapeTurns, WhatIsTheSameInPrintAsWellIsNoTurn) {
+TEST(ShapeSymmetryMotions, WhatIsTheSameInPrintAsWellIsNoTurn) {
   ObjectModel can = colored();
   can.symmetries = can.shape_symmetries = round_about(kZ);
-  EXPECT_EQ(shape_turns(can, 0.1).size(), 1U);
+  EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 1U);
   can.shape_symmetries.discrete.push_back(half_turn(kX));  // Only the lid tells what is up.
-  EXPECT_EQ(shape_turns(can, 0.1).size(), 2U);
+  EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 2U);
 }
 
-TEST(ShapeTurns, OfABoxAreTheHalfTurnsThatItsPrintTellsApart) {
+TEST(ShapeSymmetryMotions, OfABoxAreTheHalfTurnsThatItsPrintTellsApart) {
   ObjectModel box = colored();
   box.shape_symmetries.discrete = {half_turn(kX), half_turn(Eigen::Vector3d::UnitY()), half_turn(kZ)};
-  EXPECT_EQ(shape_turns(box, 0.1).size(), 4U);
+  EXPECT_EQ(shape_symmetry_motions(box, 0.1).size(), 4U);
   box.symmetries.discrete = {half_turn(kZ)};
-  EXPECT_EQ(shape_turns(box, 0.1).size(), 2U);
+  EXPECT_EQ(shape_symmetry_motions(box, 0.1).size(), 2U);
 }
 
-TEST(ShapeTurns, NoneButTheIdentityForABallOrWithoutColors) {
+TEST(ShapeSymmetryMotions, NoneButTheIdentityForABallOrWithoutColors) {
   ObjectModel model = colored();
   model.shape_symmetries = {.discrete = {}, .continuous = {{.axis = kZ}, {.axis = kX}}};
-  EXPECT_EQ(shape_turns(model, 0.1).size(), 1U);
+  EXPECT_EQ(shape_symmetry_motions(model, 0.1).size(), 1U);
   model.shape_symmetries = round_about(kZ);
   model.surface.colors.clear();
-  EXPECT_EQ(shape_turns(model, 0.1).size(), 1U);
+  EXPECT_EQ(shape_symmetry_motions(model, 0.1).size(), 1U);
 }
 
 }  // namespace

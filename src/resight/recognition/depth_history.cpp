@@ -9,7 +9,7 @@ namespace resight {
 namespace {
 
 // Pixel (u, v) of the thinned view is pixel (u, v) * step of the whole one: no mean over an edge.
-RgbdFrame thin_out(const RgbdFrame& frame, int step_px) {
+RgbdFrame downsample(const RgbdFrame& frame, int step_px) {
   const Camera& whole = frame.camera;
   RgbdFrame thin;
   thin.world_from_camera = frame.world_from_camera;
@@ -27,20 +27,20 @@ RgbdFrame thin_out(const RgbdFrame& frame, int step_px) {
 
 }  // namespace
 
-void DepthMemoryOptions::check() const {
+void DepthHistoryOptions::check() const {
   check_not_negative("DepthMemoryOptions.max_views", max_views);
   check_in_range("DepthMemoryOptions.step_px", step_px, 1, 64);
 }
 
-DepthMemory::DepthMemory(DepthMemoryOptions options) : options_(options) { options_.check(); }
+DepthHistory::DepthHistory(DepthHistoryOptions options) : options_(options) { options_.check(); }
 
-void DepthMemory::add(int view, const RgbdFrame& frame) {
-  views_.push_back({view, thin_out(frame, options_.step_px)});
+void DepthHistory::add(int view, const RgbdFrame& frame) {
+  views_.push_back({view, downsample(frame, options_.step_px)});
   while (views_.size() > static_cast<std::size_t>(options_.max_views)) views_.pop_front();
 }
 
-std::optional<int> DepthMemory::last_seen_free(const PointCloud& surface_in_object, const Rigid3& world_from_object,
-                                               const PresenceOptions& presence) const {
+std::optional<int> DepthHistory::last_seen_free(const PointCloud& surface_in_object, const Rigid3& world_from_object,
+                                                const PresenceOptions& presence) const {
   for (auto view = views_.rbegin(); view != views_.rend(); ++view)
     if (assess_presence(surface_in_object, world_from_object, view->frame, presence).is_gone) return view->number;
   return std::nullopt;

@@ -7,7 +7,7 @@
 
 namespace resight {
 
-struct DepthMemoryOptions {
+struct DepthHistoryOptions {
   int max_views = 64;  ///< Older ones are forgotten.
   int step_px = 4;     ///< Of a view, each pixel of each such row and column is kept: 77 KB of 640 x 480.
   void check() const;
@@ -15,9 +15,9 @@ struct DepthMemoryOptions {
 
 /// What the last views have measured, thinned: enough to tell whether a place was free, for longer than whole views
 /// can be kept.
-class DepthMemory {
+class DepthHistory {
  public:
-  explicit DepthMemory(DepthMemoryOptions options = {});
+  explicit DepthHistory(DepthHistoryOptions options = {});
 
   void add(int view, const RgbdFrame& frame);
   /// The last view that saw free space where the object would be; its number as it was added.
@@ -32,7 +32,7 @@ class DepthMemory {
     int number = 0;
     RgbdFrame frame;  // without colours
   };
-  DepthMemoryOptions options_;
+  DepthHistoryOptions options_;
   std::deque<View> views_;
 };
 

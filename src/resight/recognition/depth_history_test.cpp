@@ -15,9 +15,9 @@ using test::plate_at;
 using test::see_nothing;
 using test::see_plates;
 
-TEST(DepthMemory, KnowsTheLastViewThatSawAPlaceFree) {
+TEST(DepthHistory, KnowsTheLastViewThatSawAPlaceFree) {
   const PointCloud surface = make_plate("a").surface;
-  DepthMemory memory;
+  DepthHistory memory;
   EXPECT_FALSE(memory.last_seen_free(surface, kLeft));
   memory.add(3, see_plates({kRight}));
   memory.add(5, see_plates({kRight}));
@@ -27,9 +27,9 @@ TEST(DepthMemory, KnowsTheLastViewThatSawAPlaceFree) {
   EXPECT_EQ(memory.last_seen_free(surface, kRight), 8);
 }
 
-TEST(DepthMemory, ForgetsTheOldest) {
+TEST(DepthHistory, ForgetsTheOldest) {
   const PointCloud surface = make_plate("a").surface;
-  DepthMemory memory({.max_views = 2});
+  DepthHistory memory({.max_views = 2});
   memory.add(0, see_plates({kRight}));
   memory.add(1, see_plates({kLeft, kRight}));
   EXPECT_EQ(memory.last_seen_free(surface, kLeft), 0);
@@ -38,11 +38,11 @@ TEST(DepthMemory, ForgetsTheOldest) {
 }
 
 // Each plate is as wide as 26 px: a place next to a plate is free for any thinning that leaves a few pixels of it.
-TEST(DepthMemory, ThinnedViewsSeeTheSamePlaces) {
+TEST(DepthHistory, ThinnedViewsSeeTheSamePlaces) {
   const PointCloud surface = make_plate("a").surface;
   const RgbdFrame frame = see_plates({kLeft});
   for (const int step : {1, 2, 3, 4, 5}) {
-    DepthMemory memory({.step_px = step});
+    DepthHistory memory({.step_px = step});
     memory.add(0, frame);
     for (double x = -0.4; x < 0.42; x += 0.05) {
       const Rigid3 place = plate_at(x, 0, 1);
@@ -52,9 +52,9 @@ TEST(DepthMemory, ThinnedViewsSeeTheSamePlaces) {
   }
 }
 
-TEST(DepthMemory, RefusesBadOptions) {
-  EXPECT_THROW(DepthMemory({.max_views = -1}), std::invalid_argument);
-  EXPECT_THROW(DepthMemory({.step_px = 0}), std::invalid_argument);
+TEST(DepthHistory, RefusesBadOptions) {
+  EXPECT_THROW(DepthHistory({.max_views = -1}), std::invalid_argument);
+  EXPECT_THROW(DepthHistory({.step_px = 0}), std::invalid_argument);
 }
 
 }  // namespace

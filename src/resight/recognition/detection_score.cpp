@@ -12,7 +12,7 @@ namespace {
 // 1: costs nothing. What is accepted beside others may cost more than it explains alone.
 double gain_of(const HypothesisEvidence& evidence) {
   if (evidence.explained_scene <= 0) return 0;
-  return std::clamp(-evidence.cost_alone / evidence.explained_scene, -1.0, 1.0);
+  return std::clamp(-evidence.unary_cost / evidence.explained_scene, -1.0, 1.0);
 }
 
 }  // namespace
@@ -26,11 +26,11 @@ void DetectionScoreOptions::check() const {
   check_in_range("DetectionScoreOptions.known_weight", known_weight, 0, 100);
 }
 
-double detection_score(const HypothesisEvidence& evidence, bool is_known, const DetectionScoreOptions& options) {
+double detection_score(const HypothesisEvidence& evidence, bool is_tracked, const DetectionScoreOptions& options) {
   const double log_odds = options.offset + options.gain_weight * gain_of(evidence) +
                           options.correspondence_weight * std::log1p(evidence.num_correspondences) +
                           options.fit_weight * evidence.fit + options.visible_weight * evidence.visible_share +
-                          (is_known ? options.known_weight : 0);
+                          (is_tracked ? options.known_weight : 0);
   return 1 / (1 + std::exp(-log_odds));
 }
 

@@ -18,7 +18,7 @@ struct DetectionScoreOptions {
 };
 
 /// How likely an accepted hypothesis is right, in [0, 1]: of the detections with score s about a share s is.
-[[nodiscard]] double detection_score(const HypothesisEvidence& evidence, bool is_known,
+[[nodiscard]] double detection_score(const HypothesisEvidence& evidence, bool is_tracked,
                                      const DetectionScoreOptions& options);
 
 }  // namespace resight

@@ -18,7 +18,7 @@ HypothesisEvidence some_evidence() {
   evidence.visible_share = 0.3;
   evidence.num_correspondences = 20;
   evidence.explained_scene = 500;
-  evidence.cost_alone = -350;
+  evidence.unary_cost = -350;
   return evidence;
 }
 
@@ -45,7 +45,7 @@ TEST(DetectionScore, GrowsWithAllThatSpeaksForIt) {
     better.num_correspondences = 40;
     EXPECT_GT(detection_score(better, false, options), score) << preset;
     better = some_evidence();
-    better.cost_alone = -450;
+    better.unary_cost = -450;
     EXPECT_GT(detection_score(better, false, options), score) << preset;
   }
 }
@@ -55,7 +55,7 @@ TEST(DetectionScore, WhatExplainsNothingOrCostsMoreThanItDoesIsNoNumberGoneWild)
   evidence.explained_scene = 0;
   const double nothing = detection_score(evidence, false, kSome);
   evidence.explained_scene = 1e-3;
-  evidence.cost_alone = 1e9;
+  evidence.unary_cost = 1e9;
   const double costly = detection_score(evidence, false, kSome);
   EXPECT_GT(nothing, costly);
   EXPECT_GT(costly, 0);

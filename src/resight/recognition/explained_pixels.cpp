@@ -44,10 +44,10 @@ class Marker {
 
 }  // namespace
 
-Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const KnownObject> known,
+Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> known,
                                           const ModelLibrary& library, const PresenceOptions& presence) {
   Marker marker(frame, static_cast<float>(presence.depth_margin_m));
-  for (const KnownObject& object : known) {
+  for (const TrackedObject& object : known) {
     const PointCloud& surface = library.objects[static_cast<std::size_t>(object.object)].surface;
     const ObjectPresence seen = assess_presence(surface, object.world_from_object, frame, presence);
     if (!seen.is_informative || seen.gone_share > kMaxGoneShare) continue;

@@ -28,7 +28,7 @@ class FindExplainedPixels : public ::testing::Test {
 
 TEST_F(FindExplainedPixels, AreThoseOfWhatStandsWhereItStood) {
   const RgbdFrame frame = see_plates({kLeft, kRight});
-  const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<KnownObject>{{0, 0, kLeft, 0}}, library_);
+  const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<TrackedObject>{{0, 0, kLeft, 0}}, library_);
   ASSERT_EQ(mask.width(), frame.camera.width);
   for (int v = 0; v < mask.height(); ++v)
     for (int u = 0; u < mask.width(); ++u)
@@ -36,7 +36,7 @@ TEST_F(FindExplainedPixels, AreThoseOfWhatStandsWhereItStood) {
 }
 
 TEST_F(FindExplainedPixels, WhatHasLeftOrIsNotSeenExplainsNothing) {
-  const std::vector<KnownObject> known{{0, 0, kLeft, 0}};
+  const std::vector<TrackedObject> known{{0, 0, kLeft, 0}};
   EXPECT_EQ(count(find_explained_pixels(see_plates({kRight}), known, library_)), 0);
   EXPECT_EQ(count(find_explained_pixels(see_nothing(), known, library_)), 0);
   EXPECT_EQ(count(find_explained_pixels(see_plates({kLeft}), {}, library_)), 0);
@@ -47,7 +47,7 @@ TEST_F(FindExplainedPixels, WhatHasLeftOrIsNotSeenExplainsNothing) {
 TEST_F(FindExplainedPixels, WhatStandsBeforeItIsNotExplained) {
   const Rigid3 before = plate_at(-0.16, 0, 0.8);
   const RgbdFrame frame = see_plates({kLeft, before});
-  const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<KnownObject>{{0, 0, kLeft, 0}}, library_);
+  const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<TrackedObject>{{0, 0, kLeft, 0}}, library_);
   EXPECT_GT(count(mask), 0);
   for (int v = 0; v < mask.height(); ++v)
     for (int u = 0; u < mask.width(); ++u) EXPECT_FALSE(frame.depth_m(u, v) < 0.9F && mask(u, v) != 0) << u << " " << v;

@@ -39,11 +39,11 @@ struct ObjectEvent {
   std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
   std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
   double confidence = 0;                           ///< In [0, 1].
-  std::optional<ReplacedEvent> replaces{};         ///< kMoved, kAdded and kStillThere only.
+  std::optional<ReplacedEvent> supersedes{};       ///< kMoved, kAdded and kStillThere only.
 };
 
 /// Leaves of a run, given as the events of each of its views, what is known in the end: drops each event that another
 /// one replaces.
-void drop_replaced(std::span<std::vector<ObjectEvent>* const> events_of_views);
+void drop_superseded(std::span<std::vector<ObjectEvent>* const> events_of_views);
 
 }  // namespace resight

@@ -17,9 +17,9 @@ ObjectEvent event(ObjectEventKind kind, int track, int view) {
 TEST(DropReplaced, DropsWhatALaterViewTellsBetter) {
   std::vector<ObjectEvent> first{event(ObjectEventKind::kRemoved, 1, 4), event(ObjectEventKind::kRemoved, 2, 4)};
   std::vector<ObjectEvent> second{event(ObjectEventKind::kAdded, 1, 4), event(ObjectEventKind::kMoved, 1, 7)};
-  second.back().replaces = {ObjectEventKind::kRemoved, 1, 4};
+  second.back().supersedes = {ObjectEventKind::kRemoved, 1, 4};
   std::vector<ObjectEvent>* const all[] = {&first, &second};
-  drop_replaced(all);
+  drop_superseded(all);
   ASSERT_EQ(first.size(), 1U);
   EXPECT_EQ(first[0].track, 2);
   EXPECT_EQ(second.size(), 2U) << "another kind, and the move itself";
@@ -28,8 +28,8 @@ TEST(DropReplaced, DropsWhatALaterViewTellsBetter) {
 TEST(DropReplaced, TakesARunWithoutEvents) {
   std::vector<ObjectEvent> none;
   std::vector<ObjectEvent>* const all[] = {&none};
-  drop_replaced(all);
-  drop_replaced({});
+  drop_superseded(all);
+  drop_superseded({});
   EXPECT_TRUE(none.empty());
 }
 

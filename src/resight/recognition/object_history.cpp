@@ -33,7 +33,7 @@ void ObjectHistoryOptions::check() const {
 }
 
 ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
-    : library_(library), options_(std::move(options)), memory_(options_.memory), unsure_(library) {
+    : library_(library), options_(std::move(options)), memory_(options_.memory), tentative_(library) {
   options_.check();
 }
 
@@ -43,13 +43,13 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
   std::vector<int> track_of(detections.size(), kUnmatched);
   match_in_place(detections, track_of, view, events);
   look_at_old_places(detections, track_of, view, current, use_evidence, events);
-  std::vector<std::size_t> unsure;
+  std::vector<std::size_t> tentative;
   for (std::size_t d = 0; d < detections.size(); ++d) {
     if (track_of[d] != kUnmatched) {
-      unsure_.take(detections[d], view);  // Two of one kind are not in one place.
+      tentative_.take(detections[d], view);  // Two of one kind are not in one place.
     } else if (is_seen_now(detections[d], options_.min_new_share)) {
-      if (!is_sure(detections[d], view)) {
-        unsure.push_back(d);
+      if (!is_confirmed(detections[d], view)) {
+        tentative.push_back(d);
         continue;
       }
       place_new(detections[d], view, current, use_evidence, events);
@@ -57,18 +57,19 @@ std::vector<ObjectEvent> ObjectHistory::update(int view, std::vector<Detection>&
         if (other != d && detections[other].track == detections[d].track) detections[other].track = -1;
     }
   }
-  for (const std::size_t d : unsure) {
-    detections[d].track = unsure_.keep(detections[d], view, next_id_);
+  for (const std::size_t d : tentative) {
+    detections[d].track = tentative_.keep(detections[d], view, next_id_);
     next_id_ = std::max(next_id_, detections[d].track + 1);
   }
   confirm_removals(view, events);
   std::erase_if(tracks_, [](const Track& track) { return track.state == State::kJoined; });
   if (use_evidence) {
-    unsure_.forget_gone(view, current, options_.presence);
+    tentative_.forget_gone(view, current, options_.presence);
     memory_.add(view, current);
   }
-  unsure_.forget_before(view - options_.memory.max_views);
-  std::erase_if(former_stays_, [&](const Stay& stay) { return !memory_.reaches_back_to(stay.seen_view); });
+  tentative_.forget_before(view - options_.memory.max_views);
+  std::erase_if(former_placements_,
+                [&](const FormerPlacement& placement) { return !memory_.reaches_back_to(placement.seen_view); });
   return events;
 }
 
@@ -115,14 +116,14 @@ void ObjectHistory::keep_in_place(Track& track, Detection& detection, int view,
 
 // What is first seen in part may be taken to lie a little otherwise than it does.
 void ObjectHistory::correct_arrival(Track& track, int view, std::vector<ObjectEvent>& events) const {
-  if (!track.arrival || view - track.told_view > options_.correct_views) return;
+  if (!track.arrival || view - track.reported_view > options_.correct_views) return;
   ObjectEvent& arrival = *track.arrival;
   const ObjectModel& model = model_of(track);
   if (is_same_place(model, *arrival.world_from_object_after, track.world_from_object)) return;
-  arrival.replaces = {arrival.kind, track.id, arrival.view};
+  arrival.supersedes = {arrival.kind, track.id, arrival.view};
   const auto& before = arrival.world_from_object_before;
   if (before && is_same_place(model, *before, track.world_from_object)) {  // It has not moved at all.
-    events.back().replaces = arrival.replaces;
+    events.back().supersedes = arrival.supersedes;
     track.arrival.reset();
     return;
   }
@@ -177,7 +178,8 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
   for (const auto& [t, is_surface_seen] : undecided) {  // Now it is known which others are where they were.
     Track& track = tracks_[t];
-    const Detection* taker = use_evidence ? find_taker(track, view, is_surface_seen, detections, track_of) : nullptr;
+    const Detection* taker =
+        use_evidence ? find_replacement(track, view, is_surface_seen, detections, track_of) : nullptr;
     if (taker == nullptr) {
       events.push_back({ObjectEventKind::kNotSeen, track.object, track.id, view, track.world_from_object, std::nullopt,
                         0.0, std::nullopt});
@@ -192,24 +194,25 @@ void ObjectHistory::look_at_old_places(std::vector<Detection>& detections, std::
   }
 }
 
-void ObjectHistory::leave(Track& track, int view, double confidence, bool is_taken) {
+void ObjectHistory::leave(Track& track, int view, double confidence, bool is_replaced) {
   track.state = State::kLeaving;
-  track.is_taken = is_taken;
+  track.is_replaced = is_replaced;
   track.left_view = view;
   track.confidence = confidence;
 }
 
 // Another one that the view shows in its space, and that came there after this one was last seen. Where a surface is
 // seen that might be its own, the other one must be of its size: a bowl may stand around it.
-const Detection* ObjectHistory::find_taker(const Track& track, int view, bool is_surface_seen,
-                                           std::span<const Detection> detections, std::span<const int> track_of) const {
+const Detection* ObjectHistory::find_replacement(const Track& track, int view, bool is_surface_seen,
+                                                 std::span<const Detection> detections,
+                                                 std::span<const int> track_of) const {
   for (std::size_t d = 0; d < detections.size(); ++d) {
     const Detection& detection = detections[d];
     if (detection.object == track.object || !is_seen_now(detection, options_.min_new_share)) continue;
     const int other = track_of[d];
-    if (other == kUnmatched && !is_sure(detection, -1)) continue;
-    const int since_view =
-        other == kUnmatched ? unsure_.since_view(detection, view) : tracks_[static_cast<std::size_t>(other)].since_view;
+    if (other == kUnmatched && !is_confirmed(detection, -1)) continue;
+    const int since_view = other == kUnmatched ? tentative_.since_view(detection, view)
+                                               : tracks_[static_cast<std::size_t>(other)].since_view;
     if (since_view <= track.seen_view) continue;
     if (is_in_space_of(track, detection) && (!is_surface_seen || is_in_space_of(detection, track))) return &detection;
   }
@@ -219,12 +222,12 @@ const Detection* ObjectHistory::find_taker(const Track& track, int view, bool is
 // The last view that showed another one in its space; nothing if none did.
 std::optional<int> ObjectHistory::last_seen_taken(const Detection& detection, int view) const {
   std::optional<int> last;
-  const auto look_at = [&](const Stay& stay) {
-    if (stay.object != detection.object && stay.seen_view > last.value_or(-1) && stay.seen_view < view &&
-        memory_.reaches_back_to(stay.seen_view) && is_in_space_of(detection, stay))
-      last = stay.seen_view;
+  const auto look_at = [&](const FormerPlacement& placement) {
+    if (placement.object != detection.object && placement.seen_view > last.value_or(-1) && placement.seen_view < view &&
+        memory_.reaches_back_to(placement.seen_view) && is_in_space_of(detection, placement))
+      last = placement.seen_view;
   };
-  std::ranges::for_each(former_stays_, look_at);
+  std::ranges::for_each(former_placements_, look_at);
   for (const Track& track : tracks_) look_at({track.object, track.world_from_object, track.seen_view});
   return last;
 }
@@ -250,15 +253,15 @@ void ObjectHistory::join(Track& left, Track& added, int view, std::vector<Detect
                          std::vector<ObjectEvent>& events) {
   // What this view has told of it is not told; if it corrected the arrival, then the arrival as it was told before.
   const ObjectEvent& arrival = *added.arrival;
-  const ReplacedEvent replaced = arrival.view == view && arrival.replaces
-                                     ? *arrival.replaces
+  const ReplacedEvent replaced = arrival.view == view && arrival.supersedes
+                                     ? *arrival.supersedes
                                      : ReplacedEvent{ObjectEventKind::kAdded, added.id, arrival.view};
   std::erase_if(events, [&](const ObjectEvent& e) { return e.track == added.id; });
   for (Detection& d : detections)
     if (d.track == added.id) d.track = left.id;
   events.push_back({ObjectEventKind::kMoved, left.object, left.id, view, left.world_from_object,
                     added.world_from_object, left.confidence, replaced});
-  former_stays_.push_back({left.object, left.world_from_object, left.seen_view});
+  former_placements_.push_back({left.object, left.world_from_object, left.seen_view});
   left = [&] {
     Track joined = added;
     joined.id = left.id;
@@ -312,7 +315,7 @@ ObjectHistory::Track& ObjectHistory::new_track(int object, int id) {
 
 // What may well be something else is not told before a view is sure of it; what lies in the old place of one that has
 // just left it is that one.
-bool ObjectHistory::is_sure(const Detection& detection, int view) const {
+bool ObjectHistory::is_confirmed(const Detection& detection, int view) const {
   return detection.score >= options_.min_told_score || std::ranges::any_of(tracks_, [&](const Track& track) {
            const ObjectModel& model = model_of(track);
            return track.object == detection.object && track.state == State::kLeaving && track.left_view == view &&
@@ -325,8 +328,8 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
                               std::vector<ObjectEvent>& events) {
   constexpr double kOutOfSightConfidence = 0.5;
   const PointCloud& surface = model_of(detection).surface;
-  const std::optional<KnownObject> unsure = unsure_.take(detection, view);
-  const int since_view = unsure ? unsure->since_view : view;
+  const std::optional<TrackedObject> tentative = tentative_.take(detection, view);
+  const int since_view = tentative ? tentative->since_view : view;
   std::optional<int> last_free_view;  // of this object: with nothing there, or another one
   if (use_evidence)
     last_free_view = std::max(memory_.last_seen_free(surface, detection.world_from_object, options_.presence),
@@ -339,7 +342,7 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
                     detection.world_from_object,
                     detection.score,
                     std::nullopt};
-  const auto tell_move = [&](const Track& from, double confidence) {
+  const auto report_move = [&](const Track& from, double confidence) {
     event.kind = ObjectEventKind::kMoved;
     event.world_from_object_before = from.world_from_object;
     event.confidence = std::min(confidence, detection.score);
@@ -350,24 +353,24 @@ void ObjectHistory::place_new(Detection& detection, int view, const RgbdFrame& c
   const bool is_recent =
       from != nullptr && (from->state == State::kLeaving || memory_.reaches_back_to(from->left_view));
   if (from != nullptr && is_recent && !was_away) {
-    tell_move(*from, from->confidence);
-    if (from->state == State::kGone) event.replaces = {ObjectEventKind::kRemoved, from->id, from->left_view};
+    report_move(*from, from->confidence);
+    if (from->state == State::kGone) event.supersedes = {ObjectEventKind::kRemoved, from->id, from->left_view};
   } else if (Track* hidden = last_free_view ? find_out_of_sight(detection, since_view, current) : nullptr;
              hidden != nullptr) {
-    tell_move(*hidden, kOutOfSightConfidence);
+    report_move(*hidden, kOutOfSightConfidence);
     std::erase_if(events, [&](const ObjectEvent& e) { return e.track == hidden->id && !is_change(e.kind); });
     from = hidden;
   } else if (from != nullptr && from->state == State::kLeaving) {
     remove(*from, events);  // It was away before it was put here.
   }
   if (from == nullptr)
-    from = &new_track(detection.object, unsure ? unsure->track : next_id_++);
+    from = &new_track(detection.object, tentative ? tentative->track : next_id_++);
   else
-    former_stays_.push_back({from->object, from->world_from_object, from->seen_view});
+    former_placements_.push_back({from->object, from->world_from_object, from->seen_view});
   event.track = from->id;
   events.push_back(event);
   from->world_from_object = detection.world_from_object;
-  from->last_view = from->seen_view = from->told_view = view;
+  from->last_view = from->seen_view = from->reported_view = view;
   from->since_view = since_view;
   if (is_change(event.kind))
     from->arrival = event;
@@ -386,7 +389,7 @@ void ObjectHistory::remove(Track& track, std::vector<ObjectEvent>& events) const
 void ObjectHistory::confirm_removals(int view, std::vector<ObjectEvent>& events) {
   for (Track& track : tracks_) {
     if (track.state != State::kLeaving || view - track.left_view < options_.confirm_removal_views) continue;
-    if (track.is_taken && !is_still_taken(track, view))
+    if (track.is_replaced && !is_still_taken(track, view))
       track.state = State::kPresent;  // The other one was seen once only: perhaps it was this one.
     else
       remove(track, events);
@@ -400,13 +403,13 @@ bool ObjectHistory::is_still_taken(const Track& left, int view) const {
   });
 }
 
-std::vector<KnownObject> ObjectHistory::known_objects() const {
-  std::vector<KnownObject> known;
+std::vector<TrackedObject> ObjectHistory::tracked_objects() const {
+  std::vector<TrackedObject> known;
   for (const Track& track : tracks_)
     if (track.state == State::kPresent)
       known.push_back(
           {track.id, track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
-  known.insert(known.end(), unsure_.objects().begin(), unsure_.objects().end());
+  known.insert(known.end(), tentative_.objects().begin(), tentative_.objects().end());
   return known;
 }
 

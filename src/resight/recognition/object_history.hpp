@@ -28,7 +28,7 @@ struct ObjectHistoryOptions {
   int correct_views = 6;  ///< An arrival whose pose turns out otherwise is told anew, up to so many views after it was
                           ///< first told.
   PresenceOptions presence;
-  DepthMemoryOptions memory;
+  DepthHistoryOptions memory;
   void check() const;
 };
 
@@ -56,7 +56,7 @@ class ObjectHistory {
   /// Removals that still wait for confirmation; to be called after the last view.
   [[nodiscard]] std::vector<ObjectEvent> finish();
   /// What is known to be there, whether the last view saw it or not; what is not sure comes last.
-  [[nodiscard]] std::vector<KnownObject> known_objects() const;
+  [[nodiscard]] std::vector<TrackedObject> tracked_objects() const;
 
  private:
   enum class State { kPresent, kLeaving, kGone, kJoined };
@@ -68,15 +68,15 @@ class ObjectHistory {
     State state = State::kPresent;
     int seen_view = -1;                  // likewise, and saw itself
     int since_view = -1;                 // that it was first recognised with at its place
-    int told_view = -1;                  // that told so
+    int reported_view = -1;              // that told so
     std::optional<ObjectEvent> arrival;  // that told of it: kAdded or kMoved
     int left_view = -1;                  // first view that saw its place free, or taken
-    bool is_taken = false;               // by another object
+    bool is_replaced = false;            // by another object
     double confidence = 0;               // of that
   };
 
   /// Where an object was until it was recognised elsewhere.
-  struct Stay {
+  struct FormerPlacement {
     int object = -1;
     Rigid3 world_from_object;
     int seen_view = -1;  // last
@@ -94,9 +94,10 @@ class ObjectHistory {
                                    std::span<const int> track_of) const;
   void look_at_old_places(std::vector<Detection>& detections, std::vector<int>& track_of, int view,
                           const RgbdFrame& current, bool use_evidence, std::vector<ObjectEvent>& events);
-  static void leave(Track& track, int view, double confidence, bool is_taken);
-  [[nodiscard]] const Detection* find_taker(const Track& track, int view, bool is_surface_seen,
-                                            std::span<const Detection> detections, std::span<const int> track_of) const;
+  static void leave(Track& track, int view, double confidence, bool is_replaced);
+  [[nodiscard]] const Detection* find_replacement(const Track& track, int view, bool is_surface_seen,
+                                                  std::span<const Detection> detections,
+                                                  std::span<const int> track_of) const;
   [[nodiscard]] bool is_still_taken(const Track& left, int view) const;
   [[nodiscard]] const ObjectModel& model_of(const auto& thing) const {
     return library_.objects[static_cast<std::size_t>(thing.object)];
@@ -110,7 +111,7 @@ class ObjectHistory {
   [[nodiscard]] Track* find_left(const Detection& detection, int since_view, std::optional<int> last_free_view);
   [[nodiscard]] Track* find_out_of_sight(const Detection& detection, int since_view, const RgbdFrame& current);
   Track& new_track(int object, int id);
-  [[nodiscard]] bool is_sure(const Detection& detection, int view) const;
+  [[nodiscard]] bool is_confirmed(const Detection& detection, int view) const;
   void place_new(Detection& detection, int view, const RgbdFrame& current, bool use_evidence,
                  std::vector<ObjectEvent>& events);
   void confirm_removals(int view, std::vector<ObjectEvent>& events);
@@ -118,10 +119,10 @@ class ObjectHistory {
 
   const ModelLibrary& library_;
   ObjectHistoryOptions options_;
-  DepthMemory memory_;
+  DepthHistory memory_;
   std::vector<Track> tracks_;
-  std::vector<Stay> former_stays_;  // since the memory begins
-  UnsureObjects unsure_;
+  std::vector<FormerPlacement> former_placements_;  // since the memory begins
+  TentativeTracks tentative_;
   int next_id_ = 0;
 };
 

@@ -16,19 +16,19 @@ using test::see_plates;
 using K = ObjectEventKind;
 
 TEST_F(ObjectHistoryTest, KnowsWhatWasNotSeenToLeave) {
-  EXPECT_TRUE(history_->known_objects().empty());
+  EXPECT_TRUE(history_->tracked_objects().empty());
   view({{0, left_}, {1, right_}}, see_plates({left_, right_}));
-  ASSERT_EQ(history_->known_objects().size(), 2U);
+  ASSERT_EQ(history_->tracked_objects().size(), 2U);
   view({{1, right_}}, see_nothing());  // No depth: nothing is known of the left one.
-  const std::vector<KnownObject> known = history_->known_objects();
+  const std::vector<TrackedObject> known = history_->tracked_objects();
   ASSERT_EQ(known.size(), 2U);
   EXPECT_EQ(known[0].object, 0);
   EXPECT_EQ(known[0].last_view, 0);
   EXPECT_EQ(known[0].world_from_object.translation, left_.translation);
   EXPECT_EQ(known[1].last_view, 1);
   view({{1, right_}}, see_plates({right_}));  // The left place is seen free.
-  ASSERT_EQ(history_->known_objects().size(), 1U);
-  EXPECT_EQ(history_->known_objects()[0].object, 1);
+  ASSERT_EQ(history_->tracked_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects()[0].object, 1);
 }
 
 TEST_F(ObjectHistoryTest, FoundThenStillThere) {
@@ -71,10 +71,10 @@ TEST_F(ObjectHistoryTest, AMoveFoundAfterItsRemovalWasToldReplacesIt) {
   const auto events = view({{0, right_}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
-  ASSERT_TRUE(events[0].replaces);
-  EXPECT_EQ(events[0].replaces->kind, K::kRemoved);
-  EXPECT_EQ(events[0].replaces->track, removal[0].track);
-  EXPECT_EQ(events[0].replaces->view, removal[0].view);
+  ASSERT_TRUE(events[0].supersedes);
+  EXPECT_EQ(events[0].supersedes->kind, K::kRemoved);
+  EXPECT_EQ(events[0].supersedes->track, removal[0].track);
+  EXPECT_EQ(events[0].supersedes->view, removal[0].view);
 }
 
 TEST_F(ObjectHistoryTest, WhatWasAwayInBetweenWasRemovedAndAdded) {
@@ -97,12 +97,12 @@ TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
   EXPECT_EQ(events[0].track, 0);
   EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
   EXPECT_DOUBLE_EQ(events[0].world_from_object_after->translation.x(), 0.3);
-  ASSERT_TRUE(events[0].replaces);
-  EXPECT_EQ(events[0].replaces->kind, K::kAdded);
-  EXPECT_EQ(events[0].replaces->track, added);
-  EXPECT_EQ(events[0].replaces->view, 1);
+  ASSERT_TRUE(events[0].supersedes);
+  EXPECT_EQ(events[0].supersedes->kind, K::kAdded);
+  EXPECT_EQ(events[0].supersedes->track, added);
+  EXPECT_EQ(events[0].supersedes->view, 1);
   EXPECT_EQ(detections_[0].track, 0) << "the older track goes on";
-  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
   EXPECT_TRUE(history_->finish().empty());
 }
@@ -146,9 +146,9 @@ TEST_F(ObjectHistoryTest, OneDetectionTakesThePlaceOfOneTrackOnly) {
   view({{0, upper}, {0, lower}}, see_plates({upper, lower}));
   const Rigid3 shifted = plate_at(-0.24, 0, 1);
   view({{0, shifted}}, see_plates({shifted}));
-  const std::vector<KnownObject> known = history_->known_objects();
+  const std::vector<TrackedObject> known = history_->tracked_objects();
   EXPECT_EQ(std::ranges::count(known, shifted.translation.x(),
-                               [](const KnownObject& k) { return k.world_from_object.translation.x(); }),
+                               [](const TrackedObject& k) { return k.world_from_object.translation.x(); }),
             1);
   EXPECT_EQ(known.size(), 2U) << "the other was not seen to leave";
 }
@@ -223,8 +223,8 @@ TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
   view({{0, left_}}, see_plates({left_}));
   EXPECT_EQ(kinds(view({{0, turned}}, see_plates({left_}))), (std::vector{K::kStillThere}));
   EXPECT_EQ(detections_[0].track, 0);
-  ASSERT_EQ(history_->known_objects().size(), 1U);
-  EXPECT_EQ(history_->known_objects()[0].world_from_object.rotation, turned.rotation);
+  ASSERT_EQ(history_->tracked_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects()[0].world_from_object.rotation, turned.rotation);
   // Nothing is known without change detection: what is reported elsewhere has moved.
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}), false)), (std::vector{K::kMoved}));
 }
@@ -330,7 +330,7 @@ TEST_F(ObjectHistoryTest, TakenByWhatWasSeenOnceIsNotRemoved) {
   view({{1, left_}}, see_plates({left_}));
   EXPECT_EQ(kinds(view({}, see_nothing())), (std::vector{K::kNotSeen})) << "of the other one";
   EXPECT_TRUE(history_->finish().empty());
-  const std::vector<KnownObject> known = history_->known_objects();
+  const std::vector<TrackedObject> known = history_->tracked_objects();
   EXPECT_EQ(known.size(), 2U);
 }
 
@@ -361,16 +361,16 @@ TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneMovedAwayWasAdded) {
 TEST_F(ObjectHistoryTest, AnArrivalWhosePoseTurnsOutOtherwiseIsToldAnew) {
   const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
   view({{0, left_}}, see_plates({left_}));
-  const auto told = view({{0, turned}}, see_plates({right_}));
-  ASSERT_EQ(kinds(told), (std::vector{K::kMoved}));
+  const auto reported = view({{0, turned}}, see_plates({right_}));
+  ASSERT_EQ(kinds(reported), (std::vector{K::kMoved}));
   const auto events = view({{0, right_}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
   EXPECT_EQ(events[1].world_from_object_after->rotation, right_.rotation);
   EXPECT_DOUBLE_EQ(events[1].world_from_object_before->translation.x(), -0.3);
-  ASSERT_TRUE(events[1].replaces);
-  EXPECT_EQ(events[1].replaces->kind, K::kMoved);
-  EXPECT_EQ(events[1].replaces->track, told[0].track);
-  EXPECT_EQ(events[1].replaces->view, 1);
+  ASSERT_TRUE(events[1].supersedes);
+  EXPECT_EQ(events[1].supersedes->kind, K::kMoved);
+  EXPECT_EQ(events[1].supersedes->track, reported[0].track);
+  EXPECT_EQ(events[1].supersedes->view, 1);
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere})) << "once";
 }
 
@@ -386,7 +386,7 @@ TEST_F(ObjectHistoryTest, AnArrivalThatWasCorrectedIsReplacedAsItWasToldLast) {
     all.push_back(view({{0, right_}}, see_plates({right_})));  // moved there
     std::vector<std::vector<ObjectEvent>*> views;
     for (auto& events : all) views.push_back(&events);
-    drop_replaced(views);
+    drop_superseded(views);
     std::vector<ObjectEventKind> changes;
     for (const auto& events : all)
       for (const ObjectEvent& e : events)
@@ -404,7 +404,7 @@ TEST_F(ObjectHistoryTest, ACorrectionIsCorrectedInTurn) {
   const auto events = view({{0, right_}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
   EXPECT_EQ(events[1].world_from_object_after->rotation, right_.rotation);
-  EXPECT_EQ(events[1].replaces->view, wrong[1].view);
+  EXPECT_EQ(events[1].supersedes->view, wrong[1].view);
 }
 
 TEST_F(ObjectHistoryTest, AMoveThatTurnsOutToBeNoneIsTakenBack) {
@@ -413,9 +413,9 @@ TEST_F(ObjectHistoryTest, AMoveThatTurnsOutToBeNoneIsTakenBack) {
   ASSERT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
   const auto events = view({{0, left_}}, see_plates({plate_at(-0.26, 0, 1)}));
   ASSERT_EQ(kinds(events), (std::vector{K::kStillThere}));
-  ASSERT_TRUE(events[0].replaces);
-  EXPECT_EQ(events[0].replaces->kind, K::kMoved);
-  EXPECT_EQ(events[0].replaces->view, 1);
+  ASSERT_TRUE(events[0].supersedes);
+  EXPECT_EQ(events[0].supersedes->kind, K::kMoved);
+  EXPECT_EQ(events[0].supersedes->view, 1);
 }
 
 TEST_F(ObjectHistoryTest, LongAfterItsArrivalAnOtherPoseIsNoNews) {

@@ -231,7 +231,7 @@ void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"verify.light_max_log_darkening", &v.light.max_log_darkening},
                                   {"verify.light_max_log_white_balance", &v.light.max_log_white_balance},
                                   {"verify.light_max_log_chroma", &v.light.max_log_chroma},
-                                  {"verify.light_max_veil", &v.light.max_veil},
+                                  {"verify.light_max_veil", &v.light.max_offset},
                                   {"verify.light_max_log_shading", &v.light.max_log_shading},
                                   {"verify.refine_max_iterations", &v.refine.max_iterations},
                                   {"verify.refine_max_distance_m", &v.refine.max_distance_m},

@@ -110,12 +110,12 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"changes", num_fields<DetectChangesOptions>() - kThreads - 1},  // the voxels are those of integrate
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
-      {"verify", num_fields<VerifyOptions>() - 5 - kThreads + num_fields<LightLimits>() +
-                     num_fields<RefinePoseOptions>() + num_fields<PlainOptions>() + num_fields<FindPlanesOptions>() -
-                     kThreads + num_fields<SmoothSegmentsOptions>() - kThreads},
+      {"verify", num_fields<VerifyOptions>() - 5 - kThreads + num_fields<PhotometricLimits>() +
+                     num_fields<RefinePoseOptions>() + num_fields<UntexturedOptions>() +
+                     num_fields<FindPlanesOptions>() - kThreads + num_fields<SmoothSegmentsOptions>() - kThreads},
       {"score", num_fields<DetectionScoreOptions>()},
       {"history",
-       num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthMemoryOptions>()}};
+       num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthHistoryOptions>()}};
   std::map<std::string, int> found;
   for (const auto& [name, value] : RecognizerConfig{}.to_settings())
     ++found[name.substr(0, name.find('.') == std::string::npos ? 0 : name.find('.'))];

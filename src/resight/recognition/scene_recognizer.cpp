@@ -28,7 +28,7 @@ namespace resight {
 namespace {
 
 constexpr std::size_t kFewHypotheses = 10;
-constexpr std::uint64_t kFirstKnownId = 1ULL << 40;  // Apart: ids of views are the same for all that share a store.
+constexpr std::uint64_t kFirstTrackedId = 1ULL << 40;  // Apart: ids of views are the same for all that share a store.
 
 DynamicSceneOptions scene_options(const RecognizerConfig& config) {
   return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
@@ -51,7 +51,7 @@ struct SceneRecognizer::Impl {
         history(models, config.history),
         corrector(correction_options(config)),
         scene(scene_options(config)),
-        held(static_cast<std::size_t>(config.num_previous_views) + 1, config.verify.inlier_distance_m),
+        track_correspondences(static_cast<std::size_t>(config.num_previous_views) + 1, config.verify.inlier_distance_m),
         attention(config.remembers() ? config.attention : AttentionOptions{}),
         verifier(models, config.verify),
         store(std::move(shared)),
@@ -63,16 +63,17 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] std::vector<Hypothesis> view_hypotheses(const PreparedView& view, SceneUpdate& update,
                                                         RecognitionTrace* trace);
   [[nodiscard]] std::vector<Hypothesis> merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
-  [[nodiscard]] bool is_known(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool is_tracked(const Hypothesis& hypothesis) const;
   void look_without_depth(Detection& detection) const;
   void leave_out_late(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
-  [[nodiscard]] std::vector<Hypothesis> known_hypotheses();
+  [[nodiscard]] std::vector<Hypothesis> tracked_hypotheses();
   [[nodiscard]] Image<std::uint8_t> explained_pixels(const RgbdFrame& frame, int number, StageTimes& times);
-  [[nodiscard]] bool needs_search(const KnownObject& known, int number, double depth_m) const;
+  [[nodiscard]] bool needs_search(const TrackedObject& known, int number, double depth_m) const;
   void collect_found(const SceneUpdate& update);
   void remember_search(const SceneUpdate& update);
   [[nodiscard]] std::vector<std::uint8_t> presence_of(const std::vector<Hypothesis>& hypotheses) const;
-  [[nodiscard]] std::vector<std::uint8_t> drop_absent(std::vector<Hypothesis>& hypotheses, SceneUpdate& update) const;
+  [[nodiscard]] std::vector<std::uint8_t> handle_removed(std::vector<Hypothesis>& hypotheses,
+                                                         SceneUpdate& update) const;
   void verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] bool doubts_known_object(const std::vector<Hypothesis>& hypotheses,
                                          const std::vector<HypothesisEvidence>& evidence) const;
@@ -84,8 +85,8 @@ struct SceneRecognizer::Impl {
   ObjectHistory history;
   CameraCorrector corrector;
   DynamicScene scene;
-  HeldCorrespondences held;  // used only where not each view is searched everywhere
-  Attention attention;
+  TrackCorrespondences track_correspondences;  // used only where not each view is searched everywhere
+  ViewNovelty attention;
   HypothesisVerifier verifier;
   std::shared_ptr<ViewHypothesisStore> store;              // may be null
   std::deque<std::vector<Hypothesis>> hypotheses_of_view;  // of the views in the scene's window
@@ -100,7 +101,7 @@ struct SceneRecognizer::Impl {
   std::map<int, Look> look_of_track;  // of what is known
   int num_views = 0;
   std::uint64_t next_hypothesis_id = 0;
-  std::uint64_t next_known_id = kFirstKnownId;
+  std::uint64_t next_tracked_id = kFirstTrackedId;
   Clock clock;
   Deadline deadline;                     // of this view
   double verification_s = 0;             // that of the last view...
@@ -126,7 +127,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   {
     const ScopedTimer timer(update.times, "changes and reconstruction");  // Alg. 1
     update.changes = scene.add_view(std::move(view));
-    update.searched = attention.is_due(scene.window().back().cleared, update.changes);
+    update.searched = attention.needs_search(scene.window().back().cleared, update.changes);
   }
   hypotheses_of_view.emplace_back();
   if (update.searched) hypotheses_of_view.back() = view_hypotheses(scene.window().back().cleared, update, trace);
@@ -154,7 +155,7 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
     made = generator->generate(view, update.view, next_hypothesis_id, deadline.earlier_by(verification_s), explained);
     made.times.add(times);
     if (!made.left_out.empty()) {
-      attention.look_at_next();
+      attention.request_search();
       look_of_track.clear();
     }
     found = store ? &store->add(update.view, std::move(made)) : &made;
@@ -175,17 +176,17 @@ std::vector<Hypothesis> SceneRecognizer::Impl::view_hypotheses(const PreparedVie
   return same_pose ? found->hypotheses : move_hypotheses(*found, pose);
 }
 
-std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
+std::vector<Hypothesis> SceneRecognizer::Impl::tracked_hypotheses() {
   std::vector<Hypothesis> hypotheses;
-  for (const KnownObject& known : history.known_objects()) {
+  for (const TrackedObject& known : history.tracked_objects()) {
     Hypothesis hypothesis;
-    hypothesis.id = next_known_id++;
+    hypothesis.id = next_tracked_id++;
     hypothesis.object = known.object;
     hypothesis.world_from_object = known.world_from_object;
     hypothesis.origin_view = known.last_view;
     hypothesis.origin_views = {known.last_view};
-    hypothesis.correspondences =
-        held.of_views(known.track, known.since_view, scene.window().front().number, known.world_from_object);
+    hypothesis.correspondences = track_correspondences.of_views(known.track, known.since_view,
+                                                                scene.window().front().number, known.world_from_object);
     hypotheses.push_back(std::move(hypothesis));
   }
   return hypotheses;
@@ -193,10 +194,10 @@ std::vector<Hypothesis> SceneRecognizer::Impl::known_hypotheses() {
 
 // Whether there is something to be won: it may be something else, is new at its place, was not searched for lately, is
 // nearer than ever before, or was not all that the last view showed there.
-bool SceneRecognizer::Impl::needs_search(const KnownObject& known, int number, double depth_m) const {
+bool SceneRecognizer::Impl::needs_search(const TrackedObject& known, int number, double depth_m) const {
   const AttentionOptions& options = config.attention;
   const auto last = look_of_track.find(known.track);
-  return !known.is_sure || last == look_of_track.end() || number - known.since_view < options.object_min_views ||
+  return !known.is_confirmed || last == look_of_track.end() || number - known.since_view < options.object_min_views ||
          number - last->second.view >= options.object_look_every || known.seen_view + 1 != number ||
          last->second.explained_share < options.min_sure_share ||
          depth_m * options.max_distance_ratio < last->second.depth_m;
@@ -206,11 +207,11 @@ bool SceneRecognizer::Impl::needs_search(const KnownObject& known, int number, d
 Image<std::uint8_t> SceneRecognizer::Impl::explained_pixels(const RgbdFrame& frame, int number, StageTimes& times) {
   if (!config.leaves_out_explained()) return {};
   const ScopedTimer timer(times, "attention");
-  const std::vector<KnownObject> known = history.known_objects();
-  const std::vector<std::uint8_t> present = presence_of(known_hypotheses());
+  const std::vector<TrackedObject> known = history.tracked_objects();
+  const std::vector<std::uint8_t> present = presence_of(tracked_hypotheses());
   const std::size_t now = (scene.window().size() - 1) * known.size();
   const Rigid3 camera_from_world = frame.world_from_camera.inverse();
-  std::vector<KnownObject> confirmed;
+  std::vector<TrackedObject> confirmed;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(known[i].object)].center.cast<double>();
     const Eigen::Vector3d center_in_camera = camera_from_world * (known[i].world_from_object * center);
@@ -240,15 +241,16 @@ void SceneRecognizer::Impl::collect_found(const SceneUpdate& update) {
 // What this view's search found for the objects that are now known, and how sure of them it leaves us.
 void SceneRecognizer::Impl::remember_search(const SceneUpdate& update) {
   std::vector<int> tracks;
-  for (const KnownObject& known : history.known_objects()) tracks.push_back(known.track);
-  held.keep_only(tracks);
+  for (const TrackedObject& known : history.tracked_objects()) tracks.push_back(known.track);
+  track_correspondences.keep_only(tracks);
   std::erase_if(look_of_track,
                 [&](const auto& entry) { return std::ranges::find(tracks, entry.first) == tracks.end(); });
   for (const Detection& detection : update.detections) {
     if (detection.track < 0) continue;
     look_of_track[detection.track].explained_share = detection.views.back().explained_share;
-    held.add(detection.track, update.view, found_of_detection.at(detection.hypothesis_id), detection.world_from_object,
-             library.objects[static_cast<std::size_t>(detection.object)].symmetries);
+    track_correspondences.add(detection.track, update.view, found_of_detection.at(detection.hypothesis_id),
+                              detection.world_from_object,
+                              library.objects[static_cast<std::size_t>(detection.object)].symmetries);
   }
 }
 
@@ -258,7 +260,7 @@ std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& up
   std::vector<Hypothesis> merged;
   for (const auto& of_view : hypotheses_of_view) merged.insert(merged.end(), of_view.begin(), of_view.end());
   if (config.remembers()) {
-    const std::vector<Hypothesis> known = known_hypotheses();
+    const std::vector<Hypothesis> known = tracked_hypotheses();
     merged.insert(merged.end(), known.begin(), known.end());
   }
   update.counts.merged = static_cast<int>(merged.size());
@@ -278,9 +280,9 @@ std::vector<Hypothesis> SceneRecognizer::Impl::merge_and_cluster(SceneUpdate& up
   return merged;
 }
 
-bool SceneRecognizer::Impl::is_known(const Hypothesis& hypothesis) const {
+bool SceneRecognizer::Impl::is_tracked(const Hypothesis& hypothesis) const {
   return std::ranges::any_of(members_of_cluster.at(hypothesis.id),
-                             [](std::uint64_t id) { return id >= kFirstKnownId; });
+                             [](std::uint64_t id) { return id >= kFirstTrackedId; });
 }
 
 // As many as there is time for by the pace of the last view, and a few however late it is: what is known, then those of
@@ -289,13 +291,13 @@ void SceneRecognizer::Impl::leave_out_late(std::vector<Hypothesis>& hypotheses, 
   const double in_time = deadline.left_s() / verification_of_each_s;
   const std::size_t num_all = hypotheses.size();
   if (in_time >= static_cast<double>(num_all)) return;
-  const auto num_known =
-      static_cast<std::size_t>(std::ranges::count_if(hypotheses, [&](const Hypothesis& h) { return is_known(h); }));
+  const auto num_tracked =
+      static_cast<std::size_t>(std::ranges::count_if(hypotheses, [&](const Hypothesis& h) { return is_tracked(h); }));
   const std::size_t num_kept =
-      std::min(num_all, std::max({num_known, kFewHypotheses, static_cast<std::size_t>(std::max(0.0, in_time))}));
+      std::min(num_all, std::max({num_tracked, kFewHypotheses, static_cast<std::size_t>(std::max(0.0, in_time))}));
   if (num_kept == num_all) return;
   std::ranges::stable_sort(hypotheses, std::greater<>(),
-                           [&](const Hypothesis& h) { return std::pair(is_known(h), h.correspondences.size()); });
+                           [&](const Hypothesis& h) { return std::pair(is_tracked(h), h.correspondences.size()); });
   hypotheses.resize(num_kept);
   update.left_out.push_back("verification of " + std::to_string(num_all - num_kept) + " of " + std::to_string(num_all) +
                             " hypotheses");
@@ -312,8 +314,8 @@ std::vector<std::uint8_t> SceneRecognizer::Impl::presence_of(const std::vector<H
 
 // Leaves out the hypotheses that the changes say are not there any more, and returns the presence mask of the others;
 // or, with judge_absent, leaves them to the newest view.
-std::vector<std::uint8_t> SceneRecognizer::Impl::drop_absent(std::vector<Hypothesis>& hypotheses,
-                                                             SceneUpdate& update) const {
+std::vector<std::uint8_t> SceneRecognizer::Impl::handle_removed(std::vector<Hypothesis>& hypotheses,
+                                                                SceneUpdate& update) const {
   if (!config.detect_changes) return {};
   const ScopedTimer timer(update.times, "presence");
   const auto& window = scene.window();
@@ -344,8 +346,9 @@ bool SceneRecognizer::Impl::doubts_known_object(const std::vector<Hypothesis>& h
                                                 const std::vector<HypothesisEvidence>& evidence) const {
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Verdict verdict = evidence[h].verdict;
-    if (verdict != Verdict::kNoSupport && verdict != Verdict::kOtherPattern && verdict != Verdict::kCost) continue;
-    if (is_known(hypotheses[h])) return true;
+    if (verdict != Verdict::kNoSupport && verdict != Verdict::kDifferentAppearance && verdict != Verdict::kCost)
+      continue;
+    if (is_tracked(hypotheses[h])) return true;
   }
   return false;
 }
@@ -359,7 +362,7 @@ void SceneRecognizer::Impl::forget_refuted(const std::vector<Hypothesis>& hypoth
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Verdict verdict = evidence[h].verdict;
     if (verdict == Verdict::kTooFewVisible) continue;
-    if (verdict != Verdict::kOtherPattern && evidence[h].explained_share >= config.min_carried_share) continue;
+    if (verdict != Verdict::kDifferentAppearance && evidence[h].explained_share >= config.min_carried_share) continue;
     const auto& members = members_of_cluster.at(hypotheses[h].id);
     refuted.insert(members.begin(), members.end());
   }
@@ -378,7 +381,7 @@ void SceneRecognizer::Impl::look_without_depth(Detection& detection) const {
 
 void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpdate& update, RecognitionTrace* trace) {
   leave_out_late(hypotheses, update);
-  const std::vector<std::uint8_t> present = drop_absent(hypotheses, update);
+  const std::vector<std::uint8_t> present = handle_removed(hypotheses, update);
   const ScopedTimer timer(update.times, "verification");
   const double start_s = clock();
   const auto& window = scene.window();
@@ -393,7 +396,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
     detection.hypothesis_id = hypotheses[h].id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = detection_score(evidence, is_known(hypotheses[h]), config.score);
+    detection.score = detection_score(evidence, is_tracked(hypotheses[h]), config.score);
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     for (std::size_t v = 0; v < window.size(); ++v)
@@ -406,7 +409,7 @@ void SceneRecognizer::Impl::verify(std::vector<Hypothesis> hypotheses, SceneUpda
   verification_s = clock() - start_s;
   if (verification_s > 0 && !hypotheses.empty())
     verification_of_each_s = verification_s / static_cast<double>(hypotheses.size());
-  if (doubts_known_object(hypotheses, result.evidence)) attention.look_at_next();
+  if (doubts_known_object(hypotheses, result.evidence)) attention.request_search();
   if (config.leaves_out_explained()) collect_found(update);
   forget_refuted(hypotheses, result.evidence);
   if (trace == nullptr) return;

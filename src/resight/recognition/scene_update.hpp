@@ -54,7 +54,7 @@ struct SceneUpdate {
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.
-  bool searched = true;  ///< False: nothing new was to be seen, and only what is known was looked at (Attention).
+  bool searched = true;  ///< False: nothing new was to be seen, and only what is known was looked at (ViewNovelty).
   std::vector<std::string> left_out;  ///< What there was no time for (RecognizerConfig::deadline_ms), for the reader.
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;

@@ -14,13 +14,13 @@ using test::see_nothing;
 using test::see_plates;
 using K = ObjectEventKind;
 
-class UnsureObjectHistoryTest : public ObjectHistoryTest {
+class TentativeTrackHistoryTest : public ObjectHistoryTest {
  protected:
-  UnsureObjectHistoryTest() {
+  TentativeTrackHistoryTest() {
     options_.min_told_score = 0.7;
     history_ = std::make_unique<ObjectHistory>(library_, options_);
   }
-  std::vector<ObjectEvent> unsure_view(const std::vector<std::pair<int, Rigid3>>& detected, const RgbdFrame& frame) {
+  std::vector<ObjectEvent> tentative_view(const std::vector<std::pair<int, Rigid3>>& detected, const RgbdFrame& frame) {
     score_ = 0.5;
     std::vector<ObjectEvent> events = view(detected, frame);
     score_ = 0.9;
@@ -29,55 +29,56 @@ class UnsureObjectHistoryTest : public ObjectHistoryTest {
   ObjectHistoryOptions options_;
 };
 
-TEST_F(UnsureObjectHistoryTest, NothingIsToldBeforeAViewIsSure) {
+TEST_F(TentativeTrackHistoryTest, NothingIsToldBeforeAViewIsSure) {
   view({}, see_plates({}));
-  EXPECT_TRUE(unsure_view({{0, left_}}, see_plates({left_})).empty());
+  EXPECT_TRUE(tentative_view({{0, left_}}, see_plates({left_})).empty());
   const int track = detections_[0].track;
   EXPECT_GE(track, 0);
-  ASSERT_EQ(history_->known_objects().size(), 1U) << "it is looked for in the next view";
-  EXPECT_TRUE(unsure_view({{0, left_}}, see_plates({left_})).empty());
+  ASSERT_EQ(history_->tracked_objects().size(), 1U) << "it is looked for in the next view";
+  EXPECT_TRUE(tentative_view({{0, left_}}, see_plates({left_})).empty());
   EXPECT_EQ(detections_[0].track, track);
   const auto events = view({{0, left_}}, see_plates({left_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kAdded}));
   EXPECT_EQ(events[0].track, track);
   EXPECT_EQ(events[0].view, 3);
-  EXPECT_EQ(history_->known_objects().size(), 1U);
-  EXPECT_EQ(kinds(unsure_view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere})) << "once is enough";
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
+  EXPECT_EQ(kinds(tentative_view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}))
+      << "once is enough";
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatWasNeverSureGoesWithoutAWord) {
-  unsure_view({{0, left_}}, see_plates({left_}));
+TEST_F(TentativeTrackHistoryTest, WhatWasNeverSureGoesWithoutAWord) {
+  tentative_view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(view({}, see_nothing()).empty());
-  EXPECT_EQ(history_->known_objects().size(), 1U) << "the view does not see its place";
+  EXPECT_EQ(history_->tracked_objects().size(), 1U) << "the view does not see its place";
   EXPECT_TRUE(view({}, see_plates({})).empty());
-  EXPECT_TRUE(history_->known_objects().empty());
+  EXPECT_TRUE(history_->tracked_objects().empty());
   EXPECT_TRUE(view({}, see_plates({})).empty());
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatIsOutOfSightIsForgottenWithTheMemory) {
+TEST_F(TentativeTrackHistoryTest, WhatIsOutOfSightIsForgottenWithTheMemory) {
   options_.memory.max_views = 3;
   history_ = std::make_unique<ObjectHistory>(library_, options_);
-  unsure_view({{0, left_}}, see_plates({left_}));
+  tentative_view({{0, left_}}, see_plates({left_}));
   for (int i = 0; i < 3; ++i) view({}, see_nothing());
-  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
   view({}, see_nothing());
-  EXPECT_TRUE(history_->known_objects().empty());
+  EXPECT_TRUE(history_->tracked_objects().empty());
 }
 
-TEST_F(UnsureObjectHistoryTest, AMoveWaitsForASureSightOfTheNewPlace) {
+TEST_F(TentativeTrackHistoryTest, AMoveWaitsForASureSightOfTheNewPlace) {
   view({{0, left_}}, see_plates({left_}));
-  EXPECT_TRUE(unsure_view({{0, right_}}, see_plates({right_})).empty());
-  EXPECT_EQ(kinds(unsure_view({{0, right_}}, see_plates({right_}))), (std::vector{K::kRemoved}));
+  EXPECT_TRUE(tentative_view({{0, right_}}, see_plates({right_})).empty());
+  EXPECT_EQ(kinds(tentative_view({{0, right_}}, see_plates({right_}))), (std::vector{K::kRemoved}));
   const auto events = view({{0, right_}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
-  ASSERT_TRUE(events[0].replaces);
-  EXPECT_EQ(events[0].replaces->kind, K::kRemoved);
+  ASSERT_TRUE(events[0].supersedes);
+  EXPECT_EQ(events[0].supersedes->kind, K::kRemoved);
   EXPECT_EQ(detections_[0].track, 0);
-  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatWasHereWhileTheOtherWasSeenElsewhereIsNotThatOne) {
+TEST_F(TentativeTrackHistoryTest, WhatWasHereWhileTheOtherWasSeenElsewhereIsNotThatOne) {
   for (const bool is_out_of_sight : {false, true}) {
     history_ = std::make_unique<ObjectHistory>(library_, options_);
     view_ = 0;
@@ -95,53 +96,53 @@ TEST_F(UnsureObjectHistoryTest, WhatWasHereWhileTheOtherWasSeenElsewhereIsNotTha
   }
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatLiesInItsOldPlaceHasMovedHoweverUnsure) {
+TEST_F(TentativeTrackHistoryTest, WhatLiesInItsOldPlaceHasMovedHoweverUnsure) {
   const Rigid3 shifted = plate_at(-0.24, 0, 1);
   view({{0, left_}}, see_plates({left_}));
-  EXPECT_EQ(kinds(unsure_view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
+  EXPECT_EQ(kinds(tentative_view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatIsUnsureTakesNoPlace) {
+TEST_F(TentativeTrackHistoryTest, WhatIsUnsureTakesNoPlace) {
   view({{1, left_}}, see_plates({left_}));
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(kinds(unsure_view({{0, left_}}, see_nothing())), (std::vector{K::kNotSeen}));
-  EXPECT_EQ(history_->known_objects().size(), 2U);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(kinds(tentative_view({{0, left_}}, see_nothing())), (std::vector{K::kNotSeen}));
+  EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatIsFoundToBeAKnownOneIsNoOtherAnyMore) {
+TEST_F(TentativeTrackHistoryTest, WhatIsFoundToBeAKnownOneIsNoOtherAnyMore) {
   const Rigid3 beside = plate_at(-0.25, 0, 1);
   view({{0, left_}}, see_plates({left_}));
-  unsure_view({{0, left_}, {0, beside}}, see_plates({left_}));
-  EXPECT_EQ(history_->known_objects().size(), 2U);
+  tentative_view({{0, left_}, {0, beside}}, see_plates({left_}));
+  EXPECT_EQ(history_->tracked_objects().size(), 2U);
   view({{0, left_}}, see_plates({left_}));
-  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
 }
 
-TEST_F(UnsureObjectHistoryTest, WithoutChangeDetectionItIsForgottenInTime) {
+TEST_F(TentativeTrackHistoryTest, WithoutChangeDetectionItIsForgottenInTime) {
   options_.memory.max_views = 3;
   history_ = std::make_unique<ObjectHistory>(library_, options_);
   score_ = 0.5;
   EXPECT_TRUE(view({{0, left_}}, see_plates({left_}), false).empty());
   for (int i = 0; i < 3; ++i) view({}, see_plates({}), false);
-  EXPECT_EQ(history_->known_objects().size(), 1U);
+  EXPECT_EQ(history_->tracked_objects().size(), 1U);
   view({}, see_plates({}), false);
-  EXPECT_TRUE(history_->known_objects().empty());
+  EXPECT_TRUE(history_->tracked_objects().empty());
 }
 
-TEST_F(UnsureObjectHistoryTest, WhatHardlyOverlapsIsAnother) {
-  unsure_view({{0, left_}}, see_plates({left_}));
+TEST_F(TentativeTrackHistoryTest, WhatHardlyOverlapsIsAnother) {
+  tentative_view({{0, left_}}, see_plates({left_}));
   const int track = detections_[0].track;
-  unsure_view({{0, plate_at(-0.25, 0, 1)}}, see_nothing());
+  tentative_view({{0, plate_at(-0.25, 0, 1)}}, see_nothing());
   EXPECT_EQ(detections_[0].track, track);
-  unsure_view({{0, plate_at(-0.12, 0, 1)}}, see_nothing());  // Its centre is nearer than half a diameter.
+  tentative_view({{0, plate_at(-0.12, 0, 1)}}, see_nothing());  // Its centre is nearer than half a diameter.
   EXPECT_NE(detections_[0].track, track);
-  EXPECT_EQ(history_->known_objects().size(), 2U);
+  EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 
-TEST_F(UnsureObjectHistoryTest, TwoOfAViewAreTwo) {
+TEST_F(TentativeTrackHistoryTest, TwoOfAViewAreTwo) {
   const Rigid3 beside = plate_at(-0.28, 0, 1);
-  unsure_view({{0, left_}, {0, beside}}, see_plates({left_}));
+  tentative_view({{0, left_}, {0, beside}}, see_plates({left_}));
   EXPECT_NE(detections_[0].track, detections_[1].track);
-  EXPECT_EQ(history_->known_objects().size(), 2U);
+  EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 
 }  // namespace

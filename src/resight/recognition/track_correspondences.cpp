@@ -9,13 +9,13 @@
 
 namespace resight {
 
-bool HeldCorrespondences::agrees(const Correspondence& c, const Rigid3& world_from_object) const {
+bool TrackCorrespondences::agrees(const Correspondence& c, const Rigid3& world_from_object) const {
   return (world_from_object * c.model_point.cast<double>().eval() - c.scene_point.cast<double>()).norm() <=
          max_distance_m_;
 }
 
-void HeldCorrespondences::add(int track, int view, std::span<const Hypothesis> found, const Rigid3& world_from_object,
-                              const ObjectSymmetries& symmetries) {
+void TrackCorrespondences::add(int track, int view, std::span<const Hypothesis> found, const Rigid3& world_from_object,
+                               const ObjectSymmetries& symmetries) {
   Search search{view, {}};
   for (const Hypothesis& h : found)
     append_correspondences(search.found, h, nearest_symmetric_pose(h.world_from_object, world_from_object, symmetries));
@@ -26,8 +26,8 @@ void HeldCorrespondences::add(int track, int view, std::span<const Hypothesis> f
   if (searches.size() > max_searches_) searches.pop_front();
 }
 
-std::vector<Correspondence> HeldCorrespondences::of_views(int track, int first_view, int end_view,
-                                                          const Rigid3& world_from_object) const {
+std::vector<Correspondence> TrackCorrespondences::of_views(int track, int first_view, int end_view,
+                                                           const Rigid3& world_from_object) const {
   std::vector<Correspondence> all;
   const auto searches = searches_.find(track);
   if (searches == searches_.end()) return all;
@@ -38,7 +38,7 @@ std::vector<Correspondence> HeldCorrespondences::of_views(int track, int first_v
   return all;
 }
 
-void HeldCorrespondences::keep_only(std::span<const int> tracks) {
+void TrackCorrespondences::keep_only(std::span<const int> tracks) {
   std::erase_if(searches_, [&](const auto& entry) { return std::ranges::find(tracks, entry.first) == tracks.end(); });
 }
 

@@ -12,11 +12,11 @@ namespace resight {
 
 /// The correspondences that the last searches for each known object found, while it stays where it is: they hold its
 /// pose in the views in which it is not searched for. World frame. Memory grows with the number of objects only.
-class HeldCorrespondences {
+class TrackCorrespondences {
  public:
   /// Those of `max_searches` searches are kept of each object; those farther than `max_distance_m` from where its pose
   /// has them are not.
-  HeldCorrespondences(std::size_t max_searches, double max_distance_m)
+  TrackCorrespondences(std::size_t max_searches, double max_distance_m)
       : max_searches_(max_searches), max_distance_m_(max_distance_m) {}
 
   /// What the search of a view (ascending) found for the object of a track, which was recognised at

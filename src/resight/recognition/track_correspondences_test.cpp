@@ -30,61 +30,62 @@ std::vector<int> views_of(const std::vector<Correspondence>& correspondences) {
   return views;
 }
 
-std::vector<int> views_of(const HeldCorrespondences& held, int track, int first_view = 0, int end_view = 100) {
-  return views_of(held.of_views(track, first_view, end_view, Rigid3::identity()));
+std::vector<int> views_of(const TrackCorrespondences& track_correspondences, int track, int first_view = 0,
+                          int end_view = 100) {
+  return views_of(track_correspondences.of_views(track, first_view, end_view, Rigid3::identity()));
 }
 
-void add(HeldCorrespondences& held, int track, int view, int count) {
-  held.add(track, view, found_in(view, count), Rigid3::identity(), {});
+void add(TrackCorrespondences& track_correspondences, int track, int view, int count) {
+  track_correspondences.add(track, view, found_in(view, count), Rigid3::identity(), {});
 }
 
-TEST(HeldCorrespondences, ThoseOfTheLastSearchesAreHeld) {
-  HeldCorrespondences held(2, 0.01);
-  add(held, 7, 0, 3);
-  add(held, 7, 4, 2);
-  add(held, 7, 6, 0);  // Nothing was found: no search that counts.
-  add(held, 7, 8, 1);
-  EXPECT_EQ(views_of(held, 7), (std::vector<int>{4, 4, 8}));
+TEST(TrackCorrespondences, ThoseOfTheLastSearchesAreHeld) {
+  TrackCorrespondences track_correspondences(2, 0.01);
+  add(track_correspondences, 7, 0, 3);
+  add(track_correspondences, 7, 4, 2);
+  add(track_correspondences, 7, 6, 0);  // Nothing was found: no search that counts.
+  add(track_correspondences, 7, 8, 1);
+  EXPECT_EQ(views_of(track_correspondences, 7), (std::vector<int>{4, 4, 8}));
 }
 
-TEST(HeldCorrespondences, WhatTheWindowHoldsAndWhatWasBeforeItsPlaceIsLeftOut) {
-  HeldCorrespondences held(10, 0.01);
-  for (int view = 0; view < 6; ++view) add(held, 1, view, 1);
-  EXPECT_EQ(views_of(held, 1, 2, 5), (std::vector<int>{2, 3, 4}));
-  EXPECT_TRUE(views_of(held, 1, 6).empty());
+TEST(TrackCorrespondences, WhatTheWindowHoldsAndWhatWasBeforeItsPlaceIsLeftOut) {
+  TrackCorrespondences track_correspondences(10, 0.01);
+  for (int view = 0; view < 6; ++view) add(track_correspondences, 1, view, 1);
+  EXPECT_EQ(views_of(track_correspondences, 1, 2, 5), (std::vector<int>{2, 3, 4}));
+  EXPECT_TRUE(views_of(track_correspondences, 1, 6).empty());
 }
 
-TEST(HeldCorrespondences, EachTrackHasItsOwnUntilItIsForgotten) {
-  HeldCorrespondences held(3, 0.01);
-  add(held, 1, 0, 1);
-  add(held, 2, 1, 2);
-  EXPECT_EQ(views_of(held, 1).size(), 1U);
-  EXPECT_EQ(views_of(held, 2).size(), 2U);
-  EXPECT_TRUE(views_of(held, 3).empty());
-  held.keep_only(std::array{2});
-  EXPECT_TRUE(views_of(held, 1).empty());
-  EXPECT_EQ(views_of(held, 2).size(), 2U);
+TEST(TrackCorrespondences, EachTrackHasItsOwnUntilItIsForgotten) {
+  TrackCorrespondences track_correspondences(3, 0.01);
+  add(track_correspondences, 1, 0, 1);
+  add(track_correspondences, 2, 1, 2);
+  EXPECT_EQ(views_of(track_correspondences, 1).size(), 1U);
+  EXPECT_EQ(views_of(track_correspondences, 2).size(), 2U);
+  EXPECT_TRUE(views_of(track_correspondences, 3).empty());
+  track_correspondences.keep_only(std::array{2});
+  EXPECT_TRUE(views_of(track_correspondences, 1).empty());
+  EXPECT_EQ(views_of(track_correspondences, 2).size(), 2U);
 }
 
-TEST(HeldCorrespondences, WhatIsFarFromThePoseIsNotHeld) {
+TEST(TrackCorrespondences, WhatIsFarFromThePoseIsNotHeld) {
   const Rigid3 shifted = Rigid3::from_translation({0.02, 0, 0});
-  HeldCorrespondences held(3, 0.01);
-  held.add(1, 0, found_in(0, 1, shifted), Rigid3::identity(), {});
-  EXPECT_TRUE(views_of(held, 1).empty());
-  add(held, 1, 1, 1);
-  EXPECT_TRUE(held.of_views(1, 0, 100, shifted).empty()) << "it was pushed since";
-  EXPECT_EQ(held.of_views(1, 0, 100, Rigid3::from_translation({0.005, 0, 0})).size(), 1U);
+  TrackCorrespondences track_correspondences(3, 0.01);
+  track_correspondences.add(1, 0, found_in(0, 1, shifted), Rigid3::identity(), {});
+  EXPECT_TRUE(views_of(track_correspondences, 1).empty());
+  add(track_correspondences, 1, 1, 1);
+  EXPECT_TRUE(track_correspondences.of_views(1, 0, 100, shifted).empty()) << "it was pushed since";
+  EXPECT_EQ(track_correspondences.of_views(1, 0, 100, Rigid3::from_translation({0.005, 0, 0})).size(), 1U);
 }
 
-TEST(HeldCorrespondences, AHypothesisAtASymmetricPoseIsMovedOver) {
+TEST(TrackCorrespondences, AHypothesisAtASymmetricPoseIsMovedOver) {
   ObjectSymmetries half_turn;
   half_turn.discrete = {Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), std::numbers::pi)};
-  HeldCorrespondences held(3, 0.01);
+  TrackCorrespondences track_correspondences(3, 0.01);
   const auto found = found_in(0, 1, half_turn.discrete[0]);
-  held.add(1, 0, found, Rigid3::identity(), {});
-  EXPECT_TRUE(views_of(held, 1).empty()) << "not symmetric: another pose";
-  held.add(1, 0, found, Rigid3::identity(), half_turn);
-  const std::vector<Correspondence> moved = held.of_views(1, 0, 100, Rigid3::identity());
+  track_correspondences.add(1, 0, found, Rigid3::identity(), {});
+  EXPECT_TRUE(views_of(track_correspondences, 1).empty()) << "not symmetric: another pose";
+  track_correspondences.add(1, 0, found, Rigid3::identity(), half_turn);
+  const std::vector<Correspondence> moved = track_correspondences.of_views(1, 0, 100, Rigid3::identity());
   ASSERT_EQ(moved.size(), 1U);
   EXPECT_LT((moved[0].model_point - found[0].correspondences[0].scene_point).norm(), 1e-6F);
 }

@@ -28,7 +28,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
     made.left_out = {"search"};
     return made;
   }
-  std::optional<SearchedView> searched;
+  std::optional<SearchView> searched;
   if (config_.shape.enabled) {
     const ScopedTimer timer(made.times, "planes");
     searched.emplace(view, config_.shape, explained);
@@ -48,7 +48,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
   return made;
 }
 
-void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchedView* searched,
+void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchView* searched,
                                                const Image<std::uint8_t>& explained, ViewHypotheses& made) const {
   Image<std::uint8_t> where;
   if (searched != nullptr && config_.skip_planes) where = searched->probe.off_larger_planes(largest_diameter_m_);
@@ -66,10 +66,10 @@ void ViewHypothesisGenerator::extract_features(const PreparedView& view, const S
   made.shot = extract_shot(view, config_.shot, mask);
 }
 
-void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchedView& searched, int number,
+void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchView& searched, int number,
                                              const Deadline& deadline, ViewHypotheses& made) const {
   const ScopedTimer timer(made.times, "shape search");
-  drop_chance(searched, made.hypotheses);
+  discard_spurious(searched, made.hypotheses);
   if (deadline.has_passed()) {
     made.left_out = {"shape search"};
     return;
@@ -81,7 +81,7 @@ void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const Sea
 }
 
 // Most groups of correspondences are chance, and a look at their own view tells.
-void ViewHypothesisGenerator::drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const {
+void ViewHypothesisGenerator::discard_spurious(const SearchView& view, std::vector<Hypothesis>& hypotheses) const {
   if (config_.shape.min_feature_share <= 0) return;
   const std::vector<PoseFit> fits = shapes_.look_at(view, hypotheses);
   std::vector<Hypothesis> kept;

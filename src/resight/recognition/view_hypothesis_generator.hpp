@@ -26,11 +26,11 @@ class ViewHypothesisGenerator {
                                         const Deadline& deadline = {}, const Image<std::uint8_t>& explained = {}) const;
 
  private:
-  void extract_features(const PreparedView& view, const SearchedView* searched, const Image<std::uint8_t>& explained,
+  void extract_features(const PreparedView& view, const SearchView* searched, const Image<std::uint8_t>& explained,
                         ViewHypotheses& made) const;
-  void add_from_shape(const PreparedView& view, const SearchedView& searched, int number, const Deadline& deadline,
+  void add_from_shape(const PreparedView& view, const SearchView& searched, int number, const Deadline& deadline,
                       ViewHypotheses& made) const;
-  void drop_chance(const SearchedView& view, std::vector<Hypothesis>& hypotheses) const;
+  void discard_spurious(const SearchView& view, std::vector<Hypothesis>& hypotheses) const;
 
   const RecognizerConfig& config_;
   ModelFeatureIndex index_;

@@ -43,9 +43,9 @@ void AttentionOptions::check() const {
   check_in_range("AttentionOptions.min_sure_share", min_sure_share, 0, 1);
 }
 
-Attention::Attention(const AttentionOptions& options) : options_((options.check(), options)) {}
+ViewNovelty::ViewNovelty(const AttentionOptions& options) : options_((options.check(), options)) {}
 
-bool Attention::is_due(const PreparedView& view, const ChangeResult& changes) {
+bool ViewNovelty::needs_search(const PreparedView& view, const ChangeResult& changes) {
   if (options_.max_unseen_share <= 0) return true;
   ++views_since_look_;
   const bool due = looks_.empty() || views_since_look_ == 0 || views_since_look_ >= options_.full_look_every ||
@@ -57,7 +57,7 @@ bool Attention::is_due(const PreparedView& view, const ChangeResult& changes) {
   return true;
 }
 
-bool Attention::shows_something_new(const PreparedView& view, const ChangeResult& changes) const {
+bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResult& changes) const {
   const Rigid3f world_from_camera(view.frame.world_from_camera);
   const OrganizedCloud& cloud = view.cloud;
   require(view.edge_distance_px.size() == cloud.z.size(), "Attention: the view is not prepared");
@@ -76,7 +76,7 @@ bool Attention::shows_something_new(const PreparedView& view, const ChangeResult
   return num_new > options_.max_unseen_share * num_seen;
 }
 
-bool Attention::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vector3f& eye_in_world) const {
+bool ViewNovelty::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vector3f& eye_in_world) const {
   const Eigen::Vector3f ray = p_in_world - eye_in_world;
   const auto min_cosine = static_cast<float>(std::cos(options_.max_turn_rad));
   for (const Look& look : looks_) {

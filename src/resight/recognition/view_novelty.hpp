@@ -23,15 +23,15 @@ struct AttentionOptions {
 
 /// Decides which views are searched for objects (paper, Sec. V: attention). In a view that shows nothing new, what is
 /// known needs only to be confirmed.
-class Attention {
+class ViewNovelty {
  public:
   /// Throws std::invalid_argument for options that fail check().
-  explicit Attention(const AttentionOptions& options);
+  explicit ViewNovelty(const AttentionOptions& options);
 
   /// Whether to search this view; remembers what was searched. `changes`: of the same view.
-  [[nodiscard]] bool is_due(const PreparedView& view, const ChangeResult& changes);
+  [[nodiscard]] bool needs_search(const PreparedView& view, const ChangeResult& changes);
   /// The next view is searched in any case.
-  void look_at_next() { views_since_look_ = -1; }
+  void request_search() { views_since_look_ = -1; }
 
  private:
   struct Look {

@@ -15,76 +15,76 @@ using namespace analytic;
 struct Watch {
   World world = one_box();
   std::vector<Rigid3> cameras = circle_of_cameras(12, 0.8, 0.6, 0.6);
-  Attention attention{{.max_unseen_share = 0.003, .full_look_every = 5}};
+  ViewNovelty attention{{.max_unseen_share = 0.003, .full_look_every = 5}};
 
-  bool is_due(const Rigid3& camera, const ChangeResult& changes = {}) {
-    return attention.is_due(prepare_view(render(world, camera).frame), changes);
+  bool needs_search(const Rigid3& camera, const ChangeResult& changes = {}) {
+    return attention.needs_search(prepare_view(render(world, camera).frame), changes);
   }
 };
 
-TEST(Attention, ALookIsRepeatedAfterSomeViewsOnly) {
+TEST(ViewNovelty, ALookIsRepeatedAfterSomeViewsOnly) {
   Watch w;
-  for (int view = 0; view < 12; ++view) EXPECT_EQ(w.is_due(w.cameras[0]), view % 5 == 0) << view;
+  for (int view = 0; view < 12; ++view) EXPECT_EQ(w.needs_search(w.cameras[0]), view % 5 == 0) << view;
 }
 
-TEST(Attention, OffItIsAlwaysDue) {
+TEST(ViewNovelty, OffItIsAlwaysDue) {
   Watch w;
-  w.attention = Attention({});
-  for (int view = 0; view < 3; ++view) EXPECT_TRUE(w.is_due(w.cameras[0]));
+  w.attention = ViewNovelty({});
+  for (int view = 0; view < 3; ++view) EXPECT_TRUE(w.needs_search(w.cameras[0]));
 }
 
-TEST(Attention, AnotherSideIsNew) {
+TEST(ViewNovelty, AnotherSideIsNew) {
   Watch w;
-  EXPECT_TRUE(w.is_due(w.cameras[0]));
-  EXPECT_TRUE(w.is_due(w.cameras[1]));   // 30 deg on
-  EXPECT_FALSE(w.is_due(w.cameras[0]));  // back to what was searched
-  EXPECT_FALSE(w.is_due(w.cameras[1]));
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
+  EXPECT_TRUE(w.needs_search(w.cameras[1]));   // 30 deg on
+  EXPECT_FALSE(w.needs_search(w.cameras[0]));  // back to what was searched
+  EXPECT_FALSE(w.needs_search(w.cameras[1]));
 }
 
-TEST(Attention, SoIsANearerLook) {
+TEST(ViewNovelty, SoIsANearerLook) {
   Watch w;
   const Eigen::Vector3d eye = w.cameras[0].translation;
-  EXPECT_TRUE(w.is_due(look_at(eye, {0, 0, 0})));
-  EXPECT_FALSE(w.is_due(look_at(0.95 * eye, {0, 0, 0})));
-  EXPECT_TRUE(w.is_due(look_at(0.6 * eye, {0, 0, 0})));
+  EXPECT_TRUE(w.needs_search(look_at(eye, {0, 0, 0})));
+  EXPECT_FALSE(w.needs_search(look_at(0.95 * eye, {0, 0, 0})));
+  EXPECT_TRUE(w.needs_search(look_at(0.6 * eye, {0, 0, 0})));
 }
 
-TEST(Attention, WhatWasPutThereOrUncoveredIsNew) {
+TEST(ViewNovelty, WhatWasPutThereOrUncoveredIsNew) {
   Watch w;
-  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
   w.world.solids.clear();
-  EXPECT_TRUE(w.is_due(w.cameras[0]));  // the table behind the box
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));  // the table behind the box
   w.world = one_box();
   ChangeResult changes;
   changes.novel_mask = Image<std::uint8_t>(320, 240);
-  EXPECT_FALSE(w.is_due(w.cameras[0], changes));
+  EXPECT_FALSE(w.needs_search(w.cameras[0], changes));
   for (int v = 100; v < 140; ++v)
     for (int u = 140; u < 180; ++u) changes.novel_mask(u, v) = 1;
-  EXPECT_TRUE(w.is_due(w.cameras[0], changes));
+  EXPECT_TRUE(w.needs_search(w.cameras[0], changes));
 }
 
-TEST(Attention, NoiseOfTheDepthIsNothingNew) {
+TEST(ViewNovelty, NoiseOfTheDepthIsNothingNew) {
   const auto shifted = [](const Watch& w, float by_m) {
     RgbdFrame frame = render(w.world, w.cameras[0]).frame;
     for (std::size_t i = 0; i < frame.depth_m.size(); ++i) frame.depth_m[i] += by_m;
     return prepare_view(std::move(frame));
   };
   Watch w;
-  EXPECT_TRUE(w.is_due(w.cameras[0]));
-  EXPECT_FALSE(w.attention.is_due(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
-  EXPECT_TRUE(w.attention.is_due(shifted(w, 0.04F), {}));
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
+  EXPECT_FALSE(w.attention.needs_search(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
+  EXPECT_TRUE(w.attention.needs_search(shifted(w, 0.04F), {}));
 }
 
-TEST(Attention, AWrongPoseIsNoReasonToLookAway) {
+TEST(ViewNovelty, AWrongPoseIsNoReasonToLookAway) {
   Watch w;
-  EXPECT_TRUE(w.is_due(w.cameras[0]));
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
   ChangeResult suspect;
   suspect.pose_suspect = true;
-  EXPECT_TRUE(w.is_due(w.cameras[0], suspect));
+  EXPECT_TRUE(w.needs_search(w.cameras[0], suspect));
 }
 
 // From recognition on: a view that shows nothing new is not searched, and what is known is found in it all the same.
-TEST(Attention, KnownObjectsAreConfirmedWithoutASearch) {
+TEST(ViewNovelty, KnownObjectsAreConfirmedWithoutASearch) {
   const World world = one_box();
   const ModelLibrary library = analytic::make_library();
   auto store = std::make_shared<ViewHypothesisStore>();
@@ -103,7 +103,7 @@ TEST(Attention, KnownObjectsAreConfirmedWithoutASearch) {
 }
 
 // What remembers nothing has to search each view.
-TEST(Attention, SingleViewsAreSearched) {
+TEST(ViewNovelty, SingleViewsAreSearched) {
   const World world = one_box();
   const ModelLibrary library = analytic::make_library();
   for (const bool remember : {false, true}) {
@@ -116,10 +116,10 @@ TEST(Attention, SingleViewsAreSearched) {
   }
 }
 
-TEST(Attention, RefusesNonsense) {
-  EXPECT_THROW(Attention({.max_unseen_share = 2}), std::invalid_argument);
-  EXPECT_THROW(Attention({.full_look_every = 0}), std::invalid_argument);
-  EXPECT_THROW(Attention({.max_distance_ratio = 0.5}), std::invalid_argument);
+TEST(ViewNovelty, RefusesNonsense) {
+  EXPECT_THROW(ViewNovelty({.max_unseen_share = 2}), std::invalid_argument);
+  EXPECT_THROW(ViewNovelty({.full_look_every = 0}), std::invalid_argument);
+  EXPECT_THROW(ViewNovelty({.max_distance_ratio = 0.5}), std::invalid_argument);
 }
 
 }  // namespace

@@ -209,7 +209,8 @@ ScenePlanes find_scene_planes(Points points, Points normals, const SmoothSegment
   return finder.take();
 }
 
-ScenePlanes find_planes_of_thinned(Points points, Points normals, double spacing_m, const FindPlanesOptions& options) {
+ScenePlanes find_planes_of_downsampled(Points points, Points normals, double spacing_m,
+                                       const FindPlanesOptions& options) {
   constexpr double kSmoothSpacings = 2;
   const SmoothSegmentsOptions segments{.max_distance_m = kSmoothSpacings * spacing_m,
                                        .num_threads = options.num_threads};

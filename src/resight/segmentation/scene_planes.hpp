@@ -60,9 +60,9 @@ struct ScenePlanes {
                                             double spacing_m, const FindPlanesOptions& options);
 
 /// The same of a cloud thinned to `spacing_m`, with segments of it.
-[[nodiscard]] ScenePlanes find_planes_of_thinned(std::span<const Eigen::Vector3f> points,
-                                                 std::span<const Eigen::Vector3f> normals, double spacing_m,
-                                                 const FindPlanesOptions& options);
+[[nodiscard]] ScenePlanes find_planes_of_downsampled(std::span<const Eigen::Vector3f> points,
+                                                     std::span<const Eigen::Vector3f> normals, double spacing_m,
+                                                     const FindPlanesOptions& options);
 
 /// Number of the first plane that each point is of, or -1.
 [[nodiscard]] std::vector<int> assign_to_planes(std::span<const Eigen::Vector3f> points,

@@ -16,7 +16,7 @@ constexpr float kMinLength_m = 0.012F;  // Shorter pairs turn the pose too freel
 constexpr float kMaxLengthDifference_m = 0.008F;
 constexpr float kMaxCosineDifference = 0.3F;  // Of normals with each other and with the line.
 
-bool may_be_one_thing(const Dipole& model, const Dipole& scene) {
+bool may_be_one_thing(const OrientedPointPair& model, const OrientedPointPair& scene) {
   const Eigen::Vector3f model_line = model.p2 - model.p1;
   const Eigen::Vector3f scene_line = scene.p2 - scene.p1;
   const float model_length = model_line.norm();
@@ -33,7 +33,7 @@ bool may_be_one_thing(const Dipole& model, const Dipole& scene) {
 }  // namespace
 
 std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> matches, int object,
-                                                const ProbeModel& model, const PoseProbe& probe,
+                                                const SampledModel& model, const PoseScorer& probe,
                                                 const ShapeSearchOptions& options) {
   std::vector<PoseCandidate> found;
   if (options.max_matches == 0 || model.points.empty()) return found;
@@ -42,8 +42,8 @@ std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> 
     for (std::size_t j = 0; j < i; ++j) {
       const Correspondence& a = matches[static_cast<std::size_t>(best[i])];
       const Correspondence& b = matches[static_cast<std::size_t>(best[j])];
-      const Dipole in_model{a.model_point, a.model_normal, b.model_point, b.model_normal};
-      const Dipole in_scene{a.scene_point, a.scene_normal, b.scene_point, b.scene_normal};
+      const OrientedPointPair in_model{a.model_point, a.model_normal, b.model_point, b.model_normal};
+      const OrientedPointPair in_scene{a.scene_point, a.scene_normal, b.scene_point, b.scene_normal};
       if (!may_be_one_thing(in_model, in_scene)) continue;
       const auto pose = align(in_model, in_scene);
       if (!pose) continue;

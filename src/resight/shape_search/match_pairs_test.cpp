@@ -77,7 +77,7 @@ TEST(MatchPairs, NoneWhereThereIsNothingToPair) {
   off.max_matches = 0;
   EXPECT_TRUE(c.find(off).empty());
   EXPECT_TRUE(poses_of_match_pairs({}, 3, c.samples, c.probe, {}).empty());
-  EXPECT_TRUE(poses_of_match_pairs(c.matches, 3, ProbeModel{}, c.probe, {}).empty());
+  EXPECT_TRUE(poses_of_match_pairs(c.matches, 3, SampledModel{}, c.probe, {}).empty());
   const std::vector<Correspondence> same(5, c.matches[11]);
   EXPECT_TRUE(poses_of_match_pairs(same, 3, c.samples, c.probe, {}).empty());
   for (Correspondence& m : c.matches) m.scene_normal.setConstant(std::numeric_limits<float>::quiet_NaN());
@@ -91,12 +91,12 @@ TEST(AgreeingMatches, EachKeypointWithItsNearestOnly) {
   EXPECT_TRUE(std::find(both.begin(), both.end(), 30) != both.end());
   EXPECT_TRUE(std::is_sorted(both.begin(), both.end()));
 
-  std::vector<Correspondence> rivals{c.matches[11], c.matches[11], c.matches[30]};
-  rivals[0].scene_point.x() += 0.003F;  // The same keypoint, a little farther: the second is nearer.
-  rivals[2].scene_point.x() += 0.02F;
-  EXPECT_EQ(agreeing_matches(rivals, c.truth, 0.01), (std::vector{1}));
-  rivals[1].type = FeatureType::kShot;
-  EXPECT_EQ(agreeing_matches(rivals, c.truth, 0.01), (std::vector{0}));
+  std::vector<Correspondence> competitors{c.matches[11], c.matches[11], c.matches[30]};
+  competitors[0].scene_point.x() += 0.003F;  // The same keypoint, a little farther: the second is nearer.
+  competitors[2].scene_point.x() += 0.02F;
+  EXPECT_EQ(agreeing_matches(competitors, c.truth, 0.01), (std::vector{1}));
+  competitors[1].type = FeatureType::kShot;
+  EXPECT_EQ(agreeing_matches(competitors, c.truth, 0.01), (std::vector{0}));
   EXPECT_TRUE(agreeing_matches({}, c.truth, 0.01).empty());
 }
 

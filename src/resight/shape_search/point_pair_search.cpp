@@ -26,9 +26,9 @@ void keep_within(const Eigen::ArrayXf& distances_sq, float radius_sq, bool of_al
 
 }  // namespace
 
-DipoleSearch::DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
-                           const DipoleTable& table, std::span<const int> max_entries,
-                           const ShapeSearchOptions& options)
+PointPairSearch::PointPairSearch(const PointCloud& scene, const PoseScorer& probe,
+                                 const std::vector<SampledModel>& objects, const PointPairTable& table,
+                                 std::span<const int> max_entries, const ShapeSearchOptions& options)
     : scene_(scene), probe_(probe), objects_(objects), table_(table), max_entries_(max_entries), options_(options) {
   coordinates_.resize(static_cast<Eigen::Index>(scene.size()), 3);
   for (std::size_t i = 0; i < scene.size(); ++i)
@@ -36,13 +36,13 @@ DipoleSearch::DipoleSearch(const PointCloud& scene, const PoseProbe& probe, cons
 }
 
 // To all points, in vector code: partners are drawn from thousands of points around a seed, more than a tree can spare.
-void DipoleSearch::measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const {
+void PointPairSearch::measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const {
   const Eigen::Vector3f& p = scene_.points[seed];
   distances_sq = (coordinates_.col(0) - p.x()).square() + (coordinates_.col(1) - p.y()).square() +
                  (coordinates_.col(2) - p.z()).square();
 }
 
-std::vector<PoseCandidate> DipoleSearch::from_seed(std::size_t seed) const {
+std::vector<PoseCandidate> PointPairSearch::from_seed(std::size_t seed) const {
   Rng rng = Rng::stream(options_.seed, seed);
   std::vector<PoseCandidate> found;
   Eigen::ArrayXf distances_sq;
@@ -54,20 +54,20 @@ std::vector<PoseCandidate> DipoleSearch::from_seed(std::size_t seed) const {
     for (int i = 0; i < options_.pairs_per_seed / kRings && !near.empty(); ++i) {
       const auto other = static_cast<std::size_t>(near[rng.below(static_cast<std::uint32_t>(near.size()))]);
       if (other != seed)
-        try_dipole({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
-                   found);
+        try_point_pair({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
+                       found);
     }
   }
   return found;
 }
 
 // Objects whose bin holds many are drawn from.
-void DipoleSearch::try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCandidate>& found) const {
-  const auto bin = dipole_bin(seen, table_.max_length_m());
+void PointPairSearch::try_point_pair(const OrientedPointPair& seen, Rng& rng, std::vector<PoseCandidate>& found) const {
+  const auto bin = point_pair_bin(seen, table_.max_length_m());
   const int first = probe_.pixel_of(seen.p1);
   const int second = probe_.pixel_of(seen.p2);
   if (!bin || first < 0 || second < 0) return;
-  const std::span<const DipoleEntry> entries = table_.find(*bin);
+  const std::span<const PointPairEntry> entries = table_.find(*bin);
   for (std::size_t begin = 0; begin < entries.size();) {
     std::size_t end = begin;
     while (end < entries.size() && entries[end].object == entries[begin].object) ++end;
@@ -80,9 +80,10 @@ void DipoleSearch::try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCand
   }
 }
 
-void DipoleSearch::try_entry(const DipoleEntry& entry, const Dipole& seen, const Eigen::Vector2f& first,
-                             const Eigen::Vector2f& second, std::vector<PoseCandidate>& found) const {
-  const ProbeModel& model = objects_[entry.object];
+void PointPairSearch::try_entry(const PointPairEntry& entry, const OrientedPointPair& seen,
+                                const Eigen::Vector2f& first, const Eigen::Vector2f& second,
+                                std::vector<PoseCandidate>& found) const {
+  const SampledModel& model = objects_[entry.object];
   const float max_chroma = static_cast<float>(options_.coarse.max_chroma_difference);
   if (!model.chroma.empty() && std::max((model.chroma[entry.first] - first).squaredNorm(),
                                         (model.chroma[entry.second] - second).squaredNorm()) > max_chroma * max_chroma)

@@ -12,25 +12,25 @@
 namespace resight {
 
 /// Dipoles of one view, and the poses they stand for. All arguments must outlive it; camera frame.
-class DipoleSearch {
+class PointPairSearch {
  public:
   /// `max_entries`: of each object, per dipole (in place of options.max_entries).
-  DipoleSearch(const PointCloud& scene, const PoseProbe& probe, const std::vector<ProbeModel>& objects,
-               const DipoleTable& table, std::span<const int> max_entries, const ShapeSearchOptions& options);
+  PointPairSearch(const PointCloud& scene, const PoseScorer& probe, const std::vector<SampledModel>& objects,
+                  const PointPairTable& table, std::span<const int> max_entries, const ShapeSearchOptions& options);
 
   /// Poses that pass the first test, of dipoles from one scene point to others around it.
   [[nodiscard]] std::vector<PoseCandidate> from_seed(std::size_t seed) const;
 
  private:
   void measure_distances(std::size_t seed, Eigen::ArrayXf& distances_sq) const;
-  void try_dipole(const Dipole& seen, Rng& rng, std::vector<PoseCandidate>& found) const;
-  void try_entry(const DipoleEntry& entry, const Dipole& seen, const Eigen::Vector2f& first,
+  void try_point_pair(const OrientedPointPair& seen, Rng& rng, std::vector<PoseCandidate>& found) const;
+  void try_entry(const PointPairEntry& entry, const OrientedPointPair& seen, const Eigen::Vector2f& first,
                  const Eigen::Vector2f& second, std::vector<PoseCandidate>& found) const;
 
   const PointCloud& scene_;
-  const PoseProbe& probe_;
-  const std::vector<ProbeModel>& objects_;
-  const DipoleTable& table_;
+  const PoseScorer& probe_;
+  const std::vector<SampledModel>& objects_;
+  const PointPairTable& table_;
   std::span<const int> max_entries_;
   const ShapeSearchOptions& options_;
   Eigen::Array<float, Eigen::Dynamic, 3> coordinates_;  // of the scene

@@ -28,7 +28,7 @@ std::uint32_t num_distance_bins(double max_length_m) {
 }
 
 // Columns: the line, the part of the normals' sum that is square to it, and what completes them.
-std::optional<Eigen::Matrix3f> frame_of(const Dipole& d) {
+std::optional<Eigen::Matrix3f> frame_of(const OrientedPointPair& d) {
   const Eigen::Vector3f line = (d.p2 - d.p1).normalized();
   Eigen::Vector3f up = d.n1 + d.n2;
   up -= line * line.dot(up);
@@ -42,11 +42,11 @@ std::optional<Eigen::Matrix3f> frame_of(const Dipole& d) {
 
 }  // namespace
 
-std::uint32_t num_dipole_bins(double max_length_m) {
+std::uint32_t num_point_pair_bins(double max_length_m) {
   return num_distance_bins(max_length_m) * kAngleBins * kAngleBins * kTorsionBins;
 }
 
-std::optional<std::uint32_t> dipole_bin(const Dipole& d, double max_length_m) {
+std::optional<std::uint32_t> point_pair_bin(const OrientedPointPair& d, double max_length_m) {
   const Eigen::Vector3f offset = d.p2 - d.p1;
   const float distance = offset.norm();
   if (!(distance >= static_cast<float>(kDistanceBin_m)) || distance > static_cast<float>(max_length_m))
@@ -67,7 +67,7 @@ std::optional<std::uint32_t> dipole_bin(const Dipole& d, double max_length_m) {
          bin_of(torsion, 2 * kPi, kTorsionBins);
 }
 
-std::optional<Rigid3f> align(const Dipole& from, const Dipole& onto) {
+std::optional<Rigid3f> align(const OrientedPointPair& from, const OrientedPointPair& onto) {
   const auto a = frame_of(from);
   const auto b = frame_of(onto);
   if (!a || !b) return std::nullopt;
@@ -77,10 +77,10 @@ std::optional<Rigid3f> align(const Dipole& from, const Dipole& onto) {
   return motion;
 }
 
-DipoleTable::DipoleTable(std::span<const Samples> objects) {
+PointPairTable::PointPairTable(std::span<const Samples> objects) {
   require(objects.size() <= std::numeric_limits<std::uint16_t>::max(), "DipoleTable: too many objects");
   for (const Samples& s : objects) max_length_m_ = std::max(max_length_m_, s.max_length_m);
-  std::vector<std::pair<std::uint32_t, DipoleEntry>> found;
+  std::vector<std::pair<std::uint32_t, PointPairEntry>> found;
   for (std::size_t o = 0; o < objects.size(); ++o) {
     const Samples& s = objects[o];
     require(s.points.size() <= std::numeric_limits<std::uint16_t>::max() && s.points.size() == s.normals.size(),
@@ -89,12 +89,12 @@ DipoleTable::DipoleTable(std::span<const Samples> objects) {
       for (std::size_t j = 0; j < s.points.size(); ++j) {
         const double distance = (s.points[i] - s.points[j]).norm();
         if (i == j || distance < s.min_length_m || distance > s.max_length_m) continue;
-        if (const auto bin = dipole_bin({s.points[i], s.normals[i], s.points[j], s.normals[j]}, max_length_m_))
+        if (const auto bin = point_pair_bin({s.points[i], s.normals[i], s.points[j], s.normals[j]}, max_length_m_))
           found.push_back(
               {*bin, {static_cast<std::uint16_t>(o), static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)}});
       }
   }
-  begin_.assign(num_dipole_bins(max_length_m_) + 1, 0);
+  begin_.assign(num_point_pair_bins(max_length_m_) + 1, 0);
   for (const auto& [bin, entry] : found) ++begin_[bin + 1];
   for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
   entries_.resize(found.size());
@@ -102,7 +102,7 @@ DipoleTable::DipoleTable(std::span<const Samples> objects) {
   for (const auto& [bin, entry] : found) entries_[next[bin]++] = entry;
 }
 
-std::span<const DipoleEntry> DipoleTable::find(std::uint32_t bin) const {
+std::span<const PointPairEntry> PointPairTable::find(std::uint32_t bin) const {
   return std::span(entries_).subspan(begin_[bin], begin_[bin + 1] - begin_[bin]);
 }
 

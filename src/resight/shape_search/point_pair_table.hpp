@@ -11,29 +11,29 @@
 namespace resight {
 
 /// Two oriented points (a dipole; Winkelbach, Molkenstruck and Wahl 2006). Unit normals.
-struct Dipole {
+struct OrientedPointPair {
   Eigen::Vector3f p1, n1, p2, n2;
 };
 
 /// Bin of the four numbers that a rigid motion leaves as they are: distance, the angles of both normals with the line
 /// between the points, and the torsion of the normals about it. None for points nearer than a bin (1 cm) or farther
 /// apart than `max_length_m`, and for what fixes no pose: both normals alike and square to the line (a plane).
-[[nodiscard]] std::optional<std::uint32_t> dipole_bin(const Dipole& dipole, double max_length_m);
-[[nodiscard]] std::uint32_t num_dipole_bins(double max_length_m);
+[[nodiscard]] std::optional<std::uint32_t> point_pair_bin(const OrientedPointPair& pair, double max_length_m);
+[[nodiscard]] std::uint32_t num_point_pair_bins(double max_length_m);
 
 /// Rotation and translation that put `from` onto `onto`: middle on middle, line on line, and the mean of the normals as
 /// near as that leaves. None if the normals have no part square to the line.
-[[nodiscard]] std::optional<Rigid3f> align(const Dipole& from, const Dipole& onto);
+[[nodiscard]] std::optional<Rigid3f> align(const OrientedPointPair& from, const OrientedPointPair& onto);
 
 /// A pair of samples of an object.
-struct DipoleEntry {
+struct PointPairEntry {
   std::uint16_t object = 0;
   std::uint16_t first = 0;
   std::uint16_t second = 0;
 };
 
 /// Pairs of samples of all objects by bin.
-class DipoleTable {
+class PointPairTable {
  public:
   struct Samples {
     std::span<const Eigen::Vector3f> points;
@@ -41,19 +41,19 @@ class DipoleTable {
     double min_length_m = 0;  ///< Of a dipole...
     double max_length_m = 0;  ///< ...both inclusive.
   };
-  DipoleTable() = default;
+  PointPairTable() = default;
   /// At most 65,535 objects with as many samples each.
-  explicit DipoleTable(std::span<const Samples> objects);
+  explicit PointPairTable(std::span<const Samples> objects);
 
   /// In the order of objects.
-  [[nodiscard]] std::span<const DipoleEntry> find(std::uint32_t bin) const;
+  [[nodiscard]] std::span<const PointPairEntry> find(std::uint32_t bin) const;
   [[nodiscard]] double max_length_m() const { return max_length_m_; }
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
  private:
   double max_length_m_ = 0;
   std::vector<std::uint32_t> begin_;  // Per bin, and one more.
-  std::vector<DipoleEntry> entries_;
+  std::vector<PointPairEntry> entries_;
 };
 
 }  // namespace resight

@@ -17,13 +17,13 @@ Eigen::Vector3f random_direction(Rng& rng) {
   return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized().cast<float>();
 }
 
-Dipole random_dipole(Rng& rng) {
+OrientedPointPair random_point_pair(Rng& rng) {
   const Eigen::Vector3f p = 0.3F * random_direction(rng);
   return {p, random_direction(rng), p + static_cast<float>(rng.uniform(0.02, 0.19)) * random_direction(rng),
           random_direction(rng)};
 }
 
-Dipole moved(const Rigid3f& motion, const Dipole& d) {
+OrientedPointPair moved(const Rigid3f& motion, const OrientedPointPair& d) {
   return {motion * d.p1, motion.rotation * d.n1, motion * d.p2, motion.rotation * d.n2};
 }
 
@@ -33,44 +33,44 @@ Rigid3f random_motion(Rng& rng) {
   return Rigid3f(motion);
 }
 
-TEST(DipoleBin, DoesNotChangeWithTheFrame) {
+TEST(PointPairBin, DoesNotChangeWithTheFrame) {
   Rng rng(1);
   int same = 0;
   int num_bins = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Dipole d = random_dipole(rng);
-    const auto bin = dipole_bin(d, kMaxLength_m);
-    const auto other = dipole_bin(moved(random_motion(rng), d), kMaxLength_m);
+    const OrientedPointPair d = random_point_pair(rng);
+    const auto bin = point_pair_bin(d, kMaxLength_m);
+    const auto other = point_pair_bin(moved(random_motion(rng), d), kMaxLength_m);
     if (!bin) continue;
     ++num_bins;
-    EXPECT_LT(*bin, num_dipole_bins(kMaxLength_m));
+    EXPECT_LT(*bin, num_point_pair_bins(kMaxLength_m));
     if (other == bin) ++same;
   }
   EXPECT_GT(num_bins, 950);
   EXPECT_GE(same, num_bins - 3);  // Rounding at the border of a bin.
 }
 
-TEST(DipoleBin, TellsAMirrorImage) {
-  const Dipole d{{0, 0, 0}, {0, 1, 0}, {0.1F, 0, 0}, Eigen::Vector3f(0, 1, 1).normalized()};
-  Dipole mirrored = d;
+TEST(PointPairBin, TellsAMirrorImage) {
+  const OrientedPointPair d{{0, 0, 0}, {0, 1, 0}, {0.1F, 0, 0}, Eigen::Vector3f(0, 1, 1).normalized()};
+  OrientedPointPair mirrored = d;
   mirrored.n2.z() = -mirrored.n2.z();
-  EXPECT_NE(dipole_bin(d, kMaxLength_m), dipole_bin(mirrored, kMaxLength_m));
+  EXPECT_NE(point_pair_bin(d, kMaxLength_m), point_pair_bin(mirrored, kMaxLength_m));
 }
 
-TEST(DipoleBin, PlanesAndLengthsOutOfRangeHaveNone) {
+TEST(PointPairBin, PlanesAndLengthsOutOfRangeHaveNone) {
   const Eigen::Vector3f up(0, 0, 1);
-  EXPECT_FALSE(dipole_bin({{0, 0, 0}, up, {0.1F, 0, 0}, up}, kMaxLength_m));
-  EXPECT_TRUE(dipole_bin({{0, 0, 0}, up, {0.1F, 0, 0.1F}, up}, kMaxLength_m));  // A step.
-  EXPECT_FALSE(dipole_bin({{0, 0, 0}, up, {0.21F, 0, 0}, {1, 0, 0}}, kMaxLength_m));
-  EXPECT_FALSE(dipole_bin({{0, 0, 0}, up, {0.005F, 0, 0}, {1, 0, 0}}, kMaxLength_m));
-  EXPECT_FALSE(dipole_bin({{0, 0, 0}, up, {0, 0, 0}, {1, 0, 0}}, kMaxLength_m));
+  EXPECT_FALSE(point_pair_bin({{0, 0, 0}, up, {0.1F, 0, 0}, up}, kMaxLength_m));
+  EXPECT_TRUE(point_pair_bin({{0, 0, 0}, up, {0.1F, 0, 0.1F}, up}, kMaxLength_m));  // A step.
+  EXPECT_FALSE(point_pair_bin({{0, 0, 0}, up, {0.21F, 0, 0}, {1, 0, 0}}, kMaxLength_m));
+  EXPECT_FALSE(point_pair_bin({{0, 0, 0}, up, {0.005F, 0, 0}, {1, 0, 0}}, kMaxLength_m));
+  EXPECT_FALSE(point_pair_bin({{0, 0, 0}, up, {0, 0, 0}, {1, 0, 0}}, kMaxLength_m));
 }
 
 TEST(Align, PutsADipoleOntoItsImage) {
   Rng rng(2);
   int num_aligned = 0;
   for (int i = 0; i < 200; ++i) {
-    const Dipole d = random_dipole(rng);
+    const OrientedPointPair d = random_point_pair(rng);
     const Rigid3f motion = random_motion(rng);
     const auto found = align(d, moved(motion, d));
     if (!found) continue;
@@ -82,15 +82,15 @@ TEST(Align, PutsADipoleOntoItsImage) {
 }
 
 TEST(Align, NormalsAlongTheLineFixNoPose) {
-  const Dipole d{{0, 0, 0}, {1, 0, 0}, {0.1F, 0, 0}, {-1, 0, 0}};
+  const OrientedPointPair d{{0, 0, 0}, {1, 0, 0}, {0.1F, 0, 0}, {-1, 0, 0}};
   EXPECT_FALSE(align(d, d));
 }
 
-TEST(DipoleTable, HoldsEveryPairOfEachObjectInItsBin) {
+TEST(PointPairTable, HoldsEveryPairOfEachObjectInItsBin) {
   Rng rng(3);
   std::vector<std::vector<Eigen::Vector3f>> points(3);
   std::vector<std::vector<Eigen::Vector3f>> normals(3);
-  std::vector<DipoleTable::Samples> samples;
+  std::vector<PointPairTable::Samples> samples;
   for (std::size_t o = 0; o < 3; ++o) {
     for (int i = 0; i < 25; ++i) {
       points[o].push_back(0.08F * random_direction(rng));
@@ -98,28 +98,32 @@ TEST(DipoleTable, HoldsEveryPairOfEachObjectInItsBin) {
     }
     samples.push_back({points[o], normals[o], 0.03, 0.1});
   }
-  const DipoleTable table(samples);
+  const PointPairTable table(samples);
   EXPECT_EQ(table.max_length_m(), 0.1);
   std::size_t num_pairs = 0;
   for (std::size_t o = 0; o < 3; ++o)
     for (std::uint16_t i = 0; i < 25; ++i)
       for (std::uint16_t j = 0; j < 25; ++j) {
         const double length = (points[o][i] - points[o][j]).norm();
-        const auto bin = dipole_bin({points[o][i], normals[o][i], points[o][j], normals[o][j]}, 0.1);
+        const auto bin = point_pair_bin({points[o][i], normals[o][i], points[o][j], normals[o][j]}, 0.1);
         if (i == j || length < 0.03 || length > 0.1 || !bin) continue;
         ++num_pairs;
         const auto entries = table.find(*bin);
-        EXPECT_EQ(std::count_if(entries.begin(), entries.end(),
-                                [&](const DipoleEntry& e) { return e.object == o && e.first == i && e.second == j; }),
-                  1);
-        EXPECT_TRUE(std::is_sorted(entries.begin(), entries.end(),
-                                   [](const DipoleEntry& a, const DipoleEntry& b) { return a.object < b.object; }));
+        EXPECT_EQ(
+            std::count_if(entries.begin(), entries.end(),
+                          [&](const PointPairEntry& e) { return e.object == o && e.first == i && e.second == j; }),
+            1);
+        EXPECT_TRUE(
+            std::is_sorted(entries.begin(), entries.end(),
+                           [](const PointPairEntry& a, const PointPairEntry& b) { return a.object < b.object; }));
       }
   EXPECT_EQ(table.size(), num_pairs);
   EXPECT_GT(num_pairs, 500U);
 }
 
-TEST(DipoleTable, NoObjectsNoPairs) { EXPECT_EQ(DipoleTable(std::span<const DipoleTable::Samples>{}).size(), 0U); }
+TEST(PointPairTable, NoObjectsNoPairs) {
+  EXPECT_EQ(PointPairTable(std::span<const PointPairTable::Samples>{}).size(), 0U);
+}
 
 }  // namespace
 }  // namespace resight

@@ -15,8 +15,8 @@ struct PoseCandidate {
 };
 
 /// The pose as a candidate if the first test does not give up on it and its score is at least `min_score`.
-[[nodiscard]] inline std::optional<PoseCandidate> first_test(int object, const ProbeModel& model,
-                                                             const Rigid3f& camera_from_object, const PoseProbe& probe,
+[[nodiscard]] inline std::optional<PoseCandidate> first_test(int object, const SampledModel& model,
+                                                             const Rigid3f& camera_from_object, const PoseScorer& probe,
                                                              const CountSamplesOptions& options, double min_score) {
   const SampleCounts counts = probe.count(model, camera_from_object, options, min_score);
   const float score = counts.score();

@@ -86,10 +86,10 @@ void CountSamplesOptions::check() const {
   check_positive("CountSamplesOptions.max_chroma_difference", max_chroma_difference);
 }
 
-ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
+SampledModel make_sampled_model(const ObjectModel& model, int max_samples) {
   const double spacing_m = std::max(kMinSpacing_m, kSpacingShare * static_cast<double>(model.diameter_m));
   PointCloud samples = sample_surface(model.surface, spacing_m, max_samples);
-  ProbeModel result;
+  SampledModel result;
   if (samples.has_colors()) result.linear_light = to_linear_light(samples.colors);
   set_white_balance(result, Eigen::Array3f::Zero());
   result.points = std::move(samples.points);
@@ -103,7 +103,7 @@ ProbeModel make_probe_model(const ObjectModel& model, int max_samples) {
   return result;
 }
 
-PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
+PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads)
     : view_(view),
       pixels_(view.cloud.width(), view.cloud.height()),
       oriented_(view.cloud.width(), view.cloud.height()),
@@ -122,14 +122,14 @@ PoseProbe::PoseProbe(const PreparedView& view, std::span<const ScenePlane> plane
   });
 }
 
-Image<std::uint8_t> PoseProbe::off_larger_planes(float diameter_m) const {
+Image<std::uint8_t> PoseScorer::off_larger_planes(float diameter_m) const {
   Image<std::uint8_t> mask(pixels_.width(), pixels_.height());
   for (std::size_t i = 0; i < mask.size(); ++i)
     mask[i] = pixels_[i].plane_extent_m > kLargerThan * diameter_m ? 0 : 255;
   return mask;
 }
 
-int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
+int PoseScorer::pixel_of(const Eigen::Vector3f& p) const {
   if (!(p.z() > kMinDepth_m)) return -1;
   const float u = fx_ * p.x() / p.z() + cx_;
   const float v = fy_ * p.y() / p.z() + cy_;
@@ -137,14 +137,14 @@ int PoseProbe::pixel_of(const Eigen::Vector3f& p) const {
   return static_cast<int>(lab_.index(static_cast<int>(u), static_cast<int>(v)));
 }
 
-float PoseProbe::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
+float PoseScorer::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
   const double seen_z_m = std::max(kMinDepth_m, z_m);  // The centre may lie behind the camera.
   return static_cast<float>(tolerance_m + sigmas * nguyen_noise(seen_z_m, 0, view_.frame.camera.fx).axial_m);
 }
 
 // No branches in its loops: the compiler makes vector code of them.
-SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_from_object,
-                              const CountSamplesOptions& options, double min_score) const {
+SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_from_object,
+                               const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
   const bool has_colors = !model.chroma.empty();
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
@@ -177,7 +177,7 @@ SampleCounts PoseProbe::count(const ProbeModel& model, const Rigid3f& camera_fro
   return counts;
 }
 
-PoseProbe::PosedBlock PoseProbe::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
+PoseScorer::PosedBlock PoseScorer::project(const SampleBlock& block, const Rigid3f& camera_from_object) const {
   const Eigen::Matrix3f& r = camera_from_object.rotation;
   const Eigen::Vector3f& t = camera_from_object.translation;
   const auto width = static_cast<float>(lab_.width());
@@ -211,8 +211,8 @@ PoseProbe::PosedBlock PoseProbe::project(const SampleBlock& block, const Rigid3f
   return posed;
 }
 
-StepEquations PoseProbe::linearize(const ProbeModel& model, const Rigid3& camera_from_object,
-                                   double max_distance_m) const {
+StepEquations PoseScorer::linearize(const SampledModel& model, const Rigid3& camera_from_object,
+                                    double max_distance_m) const {
   const Rigid3f motion(camera_from_object);
   const Eigen::Vector3f middle = motion * model.center;
   const float inverse_distance_sq = static_cast<float>(1 / (max_distance_m * max_distance_m));
@@ -246,8 +246,8 @@ StepEquations PoseProbe::linearize(const ProbeModel& model, const Rigid3& camera
   return equations.sum();
 }
 
-Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
-                         double max_distance_m) const {
+Rigid3 PoseScorer::refine(const SampledModel& model, const Rigid3& camera_from_object, int max_iterations,
+                          double max_distance_m) const {
   Rigid3 pose = camera_from_object;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const StepEquations equations = linearize(model, pose, max_distance_m);
@@ -257,8 +257,8 @@ Rigid3 PoseProbe::refine(const ProbeModel& model, const Rigid3& camera_from_obje
   return pose;
 }
 
-PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& camera_from_object,
-                                        double tolerance_m) const {
+PoseScorer::Confirmed PoseScorer::confirm(const SampledModel& model, const Rigid3& camera_from_object,
+                                          double tolerance_m) const {
   const Rigid3f motion(camera_from_object);
   const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
   Confirmed confirmed;
@@ -270,8 +270,8 @@ PoseProbe::Confirmed PoseProbe::confirm(const ProbeModel& model, const Rigid3& c
   return confirmed;
 }
 
-void PoseProbe::confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
-                               float tolerance, Confirmed& confirmed) const {
+void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
+                                float tolerance, Confirmed& confirmed) const {
   ++confirmed.facing;
   if (posed.inside[k] == 0) {
     ++confirmed.hidden;
@@ -298,15 +298,16 @@ void PoseProbe::confirm_sample(const ProbeModel& model, std::size_t sample, cons
   }
 }
 
-LightFit PoseProbe::light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                             const LightLimits& limits) const {
+PhotometricFit PoseScorer::fit_photometry(const SampledModel& model, const Rigid3& camera_from_object,
+                                          double tolerance_m, const PhotometricLimits& limits) const {
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
-  return fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, limits);
+  return resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals, limits);
 }
 
 // Counts as explained only what is of like colour, too.
-void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
-  const LightFit light = fit_light(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
+void PoseScorer::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
+  const PhotometricFit light =
+      resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
   const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
   const auto max_exponent = static_cast<float>(-std::log(options.min_inlier_weight));
   std::vector<LabColor> seen;
@@ -322,8 +323,8 @@ void PoseProbe::compare_colors(const Confirmed& confirmed, const VerifyOptions& 
   fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
 }
 
-double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& confirmed,
-                                   const VerifyOptions& options) const {
+double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed,
+                                    const VerifyOptions& options) const {
   const float z = view_.cloud.z[confirmed.pixels.front()];
   const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
   Silhouette silhouette(confirmed.outline, cell_px);
@@ -351,7 +352,7 @@ double PoseProbe::count_continuing(const ProbeModel& model, const Confirmed& con
   return num_cells * static_cast<double>(kCellSpacings * kCellSpacings);
 }
 
-PoseFit PoseProbe::shape_fit(const Confirmed& confirmed) {
+PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
   PoseFit fit;
   if (confirmed.samples.empty()) return fit;
   fit.num_explained = static_cast<int>(confirmed.samples.size());
@@ -360,13 +361,13 @@ PoseFit PoseProbe::shape_fit(const Confirmed& confirmed) {
   return fit;
 }
 
-bool PoseProbe::fits_in_shape(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                              const PoseFit& least) const {
+bool PoseScorer::fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                               const PoseFit& least) const {
   return shape_fit(confirm(model, camera_from_object, tolerance_m)).reaches(least);
 }
 
-PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                         const VerifyOptions& colors, const PoseFit& least) const {
+PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                               const VerifyOptions& colors, const PoseFit& least) const {
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
   PoseFit fit = shape_fit(confirmed);
   if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
@@ -378,7 +379,7 @@ PoseFit PoseProbe::judge(const ProbeModel& model, const Rigid3& camera_from_obje
   return fit;
 }
 
-void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance) {
+void set_white_balance(SampledModel& model, const Eigen::Array3f& white_balance) {
   model.chroma.clear();
   for (const Eigen::Vector3f& color : model.linear_light)
     model.chroma.push_back(chroma(to_lab((color.array() * white_balance.exp()).min(1.0F).matrix().eval())));

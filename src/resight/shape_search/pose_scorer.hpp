@@ -24,7 +24,7 @@ struct SampleBlock {
 
 /// An object as poses of it are tested: samples of its surface, any first part of them spread over all of it. Object
 /// frame.
-struct ProbeModel {
+struct SampledModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<SampleBlock> blocks;            ///< Both again.
@@ -38,7 +38,7 @@ struct ProbeModel {
 };
 
 /// Samples about a twentieth of the diameter apart, at most `max_samples`; none if the surface has no normals.
-[[nodiscard]] ProbeModel make_probe_model(const ObjectModel& model, int max_samples);
+[[nodiscard]] SampledModel make_sampled_model(const ObjectModel& model, int max_samples);
 
 struct CountSamplesOptions {
   int max_samples = 40;                ///< That face the camera: counting stops with the block that has them.
@@ -83,10 +83,10 @@ struct PoseFit {
 inline constexpr PoseFit kAnyFit{.pattern_similarity = -1};
 
 /// Tests poses in one view. The view must outlive it; camera frame.
-class PoseProbe {
+class PoseScorer {
  public:
   /// `planes`: of the view, camera frame. What lies on one that is larger than an object is not the object's.
-  PoseProbe(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads);
+  PoseScorer(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads);
 
   [[nodiscard]] const PreparedView& view() const { return view_; }
   /// Pixel under a point; -1 outside the image.
@@ -100,21 +100,22 @@ class PoseProbe {
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
   /// The first test: quick, of rough poses. It gives up on those that will hardly reach `min_score`.
-  [[nodiscard]] SampleCounts count(const ProbeModel& model, const Rigid3f& camera_from_object,
+  [[nodiscard]] SampleCounts count(const SampledModel& model, const Rigid3f& camera_from_object,
                                    const CountSamplesOptions& options, double min_score = -1) const;
   /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
-  [[nodiscard]] Rigid3 refine(const ProbeModel& model, const Rigid3& camera_from_object, int max_iterations,
+  [[nodiscard]] Rigid3 refine(const SampledModel& model, const Rigid3& camera_from_object, int max_iterations,
                               double max_distance_m) const;
-  /// The light on the object at a pose that is known to be about right (light_fit.hpp); its chroma is not limited.
-  [[nodiscard]] LightFit light_on(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                                  const LightLimits& limits) const;
+  /// The light on the object at a pose that is known to be about right (photometric_fit.hpp); its chroma is not
+  /// limited.
+  [[nodiscard]] PhotometricFit fit_photometry(const SampledModel& model, const Rigid3& camera_from_object,
+                                              double tolerance_m, const PhotometricLimits& limits) const;
   /// Whether the last test, without colours and what goes on beyond the object, would reach `least`.
-  [[nodiscard]] bool fits_in_shape(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
+  [[nodiscard]] bool fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
                                    const PoseFit& least) const;
-  /// The last test: all samples, their colours in the light that fits them best (light_fit.hpp). What cannot reach
-  /// `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
-  [[nodiscard]] PoseFit judge(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                              const VerifyOptions& colors, const PoseFit& least = kAnyFit) const;
+  /// The last test: all samples, their colours in the light that fits them best (photometric_fit.hpp). What cannot
+  /// reach `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
+  [[nodiscard]] PoseFit score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
+                                   const VerifyOptions& colors, const PoseFit& least = kAnyFit) const;
 
  private:
   // The samples of a pose that depth and normal confirm, and how many they do not.
@@ -139,14 +140,15 @@ class PoseProbe {
     std::array<int, SampleBlock::kSize> pixel;
   };
   [[nodiscard]] PosedBlock project(const SampleBlock& block, const Rigid3f& camera_from_object) const;
-  [[nodiscard]] StepEquations linearize(const ProbeModel& model, const Rigid3& camera_from_object,
+  [[nodiscard]] StepEquations linearize(const SampledModel& model, const Rigid3& camera_from_object,
                                         double max_distance_m) const;
-  [[nodiscard]] Confirmed confirm(const ProbeModel& model, const Rigid3& camera_from_object, double tolerance_m) const;
-  void confirm_sample(const ProbeModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
+  [[nodiscard]] Confirmed confirm(const SampledModel& model, const Rigid3& camera_from_object,
+                                  double tolerance_m) const;
+  void confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
                       float tolerance, Confirmed& confirmed) const;
   [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
   void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
-  [[nodiscard]] double count_continuing(const ProbeModel& model, const Confirmed& confirmed,
+  [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed,
                                         const VerifyOptions& options) const;
   [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
 
@@ -170,8 +172,8 @@ class PoseProbe {
   float fx_, fy_, cx_, cy_;  // Of the camera; centres with half a pixel, so that truncation finds the pixel.
 };
 
-/// The samples' colours for the first test, under the white balance of the scene (LightFit::chroma()).
-void set_white_balance(ProbeModel& model, const Eigen::Array3f& white_balance);
+/// The samples' colours for the first test, under the white balance of the scene (PhotometricFit::chroma()).
+void set_white_balance(SampledModel& model, const Eigen::Array3f& white_balance);
 
 /// a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for the dark, whose hue is
 /// noise). The first test compares colours by it, since the light is not known yet.

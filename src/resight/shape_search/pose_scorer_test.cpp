@@ -49,7 +49,7 @@ TEST(SampleScene, NothingSeenNothingSampled) {
   EXPECT_TRUE(sample_scene(prepare_view(frame)).points.empty());
 }
 
-TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
+TEST(PoseScorer, CountsWhatIsThereHiddenAndSeenThrough) {
   const BoxOnTable c;
   CountSamplesOptions options;
   options.max_wrong = 1000;
@@ -80,7 +80,7 @@ TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
     const SampleCounts counts = c.probe.count(c.samples, Rigid3f(behind), options);
     EXPECT_GT(counts.facing, 0);
     EXPECT_EQ(counts.hidden, counts.facing) << z;
-    EXPECT_EQ(c.probe.judge(c.samples, behind, 0.008, {}).num_explained, 0) << z;
+    EXPECT_EQ(c.probe.score_fine(c.samples, behind, 0.008, {}).num_explained, 0) << z;
   }
 
   options.max_wrong = 3;
@@ -91,7 +91,7 @@ TEST(PoseProbe, CountsWhatIsThereHiddenAndSeenThrough) {
   EXPECT_LT(stopped.facing, 10);
 }
 
-TEST(PoseProbe, RefinesARoughPose) {
+TEST(PoseScorer, RefinesARoughPose) {
   const BoxOnTable c;
   const Rigid3 rough = disturb(c.truth, {0.006, -0.005, 0.007}, {1, 2, 0.5}, 0.1);
   const Rigid3 refined = c.probe.refine(c.samples, rough, 20, 0.02);
@@ -106,25 +106,26 @@ TEST(PoseProbe, RefinesARoughPose) {
   EXPECT_EQ(c.probe.refine(c.samples, rough, 0, 0.02).translation, rough.translation);
 }
 
-TEST(PoseProbe, JudgesDepthAndColour) {
+TEST(PoseScorer, JudgesDepthAndColour) {
   const BoxOnTable c;
   VerifyOptions colors;
-  const PoseFit right = c.probe.judge(c.samples, c.truth, 0.008, colors);
+  const PoseFit right = c.probe.score_fine(c.samples, c.truth, 0.008, colors);
   EXPECT_GT(right.explained_share, 0.85);
   EXPECT_GT(right.visible_share, 0.95);
   EXPECT_GT(right.pattern_similarity, 0.7);
 
   Solid other = c.box;
   other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
-  const PoseFit wrong_print = c.probe.judge(make_probe_model(make_model("other", other), 300), c.truth, 0.008, colors);
+  const PoseFit wrong_print =
+      c.probe.score_fine(make_sampled_model(make_model("other", other), 300), c.truth, 0.008, colors);
   EXPECT_LT(wrong_print.explained_share, right.explained_share - 0.2);
 
   Rigid3 through = c.truth;
   through.translation *= 0.85;
-  EXPECT_LT(c.probe.judge(c.samples, through, 0.008, colors).explained_share, 0.3);
+  EXPECT_LT(c.probe.score_fine(c.samples, through, 0.008, colors).explained_share, 0.3);
 }
 
-TEST(PoseProbe, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
+TEST(PoseScorer, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
   const BoxOnTable c;
   CountSamplesOptions options;
   options.max_wrong = 1000;
@@ -137,60 +138,60 @@ TEST(PoseProbe, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
   EXPECT_FALSE(c.probe.count(c.samples, Rigid3f(c.truth), options, 0.6).gave_up);
 }
 
-TEST(PoseProbe, JudgesToTheEndWhatReachesTheLeastFit) {
+TEST(PoseScorer, JudgesToTheEndWhatReachesTheLeastFit) {
   const BoxOnTable c;
-  const PoseFit whole = c.probe.judge(c.samples, c.truth, 0.008, {});
-  const PoseFit judged = c.probe.judge(c.samples, c.truth, 0.008, {}, {.explained_share = 0.5});
+  const PoseFit whole = c.probe.score_fine(c.samples, c.truth, 0.008, {});
+  const PoseFit judged = c.probe.score_fine(c.samples, c.truth, 0.008, {}, {.explained_share = 0.5});
   EXPECT_EQ(judged.explained_share, whole.explained_share);
   EXPECT_EQ(judged.pattern_similarity, whole.pattern_similarity);
   Rigid3 off = c.truth;
   off.translation *= 0.85;
-  const PoseFit cut = c.probe.judge(c.samples, off, 0.008, {}, {.explained_share = 0.5});
+  const PoseFit cut = c.probe.score_fine(c.samples, off, 0.008, {}, {.explained_share = 0.5});
   EXPECT_FALSE(cut.reaches({.explained_share = 0.5}));
-  EXPECT_GE(cut.explained_share, c.probe.judge(c.samples, off, 0.008, {}).explained_share);
+  EXPECT_GE(cut.explained_share, c.probe.score_fine(c.samples, off, 0.008, {}).explained_share);
 }
 
-TEST(PoseProbe, WhatLiesOnALargerPlaneIsNotTheObjects) {
+TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
   // A card of the table's colour, in the table.
   const Solid card{Shape::kBox, {0.12, 0.08, 0.01}, plain({150, 140, 130}), on_table(0, 0, -0.005)};
   const World table{.solids = {}};
   const PreparedView view = prepare_view(render(table, circle_of_cameras(3)[0]).frame);
   const SceneSamples scene = sample_scene(view);
   ASSERT_FALSE(scene.planes.empty());
-  const ProbeModel samples = make_probe_model(make_model("card", card), 300);
+  const SampledModel samples = make_sampled_model(make_model("card", card), 300);
   const Rigid3 pose = view.frame.world_from_camera.inverse() * card.world_from_object;
-  const PoseProbe blind(view, {}, 1);
-  const PoseProbe probe(view, scene.planes, 1);
+  const PoseScorer blind(view, {}, 1);
+  const PoseScorer probe(view, scene.planes, 1);
   EXPECT_GT(blind.count(samples, Rigid3f(pose), {}).confirmed, 20);
   const SampleCounts counts = probe.count(samples, Rigid3f(pose), {});
   EXPECT_TRUE(counts.gave_up);
   EXPECT_EQ(counts.confirmed, 0);
-  EXPECT_EQ(probe.judge(samples, pose, 0.008, {}).explained_share, 0);
+  EXPECT_EQ(probe.score_fine(samples, pose, 0.008, {}).explained_share, 0);
   // A plane no larger than the object may be its own face.
   std::vector<ScenePlane> small = scene.planes;
   for (ScenePlane& plane : small) plane.extent_m = 0.15F;
-  EXPECT_GT(PoseProbe(view, small, 1).count(samples, Rigid3f(pose), {}).confirmed, 20);
+  EXPECT_GT(PoseScorer(view, small, 1).count(samples, Rigid3f(pose), {}).confirmed, 20);
 }
 
-TEST(PoseProbe, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
+TEST(PoseScorer, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
   // A small box in a corner of a crate of the same colour; the same box alone, and beside one of another colour.
   const Solid small{Shape::kBox, {0.08, 0.08, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
   const Solid crate{Shape::kBox, {0.2, 0.2, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04, 0.2)};
   Solid beside = small;
   beside.paint = plain({60, 80, 190});
   beside.world_from_object = small.world_from_object * Rigid3::from_translation({0.08, 0, 0});
-  const ProbeModel samples = make_probe_model(make_model("small", small), 300);
+  const SampledModel samples = make_sampled_model(make_model("small", small), 300);
   const auto explained = [&](const World& world) {
     const PreparedView view = prepare_view(render(world, circle_of_cameras(3)[0]).frame);
     const Rigid3 pose = view.frame.world_from_camera.inverse() * small.world_from_object;
-    return PoseProbe(view, {}, 1).judge(samples, pose, 0.008, {}).explained_share;
+    return PoseScorer(view, {}, 1).score_fine(samples, pose, 0.008, {}).explained_share;
   };
   EXPECT_GT(explained({.solids = {small}}), 0.85);
   EXPECT_GT(explained({.solids = {small, beside}}), 0.75);
   EXPECT_LT(explained({.solids = {crate}}), 0.6);
 }
 
-TEST(PoseProbe, PixelsOutsideAndBehindAreNone) {
+TEST(PoseScorer, PixelsOutsideAndBehindAreNone) {
   const BoxOnTable c;
   EXPECT_EQ(c.probe.pixel_of({0, 0, -1}), -1);
   EXPECT_EQ(c.probe.pixel_of({10, 0, 1}), -1);

@@ -28,7 +28,7 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
 
 SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
   ScenePlanes planes =
-      find_planes_of_thinned(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
+      find_planes_of_downsampled(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];

@@ -54,46 +54,47 @@ struct ShapeSearch::Impl {
   Impl(const ModelLibrary& models, const ShapeSearchOptions& settings, const VerifyOptions& color_settings)
       : library(models), options((settings.check(), settings)), colors(color_settings) {
     objects.resize(library.objects.size());
-    turns.resize(library.objects.size());
+    symmetry_motions.resize(library.objects.size());
     if (options.turn_step_rad > 0)
       for (std::size_t o = 0; o < objects.size(); ++o)
-        turns[o] = shape_turns(library.objects[o], options.turn_step_rad);
-    parallel_for(objects.size(), options.num_threads,
-                 [&](std::size_t o) { objects[o] = make_probe_model(library.objects[o], options.max_model_samples); });
-    std::vector<DipoleTable::Samples> samples;
+        symmetry_motions[o] = shape_symmetry_motions(library.objects[o], options.turn_step_rad);
+    parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
+      objects[o] = make_sampled_model(library.objects[o], options.max_model_samples);
+    });
+    std::vector<PointPairTable::Samples> samples;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);
       samples.push_back({objects[o].points, objects[o].normals, kMinLengthShare * diameter_m,
                          std::min(kMaxLengthShare * diameter_m, kMaxLength_m)});
     }
-    table = DipoleTable(samples);
+    table = PointPairTable(samples);
   }
 
   // As the verification does it (find_white_balance): the colours of rough poses are compared before their own light is
   // known.
-  [[nodiscard]] std::vector<ProbeModel> balance(const PoseProbe& probe,
-                                                std::span<const Hypothesis> from_features) const {
+  [[nodiscard]] std::vector<SampledModel> balance(const PoseScorer& probe,
+                                                  std::span<const Hypothesis> from_features) const {
     const Rigid3 camera_from_world = probe.view().frame.world_from_camera.inverse();
-    const std::vector<float> votes = white_balance_votes(from_features, objects.size());
-    std::vector<LightFit> lights(from_features.size());
+    const std::vector<float> votes = white_balance_weights(from_features, objects.size());
+    std::vector<PhotometricFit> lights(from_features.size());
     for (std::size_t h = 0; h < lights.size(); ++h)
       if (votes[h] > 0)
-        lights[h] = probe.light_on(objects[static_cast<std::size_t>(from_features[h].object)],
-                                   camera_from_world * from_features[h].world_from_object, options.refine_distance_m,
-                                   colors.light);
+        lights[h] = probe.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
+                                         camera_from_world * from_features[h].world_from_object,
+                                         options.refine_distance_m, colors.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes, colors.light);
-    std::vector<ProbeModel> balanced = objects;
-    for (ProbeModel& model : balanced) set_white_balance(model, white_balance);
+    std::vector<SampledModel> balanced = objects;
+    for (SampledModel& model : balanced) set_white_balance(model, white_balance);
     return balanced;
   }
 
-  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchedView& view,
+  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchView& view,
                                                    std::span<const std::vector<Correspondence>> matches,
                                                    std::span<const Hypothesis> from_features) const {
     require(matches.empty() || matches.size() == objects.size(), "ShapeSearch::search: matches of other objects");
-    const PoseProbe& probe = view.probe;
+    const PoseScorer& probe = view.probe;
     if (!view.samples.points.has_normals()) return {};
-    const std::vector<ProbeModel> balanced = balance(probe, from_features);
+    const std::vector<SampledModel> balanced = balance(probe, from_features);
     std::vector<std::vector<PoseCandidate>> of_object = find_candidates(view, without_colors_of_round_shapes(balanced));
     std::vector<std::vector<ShapeCandidate>> judged(objects.size());
     parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
@@ -103,7 +104,7 @@ struct ShapeSearch::Impl {
       }
       std::stable_sort(of_object[o].begin(), of_object[o].end(),
                        [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
-      judged[o] = choose(judge(of_object[o], balanced[o], probe));
+      judged[o] = choose(score_fine(of_object[o], balanced[o], probe));
       if (matches.empty()) return;
       for (ShapeCandidate& c : judged[o])
         c.matches = agreeing_matches(matches[o], c.camera_from_object, options.match_distance_m);
@@ -113,8 +114,8 @@ struct ShapeSearch::Impl {
     return result;
   }
 
-  [[nodiscard]] std::vector<std::vector<PoseCandidate>> find_candidates(const SearchedView& view,
-                                                                        const std::vector<ProbeModel>& balanced) const {
+  [[nodiscard]] std::vector<std::vector<PoseCandidate>> find_candidates(
+      const SearchView& view, const std::vector<SampledModel>& balanced) const {
     const PointCloud& scene = view.samples.points;
     std::vector<std::vector<PoseCandidate>> of_object(objects.size());
     if (table.size() == 0) return of_object;
@@ -122,7 +123,7 @@ struct ShapeSearch::Impl {
     for (std::size_t o = 0; o < objects.size(); ++o)
       max_entries.push_back(is_round_in_shape(o) ? std::max(1, options.max_entries / kAlikeEntries)
                                                  : options.max_entries);
-    const DipoleSearch dipoles(scene, view.probe, balanced, table, max_entries, options);
+    const PointPairSearch pairs(scene, view.probe, balanced, table, max_entries, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
@@ -131,7 +132,7 @@ struct ShapeSearch::Impl {
     std::sort(seeds.begin(), seeds.end());  // Neighbours look at the same pixels, which are then in the cache.
     std::vector<std::vector<PoseCandidate>> found(seeds.size());
     parallel_for(seeds.size(), options.num_threads,
-                 [&](std::size_t s) { found[s] = dipoles.from_seed(static_cast<std::size_t>(seeds[s])); });
+                 [&](std::size_t s) { found[s] = pairs.from_seed(static_cast<std::size_t>(seeds[s])); });
     for (const auto& list : found)
       for (const PoseCandidate& c : list) of_object[static_cast<std::size_t>(c.object)].push_back(c);
     return of_object;
@@ -140,23 +141,23 @@ struct ShapeSearch::Impl {
   // A few turns are found one by one. Of many, a pair of points hardly ever gives the right one.
   [[nodiscard]] bool is_round_in_shape(std::size_t object) const {
     constexpr std::size_t kMany = 12;
-    return turns[object].size() > kMany;
+    return symmetry_motions[object].size() > kMany;
   }
 
-  [[nodiscard]] std::vector<ProbeModel> without_colors_of_round_shapes(std::vector<ProbeModel> models) const {
+  [[nodiscard]] std::vector<SampledModel> without_colors_of_round_shapes(std::vector<SampledModel> models) const {
     for (std::size_t o = 0; o < models.size(); ++o)
       if (is_round_in_shape(o)) models[o].chroma.clear();
     return models;
   }
 
   // The pose, or the turns of it with most samples of the right hue.
-  [[nodiscard]] std::vector<Rigid3> turns_of(std::size_t object, const Rigid3& pose, const ProbeModel& balanced,
-                                             const PoseProbe& probe) const {
+  [[nodiscard]] std::vector<Rigid3> turns_of(std::size_t object, const Rigid3& pose, const SampledModel& balanced,
+                                             const PoseScorer& probe) const {
     if (!is_round_in_shape(object)) return {pose};
     CountSamplesOptions all = options.coarse;
     all.max_samples = all.max_wrong = static_cast<int>(balanced.points.size());
     std::vector<std::pair<float, Rigid3>> scored;
-    for (const Rigid3& turn : turns[object])
+    for (const Rigid3& turn : symmetry_motions[object])
       scored.emplace_back(probe.count(balanced, Rigid3f(pose * turn), all).score(), pose * turn);
     std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<Rigid3> best;
@@ -166,8 +167,8 @@ struct ShapeSearch::Impl {
   }
 
   // The best by the first test, no two alike, refined; those that hold.
-  [[nodiscard]] std::vector<ShapeCandidate> judge(const std::vector<PoseCandidate>& candidates,
-                                                  const ProbeModel& balanced, const PoseProbe& probe) const {
+  [[nodiscard]] std::vector<ShapeCandidate> score_fine(const std::vector<PoseCandidate>& candidates,
+                                                       const SampledModel& balanced, const PoseScorer& probe) const {
     std::vector<ShapeCandidate> judged;
     std::vector<Rigid3> tried;
     for (const PoseCandidate& c : candidates) {
@@ -181,12 +182,12 @@ struct ShapeSearch::Impl {
         continue;
       const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
-      const ProbeModel& model = objects[object];
+      const SampledModel& model = objects[object];
       const Rigid3 refined = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
       const PoseFit least = least_fit(model);
       if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
       for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
-        const PoseFit fit = probe.judge(model, pose, options.tolerance_m, colors, least);
+        const PoseFit fit = probe.score_fine(model, pose, options.tolerance_m, colors, least);
         if (!fit.reaches(least)) continue;
         const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
         judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
@@ -195,7 +196,7 @@ struct ShapeSearch::Impl {
     return judged;
   }
 
-  [[nodiscard]] PoseFit least_fit(const ProbeModel& model) const {
+  [[nodiscard]] PoseFit least_fit(const SampledModel& model) const {
     const double num_explained = kMinExplainedShareOfSamples * static_cast<double>(model.points.size());
     return {options.min_explained_share, options.min_visible_share, options.min_pattern_similarity,
             static_cast<int>(std::ceil(num_explained))};
@@ -233,9 +234,9 @@ struct ShapeSearch::Impl {
   const ModelLibrary& library;
   ShapeSearchOptions options;
   VerifyOptions colors;
-  std::vector<ProbeModel> objects;
-  std::vector<std::vector<Rigid3>> turns;  // shape_turns() of each.
-  DipoleTable table;
+  std::vector<SampledModel> objects;
+  std::vector<std::vector<Rigid3>> symmetry_motions;  // shape_symmetry_motions() of each.
+  PointPairTable table;
 };
 
 void ShapeSearchOptions::check() const {
@@ -264,8 +265,8 @@ void ShapeSearchOptions::check() const {
   check_positive("ShapeSearchOptions.num_threads", num_threads);
 }
 
-SearchedView::SearchedView(const PreparedView& view, const ShapeSearchOptions& options,
-                           const Image<std::uint8_t>& explained)
+SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options,
+                       const Image<std::uint8_t>& explained)
     : samples(sample_scene(view, with_threads(options.scene, options.num_threads))),
       probe(view, samples.planes, options.num_threads) {
   if (explained.size() == 0 || samples.points.empty()) return;
@@ -280,34 +281,34 @@ ShapeSearch::~ShapeSearch() = default;
 ShapeSearch::ShapeSearch(ShapeSearch&&) noexcept = default;
 ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
 
-std::vector<ShapeCandidate> ShapeSearch::search(const SearchedView& view,
+std::vector<ShapeCandidate> ShapeSearch::search(const SearchView& view,
                                                 std::span<const std::vector<Correspondence>> matches,
                                                 std::span<const Hypothesis> from_features) const {
   return impl_->search(view, matches, from_features);
 }
 
-std::vector<PoseFit> ShapeSearch::look_at(const SearchedView& view, std::span<const Hypothesis> hypotheses) const {
+std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<const Hypothesis> hypotheses) const {
   const ShapeSearchOptions& options = impl_->options;
   const Rigid3 camera_from_world = view.probe.view().frame.world_from_camera.inverse();
   std::vector<PoseFit> fits(hypotheses.size(),
                             PoseFit{.explained_share = 1});  // Of what has no normals, nothing is said.
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
-    const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
+    const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
     if (model.points.empty()) return;
     const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
                                           options.refine_iterations, options.refine_distance_m);
-    fits[h] = view.probe.judge(model, pose, options.tolerance_m, impl_->colors);
+    fits[h] = view.probe.score_fine(model, pose, options.tolerance_m, impl_->colors);
   });
   return fits;
 }
 
-ShapeSearch::Trial ShapeSearch::try_pose(const SearchedView& view, int object, const Rigid3& camera_from_object) const {
+ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const {
   const ShapeSearchOptions& options = impl_->options;
-  const ProbeModel& model = impl_->objects.at(static_cast<std::size_t>(object));
+  const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
   const Rigid3 refined =
       view.probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
   return {view.probe.count(model, Rigid3f(camera_from_object), options.coarse),
-          view.probe.judge(model, refined, options.tolerance_m, impl_->colors)};
+          view.probe.score_fine(model, refined, options.tolerance_m, impl_->colors)};
 }
 
 }  // namespace resight

@@ -50,11 +50,11 @@ struct ShapeSearchOptions {
 };
 
 /// A view made ready for the search. It must outlive what is asked of it, and the PreparedView must outlive it.
-struct SearchedView {
+struct SearchView {
   /// Where `explained` (as large as the view; empty: nowhere) is not 0 nothing is searched, but poses are tried there.
-  SearchedView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
+  SearchView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
   SceneSamples samples;
-  PoseProbe probe;
+  PoseScorer probe;
   double searched_share = 1;  ///< Of the samples: those not explained, and so many of the seeds.
 };
 
@@ -85,19 +85,19 @@ class ShapeSearch {
   /// By object, then by quality. Nothing for a view without normals. `matches` (of each object, camera frame; may be
   /// empty): poses that two of them fix are tried as well. The white balance of the view is taken from what is known of
   /// it, `from_features` (world frame): those with many correspondences are seldom wrong.
-  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchedView& view,
+  [[nodiscard]] std::vector<ShapeCandidate> search(const SearchView& view,
                                                    std::span<const std::vector<Correspondence>> matches = {},
                                                    std::span<const Hypothesis> from_features = {}) const;
 
   /// How well each hypothesis (world frame) fits a view, once refined in it: a quick look before the verification.
-  [[nodiscard]] std::vector<PoseFit> look_at(const SearchedView& view, std::span<const Hypothesis> hypotheses) const;
+  [[nodiscard]] std::vector<PoseFit> look_at(const SearchView& view, std::span<const Hypothesis> hypotheses) const;
 
   /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {
     SampleCounts coarse;
     PoseFit fit;
   };
-  [[nodiscard]] Trial try_pose(const SearchedView& view, int object, const Rigid3& camera_from_object) const;
+  [[nodiscard]] Trial score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const;
 
  private:
   struct Impl;

@@ -19,7 +19,7 @@ struct PlainThings {
   Solid absent{Shape::kSphere, {0.09, 0.09, 0.09}, plain({60, 190, 80}), on_table(0, 0.1, 0.045)};
   ModelLibrary library = make_library();
   PreparedView view = prepare_view(render({.solids = {box, can}}, circle_of_cameras(3)[1]).frame);
-  SearchedView searched{view, {}};
+  SearchView searched{view, {}};
 
   ModelLibrary make_library() const {
     ModelLibrary made{.objects = {make_model("box", box), make_model("can", can), make_model("ball", absent)}};
@@ -60,14 +60,14 @@ TEST(ShapeSearch, WhatIsExplainedIsNotSearched) {
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u)
       if ((Eigen::Vector2d(u, v) - center).norm() < 0.09 * camera.fx / 0.8) explained(u, v) = 255;
-  const SearchedView but_the_box(c.view, {}, explained);
+  const SearchView but_the_box(c.view, {}, explained);
   EXPECT_LT(but_the_box.searched_share, 0.9);
   EXPECT_LT(but_the_box.samples.points.size(), c.searched.samples.points.size());
   const auto found = ShapeSearch(c.library, {}).search(but_the_box);
   EXPECT_EQ(best_of(found, 0), nullptr);
   EXPECT_NE(best_of(found, 1), nullptr);
   const Image<std::uint8_t> all(camera.width, camera.height, 255);
-  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchedView(c.view, {}, all)).empty());
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(c.view, {}, all)).empty());
 }
 
 // Shape finds the can, and leaves its turn to the print: a pair of points alone hardly ever gives both.
@@ -85,7 +85,7 @@ TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
     options.turn_step_rad = turn_step_rad;
     options.max_seeds = 3;  // So few pairs of points hit the turn by chance only.
     options.max_entries = 4;
-    const auto found = ShapeSearch(library, options).search(SearchedView(view, options));
+    const auto found = ShapeSearch(library, options).search(SearchView(view, options));
     if (found.empty()) return false;
     const Rigid3 pose = view.frame.world_from_camera * found[0].camera_from_object;
     return (pose.translation - can.world_from_object.translation).norm() < 0.006 &&
@@ -119,7 +119,7 @@ TEST(ShapeSearch, NothingInAnEmptyViewOrForNoModels) {
   RgbdFrame frame = c.view.frame;
   for (float& depth : frame.depth_m.data()) depth = std::numeric_limits<float>::quiet_NaN();
   const PreparedView view = prepare_view(frame);
-  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchedView(view, {})).empty());
+  EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(view, {})).empty());
   EXPECT_TRUE(ShapeSearch(ModelLibrary{}, {}).search(c.searched).empty());
   ModelLibrary bare = c.library;
   for (ObjectModel& model : bare.objects) model.surface.normals.clear();
@@ -148,10 +148,10 @@ TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   const PlainThings c;
   const ShapeSearch search(c.library, {});
   const Rigid3 truth = c.view.frame.world_from_camera.inverse() * c.box.world_from_object;
-  const auto right = search.try_pose(c.searched, 0, truth);
+  const auto right = search.score_pose(c.searched, 0, truth);
   EXPECT_GT(right.coarse.confirmed, 30);
   EXPECT_GT(right.fit.explained_share, 0.8);
-  EXPECT_LT(search.try_pose(c.searched, 2, truth).fit.explained_share, 0.6);
+  EXPECT_LT(search.score_pose(c.searched, 2, truth).fit.explained_share, 0.6);
 }
 
 TEST(ShapeSearch, ALookTellsARightHypothesisFromChance) {

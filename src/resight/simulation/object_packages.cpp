@@ -32,7 +32,7 @@ double box_scale(const Vector3d& size_m) {
   return std::min(4.0, (1024.0 - 5 * 16) / strip_mm);
 }
 
-ProceduralObject make_package(const std::string& name, const Vector3d& size_m, const PrintStyle& style,
+ProceduralObject make_package(const std::string& name, const Vector3d& size_m, const TextureStyle& style,
                               const std::string& kind = "textured") {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
@@ -48,7 +48,7 @@ ProceduralObject make_package(const std::string& name, const Vector3d& size_m, c
 }
 
 // A flat package lying on its back: the front is on top.
-ProceduralObject make_lying_package(const std::string& name, const Vector3d& size_m, const PrintStyle& style) {
+ProceduralObject make_lying_package(const std::string& name, const Vector3d& size_m, const TextureStyle& style) {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
   print_lid(atlas.canvas(r.front), style, 1);
@@ -71,7 +71,7 @@ void print_pages(TextureCanvas canvas, Rng rng) {
 }
 
 // A book lying on its back cover, spine to the left (-x).
-ProceduralObject make_book(const std::string& name, const Vector3d& size_m, const PrintStyle& style) {
+ProceduralObject make_book(const std::string& name, const Vector3d& size_m, const TextureStyle& style) {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
   print_pages(atlas.canvas(r.front), style.stream(1));
@@ -92,7 +92,7 @@ ProceduralObject make_book(const std::string& name, const Vector3d& size_m, cons
 
 // A carton with a gable: a box, two slanted roofs, two triangles and a fin.
 ProceduralObject make_carton(const std::string& name, double width_m, double box_height_m, double roof_height_m,
-                             const PrintStyle& style) {
+                             const TextureStyle& style) {
   const Vector3d box_size(width_m, width_m, box_height_m);
   TextureAtlas atlas(1024, box_scale(box_size));
   BoxRegions r = allocate_box(atlas, box_size);
@@ -127,7 +127,7 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
 }
 
 ProceduralObject make_gift_box() {
-  const PrintStyle style{"JUBILO", "GIFT", 300, 4711};
+  const TextureStyle style{"JUBILO", "GIFT", 300, 4711};
   constexpr double kRadius = 0.06;
   constexpr double kHeight = 0.09;
   std::vector<Vector2d> hexagon;

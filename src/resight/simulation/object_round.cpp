@@ -37,7 +37,7 @@ Profile shoulder(Vector2d from, Vector2d to, int steps) {
 
 Rigid3 lift(double z) { return Rigid3::from_translation({0, 0, z}); }
 
-void add_print_ring(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void add_print_ring(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   canvas.fill(kSteel);
   const double r = canvas.width() / 2;
   canvas.ring(r, r, 0.85 * r, 0.06 * r, {140, 142, 148});
@@ -47,7 +47,7 @@ void add_print_ring(TextureCanvas canvas, const PrintStyle& style, std::uint64_t
 }
 
 // A tin: label around, steel rims and lids.
-ProceduralObject make_can(const std::string& name, double radius_m, double height_m, const PrintStyle& style,
+ProceduralObject make_can(const std::string& name, double radius_m, double height_m, const TextureStyle& style,
                           const std::string& kind = "textured") {
   constexpr double kRim = 0.004;
   const double around_mm = 2 * std::numbers::pi * radius_m * kMmPerM;
@@ -75,7 +75,7 @@ struct BottleShape {
   double radius_m, label_top_m, shoulder_top_m, neck_radius_m, cap_radius_m, height_m, flatness = 1.0;
 };
 
-ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8 glass, const PrintStyle& style) {
+ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8 glass, const TextureStyle& style) {
   constexpr double kFoot = 0.012;
   const double around_mm = 2 * std::numbers::pi * s.radius_m * kMmPerM;
   TextureAtlas atlas(1024, std::min(4.0, 1000.0 / around_mm));
@@ -134,7 +134,7 @@ TriangleMesh make_handle(double x_m, double center_z_m, double reach_m, double h
   return make_tube_part(path, radius_m, region);
 }
 
-ProceduralObject make_mug(const std::string& name, bool is_plain, const PrintStyle& style) {
+ProceduralObject make_mug(const std::string& name, bool is_plain, const TextureStyle& style) {
   const CupShape shape = is_plain ? CupShape{0.036, 0.043, 0.088, 0.004} : CupShape{0.041, 0.041, 0.095, 0.004};
   const double around_mm = 2 * std::numbers::pi * 0.041 * kMmPerM;
   TextureAtlas atlas(1024, 3.6);

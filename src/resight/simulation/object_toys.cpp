@@ -15,7 +15,7 @@ BoxRegions same_regions(const PixelRect& r) { return {r, r, r, r, r, r}; }
 
 // A body of boxes, wheels, stickers on all sides. The car drives to +x.
 ProceduralObject make_toy_car() {
-  const PrintStyle style{"TURBO", "7", 48, 3131};
+  const TextureStyle style{"TURBO", "7", 48, 3131};
   TextureAtlas atlas(1024, 3.0);
   const auto printed = [&](double w_m, double h_m, std::uint64_t part, const std::string& word) {
     const PixelRect region = atlas.allocate(w_m * kMmPerM, h_m * kMmPerM);
@@ -72,7 +72,7 @@ ProceduralObject make_toy_car() {
 }
 
 ProceduralObject make_duck() {
-  const PrintStyle style{"", "", 52, 3232};
+  const TextureStyle style{"", "", 52, 3232};
   TextureAtlas atlas(512, 2.0);
   const PixelRect body = atlas.allocate(230, 100);
   TextureCanvas canvas = atlas.canvas(body);
@@ -106,7 +106,7 @@ ProceduralObject make_duck() {
 
 // A block with a roof and a chimney.
 ProceduralObject make_toy_house() {
-  const PrintStyle style{"", "", 15, 3333};
+  const TextureStyle style{"", "", 15, 3333};
   TextureAtlas atlas(1024, 3.0);
   const auto wall = [&](double w_m, std::uint64_t part, bool has_door) {
     const PixelRect region = atlas.allocate(w_m * kMmPerM, 80);
@@ -156,7 +156,7 @@ ProceduralObject make_toy_house() {
 }
 
 ProceduralObject make_ball() {
-  const PrintStyle style{"BOLIDO", "", 120, 3434};
+  const TextureStyle style{"BOLIDO", "", 120, 3434};
   constexpr double kRadius = 0.075;
   TextureAtlas atlas(1024, 2.0);
   const PixelRect skin = atlas.allocate(2 * std::numbers::pi * kRadius * kMmPerM, std::numbers::pi * kRadius * kMmPerM);
@@ -174,7 +174,7 @@ ProceduralObject make_ball() {
 }
 
 ProceduralObject make_sponge() {
-  const PrintStyle style{"", "", 55, 3535};
+  const TextureStyle style{"", "", 55, 3535};
   const Vector3d size(0.11, 0.07, 0.035);
   TextureAtlas atlas(512, 2.0);
   const auto pores = [&](double w_m, double h_m, std::uint64_t part, Rgb8 color) {

@@ -51,7 +51,7 @@ void draw_random_shape(TextureCanvas& canvas, Rng& rng, double x, double y, doub
   }
 }
 
-void draw_background(TextureCanvas& canvas, const PrintStyle& style, Rng& rng) {
+void draw_background(TextureCanvas& canvas, const TextureStyle& style, Rng& rng) {
   canvas.gradient(style.base(), hsv_color(style.hue_deg + rng.uniform(-25, 25), 0.7, 0.55));
   const double w = canvas.width();
   const double h = canvas.height();
@@ -171,7 +171,7 @@ void print_wood(TextureCanvas canvas, Rng rng, Rgb8 light, Rgb8 dark, double pla
   }
 }
 
-void print_front(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void print_front(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   Rng rng = style.stream(part);
   const double w = canvas.width();
   const double h = canvas.height();
@@ -198,7 +198,7 @@ void print_front(TextureCanvas canvas, const PrintStyle& style, std::uint64_t pa
   canvas.text_in_box(0.05 * w, 0.94 * h, 0.9 * w, 0.05 * h, small_print, style.light());
 }
 
-void print_back(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void print_back(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   const double w = canvas.width();
   const double h = canvas.height();
   const double unit = std::sqrt(w * h);
@@ -214,7 +214,7 @@ void print_back(TextureCanvas canvas, const PrintStyle& style, std::uint64_t par
   print_barcode(canvas, style.stream(part + 500), 0.62 * w, 0.7 * h, 0.33 * w, 0.2 * h);
 }
 
-void print_side(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void print_side(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   Rng rng = style.stream(part);
   const double w = canvas.width();
   const double h = canvas.height();
@@ -233,7 +233,7 @@ void print_side(TextureCanvas canvas, const PrintStyle& style, std::uint64_t par
   }
 }
 
-void print_lid(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void print_lid(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   Rng rng = style.stream(part);
   const double w = canvas.width();
   const double h = canvas.height();
@@ -247,7 +247,7 @@ void print_lid(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part
   canvas.text_in_box(0.2 * w, 0.36 * h, 0.6 * w, 0.28 * h, style.product, style.light(), 0.2);
 }
 
-void print_label(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part) {
+void print_label(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part) {
   const double w = canvas.width();
   const double h = canvas.height();
   print_side(canvas.part(0, 0, 0.14 * w, h), style, part + 1);

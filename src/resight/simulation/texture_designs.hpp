@@ -8,7 +8,7 @@
 namespace resight {
 
 /// What is printed on an object: colours, words, and a seed for all that is drawn at random.
-struct PrintStyle {
+struct TextureStyle {
   std::string brand;    ///< Large letters.
   std::string product;  ///< Smaller letters.
   double hue_deg = 0;
@@ -23,12 +23,12 @@ struct PrintStyle {
 };
 
 /// Faces of a package, each filling its canvas. `part` tells faces of the same kind apart.
-void print_front(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part);
-void print_back(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part);
-void print_side(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part);
-void print_lid(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part);
+void print_front(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
+void print_back(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
+void print_side(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
+void print_lid(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 /// A label that goes around: front, table of contents, picture, bar code.
-void print_label(TextureCanvas canvas, const PrintStyle& style, std::uint64_t part);
+void print_label(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 
 /// Elements.
 void print_blobs(TextureCanvas canvas, Rng rng, double hue_deg, int count, double min_radius_mm, double max_radius_mm);

@@ -33,7 +33,7 @@ constexpr double kIcpReach = 0.15;    // of the radius at first: what half a tur
 constexpr double kIcpDecay = 0.7;     // a step
 constexpr double kIcpDamping = 1e-4;  // of the mean square of a residual's derivative; for what the shape leaves free
 
-PointCloud thin_out(const PointCloud& surface) {
+PointCloud downsample(const PointCloud& surface) {
   if (surface.size() <= kMaxPoints) return surface;
   std::vector<int> kept;
   for (std::size_t i = 0; i < kMaxPoints; ++i) kept.push_back(static_cast<int>(i * surface.size() / kMaxPoints));
@@ -136,7 +136,7 @@ Rigid3 turn_about(const TurnAxis& axis, double angle_rad) {
 }
 
 SelfOverlap::SelfOverlap(const PointCloud& surface, const SymmetryOptions& options)
-    : surface_(thin_out(surface)), options_(options), tree_(surface_.points) {
+    : surface_(downsample(surface)), options_(options), tree_(surface_.points) {
   const std::vector<double> areas = find_areas(surface_, tree_, options.num_threads);
   samples_ = spread_samples(areas, options.num_samples);
   double total = 0;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "resight/core/random.hpp"
+#include "resight/geometry/triangle_mesh.hpp"
 #include "resight/geometry/voxel_key.hpp"
 
 namespace resight {

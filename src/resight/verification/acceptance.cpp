@@ -9,12 +9,12 @@
 namespace resight {
 namespace {
 
-constexpr double kPrintContrast = 1;
+constexpr double kTextureContrast = 1;
 
 // 1 for what shares no contrast with the scene, 0 from max_shared_contrast on.
-double plainness(const HypothesisEvidence& evidence, const PlainOptions& plain) {
+double plainness(const HypothesisEvidence& evidence, const UntexturedOptions& plain) {
   if (plain.max_shared_contrast <= 0) return 0;
-  return std::clamp(1 - evidence.shared_contrast / plain.max_shared_contrast, 0.0, 1.0);
+  return std::clamp(1 - evidence.shared_texture / plain.max_shared_contrast, 0.0, 1.0);
 }
 
 }  // namespace
@@ -26,18 +26,18 @@ Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& 
   if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
     return Verdict::kTooFewVisible;
   if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;
-  const bool lacks_print = evidence.print_contrast >= kPrintContrast &&
-                           evidence.shared_contrast < options.min_shared_print * evidence.print_contrast;
-  const bool is_other = lacks_print || evidence.pattern_similarity < options.min_pattern_similarity ||
+  const bool lacks_texture = evidence.texture_contrast >= kTextureContrast &&
+                             evidence.shared_texture < options.min_shared_print * evidence.texture_contrast;
+  const bool is_other = lacks_texture || evidence.pattern_similarity < options.min_pattern_similarity ||
                         evidence.newest_similarity < options.min_newest_similarity;
-  return is_other ? Verdict::kOtherPattern : Verdict::kCost;
+  return is_other ? Verdict::kDifferentAppearance : Verdict::kCost;
 }
 
-bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+bool has_unary_gain(const HypothesisEvidence& evidence, const VerifyOptions& options) {
   if (evidence.verdict != Verdict::kCost) return false;
   if (!options.must_pay_alone) return true;
   const double min_gain = plainness(evidence, options.plain) * options.plain.min_gain * evidence.explained_scene;
-  return cost_alone(evidence, options) < -min_gain;
+  return unary_cost(evidence, options) < -min_gain;
 }
 
 }  // namespace resight

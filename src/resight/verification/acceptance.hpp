@@ -5,11 +5,11 @@
 namespace resight {
 
 /// Whether the evidence is enough to ask for the costs (kCost), or else why not. Of what shares no contrast with the
-/// scene more is asked (PlainOptions).
+/// scene more is asked (UntexturedOptions).
 [[nodiscard]] Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options);
 
 /// Whether it may enter the choice: its verdict is kCost, and if must_pay_alone, it explains more than it costs; what
-/// is plain, by PlainOptions::min_gain.
-[[nodiscard]] bool pays_alone(const HypothesisEvidence& evidence, const VerifyOptions& options);
+/// is plain, by UntexturedOptions::min_gain.
+[[nodiscard]] bool has_unary_gain(const HypothesisEvidence& evidence, const VerifyOptions& options);
 
 }  // namespace resight

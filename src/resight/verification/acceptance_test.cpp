@@ -13,7 +13,7 @@ HypothesisEvidence good_evidence() {
   e.num_explained = 450;
   e.explained_share = 0.9;
   e.pattern_similarity = 0.9;
-  e.shared_contrast = 3;
+  e.shared_texture = 3;
   e.explained_scene = 500;
   e.outlier_cost = 50;
   e.verdict = Verdict::kCost;
@@ -31,9 +31,9 @@ VerifyOptions options() {
   return o;
 }
 
-Verdict judge(double HypothesisEvidence::*field, double value, double shared_contrast) {
+Verdict judge(double HypothesisEvidence::*field, double value, double shared_texture) {
   HypothesisEvidence e = good_evidence();
-  e.shared_contrast = shared_contrast;
+  e.shared_texture = shared_texture;
   e.*field = value;
   return judge_evidence(e, options());
 }
@@ -43,9 +43,9 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
   EXPECT_EQ(judge(&HypothesisEvidence::visible_share, 0.09, 3), Verdict::kTooFewVisible);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.59, 3), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.61, 3), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.49, 3), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.49, 3), Verdict::kDifferentAppearance);
   EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.51, 3), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.39, 3), Verdict::kOtherPattern);
+  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.39, 3), Verdict::kDifferentAppearance);
   EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
   HypothesisEvidence few = good_evidence();
   few.num_visible = 19;
@@ -61,17 +61,17 @@ TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
 }
 
 TEST(Acceptance, APrintThatTheSceneDoesNotShareIsAnother) {
-  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 4, 0.39), Verdict::kOtherPattern);
-  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 4, 0.41), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::print_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
+  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
+  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
+  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
 }
 
 TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
   HypothesisEvidence e = good_evidence();
-  const auto pays = [&](double clutter, double shared_contrast, const VerifyOptions& o) {
+  const auto pays = [&](double clutter, double shared_texture, const VerifyOptions& o) {
     e.clutter_cost = clutter;
-    e.shared_contrast = shared_contrast;
-    return pays_alone(e, o);
+    e.shared_texture = shared_texture;
+    return has_unary_gain(e, o);
   };
   // 500 explained, 50 of outliers: plain things may cost 350 more, printed ones 450.
   EXPECT_TRUE(pays(345, 0, options()));
@@ -89,12 +89,12 @@ TEST(Acceptance, WithoutPlainOptionsNothingMoreIsAsked) {
   VerifyOptions o = options();
   o.plain.max_shared_contrast = 0;
   HypothesisEvidence e = good_evidence();
-  e.shared_contrast = 0;
+  e.shared_texture = 0;
   e.explained_share = 0.61;
   e.pattern_similarity = 0.51;
   EXPECT_EQ(judge_evidence(e, o), Verdict::kCost);
   e.clutter_cost = 445;
-  EXPECT_TRUE(pays_alone(e, o));
+  EXPECT_TRUE(has_unary_gain(e, o));
 }
 
 }  // namespace

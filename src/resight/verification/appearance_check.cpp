@@ -62,8 +62,8 @@ double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_
   const std::size_t num_points = view.model_light.size();
   if (num_points < kMinPoints) return 0;
   const Eigen::Array3f white = Eigen::Array3f::Zero();
-  const LightFit light =
-      limit_chroma(fit_light(view.model_light, view.seen_light, view.normals, options.light), white, options.light);
+  const PhotometricFit light = limit_chromaticity(
+      fit_photometry(view.model_light, view.seen_light, view.normals, options.light), white, options.light);
   std::vector<LabColor> expected;
   for (std::size_t i = 0; i < num_points; ++i) expected.push_back(to_lab(light(view.model_light[i], view.normals[i])));
   const std::vector<LabColor> seen = to_lab(view.seen_light);
@@ -72,10 +72,9 @@ double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_
   const double chroma_weight = options.color_sigma_l / options.color_sigma_ab;
   const std::vector<LabColor> print = to_lab(view.model_light);
   const PatternMatch match = match_patterns(expected, seen, chroma_weight);
-  const double shared_contrast =  // What is plain has none for being round.
-      std::min(match.shared_contrast, match_patterns(print, print, chroma_weight).shared_contrast);
-  if (match.similarity < options.min_pattern_similarity || shared_contrast < options.plain.max_shared_contrast)
-    return 0;
+  const double shared_texture =  // What is plain has none for being round.
+      std::min(match.shared_texture, match_patterns(print, print, chroma_weight).shared_texture);
+  if (match.similarity < options.min_pattern_similarity || shared_texture < options.plain.max_shared_contrast) return 0;
   return static_cast<double>(num_explained) / static_cast<double>(model.surface.size());
 }
 

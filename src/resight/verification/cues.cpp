@@ -46,7 +46,8 @@ struct CueComputer::Impl {
     turn(views, allowed);
     cues_.evidence.world_from_object = look_.world_from_object;
     count_agreeing(correspondences);
-    if (use_color_ && options.min_newest_similarity > -1) newest_print_.emplace(model_, look_, views, options_);
+    if (use_color_ && options.min_newest_similarity > -1)
+      newest_view_appearance_.emplace(model_, look_, views, options_);
   }
 
   // A hypothesis is moved onto the scene before it is judged.
@@ -60,16 +61,16 @@ struct CueComputer::Impl {
   // To where the print of the model fits that of the scene, about what the shape leaves free; but what has no support
   // has none there either.
   void turn(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
-    if (model_.turns.size() < 2 || !look_.local || !use_color_) return;
+    if (model_.symmetry_motions.size() < 2 || !look_.local || !use_color_) return;
     if (look_.supported_share() < options_.min_explained_share) return;
     const Rigid3f object_from_world(look_.world_from_object.inverse());
     std::vector<ExplainedPoint> explained;
     for (const PointMatch& m : look_.nearest)
       explained.push_back({object_from_world * look_.local->point(static_cast<std::size_t>(m.local)),
                            look_.local_lab[static_cast<std::size_t>(m.local)]});
-    const Rigid3 turn = find_print_turn(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
+    const Rigid3 turn = resolve_symmetry(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
     if (turn.rotation.isIdentity()) return;
-    ModelLook turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
+    SceneAssociation turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
     if (turned.color_fit() > look_.color_fit()) look_ = std::move(turned);
   }
 
@@ -83,9 +84,10 @@ struct CueComputer::Impl {
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
     cues_.state.assign(look_.points.size(), ModelPointState::kNotVisible);
     if (look_.local) {
-      adapt_colors(limit_chroma(look_.light, white_balance, options_.light));
+      adapt_colors(limit_chromaticity(look_.light, white_balance, options_.light));
       compare_patterns();
-      if (newest_print_) cues_.evidence.newest_similarity = newest_print_->similarity(white_balance);
+      if (newest_view_appearance_)
+        cues_.evidence.newest_similarity = newest_view_appearance_->similarity(white_balance);
       weigh_matches(*look_.local);
       classify_model_points();
     }
@@ -103,7 +105,7 @@ struct CueComputer::Impl {
   }
 
   // The model's colours under the light of the scene.
-  void adapt_colors(const LightFit& light) {
+  void adapt_colors(const PhotometricFit& light) {
     if (!use_color_) return;
     lab_.reserve(look_.visibility.visible.size());
     for (const int i : look_.visibility.visible)
@@ -123,8 +125,8 @@ struct CueComputer::Impl {
     const double chroma_weight = options_.color_sigma_l / options_.color_sigma_ab;
     const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
     cues_.evidence.pattern_similarity = match.similarity;
-    cues_.evidence.print_contrast = match_patterns(print, print, chroma_weight).shared_contrast;
-    cues_.evidence.shared_contrast = std::min(match.shared_contrast, cues_.evidence.print_contrast);
+    cues_.evidence.texture_contrast = match_patterns(print, print, chroma_weight).shared_texture;
+    cues_.evidence.shared_texture = std::min(match.shared_texture, cues_.evidence.texture_contrast);
   }
 
   // -log of the colour similarity.
@@ -239,7 +241,7 @@ struct CueComputer::Impl {
                                 });
     if (!goes_on) return 0;
     const double print =
-        options_.continuation_contrast > 0 ? cues_.evidence.shared_contrast / options_.continuation_contrast : 0;
+        options_.continuation_contrast > 0 ? cues_.evidence.shared_texture / options_.continuation_contrast : 0;
     return static_cast<float>(options_.clutter_weight / (1 + print * print));
   }
 
@@ -338,8 +340,8 @@ struct CueComputer::Impl {
   ColorTolerance colors_;
   bool use_normals_;
   bool use_color_;
-  ModelLook look_;
-  std::optional<NewestPrint> newest_print_;
+  SceneAssociation look_;
+  std::optional<NewestViewAppearance> newest_view_appearance_;
   std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
   std::vector<std::uint8_t> beside_model_;  // Per local scene point: no visible model point of similar normal is near,
@@ -356,7 +358,7 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
 CueComputer::~CueComputer() = default;
 CueComputer::CueComputer(CueComputer&&) noexcept = default;
 
-const LightFit& CueComputer::light() const { return impl_->look_.light; }
+const PhotometricFit& CueComputer::light() const { return impl_->look_.light; }
 HypothesisCues CueComputer::finish(const Eigen::Array3f& white_balance) { return impl_->finish(white_balance); }
 
 }  // namespace resight

@@ -31,8 +31,8 @@ struct HypothesisCues {
 /// Works out the cues of a model at its pose, in two steps: the light on the scene is found from all hypotheses
 /// together. `allowed`: per view, non-zero = the object may be present there.
 ///
-/// The model's colours are put into the light of the scene (light_fit.hpp). Scene point q is explained with the largest
-/// weight over visible model points p within t = inlier_distance_m:
+/// The model's colours are put into the light of the scene (photometric_fit.hpp). Scene point q is explained with the
+/// largest weight over visible model points p within t = inlier_distance_m:
 ///   exp(-d^2 / 2t^2) * colour(p, q) * max(0, 1 - angle(n_p, n_q) / 90 deg),
 ///   colour = exp(-1/2 (dl^2 / 2 sigma_l^2 + (da^2 + db^2) / 2 sigma_ab^2));
 /// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
@@ -49,9 +49,9 @@ class CueComputer {
   CueComputer(CueComputer&&) noexcept;
 
   /// As the colours of this hypothesis alone would have it, its chroma not limited.
-  [[nodiscard]] const LightFit& light() const;
-  /// The cues, under the white balance that the hypotheses of the scene agree on (LightFit::chroma()). What has not
-  /// evidence enough has no costs, and explains nothing. To be called once.
+  [[nodiscard]] const PhotometricFit& light() const;
+  /// The cues, under the white balance that the hypotheses of the scene agree on (PhotometricFit::chroma()). What has
+  /// not evidence enough has no costs, and explains nothing. To be called once.
   [[nodiscard]] HypothesisCues finish(const Eigen::Array3f& white_balance);
 
  private:

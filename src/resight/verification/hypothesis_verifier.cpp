@@ -74,10 +74,10 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
     computers[h].emplace(models[hypotheses[h].object], hypotheses[h].world_from_object, hypotheses[h].correspondences,
                          scene, views, allowed, options);
   });
-  std::vector<LightFit> lights;
+  std::vector<PhotometricFit> lights;
   for (const std::optional<CueComputer>& computer : computers) lights.push_back(computer->light());
   const Eigen::Array3f white_balance =
-      find_white_balance(lights, white_balance_votes(hypotheses, models.size()), options.light);
+      find_white_balance(lights, white_balance_weights(hypotheses, models.size()), options.light);
   std::vector<HypothesisCues> cues(hypotheses.size());
   parallel_for(hypotheses.size(), options.num_threads,
                [&](std::size_t h) { cues[h] = computers[h]->finish(white_balance); });
@@ -93,8 +93,8 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
 
 // Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
 // stays. Which of them explains a few points more is chance.
-void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
-                   std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
+void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
+                      std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
   if (options.refine.max_iterations == 0 && options.turn_step_rad == 0) return;
   std::vector<int> by_support = candidates;
   std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
@@ -114,9 +114,9 @@ void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& l
     if (same == kept.end()) {
       kept.push_back(h);
     } else {
-      evidence[h].verdict = Verdict::kOutvoted;
-      evidence[h].outvoted_by = *same;
-      evidence[h].cost_alone = cost_alone(evidence[h], options);
+      evidence[h].verdict = Verdict::kSuppressed;
+      evidence[h].suppressed_by = *same;
+      evidence[h].unary_cost = unary_cost(evidence[h], options);
     }
   }
   std::sort(kept.begin(), kept.end());
@@ -125,8 +125,8 @@ void drop_repeated(std::span<const Hypothesis> hypotheses, const ModelLibrary& l
 
 // The active candidate that keeps `rejected` out: without it, switching `rejected` on would be cheapest.
 // Those of other components have no say.
-int find_rival(Selection& selection, const std::vector<int>& component, int rejected) {
-  int rival = -1;
+int find_competitor(Selection& selection, const std::vector<int>& component, int rejected) {
+  int competitor = -1;
   FixedCost best_change = selection.change_if_switched(rejected);
   for (const int c : component) {
     if (!selection.is_active(c)) continue;
@@ -135,9 +135,9 @@ int find_rival(Selection& selection, const std::vector<int>& component, int reje
     selection.switch_candidate(c);
     if (change >= best_change) continue;
     best_change = change;
-    rival = c;
+    competitor = c;
   }
-  return rival;
+  return competitor;
 }
 
 void explain_choice(const SelectionProblem& problem, const SearchSelectionResult& found,
@@ -150,14 +150,14 @@ void explain_choice(const SelectionProblem& problem, const SearchSelectionResult
     for (const int c : component) {
       HypothesisEvidence& e = evidence[candidates[c]];
       const FixedCost change = none.change_if_switched(c);
-      e.cost_alone = from_fixed(change);
+      e.unary_cost = from_fixed(change);
       e.accepted = found.active[c] != 0;
       e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
       if (e.accepted || change >= 0) continue;
-      const int rival = find_rival(chosen, component, c);
-      if (rival < 0) continue;
-      e.verdict = Verdict::kOutvoted;
-      e.outvoted_by = candidates[rival];
+      const int competitor = find_competitor(chosen, component, c);
+      if (competitor < 0) continue;
+      e.verdict = Verdict::kSuppressed;
+      e.suppressed_by = candidates[competitor];
     }
   }
 }
@@ -218,10 +218,10 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);
-    if (pays_alone(result.evidence[h], options_)) candidates.push_back(static_cast<int>(h));
+    if (has_unary_gain(result.evidence[h], options_)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
-  drop_repeated(hypotheses, library_, options_, candidates, result.evidence);
+  merge_duplicates(hypotheses, library_, options_, candidates, result.evidence);
   choose(hypotheses, library_, cues, candidates, options_, result);
   for (std::size_t h = 0; h < hypotheses.size(); ++h)
     if (HypothesisEvidence& e = result.evidence[h]; e.accepted)

@@ -23,8 +23,8 @@ int find_newest(const ModelVisibility& visibility) {
 
 }  // namespace
 
-NewestPrint::NewestPrint(const PreparedModel& model, const ModelLook& look, std::span<const DepthView> views,
-                         const VerifyOptions& options)
+NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const SceneAssociation& look,
+                                           std::span<const DepthView> views, const VerifyOptions& options)
     : options_(options) {
   const int newest = find_newest(look.visibility);
   if (newest < 0 || look.local_lab.empty()) return;
@@ -41,12 +41,12 @@ NewestPrint::NewestPrint(const PreparedModel& model, const ModelLook& look, std:
     seen_light_.push_back(to_linear_light((*view.color)(u, v)));
     if (!look.normals.empty()) normals_.push_back(look.normals[i]);
   }
-  light_ = fit_light(model_light_, seen_light_, normals_, options.light);
+  light_ = fit_photometry(model_light_, seen_light_, normals_, options.light);
 }
 
-double NewestPrint::similarity(const Eigen::Array3f& white_balance) const {
+double NewestViewAppearance::similarity(const Eigen::Array3f& white_balance) const {
   if (model_light_.empty()) return 1;
-  const LightFit light = limit_chroma(light_, white_balance, options_.light);
+  const PhotometricFit light = limit_chromaticity(light_, white_balance, options_.light);
   std::vector<LabColor> expected;
   for (std::size_t i = 0; i < model_light_.size(); ++i)
     expected.push_back(to_lab(light(model_light_[i], normal_at(normals_, i))));

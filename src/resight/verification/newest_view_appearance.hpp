@@ -10,10 +10,10 @@ namespace resight {
 
 /// A model's colours beside those of the newest view that sees enough of it: a reconstruction keeps the colours of what
 /// stood there before, if what stands there now has the same shape.
-class NewestPrint {
+class NewestViewAppearance {
  public:
-  NewestPrint(const PreparedModel& model, const ModelLook& look, std::span<const DepthView> views,
-              const VerifyOptions& options);
+  NewestViewAppearance(const PreparedModel& model, const SceneAssociation& look, std::span<const DepthView> views,
+                       const VerifyOptions& options);
 
   /// pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;
@@ -23,7 +23,7 @@ class NewestPrint {
   std::vector<Eigen::Vector3f> model_light_;
   std::vector<Eigen::Vector3f> seen_light_;
   std::vector<Eigen::Vector3f> normals_;
-  LightFit light_;
+  PhotometricFit light_;
 };
 
 }  // namespace resight

@@ -8,9 +8,9 @@
 #include "resight/sensor/noise_model.hpp"
 
 namespace resight {
-ModelLook::ModelLook(const PreparedModel& model, const Rigid3& pose, const PreparedScene& scene,
-                     std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
-                     const VerifyOptions& options)
+SceneAssociation::SceneAssociation(const PreparedModel& model, const Rigid3& pose, const PreparedScene& scene,
+                                   std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
+                                   const VerifyOptions& options)
     : world_from_object(pose), model_(&model), scene_(&scene), options_(&options) {
   const Rigid3f motion(pose);
   points.reserve(model.points.size());
@@ -23,7 +23,7 @@ ModelLook::ModelLook(const PreparedModel& model, const Rigid3& pose, const Prepa
 }
 
 // Of the views that see it where it is, that of the farthest.
-float ModelLook::largest_depth_noise(std::span<const DepthView> views) const {
+float SceneAssociation::largest_depth_noise(std::span<const DepthView> views) const {
   const Eigen::Vector3d center = world_from_object * model_->center.cast<double>().eval();
   double largest_m = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -34,7 +34,7 @@ float ModelLook::largest_depth_noise(std::span<const DepthView> views) const {
   return static_cast<float>(largest_m);
 }
 
-void ModelLook::compare_with_scene() {
+void SceneAssociation::compare_with_scene() {
   std::vector<Eigen::Vector3f> visible_points;
   visible_points.reserve(visibility.visible.size());
   for (const int i : visibility.visible) visible_points.push_back(points[static_cast<std::size_t>(i)]);
@@ -47,7 +47,7 @@ void ModelLook::compare_with_scene() {
   fit_light_of_matches();
 }
 
-void ModelLook::find_matches() {
+void SceneAssociation::find_matches() {
   matches.reserve(visibility.visible.size() * 24);
   for (std::size_t v = 0; v < visibility.visible.size(); ++v)
     local->visit_within(points[static_cast<std::size_t>(visibility.visible[v])],
@@ -58,7 +58,7 @@ void ModelLook::find_matches() {
 }
 
 // From each visible point and its nearest scene point of similar normal.
-void ModelLook::fit_light_of_matches() {
+void SceneAssociation::fit_light_of_matches() {
   const float min_dot = static_cast<float>(std::cos(options_->max_inlier_angle_rad));
   for (std::size_t i = 0; i < matches.size();) {
     const PointMatch* best = nullptr;
@@ -79,13 +79,13 @@ void ModelLook::fit_light_of_matches() {
         scene_->linear_light[static_cast<std::size_t>(local->scene_index(static_cast<std::size_t>(m.local)))]);
     if (!normals.empty()) model_normals.push_back(normals[point]);
   }
-  light = fit_light(model_light, scene_light, model_normals, options_->light);
+  light = fit_photometry(model_light, scene_light, model_normals, options_->light);
 }
 
-double ModelLook::color_fit() const {
+double SceneAssociation::color_fit() const {
   if (nearest.empty() || local_lab.empty()) return 0;
   const ColorTolerance tolerance(options_->color_sigma_l, options_->color_sigma_ab);
-  const LightFit plain_light = limit_chroma(light, Eigen::Array3f::Zero(), options_->light);
+  const PhotometricFit plain_light = limit_chromaticity(light, Eigen::Array3f::Zero(), options_->light);
   std::vector<LabColor> model_colors;
   std::vector<LabColor> scene_colors;
   double sum = 0;
@@ -99,7 +99,7 @@ double ModelLook::color_fit() const {
          pattern_similarity(model_colors, scene_colors, options_->color_sigma_l / options_->color_sigma_ab);
 }
 
-double ModelLook::supported_share() const {
+double SceneAssociation::supported_share() const {
   const float steep_cosine = static_cast<float>(std::cos(options_->steep_angle_rad));
   const auto weight = [&](std::size_t v) { return visibility.facing[v] < steep_cosine ? options_->steep_weight : 1.0; };
   double all = 0;

@@ -27,11 +27,12 @@ struct PointMatch {
 
 /// What views and scene show where a model is said to be: which of its points are visible, their neighbours in the
 /// scene, and the light on them. World frame.
-class ModelLook {
+class SceneAssociation {
  public:
   /// `allowed`: per view, non-zero = the object may be present there. Model, scene and options must outlive it.
-  ModelLook(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
-            std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+  SceneAssociation(const PreparedModel& model, const Rigid3& world_from_object, const PreparedScene& scene,
+                   std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
+                   const VerifyOptions& options);
 
   /// How well the colours agree where model and scene meet: as patterns, and one by one. What the scene's white balance
   /// is the other hypotheses have still to say; until then there is none.
@@ -56,7 +57,7 @@ class ModelLook {
   std::vector<LabColor> local_lab;             ///< Likewise.
   std::vector<PointMatch> matches;             ///< Those of one visible point stand side by side.
   std::vector<PointMatch> nearest;             ///< Of each visible point that has one of similar normal.
-  LightFit light;                              ///< As the colours of this model alone would have it.
+  PhotometricFit light;                        ///< As the colours of this model alone would have it.
 
  private:
   [[nodiscard]] float largest_depth_noise(std::span<const DepthView> views) const;

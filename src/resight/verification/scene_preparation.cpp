@@ -38,13 +38,14 @@ std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> poi
   cloud.points.assign(points.begin(), points.end());
   cloud.normals.assign(normals.begin(), normals.end());
   cloud = voxel_downsample(cloud, options.plane_spacing_m);
-  return find_planes_of_thinned(cloud.points, cloud.normals, options.plane_spacing_m, threaded(options.planes, options))
+  return find_planes_of_downsampled(cloud.points, cloud.normals, options.plane_spacing_m,
+                                    threaded(options.planes, options))
       .planes;
 }
 
 // All but the segments and planes.
 PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
-  if (!is_thin(cloud, options.resolution_m)) cloud = voxel_downsample(cloud, options.resolution_m);
+  if (!is_downsampled(cloud, options.resolution_m)) cloud = voxel_downsample(cloud, options.resolution_m);
   PreparedScene scene;
   if (options.use_color && cloud.has_colors()) {
     scene.linear_light = to_linear_light(cloud.colors);
@@ -109,16 +110,16 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
 }
 
 PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
-  PointCloud thinned = voxel_downsample(model.surface, options.resolution_m);
+  PointCloud downsampled = voxel_downsample(model.surface, options.resolution_m);
   PreparedModel prepared;
-  if (options.use_color && thinned.has_colors()) {
-    prepared.linear_light = to_linear_light(thinned.colors);
+  if (options.use_color && downsampled.has_colors()) {
+    prepared.linear_light = to_linear_light(downsampled.colors);
     prepared.lab = to_lab(prepared.linear_light);
-    if (options.turn_step_rad > 0) prepared.turns = shape_turns(model, options.turn_step_rad);
+    if (options.turn_step_rad > 0) prepared.symmetry_motions = shape_symmetry_motions(model, options.turn_step_rad);
   }
-  prepared.points = std::move(thinned.points);
-  prepared.normals = std::move(thinned.normals);
-  if (prepared.turns.size() > 1)
+  prepared.points = std::move(downsampled.points);
+  prepared.normals = std::move(downsampled.normals);
+  if (prepared.symmetry_motions.size() > 1)
     prepared.nearest = NearestPointMap(prepared.points, 2 * static_cast<float>(options.inlier_distance_m),
                                        0.5F * static_cast<float>(options.resolution_m));
   prepared.center = centroid(prepared.points);

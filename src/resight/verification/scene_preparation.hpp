@@ -46,7 +46,7 @@ struct PreparedModel {
   std::vector<Eigen::Vector3f> normals;              ///< Empty or as long as points.
   std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
   std::vector<LabColor> lab;                         ///< The same.
-  std::vector<Rigid3> turns;                         ///< shape_turns(): by shape alone, these poses are one.
+  std::vector<Rigid3> symmetry_motions;              ///< shape_symmetry_motions(): by shape alone, these poses are one.
   NearestPointMap nearest;                           ///< Of the points, if there are turns.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;

@@ -30,7 +30,7 @@ double own_cost(const HypothesisEvidence& evidence, const VerifyOptions& options
   return evidence.outlier_cost + evidence.plane_cost + options.hypothesis_penalty;
 }
 
-double cost_alone(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+double unary_cost(const HypothesisEvidence& evidence, const VerifyOptions& options) {
   return own_cost(evidence, options) + evidence.clutter_cost - evidence.explained_scene;
 }
 

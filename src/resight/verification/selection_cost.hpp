@@ -18,7 +18,7 @@ inline constexpr double kFixedOne = 16777216.0;
 
 /// What a hypothesis costs whatever else is chosen, and in all if nothing else is.
 [[nodiscard]] double own_cost(const HypothesisEvidence& evidence, const VerifyOptions& options);
-[[nodiscard]] double cost_alone(const HypothesisEvidence& evidence, const VerifyOptions& options);
+[[nodiscard]] double unary_cost(const HypothesisEvidence& evidence, const VerifyOptions& options);
 
 /// A scene point and how much a hypothesis explains it or is charged for leaving it, 2^16 a unit.
 struct FixedWeight {

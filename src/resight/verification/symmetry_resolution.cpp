@@ -26,22 +26,22 @@ double likeness(std::span<const LabColor> model, std::span<const LabColor> scene
 
 }  // namespace
 
-Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points, double chroma_weight) {
+Rigid3 resolve_symmetry(const PreparedModel& model, std::span<const ExplainedPoint> points, double chroma_weight) {
   Rigid3 best = Rigid3::identity();
-  if (model.turns.size() < 2 || points.size() < kMinComparedPoints) return best;
+  if (model.symmetry_motions.size() < 2 || points.size() < kMinComparedPoints) return best;
   const std::size_t step = (points.size() + kMaxComparedPoints - 1) / kMaxComparedPoints;
   std::vector<LabColor> seen;
   for (std::size_t i = 0; i < points.size(); i += step) seen.push_back(points[i].color);
   std::vector<LabColor> expected(seen.size());
   double best_likeness = 0;
-  for (const Rigid3& turn : model.turns) {
+  for (const Rigid3& turn : model.symmetry_motions) {
     const Rigid3f turned_from_object(turn.inverse());
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const int nearest = model.nearest.nearest(turned_from_object * points[k * step].p_in_object);
       expected[k] = nearest < 0 ? LabColor{} : model.lab[static_cast<std::size_t>(nearest)];
     }
     const double found = likeness(expected, seen, chroma_weight);
-    const bool is_first = &turn == &model.turns.front();
+    const bool is_first = &turn == &model.symmetry_motions.front();
     if (!is_first && found <= best_likeness) continue;
     best_likeness = found + (is_first ? kMinSimilarityGain : 0);
     best = turn;

@@ -21,7 +21,7 @@ struct ExplainedPoint {
 /// print of the model is most like the scene's (pattern_similarity(), less for what the mean hues differ): depth alone
 /// says nothing about it. The identity, unless another is better by .05, and for fewer than 20 points. A point
 /// that is beside the model counts as mid-grey there. `chroma_weight`: of a and b beside l.
-[[nodiscard]] Rigid3 find_print_turn(const PreparedModel& model, std::span<const ExplainedPoint> points,
-                                     double chroma_weight);
+[[nodiscard]] Rigid3 resolve_symmetry(const PreparedModel& model, std::span<const ExplainedPoint> points,
+                                      double chroma_weight);
 
 }  // namespace resight

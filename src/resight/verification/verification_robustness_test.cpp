@@ -86,11 +86,11 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
       const HypothesisEvidence& a = serial.evidence[i];
       const HypothesisEvidence& b = parallel.evidence[i];
       EXPECT_EQ(a.verdict, b.verdict);
-      EXPECT_EQ(a.outvoted_by, b.outvoted_by);
+      EXPECT_EQ(a.suppressed_by, b.suppressed_by);
       for (const auto field :
            {&HypothesisEvidence::fit, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
             &HypothesisEvidence::outlier_cost, &HypothesisEvidence::clutter_cost, &HypothesisEvidence::plane_cost,
-            &HypothesisEvidence::cost_alone})
+            &HypothesisEvidence::unary_cost})
         EXPECT_EQ(std::memcmp(&(a.*field), &(b.*field), sizeof(double)), 0);
       EXPECT_EQ(a.explained_share_per_view, b.explained_share_per_view);
     }

@@ -17,9 +17,9 @@ const char* to_string(Verdict verdict) {
       return "too few visible";
     case Verdict::kNoSupport:
       return "no support";
-    case Verdict::kOtherPattern:
+    case Verdict::kDifferentAppearance:
       return "other pattern";
-    case Verdict::kOutvoted:
+    case Verdict::kSuppressed:
       return "outvoted";
     case Verdict::kCost:
       return "cost";
@@ -52,7 +52,7 @@ void VerifyOptions::check() const {
   check_not_negative(name("light.max_log_exposure"), light.max_log_exposure);
   check_not_negative(name("light.max_log_darkening"), light.max_log_darkening);
   check_not_negative(name("light.max_log_white_balance"), light.max_log_white_balance);
-  check_not_negative(name("light.max_veil"), light.max_veil);
+  check_not_negative(name("light.max_veil"), light.max_offset);
   check_not_negative(name("light.max_log_chroma"), light.max_log_chroma);
   check_not_negative(name("light.max_log_shading"), light.max_log_shading);
   check_not_negative(name("plane_spacing_m"), plane_spacing_m);

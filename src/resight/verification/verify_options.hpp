@@ -23,7 +23,7 @@ enum class DuplicityRule : std::uint8_t {
 
 /// What is asked of a hypothesis that shares no contrast with the scene, or is compared without colours: many things
 /// have its shape. For one that shares some contrast, the limits lie between these and those for all.
-struct PlainOptions {
+struct UntexturedOptions {
   double max_shared_contrast = 0;  ///< From this shared contrast on nothing more is asked; 0: of none.
   double min_explained_share = 0.7;
   double min_gain =
@@ -45,7 +45,7 @@ struct VerifyOptions {
   double continuation_offset_m = 0;  ///< If positive, only points that continue the surface count as unexplained: this
                                      ///< near the tangent plane of an explained one, of like normal and colour.
   double continuation_contrast = 0;  ///< ...and count 1 / (1 + (c / this)^2) if the prints share contrast c
-                                     ///< (PatternMatch::shared_contrast): a print rules out that it is a part of
+                                     ///< (PatternMatch::shared_texture): a print rules out that it is a part of
                                      ///< something larger. 0: full in any case.
   double clutter_sigmas = 0;  ///< ...and not what lies in front of the model or behind it, along its normal, within so
                               ///< many standard deviations of the depth where they exceed inlier_distance_m (and up to
@@ -56,7 +56,7 @@ struct VerifyOptions {
   bool use_color = true;
   double color_sigma_l = 0.4;   ///< Of (L - 50)/50, after the model's colours are adapted to the light...
   double color_sigma_ab = 0.2;  ///< ...and of a/128, b/128.
-  LightLimits light{};          ///< What the light may do to the colours of the model.
+  PhotometricLimits light{};    ///< What the light may do to the colours of the model.
   RefinePoseOptions refine{};   ///< Before it is judged, each hypothesis is moved onto the scene.
   double turn_step_rad = 0;  ///< If positive, a refined pose is turned about what its shape leaves free (a can's axis,
                              ///< in such steps; a box's half turns) to where the print fits best; 0: it stays.
@@ -89,9 +89,9 @@ struct VerifyOptions {
                                        ///< -1 turns it off.
   double min_newest_similarity = -1;   ///< Likewise with the colours of the newest view that sees at least 50 points of
                                        ///< it: the scene may still have those of what was exchanged for it.
-  double min_shared_print = 0;  ///< A model with a print (print_contrast of 1 or more) is another if the scene shares
+  double min_shared_print = 0;  ///< A model with a print (texture_contrast of 1 or more) is another if the scene shares
                                 ///< less than this part of it.
-  PlainOptions plain{};
+  UntexturedOptions plain{};
   bool must_pay_alone = false;  ///< Hypotheses that cost more than they explain alone are rejected: together, two that
                                 ///< split a larger surface would excuse what each of them leaves.
   std::uint64_t seed = 1;
@@ -110,8 +110,8 @@ enum class Verdict : std::uint8_t {
   kTooFewVisible,  ///< min_visible_points or min_visible_share not reached: hidden, outside, or the mask allows no
                    ///< view.
   kNoSupport,      ///< Less than min_explained_share (plain.min_explained_share) of the visible points is explained.
-  kOtherPattern,   ///< Less than min_pattern_similarity, min_newest_similarity or min_shared_print.
-  kOutvoted,       ///< Pays off alone, but not beside `outvoted_by`.
+  kDifferentAppearance,  ///< Less than min_pattern_similarity, min_newest_similarity or min_shared_print.
+  kSuppressed,           ///< Pays off alone, but not beside `suppressed_by`.
   kCost,  ///< Costs more than it explains even alone (outliers, clutter, planes); what is plain, nearly as much.
 };
 
@@ -138,18 +138,18 @@ struct HypothesisEvidence {
   double explained_share =
       0;  ///< Inliers / visible points, steep ones counting steep_weight: what min_explained_share tests.
   double pattern_similarity = 1;  ///< Of the model's colours and the scene's (pattern_similarity.hpp).
-  double shared_contrast = 0;     ///< PatternMatch::shared_contrast of both, but no more than the model's own print
+  double shared_texture = 0;      ///< PatternMatch::shared_texture of both, but no more than the model's own print
                                   ///< has in even light.
-  double print_contrast = 0;      ///< Of the model's own print in even light, where it is visible: at most so much can
+  double texture_contrast = 0;    ///< Of the model's own print in even light, where it is visible: at most so much can
                                   ///< be shared.
   double newest_similarity = 1;  ///< As pattern_similarity, with the colours of the newest view that sees enough of it;
                                  ///< 1 if that is not asked for, or none does.
   double clutter_cost = 0;       ///< Alone: unexplained rest of the segments that it explains in part.
   double plane_cost = 0;         ///< Points of planes that it claims, and model points on the far side of a plane.
-  double cost_alone = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
+  double unary_cost = 0;  ///< Cost of the set of this one only; negative pays off. 0 if rejected before the choice.
   Verdict verdict = Verdict::kTooFewVisible;
   PoseUncertainty uncertainty;  ///< Of accepted ones.
-  int outvoted_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
+  int suppressed_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
 };
 
 struct VerifyResult {

@@ -36,8 +36,8 @@ TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
     EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
     EXPECT_GE(result.evidence[i].fit, 0);
     EXPECT_LE(result.evidence[i].fit, 1);
-    if (result.evidence[i].verdict == Verdict::kOutvoted) {
-      EXPECT_EQ(result.evidence[i].outvoted_by, 4);
+    if (result.evidence[i].verdict == Verdict::kSuppressed) {
+      EXPECT_EQ(result.evidence[i].suppressed_by, 4);
     }
   }
 }
@@ -91,9 +91,9 @@ TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
     const int winner = accepted(result)[0];
     for (int i = 0; i < 3; ++i) {
       if (i == winner) continue;
-      EXPECT_EQ(result.evidence[i].verdict, Verdict::kOutvoted);
-      EXPECT_EQ(result.evidence[i].outvoted_by, winner);
-      EXPECT_LT(result.evidence[i].cost_alone, 0);
+      EXPECT_EQ(result.evidence[i].verdict, Verdict::kSuppressed);
+      EXPECT_EQ(result.evidence[i].suppressed_by, winner);
+      EXPECT_LT(result.evidence[i].unary_cost, 0);
     }
   }
 }
@@ -335,14 +335,14 @@ TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
   const Paint yellow = plain({180, 170, 60});
   const double full = evidence(yellow, 0).clutter_cost;
   EXPECT_GT(full, 100);
-  EXPECT_LT(evidence(yellow, 0.5).shared_contrast, 0.01);
+  EXPECT_LT(evidence(yellow, 0.5).shared_texture, 0.01);
   EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
   const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
   const double full_of_printed = evidence(printed, 0).clutter_cost;
   EXPECT_GT(full_of_printed, 100);
   const HypothesisEvidence e = evidence(printed, 0.5);
-  EXPECT_GT(e.shared_contrast, 0.5);
-  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_contrast / 0.5, 2)), 1e-2 * full_of_printed);
+  EXPECT_GT(e.shared_texture, 0.5);
+  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_texture / 0.5, 2)), 1e-2 * full_of_printed);
 }
 
 // Painted all round, so that each turn looks different.
@@ -450,7 +450,7 @@ TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
       f.verify(negative, library, {.light = {0, 0, 0, 0, 0}, .min_explained_share = 0}).evidence[0];
   EXPECT_LT(evidence.pattern_similarity, 0);
   EXPECT_GT(evidence.num_explained, 0);
-  EXPECT_NE(evidence.verdict, Verdict::kOtherPattern);
+  EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
 }
 
 TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
@@ -473,7 +473,7 @@ TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
   };
   EXPECT_TRUE(before(-1).accepted);
   EXPECT_GT(before(-1).pattern_similarity, 0.8);
-  EXPECT_EQ(before(0.4).verdict, Verdict::kOtherPattern);
+  EXPECT_EQ(before(0.4).verdict, Verdict::kDifferentAppearance);
   EXPECT_LT(before(0.4).newest_similarity, 0.2);
   f.views.pop_back();
   EXPECT_TRUE(before(0.4).accepted) << "no view shows another";
@@ -496,7 +496,7 @@ TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
   const VerifyOptions options{.min_pattern_similarity = 0.8};
   const VerifyResult result = f.verify(either, library, options);
   EXPECT_THAT(accepted(result), testing::ElementsAre(1));
-  EXPECT_EQ(result.evidence[0].verdict, Verdict::kOtherPattern);
+  EXPECT_EQ(result.evidence[0].verdict, Verdict::kDifferentAppearance);
   EXPECT_LT(result.evidence[0].pattern_similarity, result.evidence[1].pattern_similarity - 0.2);
 }
 

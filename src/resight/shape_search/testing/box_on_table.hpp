@@ -10,8 +10,8 @@ struct BoxOnTable {
   Solid box{Shape::kBox, {0.1, 0.07, 0.12}, checks({200, 60, 50}, {50, 60, 200}, 0.03), on_table(0, 0, 0.06, 0.4)};
   PreparedView view = prepare_view(render({.solids = {box}}, circle_of_cameras(3)[0]).frame);
   ObjectModel model = make_model("box", box);
-  ProbeModel samples = make_probe_model(model, 300);
-  PoseProbe probe{view, {}, 1};
+  SampledModel samples = make_sampled_model(model, 300);
+  PoseScorer probe{view, {}, 1};
   Rigid3 truth = view.frame.world_from_camera.inverse() * box.world_from_object;
 };
 

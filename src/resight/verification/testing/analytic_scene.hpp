@@ -277,8 +277,8 @@ inline Hypothesis make_hypothesis(int object, const Rigid3& world_from_object) {
 }
 
 /// Pose of an object that stands on the table: turned about z, its centre `height_m` above.
-inline Rigid3 on_table(double x, double y, double height_m, double turn_rad = 0) {
-  return Rigid3::from_translation({x, y, height_m}) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), turn_rad);
+inline Rigid3 on_table(double x, double y, double height_m, double rotation_rad = 0) {
+  return Rigid3::from_translation({x, y, height_m}) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), rotation_rad);
 }
 
 /// `pose` moved by `shift_m` in the world and turned by `angle_rad` about an axis through the object's origin.
