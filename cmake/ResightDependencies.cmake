@@ -1,4 +1,4 @@
-# Every dependency, in one place. All are Debian 12 packages (scripts/setup.sh).
+# Lists every dependency. All are Debian 12 packages (scripts/setup.sh).
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
@@ -25,8 +25,8 @@ if(NOT TARGET resight_lzf)
   target_link_libraries(resight_lzf INTERFACE ${LZF_LIBRARY})
 endif()
 
-# OpenCV, without its CMake files: Debian ships those only with all of OpenCV (338 packages). Its headers warn under
-# C++20, so they are system headers.
+# Finds OpenCV without its CMake files: Debian ships these only with all of OpenCV (338 packages). The headers of OpenCV
+# warn under C++20, so they are system headers.
 find_path(OPENCV_INCLUDE_DIR opencv2/features2d.hpp PATH_SUFFIXES opencv4 REQUIRED)
 if(NOT TARGET resight_opencv)
   add_library(resight_opencv INTERFACE IMPORTED)

@@ -1,4 +1,4 @@
-# find_package(resight) for others: resight::<module> for each module, resight::resight for all.
+# Installs what find_package(resight) needs: resight::<module> for each module, and resight::resight for all.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -1,6 +1,6 @@
-# RESIGHT_MARCH, the instruction set on x86-64. All of a program is built for one: Eigen's alignment, and with it our ABI,
-# hangs on it. By default it is x86-64-v3 (AVX2, FMA) where the machine that builds can run that, else the compiler's own
-# default, which any x86-64 processor runs.
+# RESIGHT_MARCH is the instruction set on x86-64. All parts of a program must be built for the same one: Eigen's
+# alignment, and therefore our ABI, depends on it. The default is x86-64-v3 (AVX2, FMA) if the building machine can run
+# it. Otherwise it is the default of the compiler, which every x86-64 processor can run.
 set(default_march "")
 if(NOT DEFINED RESIGHT_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)

@@ -1,9 +1,9 @@
 # resight_add_module(NAME [DEPS module...] [PUBLIC_LIBS lib...] [PRIVATE_LIBS lib...]
 #                    [TEST_DEPS module...] [TEST_LIBS lib...])
 #
-# One folder = one target `resight::NAME`: its *.cpp are the sources, its *.hpp the installed headers, its *_test.cpp
-# the tests (one executable `resight_NAME_test`). A module may depend only on modules before it in RESIGHT_LAYERS: an
-# upward edge is a configure error. Only tests may use TEST_DEPS, which may lie higher.
+# Each folder is one target `resight::NAME`. Its *.cpp are the sources, its *.hpp the installed headers, and its
+# *_test.cpp the tests (one executable `resight_NAME_test`). A module may depend only on modules that precede it in
+# RESIGHT_LAYERS; any other edge is a configure error. TEST_DEPS may lie higher and serve the tests only.
 set(RESIGHT_LAYERS
     core
     geometry appearance
@@ -18,7 +18,7 @@ set(RESIGHT_LAYERS
 
 add_library(resight_build_flags INTERFACE)
 if(RESIGHT_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # Reaches consumers too: Eigen's alignment, and with it our ABI, hangs on the instruction set.
+  # Consumers inherit this option: Eigen's alignment, and therefore our ABI, depends on the instruction set.
   target_compile_options(resight_build_flags INTERFACE -march=${RESIGHT_MARCH})
 endif()
 if(RESIGHT_SANITIZE)
@@ -26,7 +26,8 @@ if(RESIGHT_SANITIZE)
   target_link_options(resight_build_flags INTERFACE -fsanitize=${RESIGHT_SANITIZE})
 endif()
 
-# Warnings and code generation of our own files; never passed on. No -ffast-math: NaN means "no measurement" here.
+# Warnings and code generation of our own files; consumers do not inherit them. -ffast-math is not used, because NaN
+# means "no measurement".
 function(resight_private_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wconversion
                                            -Wno-sign-conversion -fno-math-errno -fno-trapping-math)
@@ -39,7 +40,7 @@ function(resight_private_flags target)
 endfunction()
 
 # Joins the sources of a target into larger translation units (RESIGHT_UNITY_BUILD) and gives it a precompiled header.
-# The compiler spends two thirds of its time on the same headers: this makes a clean build three times as fast.
+# The compiler spends two thirds of its time on the same headers, so a clean build becomes three times as fast.
 function(resight_speed_up_build target)
   cmake_parse_arguments(ARG "SEPARATE" "REUSE_FROM" "" ${ARGN})
   if(NOT ARG_SEPARATE)
@@ -50,8 +51,8 @@ function(resight_speed_up_build target)
   endif()
 endfunction()
 
-# A target that only holds a precompiled header. A reused header must be compiled with the flags of its users: libraries
-# share one (-fPIC), test programs another (-fPIE, with gmock).
+# A target that only holds a precompiled header. A reused header must be compiled with the flags of its users. Libraries
+# share one header (-fPIC), test programs another (-fPIE, with gmock).
 function(resight_add_precompiled_header target kind header)
   cmake_parse_arguments(ARG "" "" "LIBS" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/precompiled/${target}.cpp)
@@ -90,7 +91,7 @@ function(resight_add_module name)
 
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   file(GLOB headers CONFIGURE_DEPENDS *.hpp)
-  list(FILTER headers EXCLUDE REGEX "test[^/]*\\.hpp$") # helpers of tests are not installed
+  list(FILTER headers EXCLUDE REGEX "test[^/]*\\.hpp$") # test helpers are not installed
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
@@ -124,7 +125,8 @@ function(resight_add_module name)
   endif()
 endfunction()
 
-# resight_add_test(NAME SOURCES file... LIBS lib... [LABELS label...]): a GoogleTest executable, one ctest entry a case.
+# resight_add_test(NAME SOURCES file... LIBS lib... [LABELS label...]): a GoogleTest executable with one ctest entry per
+# case.
 function(resight_add_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
@@ -135,7 +137,7 @@ function(resight_add_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   resight_private_flags(${name})
-  resight_speed_up_build(${name} SEPARATE REUSE_FROM resight_test_pch) # helpers of tests share names
+  resight_speed_up_build(${name} SEPARATE REUSE_FROM resight_test_pch) # test helpers share names
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE RESIGHT_SHARED_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data"
                                              RESIGHT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

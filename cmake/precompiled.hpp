@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Precompiled for all modules: the headers that most translation units include. Sources still include what they use;
-// the preset `dev` builds without precompiled headers and shows what is missing.
+// Precompiled headers of all modules: those that most translation units include. Sources still include what they use;
+// the preset `dev` builds without precompiled headers and reveals missing includes.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Precompiled for all tests.
+// Precompiled headers of all tests.
 #pragma once
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

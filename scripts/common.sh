@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shared by the scripts; sourced from the root of the source tree.
+# Functions shared by the scripts. Sourced from the root of the source tree.
 
 command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 num_jobs=$(nproc)
 log_dir=build/logs
 mkdir -p "$log_dir"
 
-# step NAME COMMAND...: runs quietly; one line with the time when it went well, the end of its output when it did not.
+# step NAME COMMAND...: runs the command quietly. Prints one line with the time on success, and the end of its output on
+# failure.
 step() {
   local name=$1 start=$SECONDS
   shift

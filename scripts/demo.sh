@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# From a clean clone to a report: packages, build, then `resight demo` into out/demo (made anew each time). Arguments go to
-# `resight demo`, e.g. --seed 2.
+# Goes from a clean clone to a report: installs packages, builds, and runs `resight demo` into out/demo, which is
+# created anew. Arguments are passed to `resight demo`, e.g. --seed 2.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Proves that two commits give the same results, bit for bit: simulates a data set, trains, recognises three sequences with
-# each preset, and compares the model library, detections.json and changes.json.
-#   scripts/identity.sh BASE HEAD [WORK_DIR]     WORK_DIR (default: build/identity) keeps builds, and results by commit
-# Exit status 0: same bytes, or same values in the same order under other keys; 1: not; 2: usage.
-# Both are built without fused multiply-add: with it, moving a function to another file can change the last bits.
+# Proves that two commits give the same results, bit for bit. Simulates a data set, trains, recognises three sequences
+# with each preset, and compares the model library, detections.json and changes.json.
+#   scripts/identity.sh BASE HEAD [WORK_DIR]     WORK_DIR (default: build/identity) keeps builds and results by commit
+# Exit status: 0 = same bytes, or same values in the same order under other keys; 1 = different; 2 = usage error.
+# Fused multiply-add is off: with it, moving a function to another file can change the last bits.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 (($# == 2 || $# == 3)) || { sed -n '3,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
@@ -13,7 +13,7 @@ head=$(git rev-parse --verify "$2^{commit}")
 work=$(realpath -m "${3:-build/identity}")
 mkdir -p "$work/results"
 
-# One source folder for all commits, so that the second build is incremental.
+# One source folder serves all commits, so that the second build is incremental.
 build() {
   [[ -d $work/source ]] || git worktree add --quiet --detach "$work/source" "$1"
   git -C "$work/source" checkout --quiet --detach "$1"
@@ -23,7 +23,7 @@ build() {
     { tail -n 20 "$work/build.log" >&2; exit 1; }
 }
 
-# What the program of a commit makes of the one data set, into results/COMMIT; the paths are the same for all commits.
+# Runs the program of a commit on the common data set into results/COMMIT. The paths are the same for all commits.
 run() {
   local results=$work/results/$1 resight=$work/build/apps/resight/resight sequence preset
   [[ -e $results/done ]] && return

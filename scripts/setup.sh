@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian 12 packages that resight is built from. Says one line and leaves apt alone when all are there.
-#   scripts/setup.sh              what the library and the program need
-#   scripts/setup.sh --tests      and what only the tests need
-#   scripts/setup.sh --bench      and what only the benchmarks need
-#   scripts/setup.sh --baselines  and PCL (hundreds of packages, 1 to 2 GB), which only bench_baselines uses
+# Installs the Debian 12 packages that resight is built from. Prints one line and skips apt if all are installed.
+#   scripts/setup.sh              packages of the library and the program
+#   scripts/setup.sh --tests      also packages that only the tests need
+#   scripts/setup.sh --bench      also packages that only the benchmarks need
+#   scripts/setup.sh --baselines  also PCL (hundreds of packages, 1 to 2 GB), which only bench_baselines uses
 set -euo pipefail
 
 packages=(

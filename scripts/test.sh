@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests, every
-# public header alone, installation and a project that uses it, and the tests of four modules under the sanitizers.
-#   scripts/test.sh             everything but the sanitizers
+# Runs all checks of the continuous integration: packages, format, build with warnings as errors, tests,
+# each public header alone, a project that uses the installation, and the tests of four modules under the sanitizers.
+#   scripts/test.sh             everything except the sanitizers
 #   scripts/test.sh --sanitize  everything
 #   scripts/test.sh --fast      without public headers, installation and sanitizers
 set -euo pipefail
@@ -19,7 +19,7 @@ done
 scripts/setup.sh --tests
 source scripts/common.sh
 
-# Modules that read foreign bytes or do index arithmetic; all of them would take too long under the sanitizers.
+# Modules that read untrusted bytes or do index arithmetic. All modules would take too long under the sanitizers.
 sanitized_modules=(core geometry io changes)
 sanitized_targets=(resight_{core,geometry,io,changes}_test)
 
