@@ -12,8 +12,9 @@ namespace resight {
 
 bool keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int kLargest = 1 << 30;       // In bytes: what is smaller is kept.
-  constexpr int kLargestOnce = 32 << 20;  // ...of what older versions allow.
+  constexpr int kLargest = 1 << 30;  // Bytes. Smaller blocks are kept.
+  // Bytes. Larger blocks are mapped on request; older versions of the library allow no more.
+  constexpr int kLargestOnce = 32 << 20;
   const bool keeps_large = mallopt(M_MMAP_THRESHOLD, kLargest) == 1 || mallopt(M_MMAP_THRESHOLD, kLargestOnce) == 1;
   return mallopt(M_TRIM_THRESHOLD, INT_MAX) == 1 && keeps_large;
 #else

@@ -3,10 +3,10 @@
 
 namespace resight {
 
-/// Lets the allocator of the process keep what is freed, instead of giving it back to the system: each view needs as
-/// many large arrays as the last, and their pages would be cleared anew (a tenth of the CPU time of a view). For
-/// programs that recognise for a while; it has no effect without the GNU C library. Call it before anything large is
-/// allocated. Returns whether the allocator will.
+/// Makes the allocator of the process keep freed memory instead of returning it to the system. Each view allocates the
+/// same large arrays as the view before, and clearing returned pages anew costs a tenth of the CPU time of a view. For
+/// programs that recognise many views. Has an effect only with the GNU C library. Call it before any large allocation.
+/// Returns whether the allocator accepted the settings.
 bool keep_freed_memory();
 
 }  // namespace resight

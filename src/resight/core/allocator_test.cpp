@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-// Sanitizers have allocators of their own.
+// Sanitizers replace the allocator.
 #if defined(__has_feature)
 #define RESIGHT_HAS_FEATURE(x) __has_feature(x)
 #else
@@ -26,7 +26,7 @@ long num_page_faults() {
   return usage.ru_minflt;
 }
 
-// Page faults of one more array of 48 MB, written from end to end and freed.
+// Number of page faults while one more array of 48 MB is allocated, written completely and freed.
 long faults_of_large_array() {
   constexpr std::size_t kBytes = 48'000'000;
   const long before = num_page_faults();
@@ -37,7 +37,7 @@ long faults_of_large_array() {
 }
 
 TEST(KeepFreedMemory, PagesOfTheLastArrayServeTheNext) {
-  static bool is_first_run = true;  // What is set stays set.
+  static bool is_first_run = true;  // The setting outlives the test.
   if (std::exchange(is_first_run, false)) {
     EXPECT_GT(faults_of_large_array(), 20);
     EXPECT_GT(faults_of_large_array(), 20);

@@ -20,7 +20,7 @@ fs::path temporary_name(const fs::path& folder, const std::string& name) {
   return folder / ("." + name + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
 }
 
-/// Absolute and without a trailing slash, so that filename() and parent_path() mean what they say.
+/// Makes the path absolute and removes a trailing slash, which filename() and parent_path() require.
 fs::path clean_path(const fs::path& path) {
   std::error_code error;
   fs::path clean = fs::absolute(path, error).lexically_normal();
@@ -28,7 +28,7 @@ fs::path clean_path(const fs::path& path) {
   return clean;
 }
 
-/// The outermost part of the path that is not there; empty if it exists.
+/// The outermost component of the path that does not exist; empty if the path exists.
 fs::path first_missing(const fs::path& path) {
   std::error_code error;
   fs::path missing;
@@ -36,7 +36,7 @@ fs::path first_missing(const fs::path& path) {
   return missing;
 }
 
-/// Entry by entry, so that a folder which cannot be exchanged (a mount point, the current one) can be filled.
+/// Moves entry by entry, so that a folder that cannot be replaced (a mount point, the current folder) can be filled.
 std::error_code move_entries(const fs::path& from, const fs::path& to) {
   std::error_code error;
   std::vector<fs::path> names;
@@ -59,7 +59,7 @@ std::string folder_name(const fs::path& directory) { return clean_path(directory
 Result<void> check_writable(const fs::path& path) {
   const fs::path target = clean_path(path);
   const fs::path missing = first_missing(target);
-  const fs::path folder = missing.empty() ? target : missing.parent_path();  // the innermost that is there
+  const fs::path folder = missing.empty() ? target : missing.parent_path();  // the innermost existing folder
   std::error_code error;
   if (!missing.empty() && !fs::is_directory(folder, error))
     return file_error(path, "cannot be written (" + folder.string() + " is not a folder)");
@@ -130,7 +130,7 @@ void PendingDirectory::discard() noexcept {
   fs::remove_all(pending_, error);
   pending_.clear();
   if (first_made_.empty()) return;
-  // From the inside out, as long as nobody else has put something there.
+  // Removes created folders from the inside out, as far as they are empty.
   for (fs::path folder = final_.parent_path();; folder = folder.parent_path()) {
     if (!fs::remove(folder, error) || folder == first_made_) return;
   }

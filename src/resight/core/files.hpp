@@ -9,29 +9,29 @@
 
 namespace resight {
 
-/// "<file>: <what>", the form of the error messages on files.
+/// Formats an error message about a file: "<file>: <what>".
 [[nodiscard]] Error file_error(const std::filesystem::path& file, std::string_view what);
 
-/// The last part of a path's name, also for "a/b/" and "." (made absolute).
+/// The last component of a path. Paths such as "a/b/" and "." are made absolute first.
 [[nodiscard]] std::string folder_name(const std::filesystem::path& directory);
 
-/// Whether a file or folder could be made under this name, its folders included; to be asked before long work. Changes
-/// nothing. An existing file may be written over, an existing folder may be filled.
+/// Checks before long work whether a file or folder can be created under this name, parent folders included. Changes
+/// nothing. An existing file may be overwritten and an existing folder may be filled.
 [[nodiscard]] Result<void> check_writable(const std::filesystem::path& path);
 
-/// Writes under a hidden temporary name beside `file` and renames it at the end; makes its folder if it is missing.
+/// Writes `bytes` under a hidden temporary name beside `file`, then renames it. Creates the folder if it is missing.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
-/// The parts, one after the other.
+/// Writes the parts one after the other.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::initializer_list<std::string_view> parts);
 
-/// What PendingDirectory does where the folder exists already and is not empty.
+/// Behaviour of PendingDirectory if the folder exists and is not empty.
 enum class ExistingFolder {
-  kRefuse,  ///< It is an error: never write over data.
-  kFill,    ///< Files are added; those of the same name are replaced.
+  kRefuse,  ///< Fails, so that no data are overwritten.
+  kFill,    ///< Adds files and replaces those of the same name.
 };
 
-/// A folder that is filled under a hidden temporary name, beside its own or (if it exists) within it. What was written
-/// appears under its name only with commit(). Without it, nothing remains.
+/// A folder that is filled under a hidden temporary name. The temporary folder lies beside the final one or, if that
+/// exists, inside it. Files appear under the final name only with commit(); without it, nothing remains.
 class PendingDirectory {
  public:
   [[nodiscard]] static Result<PendingDirectory> create(const std::filesystem::path& final_path,
@@ -41,7 +41,7 @@ class PendingDirectory {
   ~PendingDirectory();
   [[nodiscard]] const std::filesystem::path& path() const { return pending_; }
   [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
-  /// To be called once.
+  /// Moves the files to final_path(). May be called once.
   [[nodiscard]] Result<void> commit();
 
  private:
@@ -49,8 +49,8 @@ class PendingDirectory {
       : final_(std::move(final_path)), pending_(std::move(pending)), first_made_(std::move(first_made)) {}
   void discard() noexcept;
   std::filesystem::path final_;
-  std::filesystem::path pending_;     ///< Empty once committed or moved from.
-  std::filesystem::path first_made_;  ///< The outermost folder that had to be made; empty if none.
+  std::filesystem::path pending_;     ///< Empty after commit() or a move.
+  std::filesystem::path first_made_;  ///< The outermost folder that was created; empty if none.
 };
 
 }  // namespace resight

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A folder of the running test, gone at its end.
+/// Creates a folder for each test and removes it afterwards.
 class FilesTest : public ::testing::Test {
  protected:
   FilesTest() : folder_(fs::path(::testing::TempDir()) / ("resight_files_" + std::to_string(::getpid()))) {
@@ -27,7 +27,7 @@ class FilesTest : public ::testing::Test {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// Everything below the test's folder, hidden names included, in order.
+  /// All entries below the folder of the test, hidden ones included, in order.
   [[nodiscard]] std::vector<std::string> entries() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder_))

@@ -16,8 +16,8 @@ std::uint64_t hash_text(std::string_view text, std::uint64_t seed) {
 }
 
 std::uint64_t checksum_bytes(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
-  // Each step is a bijection of the hash for a given word, and of the word for a given hash: no change of one word is
-  // lost.
+  // For a given word, each step is a bijection of the hash; for a given hash, it is a bijection of the word. A change
+  // of one word therefore always changes the result.
   std::uint64_t hash = seed ^ bytes.size();
   const auto step = [&hash](const std::uint8_t* data, std::size_t size) {
     std::uint64_t word = 0;

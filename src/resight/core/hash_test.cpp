@@ -28,7 +28,7 @@ TEST(HashBytes, ReadsBytesAsUnsigned) {
   EXPECT_EQ(hash_bytes(bytes), hash_text("\xFF\x80"));
 }
 
-// From an independent implementation.
+// Values from an independent implementation.
 TEST(ChecksumBytes, GoldenValues) {
   std::vector<std::uint8_t> all(256);
   std::iota(all.begin(), all.end(), std::uint8_t{0});

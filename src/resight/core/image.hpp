@@ -26,7 +26,7 @@ class Image {
       : width_(width),
         height_(height),
         data_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
-  /// Takes over `data`, width * height values row by row.
+  /// Takes ownership of `data`, which holds width * height values in row-major order.
   Image(int width, int height, std::vector<T> data) : width_(width), height_(height), data_(std::move(data)) {
     assert(data_.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   }

@@ -15,11 +15,11 @@ namespace resight {
 
 namespace {
 
-// One for each number of threads, kept to the end of the program: of each that is made and dropped, oneTBB 2021.8 keeps
-// about a kilobyte, and a view needs hundreds.
+// One arena per number of threads, kept until the program ends: oneTBB 2021.8 leaks about a kilobyte per destroyed
+// arena, and a view needs hundreds of calls.
 tbb::task_arena& arena_of(int num_workers) {
   static std::mutex mutex;
-  static auto& arenas = *new std::map<int, tbb::task_arena>();  // Never destroyed: TBB may be gone before it.
+  static auto& arenas = *new std::map<int, tbb::task_arena>();  // Never destroyed, because TBB may be unloaded earlier.
   const std::lock_guard lock(mutex);
   return arenas.try_emplace(num_workers, num_workers).first->second;
 }
@@ -30,12 +30,12 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
                          const std::function<void(std::size_t, std::size_t)>& body) {
   require(grain > 0, "parallel_for_blocks: grain = 0 (must be > 0)");
   check_positive("num_threads", num_threads);
-  const std::size_t num_blocks = count / grain + (count % grain != 0 ? 1 : 0);  // no overflow for a huge grain
+  const std::size_t num_blocks = count / grain + (count % grain != 0 ? 1 : 0);  // does not overflow for a huge grain
   const auto run_block = [&](std::size_t block) {
     const std::size_t begin = block * grain;
     body(begin, begin + std::min(grain, count - begin));
   };
-  // More threads than the hardware has win nothing, and make TBB print a warning.
+  // More threads than the hardware has gain nothing, and make TBB print a warning.
   const int num_workers = std::min(num_threads, num_hardware_threads());
   if (num_workers == 1 || num_blocks <= 1) {
     for (std::size_t block = 0; block < num_blocks; ++block) run_block(block);

@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-std::uint64_t mix(std::uint64_t x) {  // splitmix64: neighbouring seeds give unrelated states
+std::uint64_t mix(std::uint64_t x) {  // splitmix64: adjacent seeds give unrelated states
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBULL;
@@ -30,7 +30,8 @@ std::uint32_t Rng::next() {  // PCG-XSH-RR, O'Neill 2014
 
 std::uint32_t Rng::below(std::uint32_t bound) {
   require(bound > 0, "Rng::below: bound = 0 (must be > 0)");
-  const std::uint32_t threshold = (0U - bound) % bound;  // rejects the incomplete last block: no bias
+  // Numbers below the threshold are rejected, which avoids the bias of an incomplete last block.
+  const std::uint32_t threshold = (0U - bound) % bound;
   for (;;) {
     const std::uint32_t value = next();
     if (value >= threshold) return value % bound;
@@ -42,7 +43,7 @@ double Rng::uniform() {
   return static_cast<double>((high << 21U) ^ (next() >> 11U)) * 0x1.0p-53;
 }
 
-double Rng::normal() {  // Box-Muller; the second value is dropped to keep the stream stateless
+double Rng::normal() {  // Box-Muller; the second value is discarded, so that the only state is that of the stream
   const double u = 1.0 - uniform();
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * uniform());
 }

@@ -6,8 +6,8 @@
 
 namespace resight {
 
-/// A small random stream (PCG32) whose numbers are the same on every platform, unlike the distributions of <random>.
-/// One stream per item, `Rng::stream(seed, index)`, makes results independent of the number of threads.
+/// A small random generator (PCG32, O'Neill 2014). Unlike the distributions of <random>, it gives the same numbers on
+/// every platform. One stream per item, `Rng::stream(seed, index)`, makes results independent of the number of threads.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) : Rng(seed, 0) {}
@@ -17,7 +17,7 @@ class Rng {
 
   /// Uniform over all 32-bit numbers.
   std::uint32_t next();
-  /// Uniform integer in [0, bound); bound > 0.
+  /// Uniform integer in [0, bound). Throws std::invalid_argument if `bound` is 0.
   std::uint32_t below(std::uint32_t bound);
   /// Uniform in [0, 1).
   double uniform();

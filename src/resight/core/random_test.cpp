@@ -12,7 +12,7 @@
 namespace resight {
 namespace {
 
-// From an independent implementation of splitmix64 and PCG-XSH-RR. Whoever changes them changes every seeded result.
+// Values from an independent implementation of splitmix64 and PCG-XSH-RR. A change of them changes every seeded result.
 TEST(Rng, GoldenValues) {
   const auto first_four = [](Rng rng) { return std::array{rng.next(), rng.next(), rng.next(), rng.next()}; };
   EXPECT_EQ(first_four(Rng(0)), (std::array<std::uint32_t, 4>{0x86f952fe, 0xd90e5468, 0x7209bdb6, 0x35c93874}));
@@ -87,7 +87,7 @@ TEST(Rng, BelowIsUnbiased) {
   EXPECT_THROW((void)rng.below(0), std::invalid_argument);
 }
 
-// With a bound of 3 * 2^30, plain modulo would give the lower third of the numbers twice as often as the rest.
+// With a bound of 3 * 2^30, a simple modulo would return the lower third of the numbers twice as often as the rest.
 TEST(Rng, BelowRejectsTheIncompleteBlock) {
   Rng rng(6);
   constexpr std::uint32_t kBound = 3U << 30U;
@@ -113,7 +113,7 @@ TEST(Rng, FirstNumbersOfNeighbouringSeedsAndStreamsDiffer) {
     seen.insert(Rng(i).next());
     seen.insert(Rng::stream(123456, i).next());
   }
-  EXPECT_GT(seen.size(), 1995U);  // 2,000 draws of 2^32: a collision has a chance of 0.05 %
+  EXPECT_GT(seen.size(), 1995U);  // 2,000 draws out of 2^32 collide with a probability of 0.05 %
 }
 
 TEST(Rng, ShufflePermutesEvenly) {

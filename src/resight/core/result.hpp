@@ -9,13 +9,13 @@
 
 namespace resight {
 
-/// Why an operation on the outside world (file, format, data set) failed: one line, ready for the user, that names
-/// the file, what is wrong and what was expected.
+/// The reason why an operation on the outside world (file, format, data set) failed. One line for the user that names
+/// the file, the defect and what was expected.
 struct Error {
   std::string message;
 };
 
-/// A value, or the error that stands in its place. For the world's mistakes; a caller's mistake throws (check.hpp).
+/// A value or an error. For mistakes in files and formats; a mistake of the caller throws (check.hpp).
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -25,7 +25,7 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const { return std::holds_alternative<T>(content_); }
   explicit operator bool() const { return ok(); }
 
-  /// The value. Throws std::logic_error with the message if there is none: ask ok() first.
+  /// The value. Throws std::logic_error with the message if there is none; call ok() first.
   [[nodiscard]] const T& value() const& {
     return ok() ? std::get<T>(content_) : (throw_error(), std::get<T>(content_));
   }
@@ -40,7 +40,7 @@ class [[nodiscard]] Result {
   const T* operator->() const { return &value(); }
   T* operator->() { return &value(); }
 
-  /// The error; only to be called when !ok().
+  /// The error. May be called only if !ok().
   [[nodiscard]] const Error& error() const { return std::get<Error>(content_); }
 
  private:

@@ -13,7 +13,7 @@ struct StageTime {
   double cpu_s = 0;
 };
 
-/// Times of a run, one entry a stage in order of first use; the same stage measured again is added up.
+/// Times of a run: one entry per stage, in order of first use. Repeated measurements of a stage are added up.
 class StageTimes {
  public:
   void add(std::string_view stage, double wall_s, double cpu_s);
@@ -25,7 +25,7 @@ class StageTimes {
   std::vector<StageTime> stages_;
 };
 
-/// Measures the scope it lives in: `const ScopedTimer timer(times, "normals");`
+/// Measures the scope that it lives in: `const ScopedTimer timer(times, "normals");`
 class ScopedTimer {
  public:
   ScopedTimer(StageTimes& times, std::string_view stage);
@@ -40,7 +40,7 @@ class ScopedTimer {
   double start_cpu_s_;
 };
 
-/// Largest resident memory of this process so far, in bytes; 0 where the system does not tell.
+/// Peak resident memory of this process in bytes; 0 if the system does not report it.
 [[nodiscard]] std::size_t peak_memory_bytes();
 
 }  // namespace resight

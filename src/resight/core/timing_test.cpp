@@ -50,7 +50,7 @@ TEST(ScopedTimer, AddsOneEntryAtTheEndOfItsScope) {
     EXPECT_GE(s.wall_s, 0);
     EXPECT_GE(s.cpu_s, 0);
   }
-  EXPECT_GE(times.stages()[1].wall_s, times.stages()[0].wall_s);  // the outer scope holds the inner one
+  EXPECT_GE(times.stages()[1].wall_s, times.stages()[0].wall_s);  // the outer scope includes the inner one
 }
 
 TEST(PeakMemoryBytes, GrowsWithWhatIsTouched) {
