@@ -12,17 +12,17 @@ namespace resight {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int kMinWidth = 40;  // Smaller levels hold nothing to align.
+constexpr int kMinWidth = 40;  // Narrower levels hold too little to align.
 
 Image<float> to_grey(const Image<Rgb8>& color) {
   Image<float> grey(color.width(), color.height());
-  for (std::size_t i = 0; i < grey.size(); ++i)  // Rec. 601, as grey images of features
+  for (std::size_t i = 0; i < grey.size(); ++i)  // Rec. 601, as for the grey images of SIFT.
     grey[i] = 0.299F * color[i].r + 0.587F * color[i].g + 0.114F * color[i].b;
   return grey;
 }
 
-// Every second pixel of the image smoothed by 1 4 6 4 1 (Burt and Adelson 1983): pixel (u, v) stays over pixel (2u,
-// 2v), as with the points.
+// Smooths the image with the kernel 1 4 6 4 1 and keeps every second pixel (Burt and Adelson 1983). Pixel (u, v) of the
+// result coincides with pixel (2u, 2v) of the input, as in the point images.
 Image<float> halve(const Image<float>& image) {
   constexpr std::array<float, 5> kWeights{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
   const int width = image.width() / 2;
@@ -42,7 +42,7 @@ Image<float> halve(const Image<float>& image) {
   return half;
 }
 
-// The mean over (2 radius + 1)^2 pixels, fewer at the border.
+// Mean over (2 radius + 1)^2 pixels; fewer at the image border.
 Image<float> box_mean(const Image<float>& image, int radius) {
   const int width = image.width();
   const int height = image.height();
@@ -65,12 +65,12 @@ Image<float> box_mean(const Image<float>& image, int radius) {
   return mean;
 }
 
-// The image whose pixel (u, v) is pixel (2u, 2v) of the finer one.
+// Camera of the image whose pixel (u, v) is pixel (2u, 2v) of the finer one.
 Camera subsample(const Camera& camera) {
   return {camera.width / 2, camera.height / 2, camera.fx / 2, camera.fy / 2, camera.cx / 2, camera.cy / 2};
 }
 
-// Depths are never averaged: a mean over an edge is no surface.
+// Depths are never averaged: a mean across an edge lies on no surface.
 Image<float> subsample(const Image<float>& image) {
   Image<float> half(image.width() / 2, image.height() / 2);
   for (int v = 0; v < half.height(); ++v)
@@ -93,7 +93,7 @@ Image<float> without_mean(Image<float> grey, double mean_radius) {
   return grey;
 }
 
-// The points of the whole image; those not to be aligned lose their normals.
+// Points of the whole image. Points that must not be aligned get no normal.
 AlignmentLevel whole_level(const PreparedView& view, const AlignmentViewOptions& options,
                            const Image<std::uint8_t>* mask) {
   AlignmentLevel level;

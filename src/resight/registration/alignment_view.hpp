@@ -6,13 +6,14 @@
 
 namespace resight {
 
-/// What the alignment of views needs of one, at one resolution. Camera frame, metres; NaN in z = no measurement, NaN in
-/// nx = none, no normal, or not to be used (masked, at a depth edge).
+/// What alignment needs of a view, at one resolution. Camera frame, metres. NaN in z = no measurement. NaN in nx = no
+/// normal, or the point must not be aligned (masked out, or near a depth edge).
 struct AlignmentLevel {
   Camera camera;
   OrganizedCloud cloud;
-  Image<float> sigma_m;     ///< Axial noise of each point.
-  Image<float> brightness;  ///< Grey values (0..255) less their local mean: the light's level is left out.
+  Image<float> sigma_m;  ///< Axial noise of each point.
+  /// Grey values (0..255) minus their local mean, which removes the overall brightness.
+  Image<float> brightness;
 };
 
 struct AlignmentViewOptions {
@@ -22,12 +23,14 @@ struct AlignmentViewOptions {
   void check() const;
 };
 
-/// A view as a pyramid, finest level first. About 5 MB for 640x480.
+/// A view as a pyramid, finest level (half resolution) first. About 5 MB for 640x480.
 struct AlignmentView {
   std::vector<AlignmentLevel> levels;
 };
 
-/// `mask`: of the frame's size, non-zero = use for alignment; what is masked out still hides what lies behind it.
+/// Builds the pyramid of a view with normals. `mask` has the frame's size; points with a non-zero value are aligned.
+/// Points that are masked out still occlude. Throws std::invalid_argument if the view has no normals or the mask
+/// another size.
 [[nodiscard]] AlignmentView make_alignment_view(const PreparedView& view, const AlignmentViewOptions& options = {},
                                                 const Image<std::uint8_t>* mask = nullptr);
 

@@ -41,7 +41,7 @@ Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& world_f
   for (const View& earlier : views_)
     if (earlier.view.levels.size() >= view.levels.size()) targets.push_back({&earlier.view, earlier.world_from_camera});
   if (targets.empty()) return world_from_camera;
-  // Most poses are right, and the finest level says so.
+  // Most given poses are right; the finest level alone confirms them.
   AlignViewOptions near = options_.align;
   near.num_levels = 1;
   if (!is_surprising(align_view(view, targets, world_from_camera, near), world_from_camera)) return world_from_camera;

@@ -20,13 +20,14 @@ struct CorrectCameraOptions {
   void check() const;
 };
 
-/// Corrects given camera poses view by view: each is aligned to the views before it, at their corrected poses. What
-/// has changed between the views does not pull. Poses that are right stay as they are, bit by bit.
+/// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected poses.
+/// Robust weights keep changed regions from pulling. A pose that agrees with its alignment is returned unchanged, bit
+/// for bit.
 class CameraCorrector {
  public:
   explicit CameraCorrector(const CorrectCameraOptions& options = {});
 
-  /// The corrected world_from_camera of a view (with normals), which the next views are then aligned to.
+  /// Returns the corrected world_from_camera of a view (with normals) and keeps the view as a target for the next ones.
   Rigid3 add_view(const PreparedView& view);
 
  private:

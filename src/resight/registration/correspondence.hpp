@@ -6,13 +6,13 @@
 
 namespace resight {
 
-/// A model keypoint taken for a scene keypoint. The scene side is in the frame that the holder says.
+/// A model keypoint matched to a scene keypoint. The containing structure defines the frame of the scene side.
 struct Correspondence {
   Eigen::Vector3f model_point;
   Eigen::Vector3f model_normal;
   Eigen::Vector3f scene_point;
   Eigen::Vector3f scene_normal;
-  float distance_sq = 0;  ///< Between the descriptors, squared L2.
+  float distance_sq = 0;  ///< Squared L2 distance of the descriptors.
   FeatureType type = FeatureType::kSift;
   int model_feature = -1;  ///< Index into the object's FeatureSet of this type.
   int scene_feature = -1;  ///< Index into the view's FeatureSet of this type.

@@ -9,7 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr double kDamping = 1e-3;  // Share of the mean direction that holds those which nothing else does.
+// Damping as a share of the mean information. It holds directions that no pair constrains.
+constexpr double kDamping = 1e-3;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

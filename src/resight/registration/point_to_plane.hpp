@@ -7,24 +7,26 @@
 
 namespace resight {
 
-/// The normal equations of one step of point-to-plane ICP (Chen and Medioni 1992): a turn about the middle of the moved
-/// points and a shift, both in the frame they are moved in. Turns are scaled to metres by the radius of the points, so
-/// that the damping treats both alike.
+/// Normal equations of one point-to-plane ICP step (Chen and Medioni 1992). The step is a rotation about the middle of
+/// the moved points and a translation, both in the target frame. Rotations are scaled to metres by the radius of the
+/// points, so that the damping treats rotation and translation alike.
 struct StepEquations {
-  static constexpr double kStill_m = 1e-4;  ///< A pose whose steps are shorter stands still.
+  static constexpr double kStill_m = 1e-4;  ///< Shorter steps have converged.
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   double sum_weights = 0;
-  double sum_residuals_sq = 0;  ///< Weighted.
+  double sum_residuals_sq = 0;  ///< Weighted sum.
   int num_pairs = 0;
 
-  /// `arm`: the point from the middle; `residual`: how far it is to move along `normal`.
+  /// Adds one pair. `arm`: the point relative to the middle; `residual`: the distance to move along `normal`, in
+  /// metres.
   void add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight, double radius_m);
-  /// Moves the pose, `middle` in the frame of the object. How far: metres, and radians times the radius. Needs a pair.
+  /// Applies the step to the pose; `middle` is in the frame of the object. Returns the step length: metres, and radians
+  /// times `radius_m`. Requires at least one pair.
   double step(Rigid3& pose, const Eigen::Vector3d& middle, double radius_m) const;
 };
 
-/// Eight pairs side by side, for vector instructions. Of weight 0: none, its other numbers finite.
+/// Eight contiguous pairs for vector instructions. Lanes of weight 0 hold no pair; their other values must be finite.
 struct PairBlock {
   static constexpr int kSize = 8;
   using Lanes = std::array<float, kSize>;
@@ -34,21 +36,22 @@ struct PairBlock {
   Lanes weight;
 };
 
-/// Sums up StepEquations by blocks of pairs, in single precision.
+/// Accumulates StepEquations from blocks of pairs, in single precision.
 class BlockEquations {
  public:
   explicit BlockEquations(double radius_m) : inverse_radius_(static_cast<float>(1 / radius_m)) {}
   void add(const PairBlock& pairs);
-  /// One pair as in StepEquations, kept until there are eight.
+  /// Adds one pair as in StepEquations. Pairs are buffered until a block is full.
   void add(const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, float residual, float weight);
-  /// A pair of points that should coincide.
+  /// Adds a pair of points that should coincide: one equation per axis.
   void add_point(const Eigen::Vector3f& arm, const Eigen::Vector3f& offset, float weight);
   [[nodiscard]] StepEquations sum();
 
  private:
-  static constexpr int kRow = 7;  // Turn, shift and residual.
+  static constexpr int kRow = 7;  // Rotation, translation and residual.
   float inverse_radius_;
-  std::array<PairBlock::Lanes, kRow*(kRow + 1) / 2> products_{};  // Lower triangle of the rows' products, by rows.
+  // Lower triangle of the outer product of the rows, row by row.
+  std::array<PairBlock::Lanes, kRow*(kRow + 1) / 2> products_{};
   PairBlock::Lanes weights_{};
   std::array<int, PairBlock::kSize> num_pairs_{};
   PairBlock kept_{};

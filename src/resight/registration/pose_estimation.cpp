@@ -15,17 +15,19 @@ namespace resight {
 namespace {
 
 constexpr float kNotInlier = std::numeric_limits<float>::infinity();
-constexpr double kConfidence = 0.9999;    // That a sample without outliers was drawn.
-constexpr int kSamplesPerIteration = 50;  // Samples drawn at most for one pose that is scored.
+constexpr double kConfidence = 0.9999;    // Probability that at least one sample without outliers is drawn.
+constexpr int kSamplesPerIteration = 50;  // At most this many samples are drawn per scored pose.
 constexpr int kMaxRefinements = 50;
-constexpr double kStill = 5e-5;  // Metres and radians: a refinement that moves the pose by less has converged.
-// Ratio of the two largest singular values of the cross-covariance below which the pairs count as a line: a spread
-// across the line of 1e-4 of the spread along it, far above the rounding of single-precision coordinates.
+// Metres and radians. A refinement that moves the pose by less has converged.
+constexpr double kStill = 5e-5;
+// Ratio of the two largest singular values of the cross-covariance below which the pairs count as collinear. It equals
+// a spread across the line of 1e-4 of the spread along it, far above the rounding of single-precision coordinates.
 constexpr double kLineRatio = 1e-8;
-constexpr double kMinTriangleSine = 0.05;  // Slimmer samples leave the turn about their long side to the noise.
+// In slimmer triangles, noise decides the rotation about the long side.
+constexpr double kMinTriangleSine = 0.05;
 
-// Squared distance if the correspondence agrees with the pose, infinite else. Comparisons are written so that a NaN
-// point fails and a NaN normal passes.
+// Squared distance if the correspondence agrees with the pose, otherwise infinite. The comparisons reject NaN points
+// and accept NaN normals.
 float residual_sq(const Correspondence& c, const Rigid3f& scene_from_model, float max_distance_sq, float min_cosine) {
   const float distance_sq = (scene_from_model * c.model_point - c.scene_point).squaredNorm();
   if (!(distance_sq <= max_distance_sq)) return kNotInlier;
@@ -45,7 +47,7 @@ struct InlierTest {
 };
 
 struct Score {
-  float value = 0;  // MSAC: sum of 1 - d^2 / max^2 over the inliers.
+  float value = 0;  // MSAC score: sum of 1 - d^2 / max^2 over the inliers.
   int num_inliers = 0;
 };
 
@@ -74,7 +76,7 @@ bool edges_agree(const Sample& sample, double max_difference_m) {
   return true;
 }
 
-// Unit normal of a triangle; none if it is too slim to hold a pose.
+// Unit normal of a triangle; none if the triangle is too slim to define a pose.
 std::optional<Eigen::Vector3d> triangle_normal(const std::array<Eigen::Vector3d, 3>& p) {
   const Eigen::Vector3d a = p[1] - p[0];
   const Eigen::Vector3d b = p[2] - p[0];
@@ -85,8 +87,8 @@ std::optional<Eigen::Vector3d> triangle_normal(const std::array<Eigen::Vector3d,
   return cross / length;
 }
 
-// Least squares over three pairs in closed form: the planes of both triangles coincide, and the turn within the plane
-// is that of the summed cross and dot products of the corners about their means. Ten times faster than an SVD.
+// Least-squares fit of three pairs in closed form. The planes of both triangles coincide; the in-plane rotation follows
+// from the summed cross and dot products of the corners about their means. Ten times faster than an SVD.
 std::optional<Rigid3> fit_triangle(const Sample& sample) {
   std::array<Eigen::Vector3d, 3> m;
   std::array<Eigen::Vector3d, 3> s;
@@ -124,24 +126,25 @@ bool draw_sample(std::span<const Correspondence> correspondences, Rng& rng, Samp
   return a != b && b != c && a != c;
 }
 
-// Samples needed to meet one of inliers only, with kConfidence.
+// Number of samples needed to draw one without outliers, with probability kConfidence.
 double num_samples_needed(int num_inliers, std::size_t num_correspondences) {
   const auto n = static_cast<double>(num_correspondences);
   const double k = num_inliers;
-  const double hit = (k / n) * ((k - 1) / n) * ((k - 2) / n);  // Drawn with repeats, as draw_sample does.
+  // Probability of a sample of inliers only, drawn with repetition as in draw_sample.
+  const double hit = (k / n) * ((k - 1) / n) * ((k - 2) / n);
   if (hit <= 0) return std::numeric_limits<double>::infinity();
   return std::log(1.0 - kConfidence) / std::log1p(-std::min(hit, 1.0 - 1e-12));
 }
 
-// Keeps the best of the poses that samples give.
+// Keeps the best of the poses proposed by samples.
 class PoseSearch {
  public:
   PoseSearch(std::span<const Correspondence> correspondences, const EstimatePoseOptions& options)
       : correspondences_(correspondences), options_(options), test_(options) {}
 
-  // The pose of the sample is scored unless its triangles differ or it does not even fit the sample.
+  // Scores the pose of the sample, unless the triangles differ or the pose does not fit even the sample.
   void consider(const Sample& sample) {
-    // Two inliers may each be off by the inlier distance, in opposite directions.
+    // Each of two inliers may be off by the inlier distance, in opposite directions.
     if (!edges_agree(sample, 2 * options_.inlier_distance_m)) return;
     const auto pose = fit_triangle(sample);
     if (!pose) return;
@@ -217,8 +220,8 @@ std::vector<int> inlier_indices(const std::vector<float>& residuals_sq) {
   return inliers;
 }
 
-// One step of re-weighted least squares. The weight 1 - d^2 / max^2 falls to zero at the inlier distance, as Tukey's
-// does, but more slowly: small groups keep more of their few points.
+// One step of iteratively re-weighted least squares. Like Tukey's biweight, the weight 1 - d^2 / max^2 reaches zero at
+// the inlier distance, but it falls more slowly, so that small groups keep more of their few points.
 std::optional<Rigid3> fit_inliers(std::span<const Correspondence> correspondences, const std::vector<int>& inliers,
                                   const std::vector<float>& residuals_sq, double max_distance_sq) {
   std::vector<Eigen::Vector3f> model;
@@ -229,7 +232,8 @@ std::optional<Rigid3> fit_inliers(std::span<const Correspondence> correspondence
     const double u = 1.0 - static_cast<double>(residuals_sq[static_cast<std::size_t>(i)]) / max_distance_sq;
     model.push_back(c.model_point);
     scene.push_back(c.scene_point);
-    weights.push_back(std::max(u, 1e-6));  // Not quite zero: an inlier at the very edge still counts as a pair.
+    // Not zero, so that an inlier at the very limit still counts as a pair.
+    weights.push_back(std::max(u, 1e-6));
   }
   return fit_rigid(model, scene, weights);
 }
@@ -286,7 +290,8 @@ std::optional<Rigid3> fit_rigid(std::span<const Eigen::Vector3f> model, std::spa
   const Eigen::Vector3d& singular = svd.singularValues();
   if (!(singular[1] > kLineRatio * singular[0])) return std::nullopt;
   Eigen::Matrix3d u = svd.matrixU();
-  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);  // A rotation, not a reflection.
+  // Enforces a rotation instead of a reflection.
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
   Rigid3 scene_from_model;
   scene_from_model.rotation = u * svd.matrixV().transpose();
   scene_from_model.translation = means.scene - scene_from_model.rotation * means.model;
@@ -321,7 +326,8 @@ std::optional<PoseEstimate> refine_pose(std::span<const Correspondence> correspo
     std::vector<int> inliers = inlier_indices(residuals);
     const bool stands = inliers == estimate.inliers;
     estimate.inliers = std::move(inliers);
-    if (stands && !moved) break;  // The weights change with the pose even where the set of inliers does not.
+    // The weights change with the pose even if the set of inliers does not.
+    if (stands && !moved) break;
   }
   if (static_cast<int>(estimate.inliers.size()) < options.min_inliers) return std::nullopt;
   estimate.rms_m = rms_of(estimate.inliers, residuals);

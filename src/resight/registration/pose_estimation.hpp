@@ -8,8 +8,9 @@
 
 namespace resight {
 
-/// Least-squares rigid motion scene_from_model with weights (Umeyama 1991 without scale; empty weights = all 1). Pairs
-/// with a NaN coordinate or a weight of zero do not count. None for fewer than three pairs or when they lie on a line.
+/// Weighted least-squares rigid motion scene_from_model (Umeyama 1991 without scale). Empty `weights` = all 1. Pairs
+/// with a NaN coordinate or zero weight are ignored. None for fewer than three pairs or for collinear points. Throws
+/// std::invalid_argument if the spans differ in length or a weight is negative or NaN.
 [[nodiscard]] std::optional<Rigid3> fit_rigid(std::span<const Eigen::Vector3f> model,
                                               std::span<const Eigen::Vector3f> scene,
                                               std::span<const double> weights = {});
@@ -26,25 +27,26 @@ struct EstimatePoseOptions {
 struct PoseEstimate {
   Rigid3 scene_from_model;
   std::vector<int> inliers;  ///< Ascending indices of the correspondences.
-  double rms_m = 0;          ///< Of the inliers.
+  double rms_m = 0;          ///< Root mean square distance of the inliers.
 };
 
-/// RANSAC over three correspondences, then least squares over the inliers, robustly re-weighted until they stand
-/// (refine_pose). None when fewer than min_inliers agree, or when those that agree lie on a line.
+/// Estimates a pose with RANSAC over three correspondences, then refines it (refine_pose). None if fewer than
+/// min_inliers correspondences agree, or if the inliers are collinear.
 ///
-/// An inlier lies within inlier_distance_m, and its normals (if both are finite: NaN = no measurement) within
-/// max_normal_angle_rad. A NaN point is never an inlier. max_iterations counts the poses that are scored; samples whose
-/// triangles differ are thrown away before and cost next to nothing, so that many more may be drawn.
+/// An inlier lies within inlier_distance_m of its model point, and the angle between its normals is at most
+/// max_normal_angle_rad; a NaN normal passes this test. A NaN point is never an inlier. max_iterations counts scored
+/// poses. Samples whose triangles differ are rejected before scoring at almost no cost, so many more samples may be
+/// drawn.
 [[nodiscard]] std::optional<PoseEstimate> estimate_pose(std::span<const Correspondence> correspondences,
                                                         const EstimatePoseOptions& options = {});
 
-/// The second half of estimate_pose from a given start: least squares with Tukey's weights over the inliers of the
-/// pose, repeated until neither the inliers nor the pose change. None when it falls below min_inliers or onto a line.
+/// Refines a given pose: least squares over its inliers with weights 1 - d^2 / inlier_distance_m^2, repeated until
+/// neither inliers nor pose change. None if fewer than min_inliers remain or the inliers become collinear.
 [[nodiscard]] std::optional<PoseEstimate> refine_pose(std::span<const Correspondence> correspondences,
                                                       const Rigid3& scene_from_model,
                                                       const EstimatePoseOptions& options = {});
 
-/// Squared distance of each correspondence under the pose, m^2; infinite where it is no inlier (see estimate_pose).
+/// Squared distance (m^2) of each correspondence under the pose; infinite for outliers (see estimate_pose).
 [[nodiscard]] std::vector<float> inlier_residuals_sq(std::span<const Correspondence> correspondences,
                                                      const Rigid3& scene_from_model,
                                                      const EstimatePoseOptions& options = {});

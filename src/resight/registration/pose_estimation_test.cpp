@@ -50,7 +50,7 @@ TEST(FitRigid, RecoversExactMotions) {
     const auto fit = fit_rigid(pairs.model, pairs.scene);
     ASSERT_TRUE(fit.has_value());
     EXPECT_TRUE(fit->is_rigid(1e-9));
-    EXPECT_LT(distance(*fit, pose), trial % 10 == 0 ? 1e-4 : 5e-6) << trial;  // A triangle may be slim.
+    EXPECT_LT(distance(*fit, pose), trial % 10 == 0 ? 1e-4 : 5e-6) << trial;  // Random triangles may be slim.
   }
 }
 
@@ -207,7 +207,7 @@ TEST(EstimatePose, NanPointsAreLeftOut) {
 }
 
 TEST(EstimatePose, SmallGroupsAreSearchedCompletely) {
-  // Five of twelve agree: ten of 220 triples are right, and min_inliers leaves no room for a miss.
+  // Five of twelve agree: 10 of 220 triples are right, and min_inliers tolerates no missed inlier.
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const Problem problem = make_problem(
         {.num_correspondences = 12, .inliers_per_instance = 5, .noise_m = 0.0005, .normal_noise_rad = 0, .seed = seed});
@@ -247,7 +247,8 @@ TEST(RefinePose, WhatItReturnsStands) {
     ASSERT_TRUE(refined.has_value());
     const auto again = refine_pose(problem.correspondences, refined->scene_from_model);
     ASSERT_TRUE(again.has_value());
-    std::vector<int> changed;  // One at the very edge may change sides within the tolerance of the convergence.
+    // A pair at the very limit may change sides within the convergence tolerance.
+    std::vector<int> changed;
     std::set_symmetric_difference(again->inliers.begin(), again->inliers.end(), refined->inliers.begin(),
                                   refined->inliers.end(), std::back_inserter(changed));
     EXPECT_LE(changed.size(), 1U) << seed;

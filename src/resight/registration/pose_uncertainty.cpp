@@ -9,10 +9,10 @@ namespace {
 
 constexpr double kFreeShare = 0.01;
 
-// A twist about the middle as one about the centre.
+// Converts a twist about the middle of the points to one about the object's centre.
 PoseUncertainty::Matrix6 about_center(const Eigen::Vector3d& d) {
   PoseUncertainty::Matrix6 change = PoseUncertainty::Matrix6::Identity();
-  change.bottomLeftCorner<3, 3>() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;  // turn x d
+  change.bottomLeftCorner<3, 3>() << 0, d.z(), -d.y(), -d.z(), 0, d.x(), d.y(), -d.x(), 0;  // rotation x d
   return change;
 }
 
@@ -24,12 +24,14 @@ PoseUncertainty pose_uncertainty(const StepEquations& equations, double radius_m
   constexpr int kUnknowns = 6;
   PoseUncertainty result;
   if (equations.num_pairs <= kUnknowns || !(equations.sum_weights > 0)) return result;
-  const double per_pair = equations.sum_weights / equations.num_pairs;  // Weights of any scale give the same answer.
+  // Makes the result independent of the scale of the weights.
+  const double per_pair = equations.sum_weights / equations.num_pairs;
   const double freedom = static_cast<double>(equations.num_pairs) / (equations.num_pairs - kUnknowns);
   const double variance =
       std::max(min_sigma_m * min_sigma_m, freedom * equations.sum_residuals_sq / equations.sum_weights);
   const Eigen::SelfAdjointEigenSolver<PoseUncertainty::Matrix6> solver(equations.matrix / per_pair);
-  PoseUncertainty::Matrix6 scale = PoseUncertainty::Matrix6::Identity();  // Turns back from metres.
+  // Converts rotations from metres back to radians.
+  PoseUncertainty::Matrix6 scale = PoseUncertainty::Matrix6::Identity();
   scale.topLeftCorner<3, 3>() /= radius_m;
   const PoseUncertainty::Matrix6 change = about_center(middle_to_center);
   PoseUncertainty::Matrix6 about_middle = PoseUncertainty::Matrix6::Zero();

@@ -24,7 +24,7 @@ Eigen::Vector3d random_vector(Rng& rng) { return {rng.normal(), rng.normal(), rn
 constexpr double kRadius_m = 0.08;
 constexpr double kSigma_m = 0.002;
 
-// Points in all directions, with residuals of a sensor's noise.
+// Points in all directions whose residuals are sensor noise.
 StepEquations noisy_equations(std::uint64_t seed, int num_points) {
   Rng rng(seed);
   StepEquations equations;
@@ -57,7 +57,7 @@ TEST(PoseUncertainty, OfAnotherPointIsWhatTheTwistMakesOfIt) {
   const auto there = pose_uncertainty(equations, kRadius_m, d, 1e-6, 0.015).covariance;
   EXPECT_LT((there.topLeftCorner<3, 3>() - here.topLeftCorner<3, 3>()).norm(), 1e-12);
   Rng rng(2);
-  for (int trial = 0; trial < 10; ++trial) {  // e . (shift + turn x d) = e . shift + (d x e) . turn
+  for (int trial = 0; trial < 10; ++trial) {  // e . (shift + rotation x d) = e . shift + (d x e) . rotation
     const Eigen::Vector3d e = random_vector(rng);
     Vector6 row;
     row << d.cross(e), e;
@@ -71,7 +71,7 @@ TEST(PoseUncertainty, OfNothingIsNotKnown) {
   EXPECT_FALSE(PoseUncertainty{}.is_known());
 }
 
-// A solid on its own, seen all around.
+// A single solid, seen from all sides.
 PoseUncertainty of_solid(Shape shape, const Eigen::Vector3d& size, float min_normal_z = -2) {
   const Solid solid{shape, size, plain({200, 50, 40}), on_table(0, 0, 0.5 * size.z(), 0.3)};
   World world;
@@ -110,8 +110,8 @@ TEST(EstimatePoseUncertainty, ABallTurnsAboutAllAxes) {
 TEST(EstimatePoseUncertainty, AFaceSlidesAndTurnsInItsPlane) {
   const PoseUncertainty u = of_solid(Shape::kBox, {0.08, 0.06, 0.1}, 0.9F);
   ASSERT_EQ(u.free_directions.size(), 3U);
-  EXPECT_LT(std::sqrt(u.covariance(5, 5)), 0.003);  // up
-  EXPECT_GT(std::sqrt(u.covariance(3, 3)), 0.005);  // along the face
+  EXPECT_LT(std::sqrt(u.covariance(5, 5)), 0.003);  // Vertical.
+  EXPECT_GT(std::sqrt(u.covariance(3, 3)), 0.005);  // Along the face.
 }
 
 }  // namespace

@@ -8,23 +8,24 @@
 
 namespace resight {
 
-/// A small motion as six numbers: rotation vector (rad), then shift (m).
+/// A small motion as six numbers: rotation vector (rad), then translation (m).
 using Twist = Eigen::Matrix<double, 6, 1>;
-/// A covariance of twists, or its inverse: an information.
+/// Covariance of twists, or its inverse, the information.
 using TwistMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// Of independent errors, the same along all axes.
+/// Covariance of independent errors that are equal along all axes.
 [[nodiscard]] inline TwistMatrix twist_covariance(double sigma_rad, double sigma_m) {
   Twist variances;
   variances << Eigen::Vector3d::Constant(sigma_rad * sigma_rad), Eigen::Vector3d::Constant(sigma_m * sigma_m);
   return variances.asDiagonal();
 }
+/// Inverse of twist_covariance().
 [[nodiscard]] inline TwistMatrix twist_information(double sigma_rad, double sigma_m) {
   return twist_covariance(1 / sigma_rad, 1 / sigma_m);
 }
 
-/// What is left of an information when errors of the sigmas given come on top; `least` of it is taken for granted in
-/// every direction, so that open ones can be inverted.
+/// Information that remains after adding independent errors of the given sigmas. `least` is added to every direction
+/// first, so that unconstrained directions can be inverted.
 [[nodiscard]] inline TwistMatrix limit_information(const TwistMatrix& information, double least, double sigma_rad,
                                                    double sigma_m) {
   const TwistMatrix covariance =
@@ -33,6 +34,7 @@ using TwistMatrix = Eigen::Matrix<double, 6, 6>;
   return 0.5 * (limited + limited.transpose());
 }
 
+/// Rotation by the rotation vector and translation, applied separately (not the SE(3) exponential).
 [[nodiscard]] inline Rigid3 from_twist(const Twist& twist) {
   const Eigen::Vector3d turn = twist.head<3>();
   const double angle_rad = turn.norm();
@@ -41,6 +43,7 @@ using TwistMatrix = Eigen::Matrix<double, 6, 6>;
   return motion;
 }
 
+/// Inverse of from_twist().
 [[nodiscard]] inline Twist to_twist(const Rigid3& motion) {
   const Eigen::AngleAxisd turn(motion.rotation);
   Twist twist;

@@ -17,14 +17,16 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Twistf = Eigen::Matrix<float, 6, 1>;
 
-constexpr std::size_t kBlock = 512;      // Samples of one partial sum.
-constexpr double kConvergedStep = 1e-5;  // Radians and metres: a smaller step has converged.
-// Directions that the data tell less of, compared to the best known one, are open, and left as they are.
+constexpr std::size_t kBlock = 512;      // Samples per partial sum.
+constexpr double kConvergedStep = 1e-5;  // Radians and metres; smaller steps have converged.
+// Directions whose information is below this share of the best-known direction count as unconstrained and stay
+// unchanged.
 constexpr double kMinEigenvalueRatio = 3e-4;
-constexpr double kBrightnessGate = 4;  // In sigmas.
-constexpr float kMaxPairDistance = 3;  // Of points, in units of the largest distance to the plane.
+constexpr double kBrightnessGate = 4;  // In units of brightness_sigma.
+// Largest point-to-point distance of a pair, in units of its largest point-to-plane distance.
+constexpr float kMaxPairDistance = 3;
 
-// The points of one level that are aligned.
+// Points of one level that are aligned.
 struct Samples {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
@@ -50,18 +52,18 @@ Samples draw_samples(const AlignmentLevel& level, int max_samples) {
   return samples;
 }
 
-// Normal equations and counts; sums of blocks are added in order.
+// Normal equations and counts. Partial sums are added in order, so that results do not depend on the number of threads.
 struct Sums {
-  Matrix6 h = Matrix6::Zero();  // upper triangle
-  // The same with the view's own normal for one of the two factors. Noise turns every normal a little, so that h has a
-  // plain floor known along itself; the noises of two normals cancel. Not symmetric until the end.
+  Matrix6 h = Matrix6::Zero();  // Upper triangle.
+  // Like h, with the view's own normal in one of the two factors. Noise tilts every normal slightly, so that h claims
+  // information along a featureless floor. The noise of two independent normals cancels. Symmetric only in the total.
   Matrix6 unbiased = Matrix6::Zero();
   Twist g = Twist::Zero();
   double distance_m = 0;
   int num_pairs = 0;
-  double brightness[5] = {};  // a, b, a^2, b^2, a b over num_bright pairs
+  double brightness[5] = {};  // Sums of a, b, a^2, b^2 and a b over num_bright pairs.
   int num_bright = 0;
-  int num_matched = 0;  // samples with a pair in some target
+  int num_matched = 0;  // Samples with a pair in at least one target.
   int num_seen_through = 0;
 
   void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
@@ -81,7 +83,7 @@ struct Sums {
     const double n = num_bright;
     const double variances =
         (n * brightness[2] - brightness[0] * brightness[0]) * (n * brightness[3] - brightness[1] * brightness[1]);
-    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without print
+    return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without texture.
   }
   void add(const Sums& other) {
     h += other.h;
@@ -96,7 +98,7 @@ struct Sums {
   }
 };
 
-// How a motion of a point, along `direction` in the view's frame, follows from a twist of the view.
+// Derivative of the motion of a point along `direction`, in the view's frame, with respect to a twist of the view.
 Twistf jacobian(const Eigen::Vector3f& p, const Eigen::Vector3f& direction) {
   Twistf j;
   j << p.cross(direction), direction;
@@ -105,7 +107,7 @@ Twistf jacobian(const Eigen::Vector3f& p, const Eigen::Vector3f& direction) {
 
 double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
 
-// Value and gradient (per px) of an image between its pixels; false at its border.
+// Bilinear value and gradient (per pixel) of an image; false at its border.
 bool interpolate(const Image<float>& image, float u, float v, float& value, float& du, float& dv) {
   const int u0 = static_cast<int>(std::floor(u));
   const int v0 = static_cast<int>(std::floor(v));
@@ -124,7 +126,7 @@ bool interpolate(const Image<float>& image, float u, float v, float& value, floa
   return true;
 }
 
-// One target at one level, seen from the view.
+// One target at one level, as seen from the view.
 class LevelTarget {
  public:
   LevelTarget(const AlignmentLevel& level, const Rigid3& target_from_view, const AlignViewOptions& options,
@@ -183,7 +185,7 @@ class LevelTarget {
     if (brightness_weight == 0) return;
     const auto gu = static_cast<float>(du * level_.camera.fx) / q.z();
     const auto gv = static_cast<float>(dv * level_.camera.fy) / q.z();
-    const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // of brightness, per metre
+    const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // Brightness per metre.
     const Twistf j = jacobian(p, pose_.rotation.transpose() * gradient);
     sums.add(j, j, residual, brightness_weight / (sigma * sigma));
   }
@@ -223,7 +225,7 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
   return all;
 }
 
-// A basis of the motions that the information tells of, one a column.
+// Orthonormal basis of the motions that the information constrains, one per column.
 Eigen::Matrix<double, 6, Eigen::Dynamic> known_motions(const Matrix6& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
   int num_open = 0;
@@ -231,7 +233,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> known_motions(const Matrix6& informatio
   return solver.eigenvectors().rightCols(6 - num_open);
 }
 
-// The least-squares step; what the data (and the prior) leave open stays.
+// Least-squares step. Directions that neither data nor prior constrain stay unchanged.
 Twist solve_step(const Matrix6& h, const Matrix6& unbiased, const Twist& g) {
   const auto motions = known_motions(unbiased);
   if (motions.cols() == 0) return Twist::Zero();

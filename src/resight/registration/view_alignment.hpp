@@ -24,7 +24,7 @@ struct AlignViewOptions {
   void check() const;
 };
 
-/// A view with a known pose, to align to.
+/// A view with a known pose that other views are aligned to.
 struct AlignmentTarget {
   const AlignmentView* view = nullptr;
   Rigid3 world_from_camera;
@@ -32,25 +32,26 @@ struct AlignmentTarget {
 
 struct AlignedView {
   Rigid3 world_from_camera;
-  /// Inverse covariance of a small motion of the camera in its own frame (rotation about x, y, z in rad, then shift in
-  /// m), without the prior.
+  /// Inverse covariance of a small motion of the camera in its own frame (rotation about x, y, z in rad, then
+  /// translation in m), without the prior.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  double overlap = 0;          ///< Share of the view's points that have a counterpart in a target.
-  double seen_through = 0;     ///< Share of them that lie in front of what all targets that see there show.
-  double mean_distance_m = 0;  ///< Of the pairs, point to plane, absolute.
-  /// Between the brightness of the pairs; NaN where there is no print.
+  double overlap = 0;  ///< Share of the view's points that have a counterpart in a target.
+  /// Share of the view's points that lie in front of the surface in every target that observes their place.
+  double seen_through = 0;
+  double mean_distance_m = 0;  ///< Mean absolute point-to-plane distance of the pairs.
+  /// Correlation of brightness over the pairs; NaN without texture.
   double brightness_correlation = 0;
   int num_pairs = 0;
 };
 
-/// Moves `view` from the given pose onto the targets: projective point-to-plane alignment (Rusinkiewicz and Levoy 2001)
-/// in units of the sensor's noise together with brightness (Kerl, Sturm, Cremers 2013), from coarse to fine, with
-/// Tukey's weights, so that what has changed between the views does not pull. Pairs of all targets count together. Each
-/// target must have as many levels as `view`. A view without any pair stays where it is.
+/// Moves `view` from the given pose onto the targets, from coarse to fine: projective point-to-plane alignment
+/// (Rusinkiewicz and Levoy 2001) in units of sensor noise, combined with brightness (Kerl, Sturm, Cremers 2013).
+/// Tukey's weights suppress changed regions. Pairs of all targets count together. A view without any pair keeps its
+/// pose. Throws std::invalid_argument if `view` has no level, or a target fewer levels than `view`.
 [[nodiscard]] AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarget> targets,
                                      const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 
-/// How well a pose stands, without moving it: all of AlignedView at the finest level.
+/// Evaluates a pose without moving it: all fields of AlignedView at the finest level.
 [[nodiscard]] AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
                                           const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 

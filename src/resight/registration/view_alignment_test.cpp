@@ -48,7 +48,7 @@ TEST_F(Alignment, FindsThePoseWithoutNoise) {
 
 TEST_F(Alignment, ChangedThingsDoNotPull) {
   BallScene moved;
-  moved.ball_m += Eigen::Vector3d(0.05, -0.03, 0);  // overlaps its old place
+  moved.ball_m += Eigen::Vector3d(0.05, -0.03, 0);  // Overlaps its former place.
   const AlignmentView changed = make_alignment_view(prepared(moved, second_pose()));
   const AlignedView aligned = align_view(changed, targets, off(second_pose(), 0.02, 0.02));
   EXPECT_LT(shift_m(aligned.world_from_camera, second_pose()), 0.003);
@@ -63,7 +63,7 @@ TEST_F(Alignment, PrintFixesWhatShapeLeavesOpen) {
   const AlignmentView a = make_alignment_view(prepared(floor, down_a));
   const AlignmentView b = make_alignment_view(prepared(floor, down_b));
   const std::vector<AlignmentTarget> one{{&a, down_a}};
-  const Rigid3 start = down_b * Rigid3::from_translation({0.015, 0, 0});  // along the floor
+  const Rigid3 start = down_b * Rigid3::from_translation({0.015, 0, 0});  // Along the floor.
   EXPECT_LT(shift_m(align_view(b, one, start).world_from_camera, down_b), 0.002);
   AlignViewOptions depth_only;
   depth_only.brightness_sigma = 0;
@@ -95,7 +95,7 @@ TEST_F(Alignment, APlainFloorIsOpenAlongItself) {
 }
 
 TEST_F(Alignment, UncertaintyIsThatOfTheErrors) {
-  // 20 noisy views: errors in units of their covariance are neither far above nor far below one.
+  // With 20 noisy views, the errors in units of their covariance are neither far above nor far below one.
   double sum = 0;
   const PreparedView noisy_first = prepared({}, first_pose(), 0.0015, 100);
   const AlignmentView target = make_alignment_view(noisy_first);
@@ -116,7 +116,7 @@ TEST_F(Alignment, SaysHowMuchIsSeenThrough) {
   const AlignmentView bare = make_alignment_view(prepared(without, first_pose()));
   const std::vector<AlignmentTarget> one{{&bare, first_pose()}};
   const double with_ball = judge_alignment(second, one, second_pose()).seen_through;
-  EXPECT_GT(with_ball, 0.02);  // the ball stands where the first view saw the wall behind it
+  EXPECT_GT(with_ball, 0.02);  // The ball occupies what the first view saw as free space in front of the wall.
   EXPECT_LT(judge_alignment(second, targets, second_pose()).seen_through, 0.01);
 }
 
@@ -158,7 +158,7 @@ TEST(AlignmentView, EmptyDepthHasNothingToAlign) {
 }
 
 TEST(AlignmentView, LevelsLieOverEachOther) {
-  // A ramp of brightness that is linear in the pixel's position stays so at each level, over the same points.
+  // A brightness ramp that is linear in the pixel position stays linear at each level, over the same points.
   RgbdFrame frame = test::render_ball_scene({}, first_pose());
   for (int v = 0; v < frame.color.height(); ++v)
     for (int u = 0; u < frame.color.width(); ++u) {
@@ -166,7 +166,7 @@ TEST(AlignmentView, LevelsLieOverEachOther) {
       frame.color(u, v) = {level, level, level};
     }
   AlignmentViewOptions options;
-  options.mean_radius = 1;  // the mean of all: a constant in the middle of the image
+  options.mean_radius = 1;  // The mean of all: constant in the middle of the image.
   const AlignmentView view = make_alignment_view(prepare_view(frame), options);
   ASSERT_EQ(view.levels.size(), 3U);
   for (std::size_t l = 1; l < 3; ++l) {
