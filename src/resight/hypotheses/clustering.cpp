@@ -33,11 +33,12 @@ std::vector<int> seed_order(std::span<const Hypothesis> hypotheses) {
   return order;
 }
 
-// What Eq. (1) needs of an object, prepared once.
+// What Eq. (1) needs to know about an object, prepared once.
 struct ObjectNeighborhood {
   const ObjectModel* model = nullptr;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double center_shift_m = 0;  // At most so far does a symmetry move the centre, which lies on its axis only nearly.
+  // Largest shift of the centre under a symmetry, because the centre lies only approximately on the axis.
+  double center_shift_m = 0;
 };
 
 ObjectNeighborhood neighborhood_of(const ObjectModel& model) {
@@ -49,7 +50,7 @@ ObjectNeighborhood neighborhood_of(const ObjectModel& model) {
   return result;
 }
 
-// The member's pose as the seed sees it, if both are one by Eq. (1).
+// The member's pose in the seed's symmetry branch, if both belong to one cluster by Eq. (1).
 std::optional<Rigid3> matching_pose(const Rigid3& member, const Rigid3& seed, const ObjectNeighborhood& object,
                                     const ClusterHypothesesOptions& options) {
   const double offset_m = (member * object.center - seed * object.center).norm();
@@ -63,7 +64,7 @@ std::optional<Rigid3> matching_pose(const Rigid3& member, const Rigid3& seed, co
 
 struct Member {
   int index = -1;
-  Rigid3 equivalent_pose;  // world_from_object, by the object's symmetries nearest to the seed's.
+  Rigid3 equivalent_pose;  // world_from_object; of the object's equivalent poses, the one nearest to the seed's.
 };
 
 using Cluster = std::vector<Member>;
@@ -93,8 +94,8 @@ std::vector<Cluster> assign_members(std::span<const Hypothesis> hypotheses, cons
   return clusters;
 }
 
-// The same for a correspondence that came twice into the pool, from two groups of one view. The scene point stands for
-// the view: keypoints of two views never fall on the same bits, and the pool of an earlier clustering has no single
+// Equal for correspondences that entered the pool twice, from two groups of one view. The scene point identifies the
+// view: keypoints of two views never have the same bits, and correspondences from an earlier clustering have no single
 // view.
 using CorrespondenceKey = std::array<std::uint32_t, 6>;
 
@@ -182,7 +183,7 @@ void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis&
 bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, double max_rotation_rad,
                         RotationTest test) {
   if (test == RotationTest::kGeodesic) return rotation_angle_rad(a, b) < max_rotation_rad;
-  // Eq. (1): R^j R^iT, the turn from b to a about the axes of the world.
+  // Eq. (1): R^j R^iT, the rotation from b to a about the world axes.
   const Eigen::Matrix3d r = a * b.transpose();
   const double yaw = std::atan2(r(1, 0), r(0, 0));
   const double pitch = std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2)));

@@ -12,8 +12,9 @@ namespace resight {
 
 /// How Eq. (1) compares rotations.
 enum class RotationTest : std::uint8_t {
-  kGeodesic,       ///< One angle, below max_rotation_rad. Ours.
-  kAbsoluteEuler,  ///< |yaw|, |pitch|, |roll| each below it: the paper's Eq. (1) with the absolute values it lacks.
+  kGeodesic,  ///< Rotation angle below max_rotation_rad. Ours.
+  /// |yaw|, |pitch| and |roll| each below max_rotation_rad: the paper's Eq. (1), with the absolute values it omits.
+  kAbsoluteEuler,
 };
 
 struct ClusterHypothesesOptions {
@@ -26,28 +27,31 @@ struct ClusterHypothesesOptions {
 };
 
 struct ClusterResult {
-  std::vector<Hypothesis> hypotheses;  ///< One a cluster; id of its seed; correspondences pooled without repeats;
-                                       ///< newest origin view.
+  /// One per cluster, with the id of its seed and its newest origin view; correspondences pooled without duplicates.
+  std::vector<Hypothesis> hypotheses;
   std::vector<std::vector<int>>
-      members;  ///< Indices of the input, per cluster: the seed, then the others in seed order.
+      /// Indices of the input per cluster: the seed, then the others in seed order.
+      members;
 };
 
-/// Paper Eq. (1): merges near hypotheses of one object. Seeds in a defined order (most correspondences, then newest,
-/// then smallest id) instead of the paper's random one, so that with unique ids the order of the input does not matter;
-/// both limits are exclusive, as printed. Symmetric objects by their symmetries: the member's pose is exchanged for the
-/// equivalent one nearest to the seed, and the model side of its correspondences is carried along.
+/// Merges neighbouring hypotheses of one object (paper, Eq. 1). World frame. Seeds are taken in a defined order (most
+/// correspondences, then newest view, then smallest id) instead of the paper's random one, so that with unique ids the
+/// order of the input does not matter. Both limits are exclusive, as in the paper. For symmetric objects, the member's
+/// pose is replaced by the equivalent pose nearest to the seed, and the model side of its correspondences is moved
+/// accordingly.
 ///
-/// The pose of a cluster is estimated anew over all its correspondences; if that fails or leaves the seed's
-/// neighbourhood, the seed's pose stays. A cluster of one is its seed, unchanged. World frame throughout.
+/// The pose of a cluster is re-estimated from all its correspondences. If that fails or leaves the seed's
+/// neighbourhood, the seed's pose stays. A cluster of one equals its seed. Throws std::invalid_argument if an object is
+/// not in the library.
 [[nodiscard]] ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
                                                const ClusterHypothesesOptions& options = {});
 
-/// Adds the hypothesis' correspondences, the model side moved by the symmetry that turns its pose into the equivalent
-/// one: equivalent_pose * moved point = world_from_object * point.
+/// Appends the hypothesis' correspondences. Their model side is moved by the symmetry motion that turns its pose into
+/// the equivalent one: equivalent_pose * moved point = world_from_object * point.
 void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
                             const Rigid3& equivalent_pose);
 
-/// The rotation part of Eq. (1) for two rotations of one frame: below `max_rotation_rad` in the sense of `test`.
+/// Rotation part of Eq. (1) for two rotations of one frame: difference below `max_rotation_rad` as measured by `test`.
 [[nodiscard]] bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, double max_rotation_rad,
                                       RotationTest test);
 

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Object 0 has no symmetry, 1 a flip about z, 2 is round about z; their centres lie off the origin (on the axis).
+// Object 0 has no symmetry, 1 a two-fold symmetry about z, 2 a continuous one about z. Their centres lie off the origin
+// (for 1 and 2, on the axis).
 ModelLibrary make_library() {
   ModelLibrary library;
   library.objects.resize(3);
@@ -29,7 +30,7 @@ ModelLibrary make_library() {
   return library;
 }
 
-// Exact correspondences for the pose plus noise on the scene side.
+// Exact correspondences for the pose, plus noise on the scene side.
 Hypothesis make_hypothesis(Rng& rng, std::uint64_t id, int object, const Rigid3& pose, int view, int num_points,
                            double noise_m = 0) {
   Hypothesis h;
@@ -56,7 +57,7 @@ Rigid3 offset(const Rigid3& pose, const Eigen::Vector3d& translation) {
   return Rigid3::from_translation(translation) * pose;
 }
 
-// A few places far apart, several disturbed hypotheses of random objects at each.
+// A few distant places, with several perturbed hypotheses of random objects at each.
 std::vector<Hypothesis> crowded_scene(Rng& rng, int num_places, int per_place) {
   std::vector<Hypothesis> hypotheses;
   for (int place = 0; place < num_places; ++place) {
@@ -73,7 +74,7 @@ std::vector<Hypothesis> crowded_scene(Rng& rng, int num_places, int per_place) {
   return hypotheses;
 }
 
-// Every bit of a hypothesis that counts.
+// All values of a hypothesis that count, for bitwise comparison.
 std::vector<double> bytes(const Hypothesis& h) {
   std::vector<double> values{static_cast<double>(h.id), static_cast<double>(h.object),
                              static_cast<double>(h.origin_view)};
@@ -133,7 +134,7 @@ TEST(ClusterHypotheses, LimitsAreExclusive) {
 }
 
 TEST(ClusterHypotheses, TranslationIsThatOfTheCentre) {
-  // The origin moves by 5 cm, the centre stays: the paper's text would split them.
+  // The origin moves by 5 cm, but the centre stays. The paper's text would split the two.
   Rng rng(43);
   ModelLibrary library = make_library();
   library.objects[0].center = Eigen::Vector3f(0.5F, 0, 0);
@@ -173,7 +174,7 @@ TEST(ClusterHypotheses, Laws) {
                 options.max_translation_m);
       num_merged += static_cast<int>(result.members[i].size()) - 1;
     }
-    EXPECT_EQ(assigned.size(), h.size());  // Each in exactly one.
+    EXPECT_EQ(assigned.size(), h.size());  // Each belongs to exactly one cluster.
     EXPECT_EQ(std::set<int>(assigned.begin(), assigned.end()).size(), h.size());
   }
   EXPECT_GT(num_merged, 100);
@@ -192,7 +193,7 @@ TEST(ClusterHypotheses, OrderOfTheInputDoesNotMatter) {
 }
 
 TEST(ClusterHypotheses, ClustersApartStayAsTheyAre) {
-  // One object a place, and seeds that no later pose estimate brings nearer: clustering again changes nothing.
+  // One object per place, and seeds that no later estimate moves closer together: clustering again changes nothing.
   Rng rng(46);
   const ModelLibrary library = make_library();
   std::vector<Hypothesis> h;
@@ -223,7 +224,7 @@ TEST(ClusterHypotheses, SerialEqualsParallel) {
 }
 
 TEST(ClusterHypotheses, EulerAndGeodesicDiffer) {
-  // 8 deg about each of three axes: every Euler angle is below 10 deg, the whole turn is not.
+  // 8 deg about each of three axes: every Euler angle is below 10 deg, but the rotation angle is not.
   Rng rng(48);
   const ModelLibrary library = make_library();
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(8 * kDegree, Eigen::Vector3d::UnitZ()) *
@@ -238,7 +239,7 @@ TEST(ClusterHypotheses, EulerAndGeodesicDiffer) {
                                   make_hypothesis(rng, 2, 0, turned, 0, 5)};
   EXPECT_EQ(cluster_hypotheses(h, library, {.rotation_test = RotationTest::kGeodesic}).hypotheses.size(), 2U);
   EXPECT_EQ(cluster_hypotheses(h, library, {.rotation_test = RotationTest::kAbsoluteEuler}).hypotheses.size(), 1U);
-  // As printed, without absolute values, any negative angle would pass.
+  // Without absolute values, as printed in the paper, any negative angle would pass.
   const Eigen::Matrix3d back = Eigen::AngleAxisd(-30 * kDegree, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   EXPECT_FALSE(rotations_are_near(Eigen::Matrix3d::Identity(), back, 10 * kDegree, RotationTest::kAbsoluteEuler));
   EXPECT_FALSE(rotations_are_near(back, Eigen::Matrix3d::Identity(), 10 * kDegree, RotationTest::kAbsoluteEuler));
@@ -278,8 +279,8 @@ TEST(ClusterHypotheses, PoolHasNoRepeatsAndItsPoseIsEstimatedAnew) {
     h.push_back(make_hypothesis(rng, i, 0, truth, static_cast<int>(i), 12, 0.003));
     h.back().world_from_object = offset(truth, 0.008 * testing::random_direction(rng));
   }
-  h[3].correspondences[4] = h[0].correspondences[2];  // Of two groups of one view.
-  h[2].correspondences[1].scene_point.x() += 0.3F;    // An outlier that the seed did not have.
+  h[3].correspondences[4] = h[0].correspondences[2];  // From two groups of one view.
+  h[2].correspondences[1].scene_point.x() += 0.3F;    // An outlier that the seed does not have.
   const ClusterResult result = cluster_hypotheses(h, library);
   ASSERT_EQ(result.hypotheses.size(), 1U);
   EXPECT_EQ(result.hypotheses[0].correspondences.size(), 59U);
@@ -295,7 +296,7 @@ TEST(ClusterHypotheses, KeepsTheSeedsPoseWhereTheEstimateFails) {
   ClusterResult result = cluster_hypotheses(h, library);
   ASSERT_EQ(result.hypotheses.size(), 1U);
   EXPECT_EQ(result.hypotheses[0].world_from_object.matrix(), pose.matrix());
-  // Correspondences that speak for another place do not carry the cluster away.
+  // Correspondences that support another place do not move the cluster there.
   h = {make_hypothesis(rng, 1, 0, offset(pose, {0.5, 0, 0}), 0, 10), make_hypothesis(rng, 2, 0, pose, 0, 5)};
   h[0].world_from_object = pose;
   result = cluster_hypotheses(h, library);
@@ -312,7 +313,7 @@ TEST(ClusterHypotheses, EmptyInputAndBadInput) {
   EXPECT_THROW((ClusterHypothesesOptions{.max_translation_m = 0}).check(), std::invalid_argument);
   EXPECT_THROW((ClusterHypothesesOptions{.max_rotation_rad = std::nan("")}).check(), std::invalid_argument);
   EXPECT_THROW((ClusterHypothesesOptions{.num_threads = 0}).check(), std::invalid_argument);
-  // A pose that is no number is near to none, not to all.
+  // A NaN pose is near to no other.
   Rng rng(52);
   h = {make_hypothesis(rng, 1, 0, Rigid3::identity(), 0, 5), make_hypothesis(rng, 2, 0, Rigid3::identity(), 0, 5)};
   h[1].world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();

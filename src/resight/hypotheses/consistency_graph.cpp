@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::size_t kBlock = 64;
 
-// The correspondences as a structure of arrays, padded to whole blocks with points that agree with nothing.
+// The correspondences as a structure of arrays, padded to whole blocks with points that agree with none.
 struct Columns {
   explicit Columns(std::span<const Correspondence> correspondences);
   std::array<std::vector<float>, 3> model;
   std::array<std::vector<float>, 3> scene;
   std::array<std::vector<float>, 3> model_normal;
   std::array<std::vector<float>, 3> scene_normal;
-  std::vector<std::int32_t> model_key;  // Same key = same keypoint.
+  std::vector<std::int32_t> model_key;  // Equal keys = same keypoint.
   std::vector<std::int32_t> scene_key;
 };
 
@@ -31,7 +31,7 @@ Columns::Columns(std::span<const Correspondence> correspondences) {
   const std::size_t n = correspondences.size();
   const std::size_t padded = (n + kBlock - 1) / kBlock * kBlock;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    model[axis].assign(padded, NAN);  // A NaN distance passes no comparison below.
+    model[axis].assign(padded, NAN);  // NaN distances fail the comparisons below.
     scene[axis].assign(padded, NAN);
     model_normal[axis].assign(padded, 0);
     scene_normal[axis].assign(padded, 0);
@@ -58,8 +58,8 @@ AxisPointers pointers(const std::array<std::vector<float>, 3>& columns, std::siz
   return {columns[0].data() + begin, columns[1].data() + begin, columns[2].data() + begin};
 }
 
-// Whether correspondence i agrees with each of the block that starts at `begin`. Branch-free, so that it vectorises:
-// the whole graph is n^2 / 2 of these tests.
+// Tests correspondence i against each of the block that starts at `begin`. Branch-free for vectorisation: the whole
+// graph takes n^2 / 2 tests.
 void test_block(const Columns& columns, std::size_t i, std::size_t begin, const ConsistencyOptions& options,
                 std::array<std::int32_t, kBlock>& agrees) {
   const auto [mx, my, mz] = pointers(columns.model, begin);
@@ -152,7 +152,7 @@ BitGraph build_consistency_graph(std::span<const Correspondence> correspondences
     for (std::size_t block = i / kBlock; block * kBlock < n; ++block) {
       test_block(columns, i, block * kBlock, options, agrees);
       std::uint64_t word = pack(agrees);
-      if (block == i / kBlock) word &= ~std::uint64_t{0} << (i % kBlock);  // The pairs before i are done.
+      if (block == i / kBlock) word &= ~std::uint64_t{0} << (i % kBlock);  // Earlier pairs are already done.
       for (; word != 0; word &= word - 1)
         graph.add_edge(static_cast<int>(i), static_cast<int>(block * kBlock) + std::countr_zero(word));
     }
@@ -178,7 +178,8 @@ Degeneracy degeneracy_order(const BitGraph& graph) {
     const int v = bucket[lowest].back();
     bucket[lowest].pop_back();
     const auto index = static_cast<std::size_t>(v);
-    if (peeled[index] != 0 || degree[index] != static_cast<int>(lowest)) continue;  // A stale entry: moved down since.
+    // Stale entry: the vertex has moved down since.
+    if (peeled[index] != 0 || degree[index] != static_cast<int>(lowest)) continue;
     peeled[index] = 1;
     core = std::max(core, degree[index]);
     result.core[index] = core;

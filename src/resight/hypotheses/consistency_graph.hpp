@@ -8,13 +8,13 @@
 
 namespace resight {
 
-/// An undirected graph without loops as a bit matrix: row i holds the neighbours of vertex i.
+/// Undirected graph without self-loops as a bit matrix: row i holds the neighbours of vertex i.
 class BitGraph {
  public:
   explicit BitGraph(int num_vertices = 0);
 
   [[nodiscard]] int num_vertices() const { return num_vertices_; }
-  /// Of one row, in 64-bit words; bits past the last vertex are zero.
+  /// Number of 64-bit words per row; bits past the last vertex are zero.
   [[nodiscard]] int num_words() const { return num_words_; }
   [[nodiscard]] std::span<const std::uint64_t> row(int vertex) const {
     return std::span(bits_).subspan(static_cast<std::size_t>(vertex) * static_cast<std::size_t>(num_words_),
@@ -26,7 +26,7 @@ class BitGraph {
   [[nodiscard]] int degree(int vertex) const;
   [[nodiscard]] std::size_t num_edges() const;
   void add_edge(int a, int b);
-  /// The graph of the given vertices, numbered in that order.
+  /// Induced subgraph of the given vertices, numbered in the given order.
   [[nodiscard]] BitGraph subgraph(std::span<const int> vertices) const;
 
  private:
@@ -41,18 +41,21 @@ struct ConsistencyOptions {
   double min_distance_m = 0.005;
 };
 
-/// Which correspondences of one object may belong to one instance: an edge where the distance of the two points is the
-/// same in model and scene, the dot product of the two normals is the same, and neither keypoint is shared. Points must
-/// be finite; a NaN normal is no measurement and agrees with all; a feature index of -1 (unknown) is shared with none.
+/// Connects correspondences of one object that may belong to one instance. Two are connected if the distance of their
+/// points and the dot product of their normals are equal in model and scene, within the limits of `options`, and they
+/// share no keypoint. Points must be finite. A NaN normal is no measurement and agrees with all. A feature index of -1
+/// (unknown) is never shared.
 [[nodiscard]] BitGraph build_consistency_graph(std::span<const Correspondence> correspondences,
                                                const ConsistencyOptions& options);
 
 struct Degeneracy {
-  std::vector<int> order;  ///< Vertices as they are peeled off, smallest remaining degree first (ties: smallest index).
-  std::vector<int> core;   ///< Core number of each vertex: every clique it is in has at most core + 1 vertices.
+  /// Vertices in the order of removal: smallest remaining degree first (ties: smallest index).
+  std::vector<int> order;
+  /// Core number of each vertex; a clique that contains it has at most core + 1 vertices.
+  std::vector<int> core;
 };
 
-/// Peels the graph (Matula and Beck 1983).
+/// Degeneracy order and core numbers (Matula and Beck 1983).
 [[nodiscard]] Degeneracy degeneracy_order(const BitGraph& graph);
 
 }  // namespace resight

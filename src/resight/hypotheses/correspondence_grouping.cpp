@@ -16,11 +16,12 @@
 namespace resight {
 namespace {
 
-// A clique is passed over if all but this many of its members agree with one accepted pose: the rest holds no other.
+// A clique is skipped if all but this many of its members agree with one accepted pose: too few remain for another
+// pose.
 constexpr int kMaxFreeMembers = 2;
 
 struct Candidate {
-  PoseEstimate estimate;  // Inliers: positions in the kept correspondences.
+  PoseEstimate estimate;  // Its inliers are positions in the kept correspondences.
   Eigen::Vector3d middle_in_object = Eigen::Vector3d::Zero();
 };
 
@@ -30,10 +31,11 @@ bool shares_keypoint(const Correspondence& a, const Correspondence& b) {
 }
 
 float descriptor_distance_sq(const Correspondence& c) {
-  return std::isnan(c.distance_sq) ? std::numeric_limits<float>::infinity() : c.distance_sq;  // Unknown: last.
+  // Unknown distances come last.
+  return std::isnan(c.distance_sq) ? std::numeric_limits<float>::infinity() : c.distance_sq;
 }
 
-// Walks over the cliques of one object and collects the groups that they lead to.
+// Processes the cliques of one object and collects the resulting groups.
 class GroupCollector {
  public:
   GroupCollector(std::span<const Correspondence> kept, const GroupCorrespondencesOptions& options)
@@ -72,7 +74,7 @@ class GroupCollector {
     });
   }
 
-  // The pose over some of the kept correspondences; inliers as positions in all kept ones.
+  // Estimates a pose from a subset of the kept correspondences. Inliers are positions in all kept ones.
   template <typename Estimate>
   [[nodiscard]] std::optional<PoseEstimate> over_subset(const std::vector<int>& subset,
                                                         Estimate&& estimate_subset) const {
@@ -85,7 +87,8 @@ class GroupCollector {
     return result;
   }
 
-  // All correspondences that agree with the pose, each keypoint once: the nearest first.
+  // All correspondences that agree with the pose. If several share a keypoint, the one with the smallest residual is
+  // kept.
   [[nodiscard]] std::vector<int> agreeing(const Rigid3& pose) const {
     const std::vector<float> residuals = inlier_residuals_sq(kept_, pose, pose_options_);
     std::vector<int> order;
@@ -148,10 +151,11 @@ class GroupCollector {
   std::vector<int> num_uses_;
   int num_estimates_ = 0;
   std::vector<Candidate> accepted_;
-  std::vector<std::vector<std::uint8_t>> agrees_;  // With the pose of each accepted group, per kept correspondence.
+  // Agreement with the pose of each accepted group, per kept correspondence.
+  std::vector<std::vector<std::uint8_t>> agrees_;
 };
 
-// The vertices that can be in a clique of the wanted size, and their graph.
+// Vertices that can belong to a clique of the required size, and their graph.
 struct Pruned {
   std::vector<int> vertices;
   BitGraph graph;

@@ -25,23 +25,25 @@ struct GroupCorrespondencesOptions {
 };
 
 struct CorrespondenceGroup {
-  std::vector<int> members;  ///< Inliers of the pose, ascending indices.
+  std::vector<int> members;  ///< Inliers of the pose: ascending indices of the input.
   Rigid3 scene_from_object;
 };
 
-/// Consistency graph over the correspondences of ONE object (edge: distances and normals agree, and neither keypoint is
-/// shared), its cliques, and a pose for each (paper Sec. III-A; [11]). Several instances side by side give several
-/// groups, largest first. Correspondences with a NaN point are left out.
+/// Groups the correspondences of ONE object into instances, largest group first (paper, Sec. III-A; [11]): consistency
+/// graph (edge: distances and normals agree, no shared keypoint), maximal cliques, and one pose per clique.
+/// Correspondences with a NaN point are ignored.
 ///
 /// A group has at least min_group_size and pose.min_inliers members, and no two of them share a keypoint. Deviations
-/// from V4R: the budget of the clique search counts steps, not milliseconds; cliques are taken largest first, not in
-/// the reverse order of their discovery; poses are checked by distance AND normals of each inlier (V4R: one inlier's
-/// normal); expand_groups; merge_*.
+/// from V4R:
+/// - The budget of the clique search counts steps, not milliseconds.
+/// - Cliques are processed largest first, not in reverse order of discovery.
+/// - Poses are checked by distance AND normal of every inlier (V4R: the normal of one inlier).
+/// - expand_groups and merge_* are ours.
 [[nodiscard]] std::vector<CorrespondenceGroup> group_correspondences(std::span<const Correspondence> correspondences,
                                                                      const GroupCorrespondencesOptions& options = {});
 
-/// Indices, ascending, of at most `max_count` correspondences with finite points: the best by descriptor distance, in
-/// turns of the feature types, because the distances of two descriptor spaces do not compare.
+/// Ascending indices of at most `max_count` correspondences with finite points. The best by descriptor distance are
+/// chosen, alternating between feature types, because distances in two descriptor spaces are not comparable.
 [[nodiscard]] std::vector<int> select_best_correspondences(std::span<const Correspondence> correspondences,
                                                            int max_count);
 

@@ -37,7 +37,7 @@ double recall(ProblemOptions options, const GroupCorrespondencesOptions& groupin
 }
 
 TEST(GroupCorrespondences, ACleanInstanceIsOneGroupOfAll) {
-  for (const int budget : {20000, 0}) {  // 0: greedy only
+  for (const int budget : {20000, 0}) {  // 0: greedy only.
     const Problem problem =
         make_problem({.num_correspondences = 20, .inliers_per_instance = 20, .noise_m = 0.001, .seed = 31});
     const auto groups = group_correspondences(problem.correspondences, {.max_cliques = budget});
@@ -56,7 +56,7 @@ TEST(GroupCorrespondences, TwoInstancesSideBySideAreTwoGroups) {
                                           .seed = seed});
     const auto groups = group_correspondences(problem.correspondences);
     ASSERT_GE(groups.size(), 2U) << seed;
-    // The two largest are the instances, and none mixes them.
+    // The two largest groups are the instances, without mixing them.
     std::set<int> seen;
     for (std::size_t g = 0; g < 2; ++g) {
       int votes[2] = {0, 0};
@@ -161,7 +161,7 @@ TEST(GroupCorrespondences, EmptyAndNanInputGiveNoGroups) {
   with_nan.front().scene_point.x() = nan;
   const auto after = group_correspondences(with_nan);
   ASSERT_EQ(after.size(), 1U);
-  auto shifted = before[0].members;  // Indices are those of the input.
+  auto shifted = before[0].members;  // Indices refer to the input.
   for (int& i : shifted) ++i;
   EXPECT_EQ(after[0].members, shifted);
   for (auto& c : problem.correspondences) c.model_point.setConstant(nan);

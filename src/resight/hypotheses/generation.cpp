@@ -10,7 +10,7 @@
 namespace resight {
 namespace {
 
-// Where a row of a descriptor index comes from.
+// Origin of a row of a descriptor index.
 struct FeatureOwner {
   int object = -1;
   int feature = -1;
@@ -26,7 +26,7 @@ struct TypeIndex {
   CodedFeatures ObjectModel::*features;
   int neighbors;
   double max_distance;
-  int dimension = 0;  // 0: no object has such features.
+  int dimension = 0;  // 0: no object has features of this type.
   std::vector<FeatureOwner> owners;
   std::unique_ptr<DescriptorIndex> index;
 };

@@ -21,17 +21,17 @@ struct MatchFeaturesOptions {
   void check() const;
 };
 
-/// The descriptors of all objects, ready to be searched. The library must outlive it, unchanged.
+/// Index over the descriptors of all objects. The library must outlive it and stay unchanged.
 class ModelFeatureIndex {
  public:
   ModelFeatureIndex(const ModelLibrary& library, const MatchFeaturesOptions& options = {});
   ~ModelFeatureIndex();
   ModelFeatureIndex(ModelFeatureIndex&&) noexcept;
   ModelFeatureIndex& operator=(ModelFeatureIndex&&) noexcept;
-  /// Correspondences of each object (library order), SIFT and SHOT pooled; scene side in the frame of the features
-  /// given. In the order of the scene features, nearest match first; scene features without a match or with a NaN point
-  /// are left out. The nearest k are searched among all objects together (paper, V4R), so a scene feature speaks for
-  /// few of them.
+  /// Correspondences per object (library order), SIFT and SHOT pooled. The scene side is in the frame of the given
+  /// features. Order: scene features as given, nearest match first. Scene features without a match or with a NaN point
+  /// are skipped. The k nearest descriptors are searched among all objects together (paper, V4R), so a scene feature
+  /// matches few objects. Throws std::invalid_argument if feature types or descriptor dimensions do not match.
   [[nodiscard]] std::vector<std::vector<Correspondence>> match(const FeatureSet& sift, const FeatureSet& shot) const;
 
  private:
@@ -39,8 +39,8 @@ class ModelFeatureIndex {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A group of correspondences of one object (scene side in the camera frame) as a hypothesis of a view, in the WORLD
-/// frame; its id is left at 0.
+/// Converts a group of correspondences of one object (scene side in the camera frame) to a hypothesis in the WORLD
+/// frame. Its id remains 0.
 [[nodiscard]] Hypothesis make_hypothesis(const CorrespondenceGroup& group,
                                          std::span<const Correspondence> correspondences,
                                          const Rigid3& world_from_camera, int object, int view);
@@ -51,8 +51,9 @@ struct GenerateHypothesesOptions {
   void check() const;
 };
 
-/// Hypotheses of one view from its correspondences per object (scene side in the camera frame). Results and their
-/// correspondences are in the WORLD frame; ids start at `first_id`, by object, then largest group first.
+/// Generates the hypotheses of one view from its correspondences per object (scene side in the camera frame).
+/// Hypotheses and their correspondences are in the WORLD frame. Ids start at `first_id`: by object, then largest group
+/// first. Throws std::invalid_argument if `world_from_camera` is not a rigid motion.
 [[nodiscard]] std::vector<Hypothesis> generate_hypotheses(
     std::span<const std::vector<Correspondence>> correspondences_per_object, const Rigid3& world_from_camera, int view,
     std::uint64_t first_id, const GenerateHypothesesOptions& options = {});

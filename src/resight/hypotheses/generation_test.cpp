@@ -29,14 +29,14 @@ FeatureSet random_features(Rng& rng, FeatureType type, int dimension, int n) {
   return set;
 }
 
-constexpr int kSiftDimension = 16;  // Any dimension will do; small ones keep the brute force quick.
+constexpr int kSiftDimension = 16;  // Any dimension works; small ones keep the brute force fast.
 constexpr int kShotDimension = 24;
 
 ModelLibrary random_library(Rng& rng) {
   ModelLibrary library;
   library.objects.resize(4);
   for (std::size_t o = 0; o < 4; ++o) {
-    const int n = o == 2 ? 0 : 30 + 5 * static_cast<int>(o);  // One object without any features.
+    const int n = o == 2 ? 0 : 30 + 5 * static_cast<int>(o);  // One object has no features.
     library.objects[o].sift = encode(random_features(rng, FeatureType::kSift, kSiftDimension, n));
     library.objects[o].shot = encode(random_features(rng, FeatureType::kShot, kShotDimension, n / 2));
   }
@@ -49,7 +49,7 @@ struct Neighbor {
   int feature;
 };
 
-// The k nearest descriptors among all objects, the slow way.
+// The k nearest descriptors among all objects, by brute force.
 std::vector<Neighbor> nearest(const ModelLibrary& library, CodedFeatures ObjectModel::*type,
                               std::span<const float> query, int k) {
   std::vector<Neighbor> all;

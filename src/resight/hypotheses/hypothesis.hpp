@@ -8,14 +8,16 @@
 
 namespace resight {
 
-/// "Object o is at this pose", with what speaks for it. In the WORLD frame, so that a change of view needs no transfer.
+/// An object at a pose, with its supporting correspondences. In the WORLD frame, so that it is valid in every view.
 struct Hypothesis {
-  std::uint64_t id = 0;  ///< Unique in a run; smaller = earlier.
+  std::uint64_t id = 0;  ///< Unique within a run; smaller = earlier.
   int object = -1;       ///< Index into ModelLibrary::objects.
   Rigid3 world_from_object;
-  int origin_view = -1;                         ///< View that it was generated from (of a cluster: the newest).
+  /// View in which it was generated; for a cluster, the newest one.
+  int origin_view = -1;
   std::vector<Correspondence> correspondences;  ///< Scene side in the world frame.
-  std::vector<int> origin_views;  ///< Of a cluster: all views that contributed, ascending; else {origin_view}.
+  /// All contributing views, ascending; {origin_view} unless clustered.
+  std::vector<int> origin_views;
 };
 
 }  // namespace resight

@@ -10,7 +10,7 @@
 namespace resight {
 namespace {
 
-// A vertex that is in this many greedy cliques needs none of its own: in a dense part they would all be alike.
+// A vertex in this many greedy cliques gets none of its own; in a dense region they would all be alike.
 constexpr int kMaxGreedyCliques = 3;
 
 using Words = std::vector<std::uint64_t>;
@@ -36,7 +36,7 @@ void for_each_bit(const std::uint64_t* words, int num_words, Body&& body) {
     for (std::uint64_t word = words[w]; word != 0; word &= word - 1) body(w * 64 + std::countr_zero(word));
 }
 
-// The recursion of Bron and Kerbosch with all its sets in one arena: three rows of bits for each level.
+// Recursion of Bron and Kerbosch. All sets live in one arena: three rows of bits per level.
 class CliqueSearch {
  public:
   CliqueSearch(const BitGraph& graph, const Degeneracy& degeneracy, const FindCliquesOptions& options,
@@ -46,7 +46,7 @@ class CliqueSearch {
     arena_.assign(static_cast<std::size_t>(depth) * 3 * static_cast<std::size_t>(num_words_), 0);
   }
 
-  // All cliques whose first vertex in the order is `v`; false if the budget ran out.
+  // Finds all cliques whose first vertex in the order is `v`; false if the budget is exhausted.
   bool search_from(int v, const Words& later) {
     clique_.assign(1, v);
     const std::uint64_t* neighbors = graph_.row(v).data();
@@ -66,7 +66,7 @@ class CliqueSearch {
   std::uint64_t* excluded(int depth) { return set_at(depth, 1); }
   std::uint64_t* branches(int depth) { return set_at(depth, 2); }
 
-  // The vertex with most neighbours among the candidates (ties: the smallest): only candidates that are not its
+  // Vertex with the most neighbours among the candidates (ties: smallest index). Only candidates that are not its
   // neighbours need a branch of their own.
   int choose_pivot(int depth) {
     int pivot = -1;
@@ -123,7 +123,8 @@ class CliqueSearch {
   std::vector<int> clique_;
 };
 
-// From `seed`, always the candidate with most neighbours among the other candidates (ties: the smallest index).
+// Grows a clique from `seed` by the candidate with the most neighbours among the other candidates (ties: smallest
+// index).
 std::vector<int> greedy_clique(const BitGraph& graph, int seed, Words& candidates) {
   const int num_words = graph.num_words();
   std::copy_n(graph.row(seed).begin(), num_words, candidates.begin());
@@ -168,8 +169,9 @@ FindCliquesResult find_cliques(const BitGraph& graph, const FindCliquesOptions& 
   CliqueSearch search(graph, degeneracy, options, result);
   Words later(static_cast<std::size_t>(graph.num_words()), 0);
   Words scratch(later.size());
-  std::vector<int> num_greedy(static_cast<std::size_t>(graph.num_vertices()), 0);  // Greedy cliques with this vertex.
-  // Core numbers rise along the order: backwards, a vertex too low ends the search.
+  // Number of greedy cliques per vertex.
+  std::vector<int> num_greedy(static_cast<std::size_t>(graph.num_vertices()), 0);
+  // Core numbers rise along the order; backwards, the first vertex with too low a core number ends the search.
   for (auto v = degeneracy.order.rbegin(); v != degeneracy.order.rend() && wide_enough(*v); ++v) {
     if (result.complete) result.complete = search.search_from(*v, later);
     if (!result.complete && num_greedy[static_cast<std::size_t>(*v)] < kMaxGreedyCliques) {

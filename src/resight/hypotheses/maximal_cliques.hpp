@@ -13,15 +13,17 @@ struct FindCliquesOptions {
 };
 
 struct FindCliquesResult {
-  std::vector<std::vector<int>> cliques;  ///< Each ascending; largest first, then in lexicographic order; no two alike.
-  bool complete = true;                   ///< All maximal cliques of at least min_size; false if the budget ran out.
+  /// Each ascending; sorted by size (largest first), then lexicographically; no duplicates.
+  std::vector<std::vector<int>> cliques;
+  /// True if all maximal cliques of at least min_size were found; false if the budget was exhausted.
+  bool complete = true;
   int num_steps = 0;
 };
 
 /// Maximal cliques of at least min_size vertices: Bron-Kerbosch with Tomita's pivot (2006) over a degeneracy order
-/// (Eppstein, Löffler, Strash 2010), from the densest part of the graph outwards, so that a budget that runs out has
-/// been spent where the large cliques are. Then one greedy clique from each vertex that the search did not reach,
-/// unless it is in some of them already. Deterministic: the budget counts steps, not time.
+/// (Eppstein, Löffler, Strash 2010). The search starts in the densest region, where the large cliques are. If the
+/// budget runs out, each vertex that was not reached contributes one greedy clique, unless it is already in several.
+/// Deterministic: the budget counts steps, not time.
 [[nodiscard]] FindCliquesResult find_cliques(const BitGraph& graph, const FindCliquesOptions& options = {});
 
 }  // namespace resight

@@ -28,7 +28,7 @@ bool is_clique(const BitGraph& graph, const std::vector<int>& vertices) {
   return true;
 }
 
-// All maximal cliques, by looking at every set of vertices.
+// All maximal cliques, by testing every set of vertices.
 std::vector<std::vector<int>> all_maximal_cliques(const BitGraph& graph, int min_size) {
   const int n = graph.num_vertices();
   std::vector<std::vector<int>> cliques;
@@ -170,7 +170,7 @@ TEST(DegeneracyOrder, EqualsPeelingByHand) {
   }
 }
 
-// The definition of an edge, word for word.
+// The definition of an edge, implemented literally.
 bool consistent(const Correspondence& a, const Correspondence& b, const ConsistencyOptions& options) {
   if (a.type == b.type && (a.model_feature == b.model_feature || a.scene_feature == b.scene_feature)) return false;
   const double model_m = (a.model_point - b.model_point).cast<double>().norm();

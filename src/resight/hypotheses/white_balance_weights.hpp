@@ -8,10 +8,10 @@
 
 namespace resight {
 
-/// How much each hypothesis has to say on the light of the scene (find_white_balance). Many agreeing keypoints are
-/// seldom wrong, and a few dozen small groups mostly are: of each object the hypothesis with the most correspondences
-/// votes, the first of equals, however often the object is taken for something like it. Each correspondence is one
-/// vote, and no more: the colours of one object may tell the light wrongly, however many keypoints it has.
+/// Weight of each hypothesis in the vote on the illumination of the scene (find_white_balance). Large groups of
+/// agreeing keypoints are rarely wrong, whereas most small groups are. Therefore, only the hypothesis with the most
+/// correspondences votes per object (the first in a tie). Its weight is the number of its correspondences; all other
+/// weights are 0.
 [[nodiscard]] std::vector<float> white_balance_weights(std::span<const Hypothesis> hypotheses, std::size_t num_models);
 
 }  // namespace resight

@@ -28,7 +28,7 @@ struct SurfacePoint {
   Eigen::Vector3d normal;
 };
 
-/// A point on a box of 8 x 12 x 20 cm or on a closed cylinder of 9 x 20 cm, about the origin.
+/// Random point on a box of 8 x 12 x 20 cm or a closed cylinder of 9 x 20 cm, centred at the origin.
 inline SurfacePoint random_surface_point(Rng& rng, bool box) {
   if (!box) {
     const double angle = rng.uniform(0, 6.28318);
@@ -62,7 +62,7 @@ struct ProblemOptions {
 
 struct Problem {
   std::vector<Correspondence> correspondences;  ///< Shuffled.
-  std::vector<int> instance;                    ///< Of each correspondence; -1 = outlier.
+  std::vector<int> instance;                    ///< Instance of each correspondence; -1 = outlier.
   std::vector<Rigid3> scene_from_object;
 };
 
@@ -108,7 +108,7 @@ class ProblemMaker {
       const SurfacePoint m = visible_point(pose);
       return {pose * m.point, pose.rotation * m.normal};
     }
-    // A table top, with clutter of any direction on it.
+    // A table top, with clutter of any orientation on it.
     const Eigen::Vector3d p(rng_.uniform(-0.5, 0.5), 0.2, 1.0 + rng_.uniform(-0.5, 0.5));
     if (rng_.below(2) == 0) return {p, -Eigen::Vector3d::UnitY()};
     return {p - Eigen::Vector3d(0, rng_.uniform(0, 0.25), 0), random_direction(rng_)};
@@ -144,7 +144,7 @@ class ProblemMaker {
 
 inline Problem make_problem(const ProblemOptions& options) { return ProblemMaker(options).make(); }
 
-/// Whether `pose` is within 2 cm (at the object's origin, its middle) and 15 deg of `truth`.
+/// Whether `pose` is within max_distance_m (at the object's origin, its middle) and max_rotation_rad of `truth`.
 inline bool is_near(const Rigid3& pose, const Rigid3& truth, double max_distance_m = 0.02,
                     double max_rotation_rad = 0.26) {
   return (pose.translation - truth.translation).norm() < max_distance_m &&
