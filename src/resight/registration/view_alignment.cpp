@@ -274,10 +274,10 @@ Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targ
 }
 
 void check_targets(const AlignmentView& view, std::span<const AlignmentTarget> targets) {
-  require(!view.levels.empty(), "view: must have a level");
+  require(!view.levels.empty(), "view: must have at least one level");
   for (const AlignmentTarget& target : targets)
     require(target.view != nullptr && target.view->levels.size() >= view.levels.size(),
-            "targets: must have the levels of the view");
+            "targets: must have at least as many levels as the view");
 }
 
 }  // namespace
