@@ -196,7 +196,7 @@ ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const M
   options.check();
   for (const Hypothesis& h : hypotheses)
     require(h.object >= 0 && static_cast<std::size_t>(h.object) < library.objects.size(),
-            "cluster_hypotheses: Hypothesis.object is not in the library");
+            "cluster_hypotheses: an object is not in the library");
   const std::vector<Cluster> clusters = assign_members(hypotheses, library, options);
   ClusterResult result;
   result.hypotheses.resize(clusters.size());

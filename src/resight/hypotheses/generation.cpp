@@ -39,7 +39,7 @@ TypeIndex::TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*me
     const CodedFeatures& set = library.objects[o].*features;
     if (set.size() == 0) continue;
     if (dimension == 0) dimension = set.dimension;
-    require(set.dimension == dimension, "ModelFeatureIndex: objects with descriptors of different dimensions");
+    require(set.dimension == dimension, "ModelFeatureIndex: descriptors of the objects differ in dimension");
     require(
         set.normals.size() == set.size() && set.codes.size() == set.size() * static_cast<std::size_t>(set.dimension),
         "ModelFeatureIndex: points, normals and descriptors of an object differ in number");
@@ -129,8 +129,8 @@ ModelFeatureIndex& ModelFeatureIndex::operator=(ModelFeatureIndex&&) noexcept = 
 
 std::vector<std::vector<Correspondence>> ModelFeatureIndex::match(const FeatureSet& sift,
                                                                   const FeatureSet& shot) const {
-  require(sift.size() == 0 || sift.type == FeatureType::kSift, "ModelFeatureIndex::match: sift is of another type");
-  require(shot.size() == 0 || shot.type == FeatureType::kShot, "ModelFeatureIndex::match: shot is of another type");
+  require(sift.size() == 0 || sift.type == FeatureType::kSift, "ModelFeatureIndex::match: sift must be of type kSift");
+  require(shot.size() == 0 || shot.type == FeatureType::kShot, "ModelFeatureIndex::match: shot must be of type kShot");
   std::vector<std::vector<Correspondence>> correspondences(impl_->library->objects.size());
   impl_->sift.match(*impl_->library, sift, correspondences);
   impl_->shot.match(*impl_->library, shot, correspondences);
@@ -146,7 +146,7 @@ std::vector<Hypothesis> generate_hypotheses(std::span<const std::vector<Correspo
                                             const Rigid3& world_from_camera, int view, std::uint64_t first_id,
                                             const GenerateHypothesesOptions& options) {
   options.check();
-  require(world_from_camera.is_rigid(), "generate_hypotheses: world_from_camera is no rigid motion");
+  require(world_from_camera.is_rigid(), "generate_hypotheses: world_from_camera is not a rigid motion");
   std::vector<std::vector<Hypothesis>> per_object(correspondences_per_object.size());
   parallel_for(correspondences_per_object.size(), options.num_threads, [&](std::size_t o) {
     for (const CorrespondenceGroup& group : group_correspondences(correspondences_per_object[o], options.grouping))
