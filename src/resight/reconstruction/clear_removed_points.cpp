@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// Pixels whose point lies within the tolerance of a removed one.
+/// Pixels whose point lies within the tolerance of a removed point.
 std::vector<int> find_removed_pixels(const PreparedView& view, const PointCloud& removed_in_world, double tolerance_m,
                                      int num_threads) {
   const PointCloud removed_in_camera =
@@ -27,7 +27,7 @@ void clear_pixel(PreparedView& view, std::size_t i) {
   for (Image<float>* image : {&cloud.x, &cloud.y, &cloud.z}) (*image)[i] = kNaN;
   if (!cloud.nx.empty())
     for (Image<float>* image : {&cloud.nx, &cloud.ny, &cloud.nz}) (*image)[i] = kNaN;
-  // The noise of a point hangs on that point and its normal alone: that of the others is as it would be computed anew.
+  // The noise of a point depends only on the point and its normal, so that the noise of all other points stays valid.
   for (Image<float>* image : {&view.noise.lateral_m, &view.noise.axial_m}) (*image)[i] = kNaN;
 }
 
@@ -38,7 +38,7 @@ PreparedView clear_removed_points(PreparedView view, const PointCloud& removed_i
   check_positive("tolerance_m", tolerance_m);
   prepare.check();
   require(view.frame.depth_m.size() == view.cloud.z.size() && view.noise.axial_m.size() == view.cloud.z.size(),
-          "clear_removed_points: the view is not prepared (its images have not the size of its cloud)");
+          "clear_removed_points: the view is not prepared (its images differ in size from its cloud)");
   if (removed_in_world.empty()) return view;
   const auto pixels = find_removed_pixels(view, removed_in_world, tolerance_m, prepare.num_threads);
   if (pixels.empty()) return view;

@@ -22,7 +22,7 @@ Scene scene_with_box() {
   return scene;
 }
 
-/// Same bytes, so that NaN equals itself.
+/// Bitwise equality, or both NaN.
 bool same(const Image<float>& a, const Image<float>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -39,7 +39,7 @@ bool same(const PreparedView& a, const PreparedView& b) {
          a.frame.color == b.frame.color;
 }
 
-/// Some points of the box's visible surface, away from the table.
+/// Some points on the visible surface of the box, away from the table.
 PointCloud some_box_points(const PreparedView& view) {
   PointCloud removed;
   const PointCloud all = voxel_downsample(world_cloud(view), 0.01);
@@ -61,7 +61,7 @@ TEST(ClearRemovedPoints, AgreesWithBruteForce) {
     double nearest = 1;
     for (const Eigen::Vector3f& p : removed.points)
       nearest = std::min<double>(nearest, (world_from_camera * before.cloud.point(i) - p).norm());
-    if (std::abs(nearest - tolerance_m) < 1e-6) continue;  // rounding of the frames
+    if (std::abs(nearest - tolerance_m) < 1e-6) continue;  // Rounding of the frames.
     const bool cleared = nearest < tolerance_m;
     num_cleared += cleared ? 1 : 0;
     EXPECT_EQ(std::isnan(after.frame.depth_m[i]), cleared);
@@ -113,7 +113,7 @@ TEST(ClearRemovedPoints, RefusesNonsense) {
   EXPECT_THROW((void)clear_removed_points(bare, {}, 0.02), std::invalid_argument);
 }
 
-/// Alg. 1 by hand, view by view, with the removals kept in a history.
+/// Alg. 1 step by step, with the removals kept in a history.
 class DynamicTable {
  public:
   ChangeResult add(const Scene& scene, const Rigid3& world_from_camera) {
@@ -157,7 +157,8 @@ TEST(DynamicReconstruction, ARemovedObjectIsGoneAndOnePutBackSurvives) {
 
   const ChangeResult back = world.add(scene_with_box(), left);
   EXPECT_TRUE(back.removed_in_world.empty());
-  EXPECT_GT(world.count_box_points(), with_box / 3);  // one view's share of it: the older removal does not reach it
+  // The share of one view: the older removal does not affect it.
+  EXPECT_GT(world.count_box_points(), with_box / 3);
 
   world.add(table(), right);
   EXPECT_LT(world.count_box_points(), with_box / 50);

@@ -9,11 +9,12 @@
 namespace resight {
 namespace {
 
-// Noise numbers voxels beside a surface in every view, and a camera leaves places behind: memory stays flat.
+// Sensor noise numbers voxels beside a surface in every view, and a moving camera leaves voxels behind. Numbering
+// restarts above this growth, which bounds the memory.
 constexpr std::size_t kMaxBlockGrowth = 2;
 constexpr std::size_t kFewBlocks = 1 << 15;
 
-/// Takes what was removed out of an earlier view. Most views of a large scene do not see the place at all.
+/// Clears removed points from an earlier view. In large scenes, most views do not see the place at all.
 void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& options, DynamicScene::View& view) {
   const std::size_t num_before = count_valid(view.cleared.frame.depth_m);
   view.cleared =
@@ -38,7 +39,7 @@ DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(opt
 }
 
 ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
-  // Psi_{k-1} is what the last K views made of the scene; with K = 0 there is no past to compare with.
+  // Psi_{k-1} is reconstructed from the last K views. With K = 0 there is nothing to compare with.
   if (!options_.detect_changes || options_.num_previous_views == 0 || window_.empty()) return {};
   std::vector<const PreparedView*> earlier_views;
   for (const View& earlier : window_) earlier_views.push_back(&earlier.cleared);
@@ -55,10 +56,11 @@ void DynamicScene::clear_from_window(const PointCloud& removed_in_world) {
 ChangeResult DynamicScene::add_view(PreparedView view) {
   ChangeResult changes;
   ViewVoxels voxels;
-  // Neither changes nor clearing number voxels, and the new view has no part in the clearing: both at once.
+  // Runs both at once: change detection and clearing number no voxels, and clearing does not affect the new view.
   run_both(
       options_.integrate.num_threads,
-      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },  // first: refuses what is not prepared
+      // First, because it rejects views that are not prepared.
+      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },
       [&] {
         changes = find_changes(view);
         clear_from_window(changes.removed_in_world);

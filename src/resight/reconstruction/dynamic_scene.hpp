@@ -18,31 +18,32 @@ struct DynamicSceneOptions {
   void check() const;
 };
 
-/// Algorithm 1 (paper Sec. III-B), view by view: the reconstruction of a scene that changes, from its last K + 1 views.
+/// Algorithm 1 (paper, Sec. III-B), view by view: reconstructs a changing scene from its last K + 1 views.
 class DynamicScene {
  public:
   /// A view of the window.
   struct View {
-    int number = 0;               ///< Counts the views added, from 0.
-    RgbdFrame raw;                ///< As it was taken: for looking back.
-    PreparedView cleared;         ///< Without what later views saw removed.
-    PointCloud removed_in_world;  ///< What this view saw removed, and what it brought; world frame.
+    int number = 0;               ///< Number of the view, counted from 0.
+    RgbdFrame raw;                ///< The frame as recorded.
+    PreparedView cleared;         ///< The view without points that later views observed as removed.
+    PointCloud removed_in_world;  ///< Points that this view observed as removed; world frame.
+    /// Points that this view observed as novel; world frame.
     PointCloud novel_in_world;
-    ViewVoxels voxels;  ///< Of `cleared`: only a view that a removal reaches is reduced again.
+    ViewVoxels voxels;  ///< Voxels of `cleared`. Only views affected by a removal are reduced again.
   };
 
-  /// Throws std::invalid_argument for options that fail check().
+  /// Throws std::invalid_argument if the options are invalid.
   explicit DynamicScene(DynamicSceneOptions options = {});
 
-  /// Takes over the next view (same world frame): finds its changes against the reconstruction so far, clears what it
-  /// saw removed from all views before it - and from none after, so that an object put back at its old place survives
-  /// -, forgets the views that fall out of the window and reconstructs. Without change detection, or for the first
-  /// view, the changes are empty.
+  /// Processes the next view (same world frame): finds its changes against the current reconstruction, clears the
+  /// removed points from all earlier views, drops views that leave the window, and reconstructs. Later views are not
+  /// cleared, so that an object put back at its former place persists. Without change detection, or for the first view,
+  /// the changes are empty. Throws std::invalid_argument if the view is not prepared or has no normals.
   ChangeResult add_view(PreparedView view);
 
-  /// Oldest first, the current view last.
+  /// Views of the window, oldest first; the current view is the last.
   [[nodiscard]] const std::deque<View>& window() const { return window_; }
-  /// Psi_k, world frame.
+  /// Psi_k; world frame.
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
@@ -52,8 +53,9 @@ class DynamicScene {
 
   DynamicSceneOptions options_;
   std::deque<View> window_;
-  VoxelNumbers numbers_;                 // Of the voxels of the window, and of some before.
-  std::size_t num_blocks_at_start_ = 0;  // When the window alone was numbered.
+  VoxelNumbers numbers_;  // Of the voxels of the window and of some earlier ones.
+  // Number of blocks when numbering last restarted, with the voxels of the window alone.
+  std::size_t num_blocks_at_start_ = 0;
   VoxelMerger merger_;
   Reconstruction reconstruction_;
   int num_views_ = 0;

@@ -25,8 +25,8 @@ struct Step {
   Rigid3 pose;
 };
 
-/// The box goes at view 2, is back at view 4; the other one comes at view 3. View 1 looks away, so that nothing reaches
-/// it.
+/// The box disappears in view 2 and is back in view 4; the other box appears in view 3. View 1 looks away, so that no
+/// change affects it.
 std::vector<Step> story() {
   const Rigid3 left = look_at({-0.3, -0.9, 0.8}, {0, 0, 0.05});
   const Rigid3 right = look_at({0.3, -0.9, 0.8}, {0, 0, 0.05});
@@ -35,7 +35,7 @@ std::vector<Step> story() {
           {with({kOther}), right}, {with({kBox, kOther}), left}, {with({kBox}), usual_pose()}};
 }
 
-/// Alg. 1 from the raw views every time, with the removals in a history.
+/// Alg. 1 from the raw views in every step, with the removals in a history.
 class FromScratch {
  public:
   explicit FromScratch(int num_previous_views) : num_previous_views_(num_previous_views) {}
@@ -95,7 +95,7 @@ TEST(DynamicScene, AgreesWithStartingFromScratch) {
   }
 }
 
-// What was seen long ago is forgotten, and what is seen is the same all the same.
+// Old views leave the window; the result equals a reconstruction from scratch.
 TEST(DynamicScene, AgreesWithStartingFromScratchAlongAWay) {
   DynamicSceneOptions options;
   options.num_previous_views = 0;
@@ -121,7 +121,7 @@ TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
     const int after = count_at(kBox, scene.reconstruction(), 0.002);
     ASSERT_GT(before, 500);
     if (detect) {
-      EXPECT_LT(after, before / 2);  // the table beneath is in the box as well
+      EXPECT_LT(after, before / 2);  // The box also contains the table below it.
       EXPECT_FALSE(changes.removed_in_world.empty());
     } else {
       EXPECT_GE(after, before);

@@ -49,7 +49,7 @@ void VoxelMerger::find_winners(std::span<const ViewVoxels* const> views) {
       if (!is_known) {
         w = static_cast<int>(winners_.size());
         winners_.push_back(candidate);
-      } else if (candidate.noise <= winners_[w].noise) {  // ties: the later view
+      } else if (candidate.noise <= winners_[w].noise) {  // In a tie, the later view wins.
         winners_[w] = candidate;
       }
     }

@@ -9,30 +9,31 @@
 
 namespace resight {
 
-/// Alg. 1, line 5: the view without the points within `tolerance_m` of `removed_in_world`. Depth, points and normals
-/// become NaN there (the colour stays), and edges and noise are computed anew, so that the rim of the hole counts as an
-/// edge. The normals of the points that stay are those they had: `prepare` gives the edge options and the threads. The
-/// view is returned unchanged if nothing is near.
+/// Removes the points within `tolerance_m` of `removed_in_world` from a view (Alg. 1, line 5). Their depth, point,
+/// normal and noise become NaN; the colour stays. The edge distance is updated, so that the rim of the hole counts as a
+/// depth edge. The remaining points keep their normals and noise. `prepare` provides the edge options and the number of
+/// threads. Returns the view unchanged if no point is near. Throws std::invalid_argument if the view is not prepared.
 [[nodiscard]] PreparedView clear_removed_points(PreparedView view, const PointCloud& removed_in_world,
                                                 double tolerance_m, const PrepareViewOptions& prepare = {});
 
-/// The scene as the views see it: one point a voxel, that of the lowest noise (sigma_L^2 sigma_A), with its normal,
-/// colour and view.
+/// Reconstruction with one point per voxel: the one with the lowest noise (sigma_L^2 sigma_A), with its normal, colour
+/// and view.
 struct Reconstruction {
   PointCloud cloud_in_world;  ///< With normals and colours.
   std::vector<float> noise;   ///< sigma_L^2 sigma_A, m^3.
-  std::vector<int> view;      ///< Position in the span of views that it came from.
+  std::vector<int> view;      ///< Position of its view in the input.
 };
 
-/// Alg. 1, line 6 (paper Sec. III-B2). Points without a normal take no part. Views in any order; ties go to the later
-/// one. Within a view, ties go to the first pixel; voxels stand in the order of their first point, view by view.
+/// Merges views into one reconstruction (Alg. 1, line 6; paper, Sec. III-B2). Points without a normal are ignored. The
+/// order of the views matters only in ties: the later view wins, and within a view the first pixel. Voxels are ordered
+/// by their first point, view by view. Throws std::invalid_argument if a view is null or not prepared.
 [[nodiscard]] Reconstruction integrate_views(std::span<const PreparedView* const> views,
                                              const IntegrateOptions& options = {});
 
-/// The second half of it: the winners over all views, again and again as views come and go. Keeps its memory.
+/// Second half of integrate_views(): selects the best point per voxel over all views. Reuses its memory between calls.
 class VoxelMerger {
  public:
-  /// `views` must have been reduced with the same voxel size and VoxelNumbers. `result` is overwritten.
+  /// `views` must share the voxel size and VoxelNumbers. `result` is overwritten.
   void merge(std::span<const ViewVoxels* const> views, const IntegrateOptions& options, Reconstruction& result);
 
  private:
@@ -45,8 +46,9 @@ class VoxelMerger {
   void find_winners(std::span<const ViewVoxels* const> views);
   void drop_rare(std::span<const ViewVoxels* const> views, int min_points);
 
-  std::vector<int> winner_of_number_;  // Position in winners_ if that is of the number; else left from another time.
-  std::vector<Winner> winners_;        // In the order of the voxels' first points, view by view.
+  // Position in winners_ if the entry there has this number; otherwise left over from an earlier call.
+  std::vector<int> winner_of_number_;
+  std::vector<Winner> winners_;  // Ordered by the voxels' first points, view by view.
 };
 
 }  // namespace resight

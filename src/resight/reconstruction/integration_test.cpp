@@ -31,7 +31,7 @@ Scene scene_with_box() {
 std::vector<PreparedView> three_views() {
   std::vector<PreparedView> views{see(scene_with_box()), see(scene_with_box(), look_at({0.8, -0.5, 0.7}, {0, 0, 0})),
                                   see(scene_with_box(), look_at({-0.4, -0.7, 0.5}, {0, 0, 0}))};
-  for (std::size_t v = 0; v < views.size(); ++v)  // tells where a point came from
+  for (std::size_t v = 0; v < views.size(); ++v)  // Encodes the origin of a point.
     for (std::size_t i = 0; i < views[v].frame.color.size(); ++i)
       views[v].frame.color[i] = {static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(i % 251),
                                  static_cast<std::uint8_t>(i / 251 % 251)};
@@ -53,7 +53,7 @@ struct Best {
   int num_points;
 };
 
-/// The slow twin: all points of all views in a sorted map of voxels.
+/// Reference implementation: all points of all views in a sorted map of voxels.
 std::map<Cell, Best> integrate_slowly(const std::vector<PreparedView>& views, const IntegrateOptions& options) {
   std::map<Cell, Best> voxels;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -88,7 +88,7 @@ void expect_equal(const Reconstruction& result, const std::map<Cell, Best>& expe
     const Eigen::Vector3i index = voxel_index(p, static_cast<float>(1 / voxel_m));
     const auto found = expected.find({index.x(), index.y(), index.z()});
     ASSERT_NE(found, expected.end());
-    EXPECT_LT((p - found->second.point).norm(), 1e-6F);  // The order of rounding is the compiler's.
+    EXPECT_LT((p - found->second.point).norm(), 1e-6F);  // The compiler decides the order of rounding.
     EXPECT_LT((result.cloud_in_world.normals[i] - found->second.normal).norm(), 1e-6F);
     EXPECT_EQ(result.cloud_in_world.colors[i], found->second.color);
     EXPECT_EQ(result.noise[i], found->second.noise);
@@ -112,7 +112,7 @@ TEST(IntegrateViews, OneViewIsEnough) {
 }
 
 TEST(IntegrateViews, TheBetterViewWins) {
-  // From near and head-on against far and slanted, of the same table.
+  // A near, frontal view against a distant, grazing one of the same table.
   std::vector<PreparedView> views{see(table(), look_at({0, -0.1, 0.7}, {0, 0, 0})),
                                   see(table(), look_at({0, -1.8, 0.6}, {0, 0, 0}))};
   for (int order = 0; order < 2; ++order) {
@@ -146,7 +146,7 @@ TEST(IntegrateViews, EdgesAndPointsWithoutNormalsTakeNoPart) {
   EXPECT_TRUE(integrate_views(pointers(views)).cloud_in_world.empty());
 }
 
-/// The voxels in the order of their first pixels, whatever their slots: what a merge goes by.
+/// The voxels ordered by their first pixels, independent of their slots, as the merge uses them.
 struct InOrder {
   std::vector<std::uint64_t> keys;
   std::vector<int> numbers;
@@ -185,7 +185,7 @@ TEST(UpdateVoxels, IsWhatReducingGives) {
   update_voxels(cleared, voxels);
   ASSERT_LT(voxels.order.size(), before.order.size());
   EXPECT_TRUE(in_order(voxels) == in_order(expected));
-  update_voxels(view, voxels);  // with points that it had not before
+  update_voxels(view, voxels);  // With points that it did not have before.
   EXPECT_TRUE(in_order(voxels) == in_order(before));
   ViewVoxels none;
   EXPECT_THROW(update_voxels(view, none), std::invalid_argument);

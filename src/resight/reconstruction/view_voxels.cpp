@@ -15,16 +15,16 @@ void check_view(const PreparedView& view) {
   const std::size_t size = view.cloud.z.size();
   require(view.cloud.nx.size() == size && view.frame.color.size() == size && view.edge_distance_px.size() == size &&
               view.noise.lateral_m.size() == size && view.noise.axial_m.size() == size,
-          "integrate_views: a view is not prepared (its images have not the size of its cloud, or it has no normals)");
+          "integrate_views: a view is not prepared (its images differ in size from its cloud, or it has no normals)");
 }
 
-/// Not inlined: a point must round to the same place when its voxel is found and when it is kept.
+/// Not inlined: a point must round identically when its voxel is found and when it is stored.
 [[gnu::noinline]] Eigen::Vector3f point_in_world(const Rigid3f& world_from_camera, const OrganizedCloud& cloud,
                                                  std::size_t i) {
   return world_from_camera * cloud.point(i);
 }
 
-/// Keys of the voxels that the points of a view lie in.
+/// Keys of the voxels that contain the points of a view.
 class PixelKeys {
  public:
   PixelKeys(const PreparedView& view, const IntegrateOptions& options)
@@ -45,12 +45,12 @@ bool takes_part(const PreparedView& view, std::size_t i, float min_edge_distance
   return view.cloud.has_normal(i) && view.cloud.has_point(i) && !(view.edge_distance_px[i] < min_edge_distance_px);
 }
 
-/// The best pixel of each slot.
+/// Selects the best pixel of each slot.
 class Winners {
  public:
   Winners(const PreparedView& view, ViewVoxels& voxels) : view_(view), voxels_(voxels) {}
 
-  /// Makes room for slots that have come.
+  /// Makes room for new slots.
   void grow() {
     const std::size_t size = voxels_.keys.size();
     voxels_.noise.resize(size);
@@ -58,7 +58,7 @@ class Winners {
     voxels_.first_pixels.resize(size);
     pixels_.resize(size);
   }
-  /// Pixels of a slot in ascending order.
+  /// Pixels of one slot must be added in ascending order.
   void add(std::size_t slot, std::size_t pixel) {
     const float lateral_m = view_.noise.lateral_m[pixel];
     const float noise = lateral_m * lateral_m * view_.noise.axial_m[pixel];
@@ -88,7 +88,7 @@ void resize_cloud(ViewVoxels& voxels) {
   voxels.cloud_in_world.colors.resize(voxels.keys.size());
 }
 
-/// Gives the pixels that have joined their slots, of voxels that are known or new.
+/// Assigns slots to pixels that have joined, in existing or new voxels.
 void place_joined(const std::vector<std::size_t>& joined, const PixelKeys& key_of, ViewVoxels& voxels) {
   if (joined.empty()) return;
   VoxelMap map(joined.size());
@@ -108,7 +108,7 @@ void place_joined(const std::vector<std::size_t>& joined, const PixelKeys& key_o
   }
 }
 
-/// Slots whose pixels have changed, each once; brings slot_of_pixel up to date.
+/// Slots whose pixels have changed, without duplicates. Updates slot_of_pixel.
 std::vector<int> find_changed_slots(const PreparedView& view, ViewVoxels& voxels, const IntegrateOptions& options) {
   const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
   std::vector<int> changed;
@@ -131,7 +131,7 @@ std::vector<int> find_changed_slots(const PreparedView& view, ViewVoxels& voxels
   return changed;
 }
 
-/// `is_changed` by slot: those may stand elsewhere now, or have come or gone.
+/// `is_changed` per slot: these slots may have moved in the order, appeared or become empty.
 void update_order(const std::vector<int>& changed, const std::vector<std::uint8_t>& is_changed, ViewVoxels& voxels) {
   const auto earlier = [&](int a, int b) { return voxels.first_pixels[a] < voxels.first_pixels[b]; };
   std::vector<int> moved;
@@ -154,7 +154,7 @@ void IntegrateOptions::check() const {
 }
 
 int VoxelNumbers::number_of(std::uint64_t key) {
-  constexpr std::uint64_t kWithin = (3ULL << 42U) | (3ULL << 21U) | 3ULL;  // Two bits an axis: see voxel_key().
+  constexpr std::uint64_t kWithin = (3ULL << 42U) | (3ULL << 21U) | 3ULL;  // Two bits per axis; see voxel_key().
   const std::uint64_t block_key = key & ~kWithin;
   if (blocks_.empty() || block_key != last_block_key_) {
     last_block_key_ = block_key;
@@ -171,7 +171,7 @@ int VoxelNumbers::slot_of(std::uint64_t key, ViewVoxels& view) {
   const auto number = static_cast<std::size_t>(number_of(key));
   if (number >= slot_of_number_.size()) slot_of_number_.resize(std::max(number + 1, 2 * slot_of_number_.size()));
   int& slot = slot_of_number_[number];
-  // What other views have left there is told by the number that the view has at that slot.
+  // The entry may stem from another view. It is valid only if this view has the same number at that slot.
   const bool is_known =
       static_cast<std::size_t>(slot) < view.numbers.size() && view.numbers[slot] == static_cast<int>(number);
   if (!is_known) {
@@ -195,7 +195,8 @@ ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers, con
   ViewVoxels voxels;
   voxels.slot_of_pixel.assign(view.cloud.z.size(), kNoSlot);
   std::uint64_t last_key = 0;
-  int slot = kNoSlot;  // neighbouring pixels often share their voxel: saves the look-up
+  // Neighbouring pixels often share a voxel, which saves the look-up.
+  int slot = kNoSlot;
   for (std::size_t i = 0; i < view.cloud.z.size(); ++i) {
     if (!takes_part(view, i, min_edge_distance_px)) continue;
     const std::uint64_t key = key_of(i);
@@ -210,14 +211,15 @@ ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers, con
     if (voxels.slot_of_pixel[i] != kNoSlot) winners.add(static_cast<std::size_t>(voxels.slot_of_pixel[i]), i);
   for (std::size_t s = 0; s < voxels.keys.size(); ++s) winners.keep(s);
   voxels.order.resize(voxels.keys.size());
-  std::iota(voxels.order.begin(), voxels.order.end(), 0);  // Slots were made in the order of their first pixels.
+  std::iota(voxels.order.begin(), voxels.order.end(), 0);  // Slots were created in the order of their first pixels.
   return voxels;
 }
 
 void update_voxels(const PreparedView& view, ViewVoxels& voxels, const IntegrateOptions& options) {
   options.check();
   check_view(view);
-  require(voxels.slot_of_pixel.size() == view.cloud.z.size(), "update_voxels: not the view that was reduced before");
+  require(voxels.slot_of_pixel.size() == view.cloud.z.size(),
+          "update_voxels: the view differs in size from the one that was reduced");
   const std::vector<int> changed = find_changed_slots(view, voxels, options);
   if (changed.empty()) return;
   Winners winners(view, voxels);

@@ -18,31 +18,32 @@ struct IntegrateOptions {
   void check() const;
 };
 
-/// What a single view has to say, one point a voxel: the dearer half of integrate_views(). Depends on the view alone: a
-/// view that stays as it is need not be reduced again for the next reconstruction. All but the last two are by slot.
+/// A single view reduced to one point per voxel: the more expensive half of integrate_views(). It depends on the view
+/// alone, so an unchanged view need not be reduced again for the next reconstruction. All fields but the last two are
+/// per slot.
 struct ViewVoxels {
   std::vector<std::uint64_t> keys;  ///< voxel_key() in the world frame.
-  std::vector<int> numbers;         ///< The same in all views that share their VoxelNumbers.
-  PointCloud cloud_in_world;        ///< The point of the lowest noise, with normal and colour.
-  std::vector<float> noise;         ///< sigma_L^2 sigma_A of it, m^3.
-  std::vector<int> num_points;      ///< Points of the view in the voxel; 0 if all of them were taken.
-  std::vector<int> first_pixels;    ///< First of them.
-  std::vector<int> order;           ///< The slots that hold points, by their first pixels.
-  std::vector<int> slot_of_pixel;   ///< Or -1.
+  std::vector<int> numbers;         ///< Equal for all views that share their VoxelNumbers.
+  PointCloud cloud_in_world;        ///< The point with the lowest noise, with normal and colour.
+  std::vector<float> noise;         ///< sigma_L^2 sigma_A of this point, m^3.
+  std::vector<int> num_points;      ///< Points of the view in the voxel; 0 if all were removed.
+  std::vector<int> first_pixels;    ///< First pixel of these points.
+  std::vector<int> order;           ///< Slots that hold points, ordered by their first pixels.
+  std::vector<int> slot_of_pixel;   ///< Slot of each pixel, or -1.
 };
 
-/// Numbers voxels, 0, 1, 2, .. as they come, whichever view they come from: arrays over numbers stand in for hash
-/// tables over voxels. Voxels are looked up in blocks of 4 x 4 x 4, for neighbouring pixels mostly share a block.
+/// Numbers voxels 0, 1, 2, ... in order of appearance, over all views, so that arrays over numbers replace hash tables
+/// over voxels. Voxels are looked up in blocks of 4 x 4 x 4, because neighbouring pixels mostly share a block.
 class VoxelNumbers {
  public:
-  /// Of a voxel, new or known.
+  /// Number of a voxel; a new voxel gets the next number.
   int number_of(std::uint64_t key);
-  /// Slot of a voxel in a view, new (with key and number, and nothing else) or known.
+  /// Slot of a voxel in a view. A new slot gets its key and number only.
   int slot_of(std::uint64_t key, ViewVoxels& view);
-  /// Numbers the slots that have none yet.
+  /// Numbers the slots that have no number yet.
   void assign_to(ViewVoxels& view);
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(num_voxels_); }
-  /// Cubes of 64 voxels of which one is numbered: what the memory goes by.
+  /// Number of blocks of 64 voxels with at least one numbered voxel. Determines the memory.
   [[nodiscard]] std::size_t num_blocks() const { return blocks_.size(); }
 
  private:
@@ -54,15 +55,18 @@ class VoxelNumbers {
   std::uint64_t last_block_key_ = 0;
   std::size_t last_block_ = 0;
   int num_voxels_ = 0;
-  std::vector<int> slot_of_number_;  // In the view that was asked about last; of others what is left of them.
+  // Valid for the view of the last query; other entries are left over from other views.
+  std::vector<int> slot_of_number_;
 };
 
-/// Points without a normal take no part. Ties go to the first pixel.
+/// Reduces a view with normals to voxels. Points without a normal are ignored. In ties, the first pixel wins. Throws
+/// std::invalid_argument if the view is not prepared.
 [[nodiscard]] ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers,
                                           const IntegrateOptions& options = {});
 
-/// Brings the voxels up to date with a view from which points were taken (others may have come in: with an edge, the
-/// points beside it). Slots stay; new ones are not numbered yet.
+/// Updates the voxels of a view after points were removed. Other points may have been added, for example where an edge
+/// has vanished. Slots keep their positions; new ones are not numbered yet. Throws std::invalid_argument for another
+/// view.
 void update_voxels(const PreparedView& view, ViewVoxels& voxels, const IntegrateOptions& options = {});
 
 }  // namespace resight
