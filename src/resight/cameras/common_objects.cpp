@@ -12,14 +12,14 @@
 namespace resight {
 namespace {
 
-// Ways to join two parts that differ by less, where the parts' objects are, are one.
+// Two candidates are equal if they differ by less at the objects of the components.
 constexpr double kSameWayM = 0.01;
 
-// A way in which two parts may lie.
+// A possible relative pose of two components.
 struct Candidate {
   int part_a = 0;
   int part_b = 0;
-  Rigid3 a_from_b;  // of the parts' frames
+  Rigid3 a_from_b;  // Between the frames of the components.
   std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
   double surface_score = 0;
 };
@@ -30,7 +30,7 @@ class PartJoiner {
              const JoinByObjectsOptions& options)
       : track_(track), library_(library), views_(views), options_(options) {}
 
-  // How part b lies in the frame of a: what most objects agree on, and the surfaces do not contradict.
+  // Pose of component b in the frame of a on which most objects agree and which the surfaces do not contradict.
   [[nodiscard]] std::optional<Candidate> join(int a, int b, std::span<const ObjectPlace> in_a,
                                               std::span<const ObjectPlace> in_b) const {
     std::optional<Candidate> best;
@@ -52,7 +52,7 @@ class PartJoiner {
     return library_.objects[static_cast<std::size_t>(place.object)];
   }
 
-  // The ways with the most objects, those that are one left out.
+  // The candidates with the most agreeing objects, without duplicates.
   [[nodiscard]] std::vector<Candidate> propose(int a, int b, std::span<const ObjectPlace> in_a,
                                                std::span<const ObjectPlace> in_b) const {
     std::vector<Candidate> all;
@@ -85,7 +85,7 @@ class PartJoiner {
     });
   }
 
-  // The object's centre and the ends of its axes, in its part.
+  // The object's centre and the ends of its axes, in the frame of its component.
   [[nodiscard]] std::array<Eigen::Vector3d, 4> axes_of(const ObjectPlace& place) const {
     std::array<Eigen::Vector3d, 4> points;
     for (int k = 0; k < 4; ++k) {
@@ -109,7 +109,7 @@ class PartJoiner {
     return agreed;
   }
 
-  // Least squares over the objects' axes, as long as the objects.
+  // Least squares over the objects' axes, which are scaled to the size of the object.
   [[nodiscard]] Rigid3 fit(const Candidate& candidate) const {
     std::vector<Eigen::Vector3f> in_a, in_b;
     for (const auto& [a, b] : candidate.agreed) {
@@ -130,7 +130,8 @@ class PartJoiner {
     return targets;
   }
 
-  // Overlap less what is seen through, of each part's views in the other; nothing if a part contradicts the other.
+  // Overlap minus free-space violations of each component's views in the other. None if the components contradict each
+  // other.
   [[nodiscard]] std::optional<double> compare_surfaces(const Candidate& candidate) const {
     const std::vector<AlignmentTarget> a = targets_of(candidate.part_a), b = targets_of(candidate.part_b);
     if (a.empty() || b.empty()) return 0;
@@ -174,7 +175,7 @@ std::optional<Candidate> find_best_join(const CameraTrack& track, const std::vec
   return best;
 }
 
-// Part b into the frame of a, with an edge that holds it there.
+// Moves component b into the frame of a and adds an edge that holds it there.
 void merge_parts(CameraTrack& track, const Candidate& join, int view_a, int view_b,
                  const JoinByObjectsOptions& options) {
   for (TrackedView& view : track.views)
@@ -192,7 +193,7 @@ void merge_parts(CameraTrack& track, const Candidate& join, int view_a, int view
   }
 }
 
-// In the frame of the first view of each part.
+// Expresses the poses of each component in the frame of its first view.
 void put_first_views_at_origin(CameraTrack& track) {
   std::vector<std::optional<Rigid3>> first_from_world(static_cast<std::size_t>(track.num_parts));
   for (TrackedView& view : track.views) {
@@ -218,7 +219,7 @@ void JoinByObjectsOptions::check() const {
 CameraTrack join_by_objects(CameraTrack track, std::span<const ObservedObject> observed, const ModelLibrary& library,
                             std::span<const AlignmentView> views, const JoinByObjectsOptions& options) {
   options.check();
-  require(views.empty() || views.size() == track.views.size(), "views: must hold one for each view of the track");
+  require(views.empty() || views.size() == track.views.size(), "views: must hold one entry per view of the track");
   while (true) {
     const std::vector<ObjectPlace> places = find_places(track, observed, library, options.same_place);
     const std::optional<Candidate> join = find_best_join(track, places, PartJoiner(track, library, views, options));

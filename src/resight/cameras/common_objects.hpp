@@ -18,13 +18,13 @@ struct JoinByObjectsOptions {
   void check() const;
 };
 
-/// Joins parts of a track that see the same objects, however little their views overlap (paper, Sec. III: "common
-/// object hypotheses"). Each object seen in both parts, with each of its symmetries, says how they lie; of the ways
-/// that most objects agree on, the one joins them that their surfaces contradict least (free space) and support most
-/// (overlap of points with like normals). An edge for each join is added to the track.
+/// Joins connected components of a track that observe the same objects, even if their views hardly overlap (paper, Sec.
+/// III: "common object hypotheses"). Each object observed in both components proposes a relative pose per symmetry. Of
+/// the poses on which most objects agree, the one is chosen that the surfaces support most (overlap of points with
+/// similar normals) and contradict least (free space). Each join adds an edge to the track.
 ///
-/// `views`: one for each view of the track, for the surfaces; those without levels do not count. Empty: objects alone
-/// decide. Throws std::invalid_argument as find_places().
+/// `views`: one per view of the track, for the comparison of surfaces; views without levels are ignored. If empty,
+/// objects alone decide. Throws std::invalid_argument like find_places(), or if the number of views differs.
 [[nodiscard]] CameraTrack join_by_objects(CameraTrack track, std::span<const ObservedObject> observed,
                                           const ModelLibrary& library, std::span<const AlignmentView> views = {},
                                           const JoinByObjectsOptions& options = {});

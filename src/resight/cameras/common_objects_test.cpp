@@ -42,7 +42,7 @@ struct TwoSides {
     track.num_parts = 2;
   }
 
-  // As recognition tells them: a little off, and turned by any symmetry.
+  // As recognition would report them: slightly off, and rotated by any symmetry motion.
   void see(int view, int object, const Rigid3& world_from_this) {
     const double turn = object == 1 ? rng.uniform(0, 6) : object == 2 ? 3.14159265 * (view % 2) : 0;
     const Rigid3 symmetry = Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), turn);
@@ -115,7 +115,7 @@ TEST(CommonObjects, AllMovedApartJoinNothing) {
   EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 2);
 }
 
-// Two objects of one kind may be taken for each other; only the surfaces tell that the room is not turned by 180 deg.
+// Objects of one kind may be confused; only the surfaces show that the room is not rotated by 180 deg.
 TEST(CommonObjects, SurfacesDecideBetweenWaysThatObjectsLeaveOpen) {
   TwoSides s;
   s.library.objects.resize(1);
@@ -130,14 +130,14 @@ TEST(CommonObjects, SurfacesDecideBetweenWaysThatObjectsLeaveOpen) {
     s.track.views[static_cast<std::size_t>(v)].world_from_camera = Rigid3::identity();
     const Rigid3& camera = s.world_from_camera[static_cast<std::size_t>(v)];
     surfaces.push_back(make_alignment_view(prepare_view(test::render_ball_scene({}, camera, 0.001))));
-    for (const double x : {-0.2, 0.3})  // nothing of them is in the picture
+    for (const double x : {-0.2, 0.3})  // The objects themselves are not in the image.
       s.observed.push_back({v, 0, camera.inverse() * Rigid3::from_translation({v == 0 ? x : 0.1 - x, 0.2, 0})});
   }
   const Rigid3 truth = s.world_from_camera[0].inverse() * s.world_from_camera[1];
   const CameraTrack joined = join_by_objects(s.track, s.observed, s.library, surfaces);
   ASSERT_EQ(joined.num_parts, 1);
   EXPECT_LT(test::shift_m(joined.views[1].world_from_camera, truth), 0.001);
-  // The wrong way alone is none.
+  // The wrong candidate alone does not join.
   s.library.objects[0].symmetries.discrete.clear();
   for (std::size_t o = 2; o < 4; ++o)
     s.observed[o].camera_from_object =

@@ -8,12 +8,12 @@
 namespace resight {
 namespace {
 
-// What is left of the information of the turn about an axis of symmetry, which no view can tell.
+// Share of the information that remains for the rotation about a symmetry axis, which no view can observe.
 constexpr double kFreeShare = 1e-4;
 
-// Of a recognised pose: a small motion of the object in its own frame.
+// Information of a recognised pose, for a small motion of the object in its own frame.
 TwistMatrix observation_information(const ObjectModel& model, const AdjustJointlyOptions& options) {
-  // The turn is about the centre, not about the origin: a point p moves by turn x (p - centre) + shift.
+  // The rotation is about the centre, not the origin: a point p moves by rotation x (p - centre) + shift.
   const Eigen::Vector3d c = model.center.cast<double>();
   TwistMatrix at_center = TwistMatrix::Identity();
   at_center.bottomLeftCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;

@@ -16,12 +16,13 @@ struct AdjustJointlyOptions {
   void check() const;
 };
 
-/// An object that stood still while views of a part saw it.
+/// An object that did not move while views of a component observed it.
 struct StaticObject {
   int object = -1;  ///< Index into the ModelLibrary.
+  /// Connected component of the track.
   int part = 0;
-  Rigid3 world_from_object;  ///< In the frame of the part.
-  std::vector<int> views;    ///< In which it was seen there.
+  Rigid3 world_from_object;  ///< In the frame of the component.
+  std::vector<int> views;    ///< Views that observed it at this pose.
 };
 
 struct JointAdjustment {
@@ -29,9 +30,9 @@ struct JointAdjustment {
   std::vector<StaticObject> objects;
 };
 
-/// Adjusts the poses of cameras and of the objects that stand still before them together: a graph of the edges between
-/// views and of one edge for each sight of an object, up to its symmetries. An object that moves stands still at each
-/// of its places. The first view of each part stays. Throws std::invalid_argument as find_places().
+/// Adjusts the poses of the cameras and of static objects jointly. The pose graph has the edges between views and one
+/// edge per observation of an object, up to its symmetries. An object that moves counts as one static object per place.
+/// The first view of each component keeps its pose. Throws std::invalid_argument like find_places().
 [[nodiscard]] JointAdjustment adjust_jointly(CameraTrack track, std::span<const ObservedObject> observed,
                                              const ModelLibrary& library, const AdjustJointlyOptions& options = {});
 

@@ -10,7 +10,7 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Eight cameras around a table with three objects: one of them a turned solid, one alike from two sides.
+// Eight cameras around a table with three objects: one is a solid of revolution, one has a two-fold symmetry.
 struct Table {
   ModelLibrary library;
   std::vector<Rigid3> world_from_object;
@@ -35,7 +35,7 @@ struct Table {
       const double angle = 0.7 * v;
       world_from_camera.push_back(
           test::look_at_point({1.1 * std::cos(angle), 1.1 * std::sin(angle), 0.6}, {0, 0.1, 0}));
-      // Each step is a little off: the way drifts.
+      // Every step is slightly off, so that the trajectory drifts.
       track.views.emplace_back();
       if (v == 0) continue;
       track.edges.push_back({v - 1, v, off(truth(v - 1).inverse() * truth(v), 0.003), Matrix6::Identity() * 1e5});
@@ -53,7 +53,7 @@ struct Table {
     for (int k = 0; k < 6; ++k) twist[k] = sigma * rng.normal();
     return pose * from_twist(twist);
   }
-  // By any of its symmetries.
+  // Observes the object up to any of its symmetries.
   void see(int view, int object) {
     const double turn = object == 1 ? rng.uniform(0, 6) : object == 2 ? 3.14159265 * (view % 2) : 0;
     const Rigid3 symmetry = Rigid3::from_translation({0, object == 1 ? 0.02 : 0, 0}) *
@@ -113,7 +113,7 @@ TEST(JointAdjustment, OneSightHasNoSay) {
   EXPECT_EQ(t.mean_error_m(together.track), t.mean_error_m(adjust_jointly(t.track, {}, t.library).track));
 }
 
-// A camera that goes around a turned solid sees the same of it: what little else is known decides.
+// A camera that orbits a solid of revolution always observes the same; the other information decides.
 TEST(JointAdjustment, TheTurnOfATurnedSolidHasNoSay) {
   Table t;
   const Rigid3 world_from_object = t.world_from_camera[0].inverse() * t.world_from_object[1];

@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-// For each feature of `queries` the nearest of `index` if it is much nearer than the next; -1 = none.
+// For each feature of `queries`, the nearest of `index` if it passes the ratio test (Lowe 2004); otherwise -1.
 std::vector<int> find_distinct(const FeatureSet& queries, const DescriptorIndex& index, double max_ratio) {
   const std::vector<DescriptorMatch> matches = index.search(queries.descriptors, 2);
   const double max_ratio_sq = max_ratio * max_ratio;

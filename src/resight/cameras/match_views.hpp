@@ -14,7 +14,7 @@ struct MatchViewsOptions {
   void check() const;
 };
 
-/// The features of one view, ready to be matched with those of others.
+/// Features of one view with their index, for matching against other views. Camera frame, metres.
 class ViewFeatures {
  public:
   explicit ViewFeatures(FeatureSet features_in_camera);
@@ -29,12 +29,12 @@ class ViewFeatures {
 struct ViewMatch {
   Rigid3 a_from_b;
   int num_inliers = 0;
-  double rms_m = 0;  ///< Of the inliers.
+  double rms_m = 0;  ///< Root mean square distance of the inliers.
 };
 
-/// The relative pose of two cameras that see the same things, by matched features and RANSAC; no match when too few
-/// agree. Neither needs an estimate before. What has moved between the views in one piece may win over the background:
-/// the caller checks the pose with the whole views (judge_alignment()).
+/// Relative pose of two cameras with overlapping views, from mutual feature matches and RANSAC; needs no initial
+/// estimate. None if too few matches agree. A large rigid object that moved between the views may win over the
+/// background, so callers verify the pose with the whole views (judge_alignment()).
 [[nodiscard]] std::optional<ViewMatch> match_views(const ViewFeatures& a, const ViewFeatures& b,
                                                    const MatchViewsOptions& options = {});
 

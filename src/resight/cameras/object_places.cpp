@@ -13,7 +13,7 @@ Rigid3 part_from_object(const CameraTrack& track, const ObservedObject& o) {
   return track.views[static_cast<std::size_t>(o.view)].world_from_camera * o.camera_from_object;
 }
 
-// Of the observations of a place, the pose nearest to the others.
+// Pose of the observation whose centre is nearest to those of the others.
 Rigid3 find_medoid(const CameraTrack& track, std::span<const ObservedObject> observed, const ObjectPlace& place,
                    const Eigen::Vector3d& center) {
   Rigid3 best;

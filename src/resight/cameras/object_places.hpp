@@ -9,16 +9,16 @@
 
 namespace resight {
 
-/// A place at which views of one part see an object.
+/// A place at which views of one component observe an object.
 struct ObjectPlace {
   int object = -1;
   int part = 0;
-  Rigid3 part_from_object;        ///< Of the observation nearest to the others.
-  std::vector<int> observations;  ///< Indices, in order; the first one's view stands for the place.
+  Rigid3 part_from_object;        ///< Pose of the medoid of the observations.
+  std::vector<int> observations;  ///< Ascending indices of the input; the view of the first represents the place.
 };
 
-/// The places of each part, in order of parts and observations. Throws std::invalid_argument for an observation of a
-/// view or an object that does not exist.
+/// Groups observations of an object at the same pose, per component. Sorted by component, then by first observation.
+/// Throws std::invalid_argument if an observation refers to a view or an object that does not exist.
 [[nodiscard]] std::vector<ObjectPlace> find_places(const CameraTrack& track, std::span<const ObservedObject> observed,
                                                    const ModelLibrary& library, const SamePlaceOptions& options = {});
 

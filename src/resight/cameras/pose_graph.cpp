@@ -15,7 +15,7 @@
 namespace resight {
 namespace {
 
-// A pose as Ceres has it: quaternion x y z w (Eigen's order), then translation.
+// Pose as Ceres stores it: quaternion x y z w (Eigen's order), then translation.
 using Parameters = std::array<double, 7>;
 
 Parameters to_parameters(const Rigid3& pose) {

@@ -7,12 +7,12 @@
 
 namespace resight {
 
-/// A measured relative pose of two nodes.
+/// Measured relative pose of two nodes.
 struct PoseEdge {
   int a = 0;
   int b = 0;
   Rigid3 a_from_b;
-  /// Inverse covariance of a small motion of b in its own frame: rotation vector (rad), then shift (m).
+  /// Inverse covariance of a small motion of b in its own frame: rotation vector (rad), then translation (m).
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Identity();
 };
 
@@ -24,17 +24,18 @@ struct PoseGraphOptions {
 
 struct PoseGraph {
   std::vector<Rigid3> world_from_node;
-  std::vector<double> error_sq;  ///< Of each edge after the adjustment, in units of its covariance.
+  /// Squared Mahalanobis distance of each edge after the adjustment.
+  std::vector<double> error_sq;
 };
 
-/// The poses that fit the edges best (Ceres, Levenberg-Marquardt), from `world_from_node` on. The first node of each
-/// connected part stays where it is; a node without edges too. Throws std::invalid_argument for an edge between nodes
-/// that do not exist or from a node to itself.
+/// Adjusts the poses to the edges by nonlinear least squares (Ceres, Levenberg-Marquardt), starting from
+/// `world_from_node`. The first node of each connected component and nodes without edges keep their poses. Throws
+/// std::invalid_argument for an edge from a node to itself or to a node that does not exist.
 [[nodiscard]] PoseGraph adjust_pose_graph(std::vector<Rigid3> world_from_node, std::span<const PoseEdge> edges,
                                           const PoseGraphOptions& options = {});
 
-/// Number of the connected part of each node: 0 for the part with the most nodes (of equal ones that with the first
-/// node), and so on.
+/// Connected component of each node, sorted by size: 0 is the component with the most nodes (ties: the one with the
+/// first node). Throws std::invalid_argument like adjust_pose_graph().
 [[nodiscard]] std::vector<int> find_connected_parts(std::size_t num_nodes, std::span<const PoseEdge> edges);
 
 }  // namespace resight

@@ -20,7 +20,7 @@ PoseEdge edge_between(const std::vector<Rigid3>& poses, int a, int b, double sig
           Eigen::Matrix<double, 6, 6>::Identity() / (sigma * sigma)};
 }
 
-// A ring of ten cameras, whose edges are known exactly; the poses to start from are off.
+// A ring of ten cameras with exact edges and perturbed initial poses.
 struct Ring {
   std::vector<Rigid3> truth;
   std::vector<Rigid3> start;

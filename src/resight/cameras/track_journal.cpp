@@ -58,7 +58,7 @@ std::string to_line(const TrackerStep& step) {
   return line.dump() + "\n";
 }
 
-// A view may be joined to earlier ones only.
+// Reads one step. Edges may lead from earlier views only. None if the line is damaged.
 std::optional<TrackerStep> read_line(const std::string& line, int view) {
   try {
     const ordered_json values = ordered_json::parse(line);
@@ -92,7 +92,7 @@ std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std
   std::ifstream in(file, std::ios::binary);
   std::string line;
   if (!std::getline(in, line) || line + "\n" != head_line(job)) return steps;
-  while (std::getline(in, line) && !in.eof()) {  // eof: the last line has no end
+  while (std::getline(in, line) && !in.eof()) {  // At the end of the file: the last line is incomplete.
     std::optional<TrackerStep> step = read_line(line, static_cast<int>(steps.size()));
     if (!step) break;
     steps.push_back(std::move(*step));
@@ -105,7 +105,7 @@ std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std
 TrackJournal::TrackJournal(std::filesystem::path file, std::string job)
     : file_(std::move(file)), job_(std::move(job)), steps_(read_steps(file_, job_)) {}
 
-// Written anew: what could not be read is gone.
+// Rewrites the file without its unreadable lines.
 Result<void> TrackJournal::begin() {
   std::string text = head_line(job_);
   for (const TrackerStep& step : steps_) text += to_line(step);

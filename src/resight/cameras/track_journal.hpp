@@ -10,19 +10,20 @@
 
 namespace resight {
 
-/// What a ViewTracker has found of each view so far, in a file: work that was interrupted goes on from there
-/// (ViewTracker::restore_view()) and ends with the same bytes. JSON lines: what the job is, then a line a view.
+/// File with the results of a ViewTracker for each view so far. An interrupted run resumes from it
+/// (ViewTracker::restore_view()) and ends with the same bytes. JSON lines: a header with the job, then one line per
+/// view.
 class TrackJournal {
  public:
-  /// Goes on with the journal in `file`, or begins one with the first step. `job` tells what is tracked: the steps of
-  /// another job do not count, nor does a line that was not written to its end, nor those after it.
+  /// Resumes the journal in `file`, or starts a new one with the first step. `job` identifies what is tracked: steps of
+  /// another job are ignored, as is an incomplete line and everything after it.
   TrackJournal(std::filesystem::path file, std::string job);
 
-  /// Of views 0, 1, .. in order, as found in the file.
+  /// Steps of views 0, 1, ..., as found in the file.
   [[nodiscard]] const std::vector<TrackerStep>& steps() const { return steps_; }
-  /// An error if the file cannot be written.
+  /// Appends a step. Fails if the file cannot be written.
   [[nodiscard]] Result<void> append(const TrackerStep& step);
-  /// Removes the file: the work is done.
+  /// Removes the file after the job is done.
   void remove();
 
  private:

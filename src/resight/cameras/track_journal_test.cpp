@@ -35,7 +35,7 @@ class TrackJournalTest : public testing::Test {
   }
   ~TrackJournalTest() override { fs::remove_all(folder_); }
 
-  // Tracks views from..to-1 after those that the journal holds.
+  // Tracks the views after those in the journal, up to view `to` - 1.
   void go_on(ViewTracker& tracker, const std::string& job, int to) const {
     TrackJournal journal(file_, job);
     int view = 0;
@@ -86,7 +86,7 @@ TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
   ASSERT_EQ(num_steps("job"), 4U);
   const std::string good = read();
   for (const auto& spoil : std::vector<std::function<void(std::string&)>>{
-           [](std::string& text) { text.resize(text.size() - 1); },  // the end of the line is missing
+           [](std::string& text) { text.resize(text.size() - 1); },  // The end of the line is missing.
            [](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; },
            [](std::string& text) { text[text.rfind("\"part\":0") + 7] = '9'; }}) {
     std::string text = good;
@@ -107,7 +107,7 @@ TEST_F(TrackJournalTest, BeginsWithTheFirstStepAndIsRemovedInTheEnd) {
   TrackJournal journal(file_, "job");
   EXPECT_FALSE(fs::exists(file_));
   ASSERT_TRUE(journal.append(tracker.last_step()).ok());
-  EXPECT_FALSE(TrackJournal(file_ / "below", "job").append(tracker.last_step()).ok());  // below a file
+  EXPECT_FALSE(TrackJournal(file_ / "below", "job").append(tracker.last_step()).ok());  // Below a file.
   EXPECT_EQ(num_steps("job"), 1U);
   journal.remove();
   EXPECT_FALSE(fs::exists(file_));

@@ -11,8 +11,8 @@
 namespace resight {
 namespace {
 
-// The camera centres, and points a metre along the axes of each camera, so that rotations count too and a still camera
-// has a defined motion.
+// The camera centres and the points 1 m along the axes of each camera, so that rotations count and the motion is
+// defined even for a static camera.
 std::vector<Eigen::Vector3f> points_of(std::span<const Rigid3> poses) {
   std::vector<Eigen::Vector3f> points;
   for (const Rigid3& pose : poses) {

@@ -12,18 +12,19 @@
 namespace resight {
 namespace {
 
-// What features alone say of a pose: added to what the surfaces say, where these leave something open.
+// Uncertainty of a pose from features alone. Its information is added to that of the surfaces, which may leave
+// directions unconstrained.
 constexpr double kFeatureSigma_m = 0.01;
 constexpr double kFeatureSigma_rad = 0.015;
-// What calibration and time stamps leave between any two views, however many pixels agree.
+// Residual error of calibration and time stamps between any two views, independent of the number of agreeing pixels.
 constexpr double kFloorSigma_m = 0.003;
 constexpr double kFloorSigma_rad = 0.003;
-constexpr double kMaxOpenSigma = 0.02;  // m, rad: a direction that is known no better is open.
-constexpr int kNumRounds = 2;           // Of closing loops: the second from adjusted poses.
+constexpr double kMaxOpenSigma = 0.02;  // Metres and radians; less certain directions count as unconstrained.
+constexpr int kNumRounds = 2;           // Rounds of loop closure; the second starts from adjusted poses.
 
 TwistMatrix feature_information() { return twist_information(kFeatureSigma_rad, kFeatureSigma_m); }
 
-// Of an edge: open directions may be off by much, but no direction is known better than the floor.
+// Information of an edge: unconstrained directions stay weak, and no direction is more certain than the floor.
 TwistMatrix edge_information(const TwistMatrix& information) {
   return limit_information(information, 1e-3, kFloorSigma_rad, kFloorSigma_m);
 }
@@ -39,10 +40,10 @@ struct Keyframe {
   ViewFeatures features;
 };
 
-// A way to join a view to a keyframe.
+// A possible connection of a view to a keyframe.
 struct Join {
   int keyframe = 0;
-  AlignedView aligned;  // in the keyframe's part
+  AlignedView aligned;  // In the component of the keyframe.
   int num_matches = -1;
   TwistMatrix information = TwistMatrix::Zero();
   [[nodiscard]] double score() const { return aligned.overlap - aligned.seen_through; }
@@ -64,7 +65,7 @@ struct ViewTracker::Impl {
   [[nodiscard]] ViewFeatures extract(const PreparedView& view, const Image<std::uint8_t>* mask) const {
     return ViewFeatures(extract_sift(view, options.sift, mask));
   }
-  // Images too small to be halved, or of another size than the others, cannot be aligned.
+  // Images that are too small to be halved, or differ in size from the others, cannot be aligned.
   [[nodiscard]] bool can_align(const AlignmentView& view) const {
     return !view.levels.empty() &&
            (keyframes.empty() || view.levels.size() == keyframes.front().alignment.levels.size());
@@ -95,7 +96,7 @@ struct ViewTracker::Impl {
   std::optional<std::size_t> first_given;
 };
 
-// Those of the part that look from about the same side, the nearest first.
+// Keyframes of the component with the most similar viewpoints, nearest first.
 std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int part, const Rigid3& pose) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
@@ -124,7 +125,7 @@ bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_over
          !(aligned.brightness_correlation < options.min_correlation);
 }
 
-// From the last view on, as if the camera stood still or went on as before.
+// Tracks the camera from the last view, once from the same pose and once at constant velocity.
 std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
   const TrackedView& last = views.back();
   std::vector<Rigid3> starts{last.world_from_camera};
@@ -165,7 +166,7 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
   return join;
 }
 
-// Among the last keyframes first, then among all.
+// Searches the most recent keyframes first, then the others.
 std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& view, const ViewFeatures& features) const {
   const std::size_t num_recent = std::min(keyframes.size(), static_cast<std::size_t>(options.num_targets));
   std::vector<std::optional<Join>> joins(keyframes.size());
@@ -189,7 +190,7 @@ bool ViewTracker::Impl::is_keyframe(const Join& join) const {
          rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe_turn_rad;
 }
 
-// To the keyframe that it was joined to, and to those beside it that see the same.
+// Adds edges to the keyframe of the join and to neighbouring keyframes with enough overlap.
 void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, const Join& join) {
   const Rigid3& pose = join.aligned.world_from_camera;
   const Keyframe& first = keyframes[static_cast<std::size_t>(join.keyframe)];
@@ -251,7 +252,7 @@ TrackerStep ViewTracker::Impl::last_step() const {
 }
 
 void ViewTracker::Impl::restore_view(const TrackerStep& step, const PreparedView* view) {
-  require(!step.view.is_keyframe || view != nullptr, "view: must be given for a keyframe");
+  require(!step.view.is_keyframe || view != nullptr, "view: is required for a keyframe");
   if (step.view.is_keyframe)
     keyframes.push_back(
         {static_cast<int>(views.size()), make_alignment_view(*view, options.view), extract(*view, nullptr)});
@@ -279,13 +280,13 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   views.push_back(std::move(tracked));
 }
 
-// `match`: by features too, for pairs that are not known to see the same.
+// `match`: also by features, for pairs that are not known to overlap.
 std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
   const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
   std::optional<AlignedView> best;
   TwistMatrix information = TwistMatrix::Zero();
   AlignViewOptions align = options.align;
-  align.num_threads = 1;  // pairs are measured side by side
+  align.num_threads = 1;  // Pairs are measured in parallel.
   if (part_of(a) == part_of(b) && judge_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
     const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
     if (is_plausible(aligned, options.min_overlap)) best = aligned;
@@ -306,7 +307,7 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
                   edge_information(best->information + information)};
 }
 
-// Measures all pairs of keyframes anew; edges to other views stay.
+// Measures all pairs of keyframes again; edges to other views stay.
 void ViewTracker::Impl::close_loops(bool match) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t b = 0; b < keyframes.size(); ++b)
@@ -324,11 +325,11 @@ void ViewTracker::Impl::close_loops(bool match) {
   }
 }
 
-// Adjusts all poses; edges that do not fit go, and with them the parts that only they held together.
+// Adjusts all poses. Edges that do not fit are dropped, which may split components.
 void ViewTracker::Impl::adjust() {
   std::vector<Rigid3> poses;
   for (const TrackedView& view : views) poses.push_back(view.world_from_camera);
-  // Parts that have just been joined start from the first edge between them.
+  // Newly joined components start from the first edge between them.
   std::vector<int> parts;
   for (const TrackedView& view : views) parts.push_back(view.part);
   for (const PoseEdge& e : edges) {
@@ -377,7 +378,7 @@ CameraTrack ViewTracker::Impl::finish() {
   }
   track.num_parts = static_cast<int>(first_from_world.size());
   for (const PoseEdge& e : edges) {
-    int between = 0;  // keyframes
+    int between = 0;  // Number of keyframes.
     for (int v = std::min(e.a, e.b) + 1; v < std::max(e.a, e.b); ++v)
       between += views[static_cast<std::size_t>(v)].is_keyframe ? 1 : 0;
     track.num_loops += between >= options.num_targets ? 1 : 0;

@@ -36,15 +36,19 @@ struct TrackViewsOptions {
 
 struct TrackedView {
   std::string name;
-  Rigid3 world_from_camera;  ///< In the frame of its part: that of the part's first view, or the given one.
-  int part = 0;              ///< Views of different parts could not be joined. 0 = the part with the most views.
+  /// In the frame of its component: that of the component's first view, or the given world frame.
+  Rigid3 world_from_camera;
+  /// Connected component; views of different components could not be joined. After finish(), 0 has the most views.
+  int part = 0;
   bool is_keyframe = false;
-  int num_matches = -1;         ///< Features that agreed with the keyframe it was joined to; -1 = none were needed.
-  double overlap = 0;           ///< With the views that it was aligned to, when it came.
-  Twist sigma = Twist::Zero();  ///< Standard deviations against the keyframe it was joined to: rad about x, y, z; m.
+  /// Feature matches that agree with the keyframe it was joined to; -1 = none were needed.
+  int num_matches = -1;
+  double overlap = 0;  ///< With the views it was aligned to when it was added.
+  /// Standard deviations relative to the keyframe it was joined to: rad about x, y, z, then m.
+  Twist sigma = Twist::Zero();
 };
 
-/// What add_view() brought.
+/// Result of one add_view().
 struct TrackerStep {
   TrackedView view;
   std::vector<PoseEdge> edges;  ///< From earlier views to this one.
@@ -52,32 +56,35 @@ struct TrackerStep {
 
 struct CameraTrack {
   std::vector<TrackedView> views;
-  std::vector<PoseEdge> edges;  ///< Between views; those that were used.
+  std::vector<PoseEdge> edges;  ///< Edges between views that fit the final poses.
+  /// Number of connected components.
   int num_parts = 0;
-  int num_loops = 0;  ///< Edges that are no steps from a view to one just before.
+  /// Edges that span at least num_targets keyframes.
+  int num_loops = 0;
 };
 
-/// Camera poses from the views alone. Each view is followed from the one before by dense alignment, or found by its
-/// features among the keyframes; at the end keyframes that see the same are joined and all poses adjusted together.
-/// Changes in the scene do not pull. With `mask`, only what it holds counts: the poses are then those of the camera
-/// relative to that thing.
+/// Estimates camera poses from the views alone. Dense alignment tracks each view from its predecessor; if that fails,
+/// features find it among the keyframes. At the end, overlapping keyframes are connected and all poses adjusted jointly
+/// (pose graph). Robust weights suppress changes in the scene. With `mask`, only the masked object counts, and the
+/// poses are those of the camera relative to this object.
 class ViewTracker {
  public:
   explicit ViewTracker(const TrackViewsOptions& options = {});
   ~ViewTracker();
   ViewTracker(ViewTracker&&) noexcept;
 
-  /// The pose as far as it is known now. A view that cannot be joined to any begins a part of its own; finish() may
+  /// Adds a view and returns its preliminary pose. A view that cannot be joined starts its own component; finish() may
   /// still join it. `mask`: of the view's size, non-zero = use.
   TrackedView add_view(const PreparedView& view, const Image<std::uint8_t>* mask = nullptr);
-  /// What the last add_view() brought.
+  /// Result of the last add_view(). Throws std::invalid_argument if no view was added.
   [[nodiscard]] TrackerStep last_step() const;
-  /// The next view as an earlier run found it, without a mask. `view`: needed for keyframes only, else it may be null.
+  /// Restores the next view from the result of an earlier run without a mask. `view` is required for keyframes only;
+  /// otherwise it may be null. Throws std::invalid_argument for a keyframe without its view.
   void restore_view(const TrackerStep& step, const PreparedView* view);
-  /// A view of which the pose is known, but not well: finish() refines it. It is a keyframe, in one part with the
-  /// others that are given.
+  /// Adds a view whose pose is known approximately; finish() refines it. The view becomes a keyframe if it can be
+  /// aligned. All given views form one component.
   void add_posed_view(const PreparedView& view);
-  /// Closes loops and adjusts all poses. The tracker may then go on with further views.
+  /// Closes loops and adjusts all poses. Further views may be added afterwards.
   [[nodiscard]] CameraTrack finish();
 
  private:

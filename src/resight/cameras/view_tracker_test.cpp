@@ -85,7 +85,7 @@ TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {
 }
 
 TEST(ViewTracker, APlainFloorIsNoPlace) {
-  // Nothing on a floor without print tells where one is: two sights of it from different places are not joined.
+  // An untextured floor does not determine a position: two views from different places are not joined.
   BallScene bare;
   bare.textured = false;
   bare.has_ball = false;
@@ -96,7 +96,7 @@ TEST(ViewTracker, APlainFloorIsNoPlace) {
 }
 
 TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
-  // The ball does not turn, but shifts before a still background; poses relative to it shift the other way.
+  // The ball does not rotate, but moves in front of a static background; poses relative to it move the opposite way.
   ViewTracker tracker;
   std::vector<Rigid3> truth;
   const Rigid3 pose = test::look_at_point({0, -0.6, 0.5}, {0.1, 0.05, 0.1});
