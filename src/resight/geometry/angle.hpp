@@ -4,6 +4,7 @@
 
 namespace resight {
 
+/// Converts degrees to radians.
 [[nodiscard]] constexpr double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 }  // namespace resight

@@ -36,7 +36,8 @@ void BlockGrid::find_in_box(std::span<const Eigen::Vector3f> points, const Eigen
   const Eigen::Vector3i first = voxel_index(min, inverse_cell_);
   const Eigen::Vector3i last = voxel_index(max, inverse_cell_);
   const Eigen::Vector3d size = (last - first).cast<double>().array() + 1.0;
-  if (size.prod() > static_cast<double>(cells_.size())) {  // A box larger than the scene: look at what there is.
+  // The box has more cells than are occupied: test the occupied ones.
+  if (size.prod() > static_cast<double>(cells_.size())) {
     for (std::size_t c = 0; c < cells_.size(); ++c)
       if ((cells_[c].array() >= first.array()).all() && (cells_[c].array() <= last.array()).all()) add_cell(c);
     return;

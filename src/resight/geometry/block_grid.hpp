@@ -8,7 +8,8 @@
 
 namespace resight {
 
-/// Points sorted into cubes: those of one cell stand side by side. Cells in order of their first point.
+/// Points sorted into cubes of side `cell_m`. The points of one cell are contiguous; cells are in order of their first
+/// point.
 class BlockGrid {
  public:
   BlockGrid() : BlockGrid({}, 1.0) {}
@@ -20,9 +21,10 @@ class BlockGrid {
   [[nodiscard]] std::span<const int> points_of(std::size_t c) const {
     return std::span(order_).subspan(begin_[c], begin_[c + 1] - begin_[c]);
   }
-  /// Number of the cell at these coordinates, or VoxelMap::kNotFound.
+  /// Index of the cell at these coordinates, or VoxelMap::kNotFound.
   [[nodiscard]] int find(int ix, int iy, int iz) const { return map_.find(voxel_key(ix, iy, iz)); }
-  /// Indices of the points in the closed box, cell by cell; `found` is overwritten.
+  /// Indices of the points in the closed box, cell by cell. Overwrites `found`. `points` must be those of the
+  /// constructor.
   void find_in_box(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& min, const Eigen::Vector3f& max,
                    std::vector<int>& found) const;
 

@@ -4,7 +4,7 @@
 
 namespace resight {
 
-/// A pinhole camera without distortion. Pixel centres at whole numbers; camera frame: x right, y down, z forward.
+/// A pinhole camera without distortion. Pixel centres are at whole numbers. Camera frame: x right, y down, z forward.
 struct Camera {
   int width = 0;
   int height = 0;
@@ -13,24 +13,24 @@ struct Camera {
   double cx = 0;  ///< px
   double cy = 0;  ///< px
 
-  /// Size and focal lengths positive, all numbers finite.
+  /// Whether size and focal lengths are positive and all numbers are finite.
   [[nodiscard]] bool is_valid() const;
-  /// Pixel (u, v) of a point with z > 0; not tested against the image border.
+  /// Pixel (u, v) of a point with z > 0. The pixel may lie outside the image.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_in_camera) const {
     return {fx * p_in_camera.x() / p_in_camera.z() + cx, fy * p_in_camera.y() / p_in_camera.z() + cy};
   }
-  /// The point at `depth_m` (along z, not along the ray) behind pixel (u, v).
+  /// The point at `depth_m` (along z, not along the ray) on the ray of pixel (u, v).
   [[nodiscard]] Eigen::Vector3d unproject(double u, double v, double depth_m) const {
     return {(u - cx) / fx * depth_m, (v - cy) / fy * depth_m, depth_m};
   }
-  /// Within the image, borders of half a pixel around the outer pixel centres included.
+  /// Whether the pixel lies within the image, including borders of half a pixel around the outer pixel centres.
   [[nodiscard]] bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < width - 0.5 && pixel.y() < height - 0.5;
   }
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// 640x480, f = 525 px, centre (319.5, 239.5): Kinect v1 and Xtion as commonly assumed.
+/// The usual intrinsics of Kinect v1 and Xtion: 640x480, f = 525 px, centre (319.5, 239.5).
 [[nodiscard]] Camera make_kinect_camera();
 
 }  // namespace resight

@@ -10,7 +10,7 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> points, double cell_m) : inv
   std::vector<int> cell(points.size(), VoxelMap::kNotFound);
   std::vector<int> count;
   Eigen::Vector3i last_index(0, 0, 0);
-  int last_cell = VoxelMap::kNotFound;  // neighbours on an image grid mostly share their cell: saves the look-up
+  int last_cell = VoxelMap::kNotFound;  // adjacent pixels mostly share a cell, which saves the look-up
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) continue;
     const Eigen::Vector3i index = cell_of(points[i]);

@@ -10,8 +10,8 @@
 
 namespace resight {
 
-/// A cloud sorted into cubes, for exact searches around a point: the points of a cube lie side by side in memory.
-/// Points that are not finite are left out.
+/// A cloud sorted into cubes of side `cell_m`, for exact searches around a point. The points of a cube are contiguous
+/// in memory. Points that are not finite are left out.
 class CellGrid {
  public:
   CellGrid(std::span<const Eigen::Vector3f> points, double cell_m);
@@ -20,15 +20,15 @@ class CellGrid {
   [[nodiscard]] double inverse_cell() const { return inverse_cell_; }
   /// Number of the cell with this index, or VoxelMap::kNotFound.
   [[nodiscard]] int find(int ix, int iy, int iz) const { return cells_.find(voxel_key(ix, iy, iz)); }
-  /// Index of the cell that holds a finite point.
+  /// Index of the cell that contains a finite point.
   [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3f& p) const {
-    // In double precision the rounding cannot carry a point over a whole cell, however far from the origin it is.
+    // Double precision, so that rounding never moves a point by a whole cell, however far from the origin it is.
     return {cell_of(p.x()), cell_of(p.y()), cell_of(p.z())};
   }
   [[nodiscard]] std::span<const Eigen::Vector3f> points_of(int cell) const {
     return std::span(points_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
   }
-  /// Positions in the cloud of points_of(cell), ascending.
+  /// Indices in the original cloud of points_of(cell), ascending.
   [[nodiscard]] std::span<const int> indices_of(int cell) const {
     return std::span(indices_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
   }
@@ -42,7 +42,7 @@ class CellGrid {
 
   double inverse_cell_;
   VoxelMap cells_;
-  std::vector<int> begin_;               // of each cell in points_ and indices_, and the end of the last
+  std::vector<int> begin_;               // start of each cell in points_ and indices_, then the end
   std::vector<Eigen::Vector3f> points_;  // cell by cell
   std::vector<int> indices_;
 };

@@ -41,7 +41,7 @@ PointNeighbor KdTree::nearest(const Eigen::Vector3f& query) const {
   if (impl_->adaptor.points.empty()) return {};
   std::uint32_t index = 0;
   float distance_sq = 0;
-  if (impl_->tree.knnSearch(query.data(), 1, &index, &distance_sq) == 0) return {};  // a NaN is near to nothing
+  if (impl_->tree.knnSearch(query.data(), 1, &index, &distance_sq) == 0) return {};  // a NaN query has no neighbour
   return {static_cast<int>(index), distance_sq};
 }
 

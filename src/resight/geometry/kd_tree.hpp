@@ -7,13 +7,13 @@
 
 namespace resight {
 
-/// A neighbour in a cloud.
+/// A nearest neighbour in a cloud.
 struct PointNeighbor {
   int index = -1;
   float distance_sq = 0;  ///< m^2
 };
 
-/// Exact nearest neighbours in 3-D (nanoflann). Copies the points.
+/// Exact nearest neighbours in 3-D (nanoflann). Copies the points. All distances are in metres.
 class KdTree {
  public:
   explicit KdTree(std::span<const Eigen::Vector3f> points);
@@ -23,9 +23,9 @@ class KdTree {
 
   /// The nearest point; index -1 for an empty cloud or a NaN query.
   [[nodiscard]] PointNeighbor nearest(const Eigen::Vector3f& query) const;
-  /// Up to `k` nearest, nearest first.
+  /// Up to `k` neighbours, nearest first.
   [[nodiscard]] std::vector<PointNeighbor> nearest(const Eigen::Vector3f& query, int k) const;
-  /// All points nearer than `radius_m`, in ascending order of index; `neighbors` is overwritten.
+  /// All points closer than `radius_m`, in ascending order of index. Overwrites `neighbors`.
   void within(const Eigen::Vector3f& query, double radius_m, std::vector<PointNeighbor>& neighbors) const;
 
  private:

@@ -26,7 +26,7 @@ std::vector<float> sorted_distances_sq(const std::vector<Eigen::Vector3f>& point
   return distances;
 }
 
-// Distances are compared, not indices: of equally near points any may come first.
+// Compares distances, not indices: the order of equally distant points is arbitrary.
 TEST(KdTree, AgreesWithBruteForce) {
   Rng rng(1);
   for (const int count : {1, 2, 9, 11, 500}) {
@@ -51,7 +51,7 @@ TEST(KdTree, WithinAgreesWithBruteForceInOrderOfIndex) {
   Rng rng(2);
   const std::vector<Eigen::Vector3f> points = random_points(800, rng);
   const KdTree tree(points);
-  std::vector<PointNeighbor> found{{42, 1.0F}};  // to be overwritten
+  std::vector<PointNeighbor> found{{42, 1.0F}};  // must be overwritten
   std::size_t total = 0;
   for (const Eigen::Vector3f& query : random_points(50, rng)) {
     std::vector<int> expected;

@@ -12,8 +12,8 @@ Eigen::Vector3f face_cross(const TriangleMesh& mesh, const std::array<int, 3>& f
   return (mesh.vertices[f[1]] - mesh.vertices[f[0]]).cross(mesh.vertices[f[2]] - mesh.vertices[f[0]]);
 }
 
-// +1, or -1 for a mesh that is inside out. Six times the signed volume, taken about the centroid, so that open meshes
-// are judged by where most of their faces look.
+// Returns +1, or -1 for a mesh that is inside out: the sign of six times the signed volume. The volume is taken about
+// the centroid, so that the direction of most faces decides for open meshes.
 float find_outward_sign(const TriangleMesh& mesh) {
   const Eigen::Vector3f center = centroid(mesh.vertices);
   double volume = 0;
@@ -52,7 +52,8 @@ PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
   check_positive("samples_per_sq_m", samples_per_sq_m);
   const float sign = find_outward_sign(mesh);
   PointCloud cloud;
-  double wanted = 0;  // carried from face to face, so that faces smaller than a sample's share get their due as well
+  // Carried from face to face, so that faces smaller than the share of one sample are sampled in proportion.
+  double wanted = 0;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     const auto& f = mesh.faces[face];
     const Eigen::Vector3f cross = face_cross(mesh, f);

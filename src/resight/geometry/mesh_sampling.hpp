@@ -5,9 +5,9 @@
 
 namespace resight {
 
-/// `samples_per_sq_m` points per area, evenly over all triangles (a low-discrepancy sequence: no seed), with the
-/// normals of the mesh where it has them, else of the faces, all turned outwards (the mesh counts as inside out if its
-/// signed volume is negative), and its colours. Faces without area get none.
+/// Samples the surface of a mesh evenly with `samples_per_sq_m` points per area, by a low-discrepancy sequence (no
+/// seed). Points have the colours of the mesh, and its normals, or face normals if it has none. All normals point
+/// outwards: those of a mesh with negative signed volume are flipped. Faces without area get no points.
 [[nodiscard]] PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m);
 
 }  // namespace resight

@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-// A closed tube of `radius` and height 0.1 m around z, facets outward.
+// A closed tube of `radius` and height 0.1 m around z. Facets face outwards.
 TriangleMesh make_cylinder(float radius) {
   TriangleMesh mesh;
   constexpr int kSides = 64;
@@ -69,19 +69,19 @@ TEST(SampleSurface, IsEvenAndFacesOutwards) {
   EXPECT_NEAR(top, 1e6 * std::numbers::pi * 0.04 * 0.04, 25);
 }
 
-// Every spot of the surface has a sample nearby: the largest hole is about the spacing.
+// Each place of the surface has a sample nearby: the largest hole has about the size of the spacing.
 TEST(SampleSurface, LeavesNoHoles) {
   TriangleMesh square;
   square.vertices = {{0, 0, 0}, {0.1F, 0, 0}, {0.1F, 0.1F, 0}, {0, 0.1F, 0}};
   square.faces = {{0, 1, 2}, {0, 2, 3}};
-  const PointCloud cloud = sample_surface(square, 1e6);  // one per mm^2
+  const PointCloud cloud = sample_surface(square, 1e6);  // one sample per mm^2
   std::set<std::pair<int, int>> cells;
   for (const auto& p : cloud.points) cells.emplace(static_cast<int>(p.x() / 0.002F), static_cast<int>(p.y() / 0.002F));
   EXPECT_EQ(cells.size(), 2500U);
 }
 
 TEST(SampleSurface, SmallTrianglesGetTheirShare) {
-  TriangleMesh mesh;  // 40 x 40 x 2 triangles of half a square millimetre each, at 0.2 samples per triangle
+  TriangleMesh mesh;  // 40 x 40 x 2 triangles of 0.5 mm^2 each, with 0.2 samples per triangle
   for (int y = 0; y <= 40; ++y)
     for (int x = 0; x <= 40; ++x)
       mesh.vertices.emplace_back(0.001F * static_cast<float>(x), 0.001F * static_cast<float>(y), 0.0F);

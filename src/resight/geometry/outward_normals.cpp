@@ -18,11 +18,12 @@ namespace {
 
 constexpr std::size_t kPointsPerTask = 256;
 constexpr double kSpacingsPerCell = 2.0;
-// Only surfaces less slanted than this are judged; within a cell they fall back by no more than its side times tan.
+// Only surfaces less slanted than this vote. Within a cell, their depth varies by at most the cell side times the
+// tangent.
 constexpr float kMinCosine = 0.6F;
 constexpr double kMaxTangent = 1.3333;
 
-// Evenly around the sphere (Fibonacci).
+// Directions spread evenly over the sphere (Fibonacci).
 std::vector<Eigen::Vector3f> spread_directions(int count) {
   std::vector<Eigen::Vector3f> directions;
   for (int i = 0; i < count; ++i) {
@@ -48,7 +49,7 @@ Eigen::Vector3f fit_normal(std::span<const Eigen::Vector3f> points, const std::v
   return solver.eigenvectors().col(0).cast<float>().normalized();
 }
 
-// A cloud looked at from far away along parallel rays: the height of its nearest point in each cell of an image.
+// An orthographic view of a cloud: the height of the nearest point in each cell of the image.
 class HeightImage {
  public:
   HeightImage(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& to_viewer, float cell_m)
@@ -82,8 +83,8 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-// For each point the sum of n . d over the directions d that it is seen from: positive if they are on its normal's
-// side.
+// For each point, the sum of n . d over the directions d from which it is visible. Positive if these lie on the side of
+// its normal.
 std::vector<float> vote_for_sides(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                                   double spacing_m, const OutwardNormalsOptions& options) {
   const auto cell_m = static_cast<float>(kSpacingsPerCell * spacing_m);
@@ -135,9 +136,10 @@ std::vector<Eigen::Vector3f> estimate_outward_normals(std::span<const Eigen::Vec
   std::vector<float> spacings(points.size());
   parallel_for_blocks(points.size(), kPointsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::vector<PointNeighbor> near = tree.nearest(points[i], options.num_neighbors + 1);  // with itself
+      // Includes the point itself.
+      const std::vector<PointNeighbor> near = tree.nearest(points[i], options.num_neighbors + 1);
       normals[i] = fit_normal(points, near);
-      // k neighbours on a disc: its radius is spacing * sqrt(k / pi).
+      // A disc with k evenly spaced neighbours has the radius spacing * sqrt(k / pi).
       spacings[i] =
           std::sqrt(near.back().distance_sq * static_cast<float>(std::numbers::pi) / static_cast<float>(near.size()));
     }

@@ -52,7 +52,7 @@ Surface make_box(double spacing_m) {
   return box;
 }
 
-// An open cup: its inner wall, 6 mm behind the outer one, faces the axis.
+// An open cup. Its inner wall lies 6 mm behind the outer one and faces the axis.
 Surface make_cup(double spacing_m) {
   Surface cup;
   for (const double radius : {0.040, 0.034}) {
@@ -65,13 +65,13 @@ Surface make_cup(double spacing_m) {
         add(cup, radius * n + z * Eigen::Vector3d::UnitZ(), side * n);
       }
   }
-  for (double radius = 0.034; radius <= 0.040; radius += spacing_m)  // the rim joins them
+  for (double radius = 0.034; radius <= 0.040; radius += spacing_m)  // the rim joins the walls
     for (double angle = 0; angle < 2 * std::numbers::pi; angle += spacing_m / radius)
       add(cup, {radius * std::cos(angle), radius * std::sin(angle), 0.1}, {0, 0, 1});
   return cup;
 }
 
-// Share of normals within `max_deg` of the truth, side included.
+// Share of normals within `max_deg` of the truth, sign included.
 double agreement(const Surface& surface, const std::vector<Eigen::Vector3f>& normals, double max_deg) {
   int count = 0;
   for (std::size_t i = 0; i < normals.size(); ++i)
@@ -85,7 +85,7 @@ TEST(OutwardNormals, OfASphereBoxAndCup) {
   const Surface box = make_box(0.003);
   const auto box_normals = estimate_outward_normals(box.points);
   EXPECT_EQ(agreement(box, box_normals, 89), 1.0);
-  EXPECT_GT(agreement(box, box_normals, 5), 0.8);  // the others lie at edges
+  EXPECT_GT(agreement(box, box_normals, 5), 0.8);  // the remaining points lie at edges
   const Surface cup = make_cup(0.002);
   EXPECT_GT(agreement(cup, estimate_outward_normals(cup.points), 30), 0.95);
 }

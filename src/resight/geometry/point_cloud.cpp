@@ -10,7 +10,7 @@ namespace resight {
 
 void PointCloud::append(const PointCloud& other) {
   if (other.empty()) return;
-  if (&other == this) return append(PointCloud(other));  // insert() must not read from the vector it grows
+  if (&other == this) return append(PointCloud(other));  // insert() must not read from the vector that it grows
   require(empty() || (has_normals() == other.has_normals() && has_colors() == other.has_colors()),
           "PointCloud::append: the clouds have different attributes");
   points.insert(points.end(), other.points.begin(), other.points.end());
@@ -61,7 +61,7 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
   VoxelMap voxels(cloud.size() / 4);
   std::vector<Sums> sums;
   std::uint64_t last_key = 0;
-  std::size_t number = 0;  // neighbours on an image grid mostly share their voxel: saves the look-up
+  std::size_t number = 0;  // adjacent pixels mostly share a voxel, which saves the look-up
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::uint64_t key = voxel_key(cloud.points[i], inverse_size);
     if (i == 0 || key != last_key) number = static_cast<std::size_t>(voxels.insert(key));
@@ -78,8 +78,8 @@ PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m) {
   for (const Sums& s : sums) {
     result.points.push_back((s.point / s.count).cast<float>());
     if (cloud.has_normals()) {
-      // Opposite normals (both sides of a thin wall) cancel out: then the first one stands, so that it is always a unit
-      // vector.
+      // Opposite normals (both sides of a thin wall) cancel out. The first one is then used, so that the result is
+      // always a unit vector.
       const bool cancelled = s.normal.norm() < 1e-3 * s.count;
       result.normals.push_back(cancelled ? cloud.normals[s.first]
                                          : Eigen::Vector3f(s.normal.normalized().cast<float>()));

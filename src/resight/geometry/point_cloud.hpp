@@ -9,7 +9,8 @@
 
 namespace resight {
 
-/// An unorganised cloud, metres, all points finite. `normals` (unit) and `colors` are empty or as long as `points`.
+/// An unorganised cloud in metres. All points are finite. `normals` (unit) and `colors` are empty or as long as
+/// `points`.
 struct PointCloud {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
@@ -19,21 +20,21 @@ struct PointCloud {
   [[nodiscard]] bool empty() const { return points.empty(); }
   [[nodiscard]] bool has_normals() const { return !points.empty() && normals.size() == points.size(); }
   [[nodiscard]] bool has_colors() const { return !points.empty() && colors.size() == points.size(); }
-  /// Adds the points of `other`, which must have the same attributes (or this cloud must be empty).
+  /// Appends the points of `other`. Both clouds must have the same attributes unless this cloud is empty.
   void append(const PointCloud& other);
 };
 
-/// The cloud in frame a. Normals are rotated, colours kept.
+/// Transforms the cloud to frame a. Rotates normals and keeps colours.
 [[nodiscard]] PointCloud transform(const Rigid3& a_from_b, const PointCloud& cloud_in_b);
 
 /// The points with the given indices, in that order, with their attributes.
 [[nodiscard]] PointCloud select(const PointCloud& cloud, std::span<const int> indices);
 
-/// No two points in one cube of side `voxel_size_m`: voxel_downsample() would find nothing to average.
+/// Whether no two points share a cube of side `voxel_size_m`. voxel_downsample() would then average nothing.
 [[nodiscard]] bool is_downsampled(const PointCloud& cloud, double voxel_size_m);
 
-/// One point per occupied cube of side `voxel_size_m`: the mean of its points, normals (renormalised) and colours, in
-/// the order of each voxel's first point.
+/// One point per occupied cube of side `voxel_size_m`: the means of its points, normals (renormalised) and colours.
+/// Voxels are in order of their first points.
 [[nodiscard]] PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size_m);
 
 /// Mean of the points; zero for an empty cloud.

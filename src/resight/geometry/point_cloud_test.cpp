@@ -106,7 +106,7 @@ TEST(VoxelDownsample, AgreesWithAMapOfCubes) {
   ASSERT_GT(thin.size(), 500U);
   ASSERT_LT(thin.size(), 1500U);
   EXPECT_FALSE(is_downsampled(cloud, kVoxel));
-  EXPECT_TRUE(is_downsampled(thin, kVoxel));  // Means stay in their cubes.
+  EXPECT_TRUE(is_downsampled(thin, kVoxel));  // means stay in their cubes
   for (std::size_t k = 0; k < thin.size(); ++k) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -140,7 +140,7 @@ TEST(VoxelDownsample, EdgeCases) {
   EXPECT_TRUE(voxel_downsample({}, 0.01).empty());
   EXPECT_THROW((void)voxel_downsample({}, 0), std::invalid_argument);
   PointCloud two;
-  two.points = {{0.0005F, 0, 0}, {-0.0005F, 0, 0}};  // on both sides of a border at zero
+  two.points = {{0.0005F, 0, 0}, {-0.0005F, 0, 0}};  // on both sides of the voxel border at zero
   EXPECT_EQ(voxel_downsample(two, 0.01).size(), 2U);
   EXPECT_FALSE(voxel_downsample(two, 0.01).has_normals());
 }

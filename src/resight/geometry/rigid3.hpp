@@ -6,20 +6,20 @@
 
 namespace resight {
 
-/// A rigid motion. Named by its frames: `p_in_a = a_from_b * p_in_b`, `a_from_c = a_from_b * b_from_c`.
-/// Metres. The rotation is kept as a proper orthonormal matrix; is_rigid() tells whether it is one.
+/// A rigid motion in metres, named by its frames: `p_in_a = a_from_b * p_in_b`, `a_from_c = a_from_b * b_from_c`.
+/// `rotation` must be a proper orthonormal matrix; is_rigid() checks it.
 struct Rigid3 {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
   [[nodiscard]] static Rigid3 identity() { return {}; }
-  /// From the upper 3x4 of a homogeneous matrix, unchecked (see is_rigid()).
+  /// From the upper 3x4 part of a homogeneous matrix. Not checked (see is_rigid()).
   [[nodiscard]] static Rigid3 from_matrix(const Eigen::Matrix4d& m) {
     return {m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
   }
   [[nodiscard]] static Rigid3 from_rotation(const Eigen::Matrix3d& r) { return {r, Eigen::Vector3d::Zero()}; }
   [[nodiscard]] static Rigid3 from_translation(const Eigen::Vector3d& t) { return {Eigen::Matrix3d::Identity(), t}; }
-  /// Rotation by `angle_rad` about `axis` (need not be normalised) through the origin.
+  /// Rotation by `angle_rad` about `axis` through the origin. `axis` need not be normalised.
   [[nodiscard]] static Rigid3 from_axis_angle(const Eigen::Vector3d& axis, double angle_rad) {
     return from_rotation(Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix());
   }
@@ -32,7 +32,7 @@ struct Rigid3 {
   }
   [[nodiscard]] Rigid3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 
-  /// Finite, orthonormal within `tolerance`, and not a reflection.
+  /// Whether the motion is finite, orthonormal within `tolerance`, and not a reflection.
   [[nodiscard]] bool is_rigid(double tolerance = 1e-3) const {
     return rotation.allFinite() && translation.allFinite() &&
            (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
@@ -57,15 +57,15 @@ struct Rigid3f {
   }
 };
 
-/// Geodesic angle between two rotations, radians in [0, pi].
+/// Geodesic angle between two rotations, in radians in [0, pi].
 [[nodiscard]] inline double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  // atan2 of the skew part against the trace stays exact near 0 and near pi, where acos loses half of the digits.
+  // atan2 of the skew part and the trace stays exact near 0 and near pi, where acos loses half of the digits.
   const Eigen::Matrix3d r = a.transpose() * b;
   const Eigen::Vector3d skew(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
   return std::atan2(0.5 * skew.norm(), 0.5 * (r.trace() - 1.0));
 }
 
-/// The nearest proper rotation (SVD), for matrices read from text with few digits.
+/// The nearest proper rotation (by SVD), for matrices read from text with few digits.
 [[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m);
 
 }  // namespace resight

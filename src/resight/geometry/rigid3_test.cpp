@@ -75,7 +75,7 @@ TEST(Rigid3, IsRigidRefusesWhatIsNone) {
   EXPECT_TRUE(scaled.is_rigid(0.1));
 }
 
-// The quaternion of a very small angle holds it in its vector part without loss.
+// The quaternion of a very small angle keeps the angle in its vector part without loss.
 TEST(RotationAngle, IsExactFromZeroToPi) {
   Rng rng(3);
   const double pi = std::numbers::pi;
@@ -113,7 +113,8 @@ TEST(NearestRotation, KeepsRotationsAndRepairsRoundedOnes) {
     const Eigen::Matrix3d repaired = nearest_rotation(rounded);
     ASSERT_TRUE(Rigid3::from_rotation(repaired).is_rigid(1e-12));
     ASSERT_LT(rotation_angle_rad(repaired, r), 2e-3);
-    ASSERT_LE((repaired - rounded).norm(), (r - rounded).norm() + 1e-12);  // nearest: not farther than the true one
+    // nearest: at most as far as the true rotation
+    ASSERT_LE((repaired - rounded).norm(), (r - rounded).norm() + 1e-12);
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 int count_rows(double bin_size_rad) {
   check_in_range("bin_size_rad", bin_size_rad, 0.001, std::numbers::pi / 2);
-  constexpr double kRounding = 1e-3;  // pi / 0.0349066 is 89.9999: 90 rows, and not 91 for a size of 0.034906
+  constexpr double kRounding = 1e-3;  // 2 deg given as 0.03490658 (90.00001 rows) gives 90 rows, not 91
   return static_cast<int>(std::ceil(std::numbers::pi / bin_size_rad - kRounding));
 }
 
@@ -28,9 +28,9 @@ int SphericalBins::bin(const Eigen::Vector3f& p_in_camera) const {
   if (!(level > 0 || std::abs(p_in_camera.y()) > 0) || !p_in_camera.allFinite()) return -1;
   constexpr float kPi = std::numbers::pi_v<float>;
   const float theta = std::atan2(level, p_in_camera.y());                // [0, pi] from the +y axis
-  const float phi = kPi + std::atan2(p_in_camera.x(), p_in_camera.z());  // [0, 2 pi], pi straight ahead
+  const float phi = kPi + std::atan2(p_in_camera.x(), p_in_camera.z());  // [0, 2 pi]; pi is straight ahead
   const int row = std::clamp(static_cast<int>(theta * inverse_size_), 0, num_theta_ - 1);
-  const int column = static_cast<int>(phi * inverse_size_) % num_phi_;  // 2 pi is 0 again
+  const int column = static_cast<int>(phi * inverse_size_) % num_phi_;  // 2 pi wraps to 0
   return row * num_phi_ + column;
 }
 

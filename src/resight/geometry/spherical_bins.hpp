@@ -4,18 +4,18 @@
 
 namespace resight {
 
-/// Regular bins of directions around the origin, Eq. (4). Deviations: atan2 for the printed arctan(y/x), which confuses
-/// opposite quadrants; the pole lies along the camera's y axis (up/down), not along its viewing axis, where the paper's
-/// bins degenerate in the middle of the image; theta covers pi, so there are half as many rows as columns.
+/// Regular bins of directions around the origin, Eq. (4). Deviations from the paper: atan2 replaces arctan(y/x), which
+/// confuses opposite quadrants. The pole lies along the y axis of the camera (vertical), not along the viewing axis,
+/// where the bins degenerate in the middle of the image. theta covers pi, so there are half as many rows as columns.
 class SphericalBins {
  public:
-  /// `bin_size_rad` in [0.001, pi/2] (paper: 2 deg); shrunk to the next size that divides pi, so that all bins are
+  /// `bin_size_rad` in [0.001, pi/2] (paper: 2 deg) is reduced to the next size that divides pi, so that all bins are
   /// equal.
   explicit SphericalBins(double bin_size_rad = 0.0349066);
   [[nodiscard]] int num_bins() const { return num_theta_ * num_phi_; }
   [[nodiscard]] int num_theta() const { return num_theta_; }
   [[nodiscard]] int num_phi() const { return num_phi_; }
-  /// Bin of the direction of a point, row (theta) by row; -1 for the origin and for NaN.
+  /// Bin of the direction of a point, in row-major order (rows are theta); -1 for the origin and for NaN.
   [[nodiscard]] int bin(const Eigen::Vector3f& p_in_camera) const;
 
  private:

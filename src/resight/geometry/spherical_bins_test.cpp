@@ -40,7 +40,7 @@ TEST(SphericalBins, AgreesWithTheAnglesInDoublePrecision) {
     const double theta = std::acos(p.y() / p.norm()) / size;
     const double phi = (std::numbers::pi + std::atan2(p.x(), p.z())) / size;
     const auto near_border = [](double x) { return std::abs(x - std::round(x)) < 1e-3; };
-    if (near_border(theta) || near_border(phi)) continue;  // single and double precision may disagree there
+    if (near_border(theta) || near_border(phi)) continue;  // single and double precision may differ there
     EXPECT_EQ(bins.bin(p.cast<float>()), static_cast<int>(theta) * 180 + static_cast<int>(phi));
     ++num_checked;
   }
@@ -48,7 +48,7 @@ TEST(SphericalBins, AgreesWithTheAnglesInDoublePrecision) {
 }
 
 TEST(SphericalBins, KnowsTheQuadrants) {
-  // arctan(y/x), as printed, would put opposite directions into one bin.
+  // arctan(y/x), as in the paper, would assign opposite directions to one bin.
   const SphericalBins bins;
   EXPECT_NE(bins.bin({1, 0.3F, 1}), bins.bin({-1, 0.3F, -1}));
   EXPECT_NE(bins.bin({1, 0.3F, -1}), bins.bin({-1, 0.3F, 1}));
@@ -60,12 +60,12 @@ TEST(SphericalBins, DependsOnTheDirectionOnly) {
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3f p(static_cast<float>(rng.uniform(-1, 1)), static_cast<float>(rng.uniform(-1, 1)),
                             static_cast<float>(rng.uniform(-1, 1)));
-    EXPECT_EQ(bins.bin(p), bins.bin(4 * p));  // times four is exact
+    EXPECT_EQ(bins.bin(p), bins.bin(4 * p));  // multiplying by 4 is exact
   }
 }
 
 TEST(SphericalBins, DoNotDegenerateInTheMiddleOfTheImage) {
-  // Over a Kinect's view (62 x 49 deg) every bin sees about as many of the pixels as any other inner bin.
+  // In the view of a Kinect (62 x 49 deg), all inner bins contain about the same number of pixels.
   const SphericalBins bins;
   std::map<int, int> num_pixels;
   for (int v = 0; v < 480; ++v) {
@@ -73,7 +73,7 @@ TEST(SphericalBins, DoNotDegenerateInTheMiddleOfTheImage) {
       ++num_pixels[bins.bin({(static_cast<float>(u) - 319.5F) / 525, (static_cast<float>(v) - 239.5F) / 525, 1})];
   }
   const int center = num_pixels[bins.bin({0.01F, 0.01F, 1})];
-  EXPECT_GT(center, 300);  // 18 px square
+  EXPECT_GT(center, 300);  // a square of 18 px
   EXPECT_LT(center, 380);
   EXPECT_GT(num_pixels.size(), 31U * 24U - 1U);
 }

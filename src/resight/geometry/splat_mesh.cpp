@@ -14,10 +14,11 @@ namespace resight {
 namespace {
 
 constexpr int kCorners = 6;
-constexpr int kVertices = kCorners + 1;  // and the middle
+constexpr int kVertices = kCorners + 1;  // corners and centre
 constexpr std::size_t kSizeNeighbor = 6;
 constexpr std::size_t kSplatsPerTask = 256;
-// On a square grid of side s the sixth neighbour is sqrt(2) s away. Sigma s / 2 keeps neighbouring colours apart.
+// On a square grid with side s, the sixth neighbour is sqrt(2) s away. A sigma of s / 2 keeps adjacent colours
+// distinct.
 constexpr float kSigmaPerRadius = 0.3536F;
 
 using Neighbors = std::vector<std::vector<PointNeighbor>>;
@@ -27,7 +28,7 @@ float disc_radius(const std::vector<PointNeighbor>& neighbors) {
   return std::sqrt(neighbors[k].distance_sq);
 }
 
-// Corners of one disc, from the points around it.
+// Computes the corners of one disc from the surrounding points.
 class DiscMaker {
  public:
   DiscMaker(const PointCloud& cloud, TriangleMesh& mesh) : cloud_(cloud), mesh_(mesh) {}

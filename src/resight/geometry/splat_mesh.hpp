@@ -12,11 +12,13 @@ struct SplatMeshOptions {
   void check() const;
 };
 
-/// A cloud with normals and colours as a mesh that can be ray-cast: each point becomes a hexagon in its tangent plane,
-/// as large as the distance to its sixth neighbour, so that the discs of an evenly sampled surface overlap without
-/// gaps. Colours and normals at the corners are Gaussian means over the points around (surface splatting, Zwicker et
-/// al. 2001): where discs overlap they agree, whichever is hit. Normals of discs point as those of the points, whose
-/// other side (more than 90 deg away) has no part in a mean. Neither a closed nor a manifold surface.
+/// Converts a cloud with normals and colours to a mesh for ray casting (surface splatting, Zwicker et al. 2001). Each
+/// point becomes a hexagon in its tangent plane with the distance to its sixth neighbour as radius, so that the discs
+/// of an evenly sampled surface overlap without gaps. Colours and normals at the corners are Gaussian means over the
+/// surrounding points, so overlapping discs agree and the result does not depend on which one is hit. Points whose
+/// normals differ by more than 90 deg (the other side of a thin wall) are excluded from a mean. The mesh is neither
+/// closed nor manifold. Throws std::invalid_argument for fewer than three points, missing normals or colours, or if
+/// most points coincide.
 [[nodiscard]] TriangleMesh make_splat_mesh(const PointCloud& cloud, const SplatMeshOptions& options = {});
 
 }  // namespace resight

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kSpacing_m = 0.004F;
 
-// A square in the plane z = 0 whose red rises along x and whose green rises along y.
+// A square in the plane z = 0. Red increases along x, green along y.
 PointCloud make_plane(int points_per_side) {
   PointCloud plane;
   for (int y = 0; y < points_per_side; ++y)
@@ -51,7 +51,7 @@ TEST(SplatMesh, CoversAPlaneWithoutGapsAndFacesItsNormal) {
   }
 }
 
-// Where discs overlap it must not matter which is hit: colour and normal are fields over space.
+// The result must not depend on which of two overlapping discs is hit: colour and normal are fields over space.
 TEST(SplatMesh, ColoursAndNormalsFollowTheSurface) {
   const TriangleMesh mesh = make_splat_mesh(make_plane(20));
   int num_inner = 0;
@@ -59,7 +59,7 @@ TEST(SplatMesh, ColoursAndNormalsFollowTheSurface) {
     EXPECT_LT((mesh.normals[i] - Eigen::Vector3f::UnitZ()).norm(), 1e-5F);
     EXPECT_EQ(mesh.colors[i].b, 77);
     const Eigen::Vector2f cells = mesh.vertices[i].head<2>() / kSpacing_m;
-    if (cells.minCoeff() < 3 || cells.maxCoeff() > 16) continue;  // beside the border a mean leans inwards
+    if (cells.minCoeff() < 3 || cells.maxCoeff() > 16) continue;  // beside the border, means are biased inwards
     EXPECT_NEAR(mesh.colors[i].r, 4 * cells.x(), 1.5);
     EXPECT_NEAR(mesh.colors[i].g, 4 * cells.y(), 1.5);
     ++num_inner;

@@ -15,22 +15,22 @@ Rigid3 rotation_about(const ObjectSymmetries::Continuous& symmetry, double angle
          Rigid3::from_translation(-symmetry.offset);
 }
 
-// The angle that turns `pose` about the axis as near as possible to `reference`: maximises trace(D Rot(angle)), with
-// D = reference^T pose, in closed form (the twist of D^T about the axis).
+// The angle about the axis that rotates `pose` nearest to `reference`. Maximises trace(D Rot(angle)) with D =
+// reference^T pose in closed form (the twist of D^T about the axis).
 double best_angle_rad(const Rigid3& pose, const Rigid3& reference, const Eigen::Vector3d& axis) {
   const Eigen::Matrix3d wanted = pose.rotation.transpose() * reference.rotation;
   const Eigen::Quaterniond q(wanted);
   return 2.0 * std::atan2(q.vec().dot(axis.normalized()), q.w());
 }
 
-// Two axes of continuous symmetry that are not parallel generate all rotations: a ball.
+// Two continuous axes that are not parallel generate all rotations: the object is a ball.
 bool is_ball(const ObjectSymmetries& symmetries) {
   for (const auto& c : symmetries.continuous)
     if (symmetries.continuous.front().axis.normalized().cross(c.axis.normalized()).norm() > 1e-6) return true;
   return false;
 }
 
-// The point nearest to all axes (they meet in the centre of the ball).
+// The point nearest to all axes, which intersect in the centre of the ball.
 Eigen::Vector3d ball_center(const ObjectSymmetries& symmetries) {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

@@ -36,7 +36,7 @@ bool contains(const std::vector<Rigid3>& motions, const Rigid3& wanted) {
 const Eigen::Vector3d kOffset(0.02, -0.01, 0.3);
 
 ObjectSymmetries make_none() { return {}; }
-ObjectSymmetries make_square_prism() {  // four-fold about an axis off the origin
+ObjectSymmetries make_square_prism() {  // four-fold about an axis beside the origin
   ObjectSymmetries s;
   for (int i = 1; i < 4; ++i) s.discrete.push_back(rotation_about_line(kOffset, {0, 1, 0}, i * kPi / 2));
   return s;
@@ -46,7 +46,7 @@ ObjectSymmetries make_bottle() {
   s.continuous.push_back({.axis = {1, 2, -1}, .offset = kOffset});
   return s;
 }
-ObjectSymmetries make_cylinder() {  // about z, and upside down about a line through its centre
+ObjectSymmetries make_cylinder() {  // continuous about z, and a half turn about a line through its centre
   ObjectSymmetries s;
   s.continuous.push_back({.axis = {0, 0, 1}, .offset = kOffset});
   s.discrete.push_back(rotation_about_line(kOffset, {1, 0, 0}, kPi));
@@ -88,8 +88,8 @@ TEST(EnumerateSymmetries, KeepThePointsOfTheAxis) {
   for (const Rigid3& m : enumerate_symmetries(bottle)) EXPECT_LT((m * on_axis - on_axis).norm(), 1e-9);
 }
 
-// The oracle samples the continuous axis in steps of 0.05 deg: the exact answer is never worse, and at most a step
-// better.
+// The reference samples the continuous axis in steps of 0.05 deg. The exact answer is never worse, and better by at
+// most one step.
 TEST(NearestSymmetricPose, IsAtLeastAsGoodAsFineSampling) {
   constexpr double kStep = 0.05 * kPi / 180;
   Rng rng(1);
@@ -110,7 +110,7 @@ TEST(NearestSymmetricPose, IsAtLeastAsGoodAsFineSampling) {
   }
 }
 
-// What comes back must be the pose composed with a symmetry: it maps the symmetric body onto itself, translation
+// The result must be the pose composed with a symmetry, which maps the symmetric body onto itself, translation
 // included.
 TEST(NearestSymmetricPose, IsASymmetryEquivalentOfThePose) {
   Rng rng(2);

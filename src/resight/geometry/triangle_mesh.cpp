@@ -11,13 +11,13 @@
 namespace resight {
 namespace {
 
-// Repeats the texture outside [0, 1], but keeps 1 itself at the far border, where corners of unwrapped faces often lie.
+// Repeats the texture outside [0, 1]. A coordinate of 1, common at corners of unwrapped faces, stays at the far border.
 float wrap_unit(float t) { return t >= 0 && t <= 1 ? t : t - std::floor(t); }
 
 }  // namespace
 
 void TriangleMesh::append(const TriangleMesh& other) {
-  if (&other == this) return append(TriangleMesh(other));  // insert() must not read from the vector it grows
+  if (&other == this) return append(TriangleMesh(other));  // insert() must not read from the vector that it grows
   require(texture.empty() || other.texture.empty(), "TriangleMesh::append: both meshes have a texture");
   const bool was_empty = vertices.empty();
   const auto merge = [&](auto& own, const auto& added) {
@@ -80,7 +80,7 @@ float diameter(std::span<const Eigen::Vector3f> points) {
   if (candidates.size() > 2000) {
     candidates.clear();
     constexpr int kDirections = 512;
-    for (int i = 0; i < kDirections; ++i) {  // Fibonacci half sphere
+    for (int i = 0; i < kDirections; ++i) {  // Fibonacci half-sphere
       const double z = (i + 0.5) / kDirections;
       const double phi = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
       const double r = std::sqrt(1 - z * z);

@@ -10,8 +10,8 @@
 namespace resight {
 
 /// A triangle mesh in metres, object frame. Faces are counter-clockwise seen from outside. `normals` (unit, per
-/// vertex), `uvs` (origin top left, as in the texture image) and `colors` are empty or as long as `vertices`. A texture
-/// wins over vertex colours.
+/// vertex), `uvs` (origin top left, as in the texture image) and `colors` are empty or as long as `vertices`. The
+/// texture takes precedence over vertex colours.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3f> normals;
@@ -22,19 +22,19 @@ struct TriangleMesh {
 
   [[nodiscard]] bool empty() const { return faces.empty(); }
   [[nodiscard]] bool has_texture() const { return !texture.empty() && uvs.size() == vertices.size(); }
-  /// Adds `other`, whose attributes must match (textures may not both be set).
+  /// Appends `other`, whose attributes must match. At most one of the meshes may have a texture.
   void append(const TriangleMesh& other);
 };
 
-/// Area-weighted vertex normals.
+/// Sets the vertex normals to area-weighted means of the face normals.
 void compute_vertex_normals(TriangleMesh& mesh);
 
-/// Colour at barycentric coordinates (b0, b1, 1 - b0 - b1) of a face: texture (bilinear), else vertex colours, else
-/// grey.
+/// Colour at barycentric coordinates (b0, b1, 1 - b0 - b1) of a face: from the texture (bilinear), else from vertex
+/// colours, else grey.
 [[nodiscard]] Rgb8 surface_color(const TriangleMesh& mesh, int face, float b0, float b1);
 
-/// Largest distance between two points (metres), as BOP's "diameter"; exact up to 2,000 points, else over the extreme
-/// points of 512 directions.
+/// Largest distance between two points in metres (the "diameter" of BOP). Exact up to 2,000 points. For more points,
+/// only the extreme points of 512 directions are compared.
 [[nodiscard]] float diameter(std::span<const Eigen::Vector3f> points);
 
 }  // namespace resight

@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-// The cube [-1, 1]^3 with shared corners; corner i has the signs of the bits of i.
+// The cube [-1, 1]^3 with shared corners. The bits of i are the signs of corner i.
 TriangleMesh make_cube() {
   TriangleMesh cube;
   for (int i = 0; i < 8; ++i)
@@ -32,7 +32,7 @@ TriangleMesh make_cube() {
 TriangleMesh make_textured_square(Image<Rgb8> texture) {
   TriangleMesh square;
   square.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  square.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // v runs down, as the image's rows
+  square.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // v points down, as image rows do
   square.faces = {{0, 1, 2}, {0, 2, 3}};
   square.texture = std::move(texture);
   return square;
@@ -51,7 +51,7 @@ TEST(ComputeVertexNormals, PointOutOfACube) {
 TEST(ComputeVertexNormals, AreWeightedByAreaAndAlwaysUnit) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}, {5, 5, 5}};
-  mesh.faces = {{0, 1, 2}, {0, 3, 4}};  // a large face facing z, a tiny one facing x; vertex 5 is in none
+  mesh.faces = {{0, 1, 2}, {0, 3, 4}};  // a large face along z and a tiny one along x; no face uses vertex 5
   compute_vertex_normals(mesh);
   EXPECT_GT(mesh.normals[0].z(), 0.999F);
   EXPECT_NEAR(mesh.normals[3].x(), 1, 1e-5);
@@ -95,13 +95,13 @@ TEST(SurfaceColor, InterpolatesVertexColours) {
 }
 
 TEST(SurfaceColor, TextureIsBilinearWithItsOriginTopLeft) {
-  // Left column black, right column red; top row has green 200 as well.
+  // The left column is black, the right one red. The top row also has green 200.
   Image<Rgb8> texture(2, 2);
   texture(0, 0) = {0, 200, 0};
   texture(1, 0) = {100, 200, 0};
   texture(1, 1) = {100, 0, 0};
   const TriangleMesh square = make_textured_square(texture);
-  // Face 0 holds (x, y) with x >= y: barycentric (1 - x, x - y, y).
+  // Face 0 contains (x, y) with x >= y: barycentric (1 - x, x - y, y).
   const auto at = [&](float x, float y) { return surface_color(square, 0, 1 - x, x - y); };
   EXPECT_EQ(at(0.25F, 0.25F), (Rgb8{0, 0, 0}));      // centre of the bottom left texel
   EXPECT_EQ(at(0.75F, 0.25F), (Rgb8{100, 0, 0}));    // bottom right
@@ -146,7 +146,7 @@ TEST(Diameter, IsExactForFewPoints) {
   EXPECT_NEAR(diameter(points), brute_force_diameter(points), 1e-5);
 }
 
-// 512 directions are 4.5 deg apart: cos(half of that) bounds what is missed to under 0.1 % on these shapes.
+// 512 directions are 4.5 deg apart. The cosine of half that angle limits the error on these shapes to under 0.1 %.
 TEST(Diameter, OfManyPointsIsNearlyExactAndNeverTooLarge) {
   Rng rng(2);
   for (int shape = 0; shape < 6; ++shape) {

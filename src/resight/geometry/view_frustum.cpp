@@ -14,11 +14,11 @@ struct SlopeRange {
   float max;
 };
 
-/// Slopes that the pixels from -0.5 to `size` - 0.5 see, less `margin_rad` on both sides.
+/// Range of slopes seen by the pixels from -0.5 to `size` - 0.5, less `margin_rad` on both sides.
 SlopeRange slope_range(int size, double focal_px, double center_px, double margin_rad) {
   const double min_rad = std::atan((-0.5 - center_px) / focal_px) + margin_rad;
   const double max_rad = std::atan((size - 0.5 - center_px) / focal_px) - margin_rad;
-  // An angle that the margin pushed over the opposite side may have left (-pi/2, pi/2), where the tangent turns over.
+  // A large margin can move an angle out of (-pi/2, pi/2), where the tangent changes its sign.
   if (min_rad >= max_rad) return {1.0F, -1.0F};
   return {static_cast<float>(std::tan(min_rad)), static_cast<float>(std::tan(max_rad))};
 }

@@ -18,10 +18,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 Camera off_center_camera() { return {640, 480, 500, 520, 200, 300}; }
 
-/// Turns a pixel column (or row) into the angle of its ray.
+/// Converts a pixel column (or row) to the angle of its ray.
 double ray_angle(double pixel, double center_px, double focal_px) { return std::atan2(pixel - center_px, focal_px); }
 
-/// The slow twin: project, then compare the angles of the pixel and of the image borders.
+/// The slow reference: projects, then compares the angles of the pixel and of the image borders.
 bool contains_by_projection(const ViewFrustum& f, const Eigen::Vector3d& p) {
   if (!(p.z() > f.min_depth_m && p.z() < f.max_depth_m)) return false;
   const Camera& c = f.camera;
@@ -59,7 +59,7 @@ TEST(ViewFrustum, SidesFollowThePrincipalPoint) {
 }
 
 TEST(ViewFrustum, FiveDegreesOffTheHalfAngle) {
-  // The paper's code: |x| / sqrt(x^2 + z^2) < sin(58 deg / 2 - 5 deg) for the camera of 58 degrees.
+  // The paper's code: |x| / sqrt(x^2 + z^2) < sin(58 deg / 2 - 5 deg) for the camera with 58 deg field of view.
   const double half = 29 * kDegree;
   const Camera camera{640, 480, 320 / std::tan(half), 320 / std::tan(half), 319.5, 239.5};
   const ViewFrustum frustum{.camera = camera};

@@ -6,9 +6,8 @@
 
 namespace resight {
 
-/// Index of the cube of side 1 / inverse_size that holds a point, packed into 64 bits (21 bits an axis: at 5 mm a range
-/// of
-/// +-5 km). Equal keys <=> same cube, within that range.
+/// Packs the index of the cube of side 1 / inverse_size that contains a point into 64 bits, 21 bits per axis (a range
+/// of +-5 km at 5 mm). Within that range, keys are equal if and only if the cubes are.
 [[nodiscard]] inline std::uint64_t voxel_key(int ix, int iy, int iz) {
   constexpr std::uint64_t kMask = (1ULL << 21U) - 1U;
   return ((static_cast<std::uint64_t>(ix) & kMask) << 42U) | ((static_cast<std::uint64_t>(iy) & kMask) << 21U) |
@@ -22,7 +21,7 @@ namespace resight {
   const Eigen::Vector3i i = voxel_index(p, inverse_size);
   return voxel_key(i.x(), i.y(), i.z());
 }
-/// A mixer that spreads voxel keys over a power-of-two table (Fibonacci hashing keeps the high bits).
+/// Spreads voxel keys over a power-of-two table (Fibonacci hashing keeps the high bits).
 [[nodiscard]] inline std::uint64_t mix_key(std::uint64_t key) {
   key ^= key >> 32U;
   key *= 0x9E3779B97F4A7C15ULL;

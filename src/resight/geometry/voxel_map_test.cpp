@@ -29,7 +29,7 @@ TEST(VoxelKey, EqualExactlyForTheSameCube) {
   EXPECT_NE(voxel_key(0, 0, -1), voxel_key(0, -1, 0));
 }
 
-// Keys are drawn with repetitions, over many rehashes from the smallest table on.
+// Keys are drawn with repetitions and cause many rehashes of the smallest table.
 TEST(VoxelMap, AgreesWithUnorderedMap) {
   for (const std::uint32_t range : {50U, 3000U, 1U << 20U}) {
     Rng rng(range);
