@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kCurveSteps = 4096;
 
-using Curve = std::array<float, kCurveSteps + 2>;  // CIE f(t) over t in [0, 1]
+using Curve = std::array<float, kCurveSteps + 2>;  // CIE f(t) for t in [0, 1]
 
 double cie_curve(double t) {
   constexpr double kDelta = 6.0 / 29.0;
@@ -42,7 +42,7 @@ LabColor to_lab(const Eigen::Vector3f& linear_light) {
   const float r = linear_light.x();
   const float g = linear_light.y();
   const float b = linear_light.z();
-  // sRGB primaries to XYZ, each row divided by the D65 white point.
+  // sRGB primaries to XYZ; each row is divided by the D65 white point.
   const float fx = look_up(curve, 0.433953F * r + 0.376219F * g + 0.189828F * b);
   const float fy = look_up(curve, 0.212671F * r + 0.715160F * g + 0.072169F * b);
   const float fz = look_up(curve, 0.017758F * r + 0.109477F * g + 0.872765F * b);

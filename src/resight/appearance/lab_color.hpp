@@ -8,20 +8,20 @@
 
 namespace resight {
 
-/// CIELAB (D65) scaled as in V4R: l = (L - 50)/50, a = a*/128, b = b*/128, each about [-1, 1].
+/// CIELAB (D65) scaled as in V4R to about [-1, 1]: l = (L - 50)/50, a = a*/128, b = b*/128.
 struct LabColor {
   float l = 0;
   float a = 0;
   float b = 0;
 };
 
-/// How much colours of one thing differ, as standard deviations of l and of a, b.
+/// Tolerance of colour comparisons: standard deviations of l, and of a and b, between observations of one surface.
 class ColorTolerance {
  public:
   ColorTolerance(double sigma_l, double sigma_ab)
       : inverse_l_(static_cast<float>(1 / (4 * sigma_l * sigma_l))),
         inverse_ab_(static_cast<float>(1 / (4 * sigma_ab * sigma_ab))) {}
-  /// -log of the similarity of two colours.
+  /// Negative log of the similarity of two colours, (dl / (2 sigma_l))^2 + (da^2 + db^2) / (2 sigma_ab)^2.
   [[nodiscard]] float exponent(const LabColor& p, const LabColor& q) const {
     const float dl = p.l - q.l;
     const float da = p.a - q.a;
@@ -34,8 +34,9 @@ class ColorTolerance {
   float inverse_ab_;
 };
 
+/// Converts an sRGB colour.
 [[nodiscard]] LabColor to_lab(Rgb8 color);
-[[nodiscard]] LabColor to_lab(const Eigen::Vector3f& linear_light);  ///< Channels in [0, 1].
+[[nodiscard]] LabColor to_lab(const Eigen::Vector3f& linear_light);  ///< Linear RGB channels in [0, 1].
 [[nodiscard]] std::vector<LabColor> to_lab(std::span<const Eigen::Vector3f> linear_light);
 
 }  // namespace resight

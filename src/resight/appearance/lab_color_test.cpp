@@ -10,7 +10,7 @@ namespace {
 
 struct Known {
   Rgb8 rgb;
-  double l, a, b;  // CIELAB (D65, 2 degrees), unscaled.
+  double l, a, b;  // CIELAB (D65, 2 degrees), unscaled
 };
 
 TEST(ToLab, AgreesWithPublishedValues) {

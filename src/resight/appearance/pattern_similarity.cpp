@@ -9,7 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr double kNoiseVariance = 0.25 * 0.25;  // What light, gloss and registration leave between equal patterns.
+// Variance that lighting, gloss and registration leave between equal patterns.
+constexpr double kNoiseVariance = 0.25 * 0.25;
 
 Eigen::Vector3d weighted(const LabColor& color, double chroma_weight) {
   return {color.l, chroma_weight * color.a, chroma_weight * color.b};

@@ -61,7 +61,8 @@ TEST(MatchPatterns, OnlyPrintsThatAreAlikeShareContrast) {
   const auto pattern = print(1, 0.8);
   const std::vector<LabColor> plain(pattern.size(), LabColor{0.1F, 0, 0});
   const PatternMatch alike = match_patterns(pattern, brighter(pattern, 0.2F), 2);
-  EXPECT_GT(alike.shared_texture, 3);  // Variance of a uniform print: 0.8^2 / 3, and as much of its hues.
+  // Variance of a uniform texture: 0.8^2 / 3 in lightness, plus that in chromaticity.
+  EXPECT_GT(alike.shared_texture, 3);
   EXPECT_NEAR(match_patterns(pattern, print(1, 0.4), 2).shared_texture, 0.5 * alike.shared_texture, 1e-4);
   EXPECT_LT(match_patterns(pattern, print(2, 0.8), 2).shared_texture, 0.3);
   EXPECT_EQ(match_patterns(pattern, plain, 2).shared_texture, 0);

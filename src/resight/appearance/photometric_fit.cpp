@@ -13,19 +13,20 @@ namespace {
 constexpr std::size_t kMinPairs = 10;
 constexpr int kMaxPairs = 400;
 constexpr int kIterations = 5;
-constexpr float kScale =
-    0.15F;  // Of the Cauchy weight, in square roots of light: print that does not fit counts little.
-constexpr float kDark = 0.05F;          // Dark pairs weigh more, as they do to the eye, down to this.
-constexpr float kShadingPrior = 0.05F;  // Share of the total weight: normals that hardly differ tell no shading.
+// Scale of the Cauchy weight, in square roots of light. It reduces the influence of texture that does not fit.
+constexpr float kScale = 0.15F;
+constexpr float kDark = 0.05F;  // Dark pairs weigh more, as in perception; this value limits their weight.
+// Share of the total weight. Without it, nearly equal normals would determine the shading.
+constexpr float kShadingPrior = 0.05F;
 constexpr float kMinGain = 0.05F;
 constexpr double kVotesForNone = 20;
-constexpr float kDim = 0.1F;  // Light of a channel that tells half as much of its gain as much light does.
+constexpr float kDim = 0.1F;  // The vote of a fit with this dimmest_light counts a quarter; see trust_in_chroma().
 
 template <int kColumns>
 using Columns = Eigen::Array<float, Eigen::Dynamic, kColumns, Eigen::ColMajor, kMaxPairs, kColumns>;
 using Column = Columns<1>;
 
-// By columns, for vector code.
+// Stored by columns, for vector code.
 struct Pairs {
   Columns<3> model;
   Columns<3> scene;
@@ -33,7 +34,7 @@ struct Pairs {
   Columns<4> normals;  // After a column of ones.
   Column base_weight;
   Column weight;
-  Column shade;  // What the shading makes of each.
+  Column shade;  // Brightness factor of each pair from the shading.
 };
 
 Pairs make_pairs(std::span<const Eigen::Vector3f> model_linear, std::span<const Eigen::Vector3f> scene_linear,
@@ -57,7 +58,7 @@ Pairs make_pairs(std::span<const Eigen::Vector3f> model_linear, std::span<const 
   return pairs;
 }
 
-// Gain and veil of one channel: a weighted line through (model, scene), its offset within [0, max_offset].
+// Gain and offset of one channel: a weighted line through (model, scene) with its offset within [0, max_offset].
 std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_offset) {
   const Column& w = pairs.weight;
   const Column x = pairs.model.col(c) * pairs.shade;
@@ -73,7 +74,7 @@ std::pair<float, float> fit_channel(const Pairs& pairs, int c, float max_offset)
   return {std::max(gain, kMinGain), offset};
 }
 
-// Brightness that is left, as a function of the normal. The constant part is left to the gains.
+// Shading from the remaining brightness as a function of the normal. The gains account for the constant part.
 Eigen::Vector3f fit_shading(const Pairs& pairs, const PhotometricFit& fit) {
   const Column expected = (pairs.model.matrix() * fit.log_gain.exp().matrix()).array();
   const Column seen = (pairs.scene.rowwise() - fit.offset.transpose()).max(0.0F).rowwise().sum();

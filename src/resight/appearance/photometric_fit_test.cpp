@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-// Printed colours over a ball, and the same under another light.
+// Random colours on a sphere, and the same colours under another light.
 struct Pairs {
   std::vector<Eigen::Vector3f> model, scene, normals;
 };
@@ -32,7 +32,7 @@ Pairs make_pairs(const PhotometricFit& light, int count, float wrong_share = 0) 
 
 const PhotometricFit kLamp{{0.35F, 0.25F, 0.15F}, {0.02F, 0.0F, 0.05F}, {0.2F, -0.1F, -0.25F}, 0};
 
-// Root mean square, in log units.
+// Root mean square error in log units.
 double rms_error(const PhotometricFit& fit, const Pairs& pairs) {
   double sum = 0;
   for (std::size_t i = 0; i < pairs.model.size(); ++i) {
