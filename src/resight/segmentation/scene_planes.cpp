@@ -15,14 +15,15 @@
 namespace resight {
 namespace {
 
-constexpr double kFullViewSpacing_m = 1.0 / 525.0;  // Of a Kinect's pixels at 1 m.
+constexpr double kFullViewSpacing_m = 1.0 / 525.0;  // Pixel spacing of a Kinect at 1 m.
 constexpr float kOutlineCell_m = 0.025F;
-constexpr double kMinFlatShare = 0.7;  // A segment with fewer points near its own plane is curved.
+constexpr double kMinFlatShare = 0.7;  // A segment with a smaller share of points near its own plane is curved.
 constexpr int kRefits = 3;
 
 using Points = std::span<const Eigen::Vector3f>;
 
-// Least squares over the given points; axes by falling spread. The normal is turned along the points' own normals.
+// Fits a plane to the given points by least squares. Its axes are in order of decreasing spread; its normal points to
+// the side of the point normals.
 ScenePlane fit_plane(Points points, Points normals, std::span<const int> indices) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_normal = Eigen::Vector3d::Zero();
@@ -49,7 +50,7 @@ ScenePlane fit_plane(Points points, Points normals, std::span<const int> indices
 
 int outline_cell(float position) { return static_cast<int>(std::floor(position / kOutlineCell_m)); }
 
-// A cell more on each side, since points stand for the surface around them.
+// Adds a cell on each side, since points represent the surface around them.
 void widen(std::vector<ScenePlane::Range>& ranges) {
   for (ScenePlane::Range& range : ranges) {
     if (range.last < range.first) continue;
@@ -63,7 +64,7 @@ void include(ScenePlane::Range& range, int i) {
                                    : ScenePlane::Range{std::min(range.first, i), std::max(range.last, i)};
 }
 
-// Over directions 11 deg apart: at most 0.5 % short of the largest distance of two points.
+// Maximum over directions 11 deg apart, at most 0.5 % below the largest distance between two points.
 float largest_width(const ScenePlane& plane, Points points, std::span<const int> indices) {
   constexpr int kDirections = 16;
   float largest = 0;
@@ -105,7 +106,7 @@ void set_outline(ScenePlane& plane, Points points, std::span<const int> indices)
   widen(plane.columns);
 }
 
-// Collects points of planes from segments; points once taken are not offered to later planes.
+// Collects the points of planes from segments. Points of a plane are not available to later planes.
 class PlaneFinder {
  public:
   PlaneFinder(Points points, Points normals, double spacing_m, const FindPlanesOptions& options)

@@ -17,19 +17,19 @@ struct FindPlanesOptions {
   void check() const;
 };
 
-/// A dominant plane of the scene (table, wall, shelf), world frame: normal . p = offset. The normal faces the cameras.
-/// Bounded: a plane says nothing beyond the edge of what was seen of it.
+/// A dominant plane of the scene (table, wall, shelf) in the world frame: normal . p = offset. The normal faces the
+/// cameras. The plane is bounded and says nothing about space beyond its visible part.
 struct ScenePlane {
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   float offset = 0;
-  float extent_m = 0;  ///< Largest distance of two of its points.
+  float extent_m = 0;  ///< Largest distance between two of its points.
   int num_points = 0;
 
   [[nodiscard]] float signed_distance(const Eigen::Vector3f& p) const { return normal.dot(p) - offset; }
-  /// Whether the foot of `p` lies within the plane's outline: in a cell between points of its row and of its column,
-  /// holes (under objects) included.
+  /// Whether the foot of `p` lies within the outline of the plane: in a cell between observed points of its row and of
+  /// its column. Holes (under objects) are included.
   [[nodiscard]] bool covers(const Eigen::Vector3f& p) const;
-  /// Whether a surface point with normal is of the plane.
+  /// Whether a surface point with this normal belongs to the plane.
   [[nodiscard]] bool holds(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float max_distance_m,
                            float min_dot) const {
     return std::abs(signed_distance(p)) <= max_distance_m && normal.dot(n) >= min_dot && covers(p);
@@ -48,23 +48,23 @@ struct ScenePlane {
 
 struct ScenePlanes {
   std::vector<ScenePlane> planes;
-  std::vector<int> plane_of_point;  ///< -1 = in none.
+  std::vector<int> plane_of_point;  ///< -1 if the point is in no plane.
 };
 
-/// `spacing_m`: of the cloud. Fits planes to the large smooth segments and collects all points within max_distance_m
-/// and max_angle_rad of them (coplanar pieces of one table are one plane). V4R grows regions and wants 5,000 pixels; a
-/// reconstruction has fewer points for the same area, so the count is scaled from the spacing of a full view (1/525 m
-/// at 1 m) to the resolution.
+/// Finds planes in a cloud with spacing `spacing_m`. Fits planes to large smooth segments, then collects all points
+/// within max_distance_m and max_angle_rad of them, so that coplanar pieces of one table become one plane. V4R grows
+/// regions and requires 5,000 pixels. A reconstruction has fewer points for the same area, so the count is scaled from
+/// the spacing of a full view (1/525 m at 1 m) to that of the cloud.
 [[nodiscard]] ScenePlanes find_scene_planes(std::span<const Eigen::Vector3f> points,
                                             std::span<const Eigen::Vector3f> normals, const SmoothSegments& segments,
                                             double spacing_m, const FindPlanesOptions& options);
 
-/// The same of a cloud thinned to `spacing_m`, with segments of it.
+/// Same for a cloud downsampled to `spacing_m`; computes the segments itself.
 [[nodiscard]] ScenePlanes find_planes_of_downsampled(std::span<const Eigen::Vector3f> points,
                                                      std::span<const Eigen::Vector3f> normals, double spacing_m,
                                                      const FindPlanesOptions& options);
 
-/// Number of the first plane that each point is of, or -1.
+/// Index of the first plane that each point belongs to, or -1.
 [[nodiscard]] std::vector<int> assign_to_planes(std::span<const Eigen::Vector3f> points,
                                                 std::span<const Eigen::Vector3f> normals,
                                                 std::span<const ScenePlane> planes, const FindPlanesOptions& options);

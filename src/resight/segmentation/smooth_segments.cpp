@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::size_t kCellsPerBlock = 512;
 constexpr int kNumNeighbors = 27;
-constexpr int kOwnCell = 13;  // Opposite neighbours add up to twice this.
+constexpr int kOwnCell = 13;  // The numbers of opposite neighbours add up to twice this.
 
-// The cloud in the order of its cells, one per smooth_distance_m, with the neighbours of each cell: what is near in
-// space is near in memory, and a point's neighbours are found without a look-up.
+// The cloud in the order of its cells, with cells of side max_distance_m, and the neighbours of each cell. Points that
+// are close in space are close in memory, and the neighbours of a point need no look-up.
 struct CellOrder {
   std::vector<int> source;  // Index in the original cloud.
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   std::vector<int> cell_begin;  // CSR over cells.
-  std::vector<std::array<int, kNumNeighbors>>
-      neighbors;  // Cell numbers or kNotFound, in (x, y, z) order; the middle one is the cell itself.
+  // Cell numbers or kNotFound, in (x, y, z) order; the middle one is the cell itself.
+  std::vector<std::array<int, kNumNeighbors>> neighbors;
   [[nodiscard]] std::size_t num_cells() const { return neighbors.size(); }
 };
 
@@ -63,12 +63,12 @@ CellOrder sort_into_cells(std::span<const Eigen::Vector3f> points, std::span<con
   return order;
 }
 
-// The points of some cells, side by side: tested in vector code, against all points of one cell.
+// The points of a cell and its neighbours, stored contiguously and tested against a point by vector code.
 class Neighborhood {
  public:
   explicit Neighborhood(const CellOrder& cells) : cells_(cells) {}
 
-  // Of cell `c` and its neighbours.
+  // Gathers the points of cell `c` and of its neighbours.
   void gather(std::size_t c) {
     for (std::vector<float>* values : {&x_, &y_, &z_}) values->clear();
     normals_.clear();
@@ -82,10 +82,10 @@ class Neighborhood {
   }
   [[nodiscard]] int source(int k) const { return sources_[static_cast<std::size_t>(k)]; }
 
-  // Positions, ascending, of the points within the radius of `p`.
+  // Positions, in ascending order, of the points within the radius of `p`.
   std::span<const int> find_near(const Eigen::Vector3f& p, float radius_sq) {
     mark(x_.data(), y_.data(), z_.data(), p, radius_sq, static_cast<int>(x_.size()), is_near_.data());
-    int count = 0;  // Without a branch, which could not be foreseen.
+    int count = 0;  // Branch-free, because a branch would be unpredictable.
     for (std::size_t k = 0; k < is_near_.size(); ++k) {
       near_[static_cast<std::size_t>(count)] = static_cast<int>(k);
       count += is_near_[k];
@@ -102,7 +102,7 @@ class Neighborhood {
     normals_.emplace_back(cells_.normals[j].x(), cells_.normals[j].y(), cells_.normals[j].z(), 1.0F);
     sources_.push_back(j);
   }
-  // Parameters, since compilers trust __restrict on these alone.
+  // Passes pointers as parameters, because compilers honour __restrict only there.
   static void mark(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                    const Eigen::Vector3f& p, float radius_sq, int count, int* __restrict is_near) {
     const float px = p.x();
@@ -118,21 +118,21 @@ class Neighborhood {
 
   const CellOrder& cells_;
   std::vector<float> x_, y_, z_;
-  std::vector<Eigen::Vector4f> normals_;  // And 1.
-  std::vector<int> sources_;              // In the cells' order.
+  std::vector<Eigen::Vector4f> normals_;  // The fourth component is 1.
+  std::vector<int> sources_;              // In the order of the cells.
   std::vector<int> is_near_;              // 1 or 0.
   std::vector<int> near_;
 };
 
-// Of a block of cells, for each point the later ones that are near it and of similar normal.
+// For each point of a block of cells, the later points that are near it and have a similar normal.
 struct LaterNeighbors {
-  std::vector<int> begin;  // CSR over the block's points.
+  std::vector<int> begin;  // CSR over the points of the block.
   std::vector<int> neighbors;
 };
 
 struct Surface {
-  std::vector<float> curvatures;  // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a
-                                  // right-angled edge.
+  // 1 - |mean normal| over each point and its neighbours: 0 on a plane, 0.3 on a right-angled edge.
+  std::vector<float> curvatures;
   std::vector<LaterNeighbors> of_block;
 };
 
@@ -146,7 +146,7 @@ Surface look_around(const CellOrder& cells, float radius_sq, float min_dot, int 
     for (std::size_t c = begin; c < end; ++c) {
       around.gather(c);
       for (int i = cells.cell_begin[c]; i < cells.cell_begin[c + 1]; ++i) {
-        Eigen::Vector4f sum = Eigen::Vector4f::Zero();  // Of normals and, last, their number.
+        Eigen::Vector4f sum = Eigen::Vector4f::Zero();  // Sum of the normals; the last component counts them.
         later.begin.push_back(static_cast<int>(later.neighbors.size()));
         for (const int k : around.find_near(cells.points[i], radius_sq)) {
           sum += around.normal(k);
@@ -168,7 +168,7 @@ class UnionFind {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(int a, int b) {  // The smaller index is the root.
+  void join(int a, int b) {  // The smaller index becomes the root.
     a = find(a);
     b = find(b);
     if (a < b) parent_[b] = a;
@@ -179,7 +179,7 @@ class UnionFind {
   std::vector<int> parent_;
 };
 
-// Joins flat neighbours of similar normals.
+// Joins flat neighbours with similar normals.
 void join_flat_points(const Surface& surface, float max_curvature, UnionFind& sets) {
   int i = 0;
   for (const LaterNeighbors& later : surface.of_block)
@@ -190,7 +190,7 @@ void join_flat_points(const Surface& surface, float max_curvature, UnionFind& se
     }
 }
 
-// The flat neighbour of the most similar normal of a point on an edge, or -1. `around`: of its cell.
+// The flat neighbour of an edge point with the most similar normal, or -1. `around` must hold the cell of the point.
 int find_host(const CellOrder& cells, Neighborhood& around, int i, const std::vector<float>& curvatures,
               float radius_sq, float max_curvature, float min_dot) {
   int host = -1;
@@ -206,7 +206,7 @@ int find_host(const CellOrder& cells, Neighborhood& around, int i, const std::ve
   return host;
 }
 
-// The host of each point on an edge; flat points are their own.
+// The host of each edge point. Flat points are their own hosts.
 std::vector<int> find_hosts(const CellOrder& cells, const std::vector<float>& curvatures, float radius_sq,
                             float max_curvature, float min_dot, int num_threads) {
   std::vector<int> hosts(cells.points.size());
@@ -264,7 +264,7 @@ SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points, std
   join_flat_points(surface, max_curvature, sets);
   const std::vector<int> hosts =
       find_hosts(cells, surface.curvatures, radius_sq, max_curvature, min_dot, options.num_threads);
-  std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers of the cell order.
+  std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers in cell order.
   for (std::size_t i = 0; i < hosts.size(); ++i)
     if (hosts[i] >= 0) root_of[cells.source[i]] = sets.find(hosts[i]);
   return number_segments(root_of, options.min_points);

@@ -16,15 +16,15 @@ struct SmoothSegmentsOptions {
 };
 
 struct SmoothSegments {
-  std::vector<int> segment;  ///< Per point; -1 = in no segment.
+  std::vector<int> segment;  ///< Per point; -1 if the point is in no segment.
   int num_segments = 0;
 };
 
-/// Smooth segments of an unorganised cloud: points within max_distance_m are joined when their normals differ by
-/// less than max_angle_rad and both lie in flat surroundings (max_curvature); a point on an edge goes to the
-/// neighbour whose normal is nearest. The joining is a union, so that unlike region growing from seeds the result does
-/// not depend on an order. Fewer than min_points: no segment. Numbered by first point. Points of zero normal are
-/// in none.
+/// Finds smooth segments of an unorganised cloud. Points within max_distance_m are joined if their normals differ by
+/// less than max_angle_rad and both lie in flat surroundings (max_curvature). A point on an edge joins the neighbour
+/// with the most similar normal. Joining is a union, so unlike seeded region growing, the result does not depend on an
+/// order. Segments with fewer than min_points points are dropped. Segments are numbered by their first points. Points
+/// with zero normals are in no segment.
 [[nodiscard]] SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points,
                                                   std::span<const Eigen::Vector3f> normals,
                                                   const SmoothSegmentsOptions& options);
