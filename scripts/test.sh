@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs all checks of the continuous integration: packages, format, build with warnings as errors, tests,
-# each public header alone, a project that uses the installation, and the tests of four modules under the sanitizers.
+# Runs all checks of the continuous integration from a clean clone: packages, format, build with warnings as errors,
+# tests, each public header alone, a project that uses the installation, and the tests of four modules under the
+# sanitizers.
 #   scripts/test.sh             everything except the sanitizers
 #   scripts/test.sh --sanitize  everything
 #   scripts/test.sh --fast      without public headers, installation and sanitizers
