@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-struct Box {  // pixels, u1 and v1 excluded
+struct Box {  // In pixels; excludes column u1 and row v1.
   int u0 = 0;
   int v0 = 0;
   int u1 = 0;

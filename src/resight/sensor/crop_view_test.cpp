@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-// Every pixel tells its own place.
+// The value of each pixel identifies its place.
 TrainingView make_view() {
   TrainingView view;
   view.frame = {.name = "v",

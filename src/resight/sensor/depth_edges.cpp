@@ -14,7 +14,7 @@
 namespace resight {
 namespace {
 
-/// Steps from (u, v) to the nearest measurement in a direction, in [1, max_steps]; 0 if there is none.
+/// Number of steps from (u, v) to the nearest measurement in a direction, in [1, max_steps]; 0 if there is none.
 int steps_to_measurement(const Image<float>& depth_m, int u, int v, int du, int dv, int max_steps) {
   for (int step = 1; step <= max_steps; ++step) {
     if (!depth_m.contains(u + step * du, v + step * dv)) return 0;
@@ -23,7 +23,7 @@ int steps_to_measurement(const Image<float>& depth_m, int u, int v, int du, int 
   return 0;
 }
 
-/// Depth of a missing pixel that lies in a short gap of a surface, else NaN.
+/// Depth of a missing pixel in a short gap of a surface; NaN otherwise.
 float bridge_gap(const Image<float>& depth_m, int u, int v, const DepthEdgeOptions& options) {
   constexpr std::array<std::array<int, 2>, 4> kDirections{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
   for (const auto& [du, dv] : kDirections) {
@@ -46,8 +46,8 @@ Image<float> bridge_gaps(const Image<float>& depth_m, const DepthEdgeOptions& op
   return bridged;
 }
 
-/// Marks in `is_edge` the pixels of row `z` whose neighbour `du` columns on in row `z_n` is missing or beyond the
-/// limit.
+/// Marks in `is_edge` the pixels of row `z` whose neighbour in row `z_n`, shifted by `du` columns, is missing or
+/// differs by more than the limit.
 void mark_steps(std::span<const float> z, std::span<const float> z_n, int du, float max_jump, int* is_edge) {
   const int width = static_cast<int>(z.size());
   for (int u = std::max(0, -du); u < std::min(width, width - du); ++u) {
@@ -57,7 +57,7 @@ void mark_steps(std::span<const float> z, std::span<const float> z_n, int du, fl
   }
 }
 
-/// Vertical distance to the nearest edge of the column, in whole pixels; `far` where there is none nearer than that.
+/// Vertical distance to the nearest edge in the column, in whole pixels; `far` if no edge is closer.
 Image<int> column_distances(const Image<std::uint8_t>& edges, int far) {
   const int width = edges.width();
   const int height = edges.height();
@@ -87,7 +87,7 @@ Rectangle grown(const Rectangle& r, int by_px, const Rectangle& limits) {
           std::max(r.begin_v - by_px, limits.begin_v), std::min(r.end_v + by_px, limits.end_v)};
 }
 
-/// What of each tile of the image has changed.
+/// Bounding boxes of the changed pixels of each tile of the image.
 std::vector<Rectangle> dirty_tiles(std::span<const int> changed_pixels, const Rectangle& image) {
   constexpr int kTile_px = 64;
   const int columns = image.end_u / kTile_px + 1;
@@ -141,7 +141,7 @@ Image<std::uint8_t> find_depth_edges(const Image<float>& depth_m, const DepthEdg
 Image<float> find_edge_distance(const Image<std::uint8_t>& edges, double max_distance_px) {
   check_positive("max_distance_px", max_distance_px);
   const int width = edges.width();
-  // Nothing lies farther off than the sides of the image; without an edge the answer is the cap.
+  // No edge is farther away than width + height. Pixels without an edge in reach get the cap.
   const int reach =
       static_cast<int>(std::min(std::floor(max_distance_px), static_cast<double>(width) + edges.height()));
   const int far = reach + 1;
@@ -170,7 +170,8 @@ void update_edge_distance(const Image<float>& depth_m, std::span<const int> chan
           "update_edge_distance: the images differ in size");
   const Rectangle all{0, depth_m.width(), 0, depth_m.height()};
   const std::vector<Rectangle> dirty = dirty_tiles(changed_pixels, all);
-  // A pixel bridges gaps, and a step has two sides, so far away; and then there is the distance to it.
+  // A changed pixel affects edges at this distance, since pixels bridge gaps and a step has two sides. These edges
+  // affect distances within `reach`.
   const double reach = std::min<double>(std::floor(options.max_distance_px), depth_m.width() + depth_m.height());
   const int edge_px = options.max_gap_px + 2;
   const int change_px = edge_px + static_cast<int>(reach) + 1;

@@ -14,17 +14,18 @@ struct DepthEdgeOptions {
   void check() const;
 };
 
-/// 1 at pixels beside a depth discontinuity: a step to one of the 8 neighbours of more than the limit (a share of the
-/// nearer depth), or a border to missing depth (both sides of a step are marked; the image border is none). NaN pixels
-/// are 0. A missing pixel does not count when a short run of missing pixels through it, in one of the 4 directions,
-/// joins two depths within the limit: it takes their mean.
+/// Marks pixels at depth discontinuities with 1: pixels whose depth differs from that of one of their 8 neighbours by
+/// more than the limit (a share of the smaller depth), and pixels at a border to missing depth. Marks both sides of a
+/// step. The image border is not an edge. NaN pixels are 0. Gaps are bridged: if a short run of missing pixels, in one
+/// of the 4 directions, connects two depths within the limit, its pixels take their mean.
 [[nodiscard]] Image<std::uint8_t> find_depth_edges(const Image<float>& depth_m, const DepthEdgeOptions& options = {});
 
-/// Euclidean distance of every pixel to the nearest edge pixel, px, capped at max_distance_px.
+/// Euclidean distance of each pixel to the nearest edge pixel in pixels, capped at max_distance_px.
 [[nodiscard]] Image<float> find_edge_distance(const Image<std::uint8_t>& edges, double max_distance_px);
 
-/// Brings `edge_distance_px`, made of a depth image by both of the above, up to date after the depth of some pixels has
-/// changed: the same as making it anew, in the parts of the image that they reach.
+/// Updates `edge_distance_px`, computed from a depth image by the functions above, after the depth of some pixels
+/// changed. Gives the same result as a new computation, but processes only the affected parts of the image. Throws
+/// std::invalid_argument if the images differ in size.
 void update_edge_distance(const Image<float>& depth_m, std::span<const int> changed_pixels,
                           const DepthEdgeOptions& options, Image<float>& edge_distance_px);
 

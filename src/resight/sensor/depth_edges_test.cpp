@@ -19,10 +19,11 @@ using test::kNan;
 bool is_missing(const Image<float>& depth, int u, int v) { return !depth.contains(u, v) || std::isnan(depth(u, v)); }
 bool is_step(float a, float b, float max_jump) { return std::abs(a - b) > max_jump * std::min(a, b); }
 
-/// From each measurement walks over runs of missing pixels in each direction, and fills those that end at a like depth.
+/// Follows runs of missing pixels from each measurement in each direction, and fills those that end at a similar depth.
 Image<float> bridged_by_definition(const Image<float>& depth, float max_jump, int max_gap) {
   Image<float> bridged = depth;
-  for (const auto& [du, dv] : {std::pair{1, -1}, {1, 1}, {0, 1}, {1, 0}})  // the last one wins: rows first
+  // The last direction takes precedence: rows first.
+  for (const auto& [du, dv] : {std::pair{1, -1}, {1, 1}, {0, 1}, {1, 0}})
     for (int v = 0; v < depth.height(); ++v)
       for (int u = 0; u < depth.width(); ++u) {
         if (is_missing(depth, u, v)) continue;
@@ -66,7 +67,7 @@ TEST(FindDepthEdges, AgreesWithTheDefinition) {
     const Image<std::uint8_t> edges = find_depth_edges(depth, {.max_depth_jump = 0.05, .max_gap_px = max_gap});
     EXPECT_EQ(edges, edges_by_definition(depth, 0.05F, max_gap));
     const auto num_edges = std::ranges::count(edges.data(), 1);
-    EXPECT_GT(num_edges, num_before);  // the fewer gaps are bridged, the more edges
+    EXPECT_GT(num_edges, num_before);  // the fewer gaps are bridged, the more edges remain
     EXPECT_GT(std::ranges::count(edges.data(), 0), 1000);
     num_before = num_edges;
   }
@@ -90,7 +91,7 @@ TEST(FindDepthEdges, MarksTheRimOfAHoleUnlessItIsAGapInASurface) {
   EXPECT_EQ(std::ranges::count(edges.data(), 1), 8);
   EXPECT_EQ(edges(4, 4), 0);
   EXPECT_EQ(edges(3, 3), 1);
-  for (int v = 0; v < 9; ++v) {  // a gap between two surfaces
+  for (int v = 0; v < 9; ++v) {  // a gap between two surfaces at different depths
     depth(4, v) = kNan;
     for (int u = 5; u < 9; ++u) depth(u, v) = 1.5F;
   }

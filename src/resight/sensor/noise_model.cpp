@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxAngleRad = 85.0 / 180.0 * std::numbers::pi;
 constexpr int kRowsPerTask = 32;
 
-/// The formulas, for the double of nguyen_noise() and the float of whole images.
+/// The formulas, as templates for the double of nguyen_noise() and the float of whole images.
 template <typename T>
 inline T lateral_sigma_m(T z_m, T ratio, T focal_px) {
   return (T(0.8) + T(0.035) * ratio) * z_m / focal_px;
@@ -26,7 +26,8 @@ inline T axial_sigma_m(T z_m, T ratio) {
   return T(0.0012) + T(0.0019) * from_near * from_near + T(0.0001) / std::sqrt(z_m) * ratio * ratio;
 }
 
-/// arccos on [0, 1] within 1e-7 or so (Abramowitz & Stegun 4.4.46). libm's is a call per pixel: ten times slower.
+/// arccos on [0, 1] with an error of about 1e-7 (Abramowitz & Stegun 4.4.46). The function of libm, called per pixel,
+/// takes ten times as long.
 inline float arc_cosine(float c) {
   float p = -0.0012624911F;
   p = p * c + 0.0066700901F;
@@ -39,7 +40,7 @@ inline float arc_cosine(float c) {
   return p * std::sqrt(1.0F - c);
 }
 
-/// theta / (pi/2 - theta) of the clipped angle whose cosine is `c`.
+/// theta / (pi/2 - theta) of the clipped angle with cosine `c`.
 inline float angle_ratio(float c) {
   constexpr auto kHalfPi = std::numbers::pi_v<float> / 2;
   constexpr auto kMaxAngle = static_cast<float>(kMaxAngleRad);
@@ -48,8 +49,8 @@ inline float angle_ratio(float c) {
   return clipped / (kHalfPi - clipped);
 }
 
-/// One row. Parameters, since compilers trust __restrict on these alone: without it the loop stays scalar. `trust` is
-/// 1, or NaN where there are no normals.
+/// Computes one row. Passes pointers as parameters, because compilers honour __restrict only there; otherwise the loop
+/// is not vectorised. `trust` is 1, or NaN if there are no normals.
 void model_row(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                const float* __restrict nx, const float* __restrict ny, const float* __restrict nz, int width,
                float trust, float focal_px, float* __restrict lateral_m, float* __restrict axial_m) {
@@ -77,7 +78,8 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
   require(camera.is_valid(), "model_noise: invalid intrinsics (size and focal lengths must be positive and finite)");
   const int width = cloud_in_camera.width();
   const int height = cloud_in_camera.height();
-  require(width == camera.width && height == camera.height, "model_noise: the cloud has not the camera's size");
+  require(width == camera.width && height == camera.height,
+          "model_noise: the cloud must have the size of the camera image");
   const auto focal_px = static_cast<float>((camera.fx + camera.fy) / 2);
   NoiseImages noise{Image<float>(width, height), Image<float>(width, height)};
   const OrganizedCloud& c = cloud_in_camera;

@@ -5,26 +5,26 @@
 
 namespace resight {
 
-/// Standard deviations of one measurement, metres.
+/// Standard deviations of one measurement in metres.
 struct NoiseSigma {
   double lateral_m = 0;
   double axial_m = 0;
 };
 
-/// Nguyen, Izadi, Lovell 2012 (paper [19]) for the Kinect: `z_m` depth, `angle_rad` between surface normal and viewing
-/// ray
-/// (>= 0, clipped at 85 deg), `focal_px` the focal length. sigma_L = (0.8 + 0.035 theta/(pi/2 - theta)) z/f;
+/// Noise model of the Kinect by Nguyen, Izadi, Lovell 2012 (paper [19]). `z_m` is the depth, `angle_rad` the angle
+/// between surface normal and viewing ray (>= 0, clipped at 85 deg), `focal_px` the focal length.
+/// sigma_L = (0.8 + 0.035 theta/(pi/2 - theta)) z/f;
 /// sigma_z = 0.0012 + 0.0019 (z - 0.4)^2 + 0.0001/sqrt(z) * theta^2/(pi/2 - theta)^2.
 [[nodiscard]] NoiseSigma nguyen_noise(double z_m, double angle_rad, double focal_px);
 
-/// Noise of each pixel of a cloud.
+/// Noise of each pixel of a cloud in metres.
 struct NoiseImages {
   Image<float> lateral_m;
   Image<float> axial_m;
 };
 
-/// nguyen_noise() for each point, with the mean of both focal lengths; NaN where there is no point. A point without a
-/// normal gets the value of 85 deg: the worst, so that it loses against any other in its voxel.
+/// Evaluates nguyen_noise() for each point, with the mean of both focal lengths. NaN where there is no point. A point
+/// without a normal gets the largest value, that of 85 deg, so that any other point in its voxel is preferred.
 [[nodiscard]] NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& camera, int num_threads = 1);
 
 }  // namespace resight

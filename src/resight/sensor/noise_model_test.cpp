@@ -16,13 +16,13 @@ using test::small_camera;
 constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(NguyenNoise, MatchesValuesWorkedByHand) {
-  // Head on at 0.4 m: 0.8 px * 0.4 / 525; all other terms vanish.
+  // Frontal at 0.4 m: 0.8 px * 0.4 / 525; all other terms vanish.
   EXPECT_NEAR(nguyen_noise(0.4, 0, 525).lateral_m, 6.0952381e-4, 1e-11);
   EXPECT_NEAR(nguyen_noise(0.4, 0, 525).axial_m, 0.0012, 1e-12);
   // 1.4 m at 45 deg: the ratio theta / (90 deg - theta) is 1. 0.835 * 1.4 / 525; 0.0012 + 0.0019 + 0.0001 / 1.18321596.
   EXPECT_NEAR(nguyen_noise(1.4, 45 * kDegree, 525).lateral_m, 2.2266667e-3, 1e-10);
   EXPECT_NEAR(nguyen_noise(1.4, 45 * kDegree, 525).axial_m, 3.1845154e-3, 1e-10);
-  // 1 m at 60 deg: ratio 2. 0.87 / 500; 0.0012 + 0.0019 * 0.36 + 0.0001 * 4.
+  // 1 m at 60 deg: the ratio is 2. 0.87 / 500; 0.0012 + 0.0019 * 0.36 + 0.0001 * 4.
   EXPECT_NEAR(nguyen_noise(1.0, 60 * kDegree, 500).lateral_m, 1.74e-3, 1e-10);
   EXPECT_NEAR(nguyen_noise(1.0, 60 * kDegree, 500).axial_m, 2.284e-3, 1e-10);
 }
@@ -44,7 +44,7 @@ TEST(NguyenNoise, GrowsWithDepthAndAngle) {
       EXPECT_GT(steeper.lateral_m, here.lateral_m);
       EXPECT_GT(steeper.axial_m, here.axial_m);
       EXPECT_GT(nguyen_noise(z + 0.1, angle, 525).lateral_m, here.lateral_m);
-      // At steep angles the axial term with 1/sqrt(z) falls with depth: the law holds where it is small.
+      // At grazing angles, the axial term with 1/sqrt(z) decreases with depth. The law holds where this term is small.
       if (angle < 45 * kDegree) {
         EXPECT_GT(nguyen_noise(z + 0.1, angle, 525).axial_m, here.axial_m);
       }
@@ -80,7 +80,7 @@ TEST(ModelNoise, IsNguyenNoiseOfEachPixelByTheAngleToItsRay) {
     }
     (cloud.has_normal(i) ? num_with_normal : num_without_normal) += 1;
     const NoiseSigma expected = nguyen_noise(cloud.z[i], angle, (camera.fx + camera.fy) / 2);
-    // Near the clip the ratio is steep in the angle.
+    // Near the clipping angle, the ratio changes quickly with the angle.
     const double tolerance = angle > 80 * kDegree ? 1e-3 : 1e-4;
     ASSERT_NEAR(noise.lateral_m[i] / expected.lateral_m, 1, tolerance);
     ASSERT_NEAR(noise.axial_m[i] / expected.axial_m, 1, tolerance) << angle / kDegree;

@@ -8,21 +8,22 @@
 #include "resight/core/parallel.hpp"
 #include "resight/sensor/organized_cloud.hpp"
 
-// All loops run along an image row over arrays, without branches or calls: the compiler turns them into vector code.
+// All loops process arrays along an image row, without branches or calls, so that the compiler can vectorise them.
 namespace resight {
 namespace {
 
-constexpr int kBlock = 128;  // columns worked on at a time: their sums stay in the first-level cache
+constexpr int kBlock = 128;  // columns per block, so that their sums stay in the first-level cache
 constexpr int kNormalRowsPerTask = 8;
 constexpr int kNewtonSteps = 6;
-// Smallest |cross product| / trace^2 of a window that spans a plane. It is about l1 / l2, 0.03 at 80 deg incidence.
+// Smallest |cross product| / trace^2 of a window that spans a plane. The ratio is about l1 / l2, 0.03 at 80 deg
+// incidence.
 constexpr float kMinSpread = 1e-4F;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 using Lane = std::array<float, kBlock>;
 
-/// Sums over the window of each pixel of a block, of differences to the pixel's own point: first and second moments.
-/// Differences, since sums of squares of absolute coordinates lose all digits of the spread in single precision.
+/// First and second moments over the window of each pixel of a block, of differences to the point of the pixel. In
+/// single precision, sums of squares of absolute coordinates would lose all digits of the spread.
 struct WindowSums {
   Lane count, x, y, z, xx, xy, xz, yy, yz, zz;
   void clear() {
@@ -30,7 +31,7 @@ struct WindowSums {
   }
 };
 
-/// Adds, for the pixels [begin, end) of row v, the neighbour at (du, dv); all neighbours lie within the image.
+/// Adds the neighbour at (du, dv) for the pixels [begin, end) of row v. All neighbours must lie within the image.
 void add_neighbors(const OrganizedCloud& cloud, int v, int begin, int end, int du, int dv, int block_begin,
                    float max_depth_change, WindowSums& s) {
   const std::size_t here = cloud.z.index(begin, v);
@@ -45,7 +46,7 @@ void add_neighbors(const OrganizedCloud& cloud, int v, int begin, int end, int d
   const int num = end - begin;
   for (int i = 0; i < num; ++i) {
     const float dz_all = z_n[i] - z[i];
-    const bool counts = std::abs(dz_all) < max_depth_change * z[i];  // false for NaN on either side
+    const bool counts = std::abs(dz_all) < max_depth_change * z[i];  // false if either depth is NaN
     const float dx = counts ? x_n[i] - x[i] : 0.0F;
     const float dy = counts ? y_n[i] - y[i] : 0.0F;
     const float dz = counts ? dz_all : 0.0F;
@@ -82,7 +83,7 @@ struct Vector {
   [[nodiscard]] float dot(const Vector& o) const { return x * o.x + y * o.y + z * o.z; }
 };
 
-/// Symmetric 3x3 matrix of unit trace.
+/// Symmetric 3x3 matrix with unit trace.
 struct Symmetric {
   float xx, xy, xz, yy, yz, zz;
   [[nodiscard]] Vector operator*(const Vector& n) const {
@@ -90,8 +91,8 @@ struct Symmetric {
   }
 };
 
-/// Smallest root of the characteristic polynomial of a positive semi-definite matrix of unit trace. The polynomial is
-/// concave and rising up to that root, so Newton's method from 0 approaches it from below without overshooting.
+/// Smallest root of the characteristic polynomial of a positive semi-definite matrix with unit trace. The polynomial is
+/// concave and increases up to that root, so Newton's method from 0 approaches it from below without overshooting.
 inline float smallest_eigenvalue(const Symmetric& a) {
   const float minors = a.xx * a.yy - a.xy * a.xy + a.xx * a.zz - a.xz * a.xz + a.yy * a.zz - a.yz * a.yz;
   const float determinant =
@@ -126,7 +127,7 @@ inline Vector eigenvector(const Symmetric& a, float l) {
 /// Covariance of each of `num` windows, scaled to unit trace. Overwrites the sums of squares.
 void normalize_covariances(WindowSums& s, int num) {
   for (int i = 0; i < num; ++i) {
-    const float weight = 1.0F / (s.count[i] + 1.0F);  // the pixel itself, at difference 0, is part of its window
+    const float weight = 1.0F / (s.count[i] + 1.0F);  // includes the pixel itself, at difference 0
     const float mx = s.x[i] * weight;
     const float my = s.y[i] * weight;
     const float mz = s.z[i] * weight;
@@ -144,12 +145,12 @@ void normalize_covariances(WindowSums& s, int num) {
   }
 }
 
-/// Smallest eigenvector of each covariance, not normalised: into x, y, z of the sums.
+/// Smallest eigenvector of each covariance, not normalised. Stored in x, y, z of the sums.
 void solve_eigenvectors(WindowSums& s, int num) {
   for (int i = 0; i < num; ++i) {
     const Symmetric a{s.xx[i], s.xy[i], s.xz[i], s.yy[i], s.yz[i], s.zz[i]};
-    // The polynomial gives the eigenvalue to some 1e-7 of the trace; the Rayleigh quotient squares the error of the
-    // vector that follows from it, and a second vector from that is as good as single precision allows.
+    // The polynomial gives the eigenvalue to about 1e-7 of the trace. The Rayleigh quotient of the resulting vector
+    // squares its error, and a second vector from that quotient reaches the limit of single precision.
     const Vector rough = eigenvector(a, smallest_eigenvalue(a));
     const float rough_sq = rough.dot(rough);
     const Vector n = eigenvector(a, rough.dot(a * rough) / (rough_sq > 0 ? rough_sq : 1.0F));
@@ -159,9 +160,9 @@ void solve_eigenvectors(WindowSums& s, int num) {
   }
 }
 
-/// Unit normals towards the camera, NaN for windows that do not span a plane. (vx, vy, vz): the eigenvectors. Compilers
-/// trust
-/// __restrict on parameters alone, and without it the loop stays scalar.
+/// Writes unit normals that face the camera, NaN for windows that do not span a plane. (vx, vy, vz) are the
+/// eigenvectors. Passes pointers as parameters, because compilers honour __restrict only there; otherwise the loop is
+/// not vectorised.
 void write_normals(const float* __restrict count, const float* __restrict vx, const float* __restrict vy,
                    const float* __restrict vz, const float* __restrict x, const float* __restrict y,
                    const float* __restrict z, int num, float min_neighbors, float* __restrict nx, float* __restrict ny,
@@ -178,7 +179,7 @@ void write_normals(const float* __restrict count, const float* __restrict vx, co
   }
 }
 
-/// Normals of the pixels [begin, end) of row v.
+/// Computes the normals of the pixels [begin, end) of row v.
 void compute_block(OrganizedCloud& cloud, int v, int begin, int end, const ComputeNormalsOptions& options,
                    WindowSums& sums) {
   const int num = end - begin;

@@ -22,11 +22,11 @@ double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 struct OracleNormal {
   bool exists = false;
-  double gap = 0;  ///< (l1 - l0) / trace: how well the direction is defined.
+  double gap = 0;  ///< (l1 - l0) / trace: how well the direction is determined
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// The definition, in double precision with an eigenvalue solver.
+/// The definition in double precision with an eigenvalue solver.
 OracleNormal normal_by_definition(const OrganizedCloud& cloud, int u, int v, const ComputeNormalsOptions& options) {
   const std::size_t center = cloud.z.index(u, v);
   if (!cloud.has_point(center)) return {};
@@ -93,7 +93,8 @@ struct Deviation {
   double worst_deg = 0;
 };
 
-/// Of compute_normals() from the definition, over the windows with a clear direction; the same pixels must have none.
+/// Deviation of compute_normals() from the definition over windows with a clear direction. Both must omit the same
+/// pixels.
 Deviation compare_with_definition(OrganizedCloud cloud, const ComputeNormalsOptions& options) {
   compute_normals(cloud, options);
   Deviation result;
@@ -110,7 +111,7 @@ Deviation compare_with_definition(OrganizedCloud cloud, const ComputeNormalsOpti
       EXPECT_TRUE(cloud.has_normal(i)) << u << ", " << v;
       const Eigen::Vector3d found = cloud.normal(i).cast<double>();
       double error_deg = angle_deg(found, oracle.normal);
-      // Of a normal across the ray the sign is open.
+      // The sign of a normal perpendicular to the ray is undefined.
       if (std::abs(found.dot(cloud.point(i).cast<double>().normalized())) < 1e-3)
         error_deg = std::min(error_deg, 180 - error_deg);
       result.mean_deg += error_deg;
@@ -151,8 +152,8 @@ TEST(ComputeNormals, KeepsApartWhatLiesAtDifferentDepths) {
 TEST(ComputeNormals, HasNoneWithoutEnoughNeighbors) {
   Camera camera = small_camera();
   Image<float> depth(camera.width, camera.height, kNan);
-  depth(40, 40) = 1.0F;                               // alone
-  for (int u = 60; u < 90; ++u) depth(u, 80) = 1.0F;  // a line, which spans no plane
+  depth(40, 40) = 1.0F;                               // isolated
+  for (int u = 60; u < 90; ++u) depth(u, 80) = 1.0F;  // a line, which does not span a plane
   for (int v = 10; v < 30; ++v)
     for (int u = 10; u < 30; ++u) depth(u, v) = 1.0F;  // a patch
   OrganizedCloud cloud = back_project(camera, depth);
@@ -161,7 +162,7 @@ TEST(ComputeNormals, HasNoneWithoutEnoughNeighbors) {
   for (int u = 60; u < 90; ++u) EXPECT_FALSE(cloud.has_normal(cloud.z.index(u, 80))) << u;
   for (int v = 10; v < 30; ++v)
     for (int u = 10; u < 30; ++u) EXPECT_TRUE(cloud.has_normal(cloud.z.index(u, v)));
-  EXPECT_FALSE(cloud.has_normal(cloud.z.index(30, 30)));  // next to the patch, but no point
+  EXPECT_FALSE(cloud.has_normal(cloud.z.index(30, 30)));  // beside the patch, but not a point
 }
 
 TEST(ComputeNormals, IsTheSameForAnyNumberOfThreads) {

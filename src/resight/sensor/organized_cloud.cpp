@@ -10,7 +10,7 @@ namespace resight {
 OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m) {
   require(camera.is_valid(), "back_project: invalid intrinsics (size and focal lengths must be positive and finite)");
   require(depth_m.width() == camera.width && depth_m.height() == camera.height,
-          "back_project: the depth image has not the camera's size");
+          "back_project: the depth image must have the size of the camera image");
   const int width = camera.width;
   const int height = camera.height;
   std::vector<float> x_over_z(static_cast<std::size_t>(width));
@@ -22,7 +22,7 @@ OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m) {
     const float* z = depth_m.row(v).data();
     float* x = cloud.x.row(v).data();
     float* y = cloud.y.row(v).data();
-    for (int u = 0; u < width; ++u) {  // NaN depth spreads to x and y by itself
+    for (int u = 0; u < width; ++u) {  // NaN depth makes x and y NaN
       x[u] = x_over_z[u] * z[u];
       y[u] = y_over_z * z[u];
     }
@@ -33,7 +33,8 @@ OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m) {
 PointCloud to_point_cloud(const OrganizedCloud& cloud, const Image<Rgb8>* color, bool require_normal,
                           std::vector<int>* pixels) {
   const std::size_t size = cloud.z.size();
-  require(color == nullptr || color->size() == size, "to_point_cloud: the colour image has not the cloud's size");
+  require(color == nullptr || color->size() == size,
+          "to_point_cloud: the colour image must have the size of the cloud");
   const bool has_normals = !cloud.nx.empty();
   require(has_normals || !require_normal, "to_point_cloud: normals are required, but were not computed");
 

@@ -9,8 +9,9 @@
 
 namespace resight {
 
-/// A cloud on the image grid, camera frame, structure of arrays. NaN in z (and then in all of them) = no measurement;
-/// NaN in nx (ny, nz) = no normal there although the point may exist. Normals are unit and face the camera.
+/// A cloud on the image grid, camera frame, structure of arrays. NaN in z (and then in all arrays) means no
+/// measurement. NaN in nx (and in ny, nz) means no normal; the point may exist. Normals are unit vectors and face the
+/// camera.
 struct OrganizedCloud {
   Image<float> x, y, z;
   Image<float> nx, ny, nz;  ///< Empty until compute_normals().
@@ -23,7 +24,8 @@ struct OrganizedCloud {
   [[nodiscard]] Eigen::Vector3f normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
 };
 
-/// Points of a depth image (metres, NaN = none).
+/// Computes the points of a depth image (metres; NaN = no measurement). Throws std::invalid_argument for an invalid
+/// camera or an image of another size.
 [[nodiscard]] OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m);
 
 struct ComputeNormalsOptions {
@@ -34,12 +36,12 @@ struct ComputeNormalsOptions {
   void check() const;
 };
 
-/// Normals by the covariance of the window's points (smallest eigenvector), turned to the camera. Fills nx, ny, nz. NaN
-/// where there is no point, too few neighbours count, or those lie on a line.
+/// Computes normals as the smallest eigenvectors of the covariances of windows, oriented towards the camera. Fills nx,
+/// ny, nz with NaN where there is no point, too few neighbours count, or the neighbours lie on a line.
 void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options = {});
 
-/// The points that have a measurement (and a normal, if `require_normal`), with normals where the cloud has them and
-/// colours where `color` is given; `pixels`, if given, receives the pixel index of each.
+/// The points that have a measurement (and a normal, if `require_normal`). Includes normals if the cloud has them, and
+/// colours if `color` is given. `pixels`, if given, receives the pixel index of each point.
 [[nodiscard]] PointCloud to_point_cloud(const OrganizedCloud& cloud, const Image<Rgb8>* color, bool require_normal,
                                         std::vector<int>* pixels = nullptr);
 

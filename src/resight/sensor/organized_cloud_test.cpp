@@ -86,7 +86,7 @@ TEST_F(ToPointCloud, GoesWithoutNormalsAndColors) {
 }
 
 TEST_F(ToPointCloud, RefusesBadInput) {
-  EXPECT_THROW((void)to_point_cloud(cloud_, nullptr, true), std::invalid_argument);  // no normals computed
+  EXPECT_THROW((void)to_point_cloud(cloud_, nullptr, true), std::invalid_argument);  // normals have not been computed
   const Image<Rgb8> small(3, 3);
   EXPECT_THROW((void)to_point_cloud(cloud_, &small, false), std::invalid_argument);
 }

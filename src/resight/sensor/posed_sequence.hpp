@@ -9,13 +9,13 @@
 
 namespace resight {
 
-/// Views of another sequence with other camera poses. The other must outlive it.
+/// Views of another sequence with other camera poses. The other sequence must outlive this object.
 class PosedSequence : public Sequence {
  public:
-  /// `views`: numbers in `original`, in order; `world_from_camera`: one for each of them.
+  /// `views`: numbers of the views in `original`, in order. `world_from_camera`: one pose per view.
   PosedSequence(const Sequence& original, std::vector<int> views, std::vector<Rigid3> world_from_camera)
       : original_(original), views_(std::move(views)), world_from_camera_(std::move(world_from_camera)) {
-    require(views_.size() == world_from_camera_.size(), "world_from_camera: must hold a pose for each view");
+    require(views_.size() == world_from_camera_.size(), "world_from_camera: must contain one pose per view");
   }
   [[nodiscard]] std::string format() const override { return original_.format(); }
   [[nodiscard]] int num_views() const override { return static_cast<int>(views_.size()); }

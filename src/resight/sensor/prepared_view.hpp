@@ -16,15 +16,16 @@ struct PrepareViewOptions {
   void check() const;
 };
 
-/// A frame and all that the stages share of it, computed once.
+/// A frame and the data that all stages share, computed once.
 struct PreparedView {
   RgbdFrame frame;
-  OrganizedCloud cloud;           ///< With normals, camera frame.
-  Image<float> edge_distance_px;  ///< Distance to the next depth discontinuity, px, capped (see find_edge_distance()).
-  NoiseImages noise;              ///< Axial and lateral sigma in metres, NaN where there is no point.
+  OrganizedCloud cloud;  ///< With normals, camera frame.
+  /// Distance to the nearest depth discontinuity in pixels, capped (see find_edge_distance()).
+  Image<float> edge_distance_px;
+  NoiseImages noise;  ///< Axial and lateral sigma in metres; NaN where there is no point.
 };
 
-/// Throws std::invalid_argument for a frame that fails check_frame().
+/// Computes cloud, normals, depth edges and noise of a frame. Throws std::invalid_argument if check_frame() fails.
 [[nodiscard]] PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options = {});
 
 }  // namespace resight

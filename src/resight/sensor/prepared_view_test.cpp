@@ -53,7 +53,7 @@ TEST(PrepareView, HoldsWhatTheStagesGiveOneByOne) {
 
 TEST(PrepareView, DropsFarPointsButNotTheEvidenceOfFreeSpace) {
   const Camera camera = small_camera();
-  const RgbdFrame frame = make_frame(camera, test::render_noisy_sphere(camera, 1));  // sphere before a wall at 1.6 m
+  const RgbdFrame frame = make_frame(camera, test::render_noisy_sphere(camera, 1));  // a sphere before a wall at 1.6 m
   const PreparedView whole = prepare_view(frame);
   const PreparedView view = prepare_view(frame, {.max_depth_m = 1.3});
   int num_kept = 0;

@@ -12,13 +12,13 @@ Result<void> check_frame(const RgbdFrame& frame) {
     return image.width() == frame.camera.width && image.height() == frame.camera.height;
   };
   if (!frame.camera.is_valid()) return fail("invalid intrinsics (size and focal lengths must be positive and finite)");
-  if (!has_size(frame.depth_m)) return fail("the depth image has not the camera's size");
-  if (!has_size(frame.color)) return fail("the colour image has not the size of the depth image");
+  if (!has_size(frame.depth_m)) return fail("the depth image must have the size of the camera image");
+  if (!has_size(frame.color)) return fail("the colour image must have the size of the depth image");
   if (!frame.world_from_camera.is_rigid())
     return fail("the camera pose is not a rigid motion (NaN, scale, shear or reflection)");
   for (const float z : frame.depth_m.data())
     if (!std::isnan(z) && !(z > 0 && std::isfinite(z)))
-      return fail("the depth holds zero, negative or infinite values");
+      return fail("the depth contains zero, negative or infinite values");
   return {};
 }
 

@@ -9,20 +9,20 @@
 
 namespace resight {
 
-/// One RGB-D view: colour and depth registered to it, and where the camera stood.
+/// One RGB-D view: colour, depth registered to it, and the pose of the camera.
 struct RgbdFrame {
-  std::string name;  ///< Stem of the file it came from; unique in its sequence.
+  std::string name;  ///< Stem of the source file; unique in its sequence.
   Camera camera;
   Image<Rgb8> color;
-  Image<float> depth_m;  ///< Along z; NaN = no return. Never 0, negative or infinite.
+  Image<float> depth_m;  ///< Along z. NaN means no return; values are never 0, negative or infinite.
   Rigid3 world_from_camera;
 };
 
-/// Sizes agree, intrinsics are valid, the pose is rigid, the depth holds only NaN or positive finite values.
-/// The error names the frame and the rule.
+/// Checks that the sizes agree, the intrinsics are valid, the pose is rigid, and each depth is NaN or positive and
+/// finite. The error names the frame and the rule.
 [[nodiscard]] Result<void> check_frame(const RgbdFrame& frame);
 
-/// Number of pixels with a return.
+/// Number of pixels with a depth measurement.
 [[nodiscard]] std::size_t count_valid(const Image<float>& depth_m);
 
 }  // namespace resight

@@ -26,7 +26,7 @@ inline Image<float> render_plane(const Camera& camera, const Eigen::Vector3d& no
   return depth;
 }
 
-/// Depth of a sphere before a wall at `wall_m`.
+/// Depth of a sphere in front of a wall at `wall_m`.
 inline Image<float> render_sphere(const Camera& camera, const Eigen::Vector3d& center, double radius_m, double wall_m) {
   Image<float> depth(camera.width, camera.height, static_cast<float>(wall_m));
   for (int v = 0; v < camera.height; ++v)
@@ -40,7 +40,7 @@ inline Image<float> render_sphere(const Camera& camera, const Eigen::Vector3d& c
   return depth;
 }
 
-/// The sphere scene with noise that grows with depth and with scattered holes.
+/// The sphere scene with noise proportional to depth and with scattered holes.
 inline Image<float> render_noisy_sphere(const Camera& camera, std::uint64_t seed, double noise_share = 0.001) {
   Image<float> depth = render_sphere(camera, {0.05, 0.02, 1.0}, 0.25, 1.6);
   Rng rng(seed);
@@ -60,7 +60,7 @@ inline RgbdFrame make_frame(const Camera& camera, Image<float> depth_m) {
   return frame;
 }
 
-/// Bytewise equality: NaN equals NaN.
+/// Bytewise equality; NaN equals NaN.
 inline bool same_bytes(const Image<float>& a, const Image<float>& b) {
   return a.width() == b.width() && a.height() == b.height() &&
          std::equal(a.data().begin(), a.data().end(), b.data().begin(), [](float p, float q) {

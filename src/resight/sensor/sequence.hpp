@@ -9,30 +9,30 @@
 
 namespace resight {
 
-/// Where an object is in one view, by annotation or by simulation.
+/// Pose of an object in one view, from annotation or simulation.
 struct GroundTruthObject {
   std::string object;  ///< Name of the model.
-  int bop_id = 0;      ///< obj_id; 0 = unknown.
-  int instance = 0;    ///< Number among the objects of this name in this view.
+  int bop_id = 0;      ///< obj_id of BOP; 0 if unknown.
+  int instance = 0;    ///< Index among the objects of this name in this view.
   Rigid3 camera_from_object;
-  double visible_share = 1.0;  ///< Of the object's silhouette (BOP visib_fract); NaN = unknown.
+  double visible_share = 1.0;  ///< Visible share of the silhouette (visib_fract of BOP); NaN if unknown.
 };
 
-/// A recorded sequence of RGB-D views in time order, whatever its format on disk.
+/// A recorded sequence of RGB-D views in time order, independent of its format on disk.
 class Sequence {
  public:
   virtual ~Sequence() = default;
-  [[nodiscard]] virtual std::string format() const = 0;  ///< "tuw", "bop", "tum", ..
+  [[nodiscard]] virtual std::string format() const = 0;  ///< "tuw", "bop", "tum", ...
   [[nodiscard]] virtual int num_views() const = 0;
   [[nodiscard]] virtual std::string view_name(int view) const = 0;  ///< File stem.
-  [[nodiscard]] virtual int scene_id() const { return 0; }          ///< BOP scene; 0 elsewhere.
+  [[nodiscard]] virtual int scene_id() const { return 0; }          ///< BOP scene; 0 for other formats.
   [[nodiscard]] virtual int image_id(int view) const { return view; }
-  /// The view, checked by check_frame().
+  /// Reads a view and checks it by check_frame().
   [[nodiscard]] virtual Result<RgbdFrame> read_view(int view) const = 0;
-  /// False when the data hold no camera poses, so that world_from_camera is the identity for want of better.
+  /// False if the data contain no camera poses; world_from_camera is then the identity.
   [[nodiscard]] virtual bool has_poses() const { return true; }
   [[nodiscard]] virtual bool has_ground_truth() const { return false; }
-  /// Empty where there is none.
+  /// Returns an empty list if there is no ground truth.
   [[nodiscard]] virtual Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const;
 };
 

@@ -4,10 +4,10 @@
 
 namespace resight {
 
-/// A registered view of an object for training: frame.world_from_camera is object_from_camera.
+/// A registered view of an object for training. frame.world_from_camera is object_from_camera.
 struct TrainingView {
   RgbdFrame frame;
-  Image<std::uint8_t> mask;  ///< Non-zero = object.
+  Image<std::uint8_t> mask;  ///< Non-zero marks the object.
 };
 
 }  // namespace resight

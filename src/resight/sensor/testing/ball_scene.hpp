@@ -8,7 +8,7 @@
 #include "resight/core/random.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
-/// Analytic views for tests of cameras: a textured floor with a ball and a box wall, seen from anywhere.
+/// Analytic views for tests of cameras: a textured floor with a ball and a box wall, rendered from any pose.
 namespace resight::test {
 
 struct BallScene {
@@ -16,12 +16,12 @@ struct BallScene {
   double ball_radius_m = 0.12;
   bool has_ball = true;
   bool textured = true;
-  bool ball_print = false;  ///< The ball carries its print along when it moves.
+  bool ball_print = false;  ///< The texture of the ball moves with it.
 };
 
 inline Camera small_camera() { return {320, 240, 280.0, 280.0, 159.5, 119.5}; }
 
-/// At `eye`, looking at `target`; world z up.
+/// Pose of a camera at `eye` that looks at `target`. The z axis of the world points up.
 inline Rigid3 look_at_point(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
   const Eigen::Vector3d z = (target - eye).normalized();
   const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -34,7 +34,7 @@ inline Rigid3 look_at_point(const Eigen::Vector3d& eye, const Eigen::Vector3d& t
 inline Rgb8 texture_at(const Eigen::Vector3d& p, bool textured) {
   if (!textured) return {128, 128, 128};
   double shade = 0;
-  // Frequencies without a common period: a pattern that repeats would be the same place again.
+  // Frequencies without a common period, because a periodic pattern would match itself at several places.
   for (const double f : {11.3, 18.7, 29.9, 47.1})
     shade += std::sin(f * (p.x() + 0.3 * p.y() * p.y())) * std::sin(1.31 * f * p.y() + 5 * p.x()) +
              std::sin(1.17 * f * p.z() + 2 * p.x());
@@ -42,7 +42,7 @@ inline Rgb8 texture_at(const Eigen::Vector3d& p, bool textured) {
   return {level, level, level};
 }
 
-/// The floor z = 0, the wall y = 0.8 and the ball, whichever is nearest. `noise_m`: of depth.
+/// Renders the floor z = 0, the wall y = 0.8 and the ball. `noise_m` is the standard deviation of depth.
 inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_from_camera, double noise_m = 0,
                                    std::uint64_t seed = 1) {
   RgbdFrame frame;
@@ -73,7 +73,7 @@ inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_f
   return frame;
 }
 
-/// `a` from `b`: shift in m, rotation in rad.
+/// Distances between `a` and `b`: translation in metres, rotation in radians.
 inline double shift_m(const Rigid3& a, const Rigid3& b) { return (a.translation - b.translation).norm(); }
 inline double turn_rad(const Rigid3& a, const Rigid3& b) { return rotation_angle_rad(a.rotation, b.rotation); }
 
