@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 
 constexpr double kSameFitM = 0.01;
 
-// A surface to be looked up, and some of its points.
+// A surface with its search tree and some sample points.
 struct Shape {
   explicit Shape(const TriangleMesh& mesh, int num_samples)
       : points(mesh.vertices), normals(with_normals(mesh).normals), tree(points) {
@@ -90,7 +90,7 @@ double agreement(const Shape& fixed, const Shape& moving, const Rigid3& pose, co
   return num / static_cast<double>(fixed.samples.size() + moving.samples.size());
 }
 
-// Directions evenly over the sphere (Fibonacci), each with turns about it.
+// Directions uniformly over the sphere (Fibonacci lattice), each combined with rotations about it.
 std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options) {
   std::vector<Eigen::Matrix3d> rotations;
   for (int d = 0; d < options.num_directions; ++d) {

@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-// The points of a generated object above or below a height, in a frame of their own.
+// The points of a generated object between two heights, in their own frame.
 TriangleMesh part_of(const std::string& object, double from_m, double to_m, const Rigid3& part_from_object) {
   const PointCloud surface = sample_visible_surface(make_procedural_object(object)->mesh, 0.003);
   TriangleMesh part;

@@ -17,7 +17,8 @@ namespace resight {
 namespace {
 
 constexpr double kThinM = 0.005;
-constexpr double kSamplesPerPoint = 4;  // of the mesh for each point of the cloud
+// Samples of the mesh per point of the cloud.
+constexpr double kSamplesPerPoint = 4;
 constexpr int kCropMarginPx = 10;
 
 double degrees(double rad) { return rad * 180 / std::numbers::pi; }
@@ -26,7 +27,7 @@ PointCloud make_cloud(const TriangleMesh& mesh, double spacing_m) {
   return voxel_downsample(sample_surface(mesh, kSamplesPerPoint / (spacing_m * spacing_m)), spacing_m);
 }
 
-// Points with a point less than kThinM behind them that faces the other way.
+// Share of points with an oppositely oriented point less than kThinM behind them.
 double measure_thin_share(const PointCloud& cloud) {
   if (cloud.empty()) return 0;
   const KdTree tree(cloud.points);
@@ -47,7 +48,7 @@ struct PixelCount {
   std::size_t without_depth = 0;
 };
 
-// Pixels between the first and the last object pixel of their row count as inside if they are object or have no depth.
+// Pixels between the first and the last object pixel of a row count as inside if they are object or have no depth.
 PixelCount count_returns(const TrainingView& view) {
   PixelCount count;
   for (int v = 0; v < view.mask.height(); ++v) {
@@ -90,15 +91,15 @@ double count_keypoints(std::span<const TrainingView> views, std::span<const int>
 
 std::string describe_symmetries(const ObjectSymmetries& symmetries) {
   if (symmetries.none()) return "none found";
-  return fmt::format("{} axes of any angle, {} other motions", symmetries.continuous.size(),
+  return fmt::format("{} axes of revolution, {} discrete symmetries", symmetries.continuous.size(),
                      symmetries.discrete.size());
 }
 
 std::vector<std::string> find_troubles(const ModelReport& r, const BuildModelOptions& o) {
   std::vector<std::string> troubles;
   if (r.keypoints_per_view < o.min_keypoints)
-    troubles.push_back(fmt::format(
-        "few features: {:.0f} keypoints a view; it will be recognised by its shape, if at all", r.keypoints_per_view));
+    troubles.push_back(fmt::format("few features: {:.0f} keypoints per view; it can only be recognised by its shape",
+                                   r.keypoints_per_view));
   if (r.no_return_share > o.max_no_return)
     troubles.push_back(
         fmt::format("shiny, dark or transparent: {:.0f} % of its pixels have no depth", 100 * r.no_return_share));
@@ -106,14 +107,14 @@ std::vector<std::string> find_troubles(const ModelReport& r, const BuildModelOpt
     troubles.push_back(
         fmt::format("thin: {:.0f} % of its surface is less than {:.0f} mm thick", 100 * r.thin_share, 1000 * kThinM));
   if (r.holes.open_share > o.max_open_share)
-    troubles.push_back(fmt::format("holes: {:.0f} % of its surface was not seen; record it from another side, too",
+    troubles.push_back(fmt::format("holes: {:.0f} % of its surface was not observed; record it from another side too",
                                    100 * r.holes.open_share));
   if (r.coverage.share < o.min_coverage)
     troubles.push_back(fmt::format(
-        "seen from {:.0f} % of all directions; the largest gap is {:.0f} deg wide around ({:.1f}, {:.1f}, {:.1f})",
+        "observed from {:.0f} % of all directions; the largest gap is {:.0f} deg wide around ({:.1f}, {:.1f}, {:.1f})",
         100 * r.coverage.share, degrees(2 * r.coverage.largest_gap_rad), r.coverage.largest_gap.x(),
         r.coverage.largest_gap.y(), r.coverage.largest_gap.z()));
-  if (!r.symmetries.none()) troubles.push_back("symmetric: its pose is known up to its symmetries only");
+  if (!r.symmetries.none()) troubles.push_back("symmetric: its pose is determined only up to its symmetries");
   return troubles;
 }
 
@@ -177,9 +178,9 @@ Result<ObjectModelBuild> build_model(std::span<const TrainingView> views, const 
 
 std::string format_report(const ModelReport& r) {
   std::string text = fmt::format(
-      "views         {} ({} kept for training)\nsize          {:.0f} x {:.0f} x {:.0f} mm, diameter {:.0f} mm\n"
+      "views         {} ({} used for training)\nsize          {:.0f} x {:.0f} x {:.0f} mm, diameter {:.0f} mm\n"
       "coverage      {:.0f} % of all directions ({:.0f} % from above, {:.0f} % from below), largest gap {:.0f} deg\n"
-      "holes         {} (open: {:.1f} % of the surface, {:.0f} mm of rim)\nkeypoints     {:.0f} a view\n"
+      "holes         {} (open: {:.1f} % of the surface, {:.0f} mm of open edges)\nkeypoints     {:.0f} per view\n"
       "no return     {:.1f} % of its pixels\nsymmetries    {}\n",
       r.num_views, r.num_key_views, 1000 * r.extent_m.x(), 1000 * r.extent_m.y(), 1000 * r.extent_m.z(),
       1000 * r.diameter_m, 100 * r.coverage.share, 100 * r.coverage.share_above, 100 * r.coverage.share_below,
@@ -187,7 +188,7 @@ std::string format_report(const ModelReport& r) {
       1000 * r.holes.boundary_length_m, r.keypoints_per_view, 100 * r.no_return_share,
       describe_symmetries(r.symmetries));
   if (!std::isnan(r.closure_error_m)) text += fmt::format("closure error {:.1f} mm\n", 1000 * r.closure_error_m);
-  for (const std::string& trouble : r.troubles) text += "trouble       " + trouble + "\n";
+  for (const std::string& trouble : r.troubles) text += "warning       " + trouble + "\n";
   return text;
 }
 

@@ -15,21 +15,24 @@
 
 namespace resight {
 
-/// What can be said of a model before anyone recognises with it.
+/// Quality of a model, measured before it is used for recognition.
 struct ModelReport {
   int num_views = 0;
   int num_key_views = 0;
-  ViewCoverage coverage;  ///< Of the key views.
+  ViewCoverage coverage;  ///< Coverage by the key views.
   MeshHoles holes;
-  Eigen::Vector3d extent_m = Eigen::Vector3d::Zero();  ///< Along the axes of the object frame.
+  Eigen::Vector3d extent_m = Eigen::Vector3d::Zero();  ///< Size along the axes of the object frame.
   double diameter_m = 0;
-  double keypoints_per_view = 0;  ///< SIFT on the object, median over the key views.
-  double no_return_share = 0;     ///< Of the pixels within the object's outline that have no depth, over all views.
-  double thin_share = 0;          ///< Of the surface that has its other side less than 5 mm behind it.
-  ObjectSymmetries symmetries;    ///< Found from the surface.
-  /// Where the way around the object closes, how far the first view is off; NaN = not known or it does not close.
+  double keypoints_per_view = 0;  ///< SIFT keypoints on the object; median over the key views.
+  /// Share of pixels within the object's outline without depth, over all views.
+  double no_return_share = 0;
+  double thin_share = 0;        ///< Share of the surface with its other side less than 5 mm behind it.
+  ObjectSymmetries symmetries;  ///< Detected from the surface.
+  /// Error of the first view at the surface where the track around the object closes; NaN = unknown, or it does not
+  /// close.
   double closure_error_m = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> troubles;  ///< One line each on what will be hard, and what might help.
+  /// One line per expected difficulty, with a remedy where there is one.
+  std::vector<std::string> troubles;
 };
 
 /// All values are ours.
@@ -50,18 +53,18 @@ struct BuildModelOptions {
 
 /// A model of an object, in the object frame of its views.
 struct ObjectModelBuild {
-  TriangleMesh mesh;           ///< Coloured at its vertices.
-  PointCloud cloud;            ///< Of the mesh, with normals and colours.
-  std::vector<int> key_views;  ///< Indices into the views.
+  TriangleMesh mesh;           ///< With vertex colours.
+  PointCloud cloud;            ///< Sampled from the mesh, with normals and colours.
+  std::vector<int> key_views;  ///< Ascending indices of the views.
   ModelReport report;
 };
 
-/// Builds a model from registered, masked views (frame.world_from_camera is object_from_camera). An error if they show
-/// no surface.
+/// Builds a model from registered, masked views (frame.world_from_camera is object_from_camera). Fails if they show no
+/// surface.
 [[nodiscard]] Result<ObjectModelBuild> build_model(std::span<const TrainingView> views,
                                                    const BuildModelOptions& options = {});
 
-/// The report in lines for people.
+/// Formats the report as text.
 [[nodiscard]] std::string format_report(const ModelReport& report);
 
 }  // namespace resight

@@ -72,7 +72,7 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
 }
 
 TEST(BuildModel, TellsWhatWillBeHard) {
-  // A plain can from one side: no print, an open bottom, symmetric.
+  // An untextured can from one side: no texture, an open bottom, symmetric.
   const auto build = build_model(scan("plain_can", false), two_threads());
   ASSERT_TRUE(build.ok()) << build.error().message;
   EXPECT_LT(build->report.keypoints_per_view, 20);
@@ -81,7 +81,7 @@ TEST(BuildModel, TellsWhatWillBeHard) {
   EXPECT_GE(build->report.holes.count, 1);
   EXPECT_EQ(build->report.coverage.share_below, 0);
   const std::string text = format_report(build->report);
-  for (const char* word : {"few features", "holes: ", "seen from ", "symmetric"})
+  for (const char* word : {"few features", "holes: ", "observed from ", "symmetric"})
     EXPECT_THAT(text, testing::HasSubstr(word));
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kDirections = 4000;  // about 1.8 deg apart
+constexpr int kDirections = 4000;  // About 1.8 deg apart.
 
 // Fibonacci lattice: equal areas, from +z to -z.
 Vector3d lattice_direction(int i) {
@@ -28,7 +28,7 @@ std::vector<Vector3d> view_directions(std::span<const Rigid3> object_from_camera
   return directions;
 }
 
-// Cosine of the angle to the nearest of them.
+// Cosine of the angle to the nearest direction.
 double nearest_cosine(const Vector3d& direction, std::span<const Vector3d> others) {
   double best = -1;
   for (const Vector3d& other : others) best = std::max(best, direction.dot(other));

@@ -50,7 +50,7 @@ TEST(Coverage, WithoutViewsIsNone) { EXPECT_EQ(measure_coverage({}, {0, 0, 0}).s
 TEST(KeyViews, AreNotNearerThanTheAngle) {
   const std::vector<Rigid3> poses = ring(0, 36);
   const std::vector<int> chosen = choose_key_views(poses, {0, 0, 0.1}, 15 * kPi / 180);
-  ASSERT_EQ(chosen.size(), 18U);  // every 20 deg
+  ASSERT_EQ(chosen.size(), 18U);  // Every 20 deg.
   EXPECT_EQ(chosen[1], 2);
   EXPECT_EQ(choose_key_views(poses, {0, 0, 0.1}, 0).size(), 36U);
 }

@@ -13,14 +13,15 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr float kBackgroundWeight = 0.3F;  // of a view that looks past the object: its depth need not be exact
+// Weight of a view that looks past the object, where depth need not be accurate.
+constexpr float kBackgroundWeight = 0.3F;
 
 class BlockAllocator {
  public:
   explicit BlockAllocator(DistanceVolume& volume)
       : volume_(volume), inverse_size_(static_cast<float>(1 / (volume.voxel_m * DistanceVolume::kSide))) {}
 
-  // All blocks that the truncation band around a point reaches into.
+  // Adds all blocks that the truncation band around a point reaches.
   void touch(const Vector3f& p) {
     const auto reach = static_cast<float>(volume_.truncation_m);
     const Vector3i low = voxel_index(p - Vector3f::Constant(reach), inverse_size_);
@@ -47,7 +48,7 @@ class BlockAllocator {
   Vector3i last_high_ = Vector3i::Constant(1 << 30);
 };
 
-// One view on one block.
+// Integrates one view into one block.
 class BlockIntegrator {
  public:
   BlockIntegrator(const FusionView& view, double voxel_m, double truncation_m)
@@ -69,7 +70,7 @@ class BlockIntegrator {
   }
 
  private:
-  // Whole blocks that are out of the image are passed over.
+  // Rejects blocks that lie entirely outside the image.
   [[nodiscard]] bool is_before_camera(const DistanceVolume::Block& block) const {
     const float size_m = voxel_m_ * DistanceVolume::kSide;
     const Vector3f center = camera_from_object_ * (size_m * (block.index.cast<float>() + Vector3f::Constant(0.5F)));
@@ -98,9 +99,9 @@ class BlockIntegrator {
     if (distance > truncation_m_) {
       block.free[voxel] += weight;
     } else if (distance > -truncation_m_) {
-      // Behind the surface the weight fades: there a thin wall's other side begins.
+      // The weight decreases behind the surface, where the other side of a thin wall may begin.
       const float w = distance >= 0 ? weight : weight * (1 + distance / truncation_m_);
-      block.distance_m[voxel] += w * distance;  // the sum; divided at the end
+      block.distance_m[voxel] += w * distance;  // Weighted sum; divided at the end.
       block.weight[voxel] += w;
       block.seen[voxel] += weight;
     }

@@ -18,11 +18,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kMarginPx = 12;          // around the mask: what lies before the background is free there
-constexpr int kNormalRadiusPx = 3;     // normals only tell the slant here: rather smooth than sharp
-constexpr float kSamePointM = 0.004F;  // a vertex is what the pixel shows
+// Around the mask: pixels of the background give free space in front of it.
+constexpr int kMarginPx = 12;
+// Normals give only the incidence here, so smooth ones are preferable.
+constexpr int kNormalRadiusPx = 3;
+// A view observes a vertex if the pixel shows a point this near.
+constexpr float kSamePointM = 0.004F;
 
-// Inverse variance across the surface, in 1/mm^2.
+// Inverse variance across the surface, in 1/mm^2, times the viewing cosine.
 double point_weight(const PreparedView& view, std::size_t i, double cosine) {
   const double axial_mm = 1000.0 * view.noise.axial_m[i] * cosine;
   const double lateral_mm = 1000.0 * view.noise.lateral_m[i] * std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -56,8 +59,9 @@ FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& o
   return result;
 }
 
-// What the views show of a vertex where the light falls on it best, those that look straight at it first: as the object
-// turns under a lamp, every side has its turn. Brighter still are gloss and mixtures with the background.
+// Colours a vertex from the views that observe it, weighted by viewing cosine and distance. Only a range of the
+// brightness distribution is used (color_from to color_to): darker observations are in shade, brighter ones are
+// specular or mixed with the background. On a turntable, every side faces the lamp at some time.
 class VertexPainter {
  public:
   VertexPainter(std::span<const FusionView> views, const FuseViewsOptions& options)
@@ -70,7 +74,7 @@ class VertexPainter {
     Vector3d color = Vector3d::Zero();
   };
 
-  // `looks` is overwritten: kept from vertex to vertex for its memory.
+  // `looks` is overwritten; it is passed in to reuse its memory.
   [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal, std::vector<Look>& looks) const {
     looks.clear();
     double total = 0;
@@ -94,7 +98,7 @@ class VertexPainter {
   }
 
  private:
-  // What view k shows of the point; weight 0 = nothing.
+  // Observation of the point in view k; weight 0 = none.
   [[nodiscard]] Look look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal) const {
     const FusionView& view = views_[k];
     const Vector3f p = camera_from_object_[k] * p_in_object;
@@ -109,7 +113,7 @@ class VertexPainter {
     return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, pixel)};
   }
 
-  // Bilinear.
+  // Bilinear interpolation.
   static Vector3d sample(const Image<Rgb8>& image, const Eigen::Vector2d& pixel) {
     const double u = std::clamp(pixel.x(), 0.0, image.width() - 1.001);
     const double v = std::clamp(pixel.y(), 0.0, image.height() - 1.001);

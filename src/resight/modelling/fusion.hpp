@@ -22,11 +22,11 @@ struct FuseViewsOptions {
   void check() const;
 };
 
-/// The surface of an object seen in views (frame.world_from_camera is object_from_camera; mask: non-zero = object) as
-/// a mesh in the object frame, with normals, and with colours at the vertices: a truncated signed distance field
-/// (Curless and Levoy 1996) that each view adds to with the inverse variance of its points (nguyen_noise()), extracted
-/// by surface nets. Where no view saw anything the surface is open. What views look through, the background of the mask
-/// included, is cut away. Empty if no view has a usable point of the object.
+/// Fuses masked views of an object (frame.world_from_camera is object_from_camera; mask: non-zero = object) into a mesh
+/// in the object frame, with normals and vertex colours. Views are integrated into a truncated signed distance field
+/// (Curless and Levoy 1996), weighted by the inverse variance of their points (nguyen_noise()); surface nets extract
+/// the mesh. Unobserved places remain open. Free space, including that in front of the background, is carved. Empty if
+/// no view has a usable point of the object.
 [[nodiscard]] TriangleMesh fuse_views(std::span<const TrainingView> views, const FuseViewsOptions& options = {});
 
 }  // namespace resight

@@ -13,7 +13,7 @@
 namespace resight {
 namespace {
 
-// A ball of radius 6 cm seen from six sides, exactly.
+// An exact ball of radius 6 cm, seen from six sides.
 std::vector<TrainingView> look_at_ball(double radius_m) {
   std::vector<TrainingView> views;
   for (int axis = 0; axis < 3; ++axis)
@@ -53,14 +53,14 @@ TEST(FuseViews, ABallIsClosedRoundAndFacesOutwards) {
   }
   EXPECT_NEAR(surface_area(mesh), 4 * 3.14159 * 0.06 * 0.06, 0.001);
   EXPECT_EQ(measure_holes(mesh).boundary_length_m, 0);
-  // Colours come from the view that looks straight at the place.
+  // Colours come from the view that faces the place.
   const auto right = std::ranges::max_element(mesh.vertices, {}, [](const auto& p) { return p.x(); });
   const auto left = std::ranges::min_element(mesh.vertices, {}, [](const auto& p) { return p.x(); });
   EXPECT_GT(mesh.colors[right - mesh.vertices.begin()].r, 180);
   EXPECT_LT(mesh.colors[left - mesh.vertices.begin()].r, 80);
 }
 
-// The same views again, as the lamp turns away and as gloss: three of a kind at each place.
+// The same views as the lamp turns away and with specular highlights: three of a kind at each place.
 TEST(FuseViews, ColoursAreThoseOfTheBestLight) {
   std::vector<TrainingView> views;
   for (const int grey : {40, 60, 80, 100, 150, 160, 255})
@@ -132,7 +132,8 @@ TEST(FuseViews, AnObjectWithNoiseIsRightToAMillimetre) {
     const test::SurfaceError error = test::measure_surface_error(mesh, truth);
     EXPECT_LT(error.median_m, 0.001) << name;
     EXPECT_LT(error.p95_m, 0.003) << name;
-    EXPECT_GT(error.completeness, name == std::string("mug") ? 0.7 : 0.9) << name;  // nobody looks down into the mug
+    // No view looks into the mug from above.
+    EXPECT_GT(error.completeness, name == std::string("mug") ? 0.7 : 0.9) << name;
     EXPECT_LT(measure_holes(mesh).open_share, 0.15) << name;
   }
 }

@@ -15,18 +15,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Ways to put the second recording's object frame into the first's that are one.
+// Two motions of the second recording's object frame into the first's count as one below these differences.
 constexpr double kSameShiftM = 0.02;
 constexpr double kSameTurnRad = 0.2;
-constexpr int kMaxWays = 4;           // that are tried on the model
-constexpr int kMaxMatchedViews = 18;  // of each recording
+constexpr int kMaxWays = 4;           // Candidates that are tried on the model.
+constexpr int kMaxMatchedViews = 18;  // Per recording.
 constexpr int kRefineRounds = 3;
-// What shape alone decides, where there is less print than this.
-constexpr std::size_t kFewKeypoints = 40;  // a view, median
+// Below this number of keypoints, shape alone decides.
+constexpr std::size_t kFewKeypoints = 40;  // Median per view.
 constexpr double kMinAgreement = 0.25;
 constexpr double kMaxContradicted = 0.06;
 constexpr std::size_t kVertexStep = 13;
-constexpr float kFreeM = 0.008F;  // a point so far before what a view shows contradicts it
+// A point contradicts a view if it lies this far in front of the observed surface.
+constexpr float kFreeM = 0.008F;
 
 struct Way {
   Rigid3 first_from_second;
@@ -38,7 +39,7 @@ bool are_same_motion(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
   return rotation_angle_rad(a.rotation, b.rotation) <= kSameTurnRad && (a * middle - b * middle).norm() <= kSameShiftM;
 }
 
-// About `count` of them, evenly.
+// About `count` indices, evenly spaced.
 std::vector<int> choose_evenly(std::size_t size, int count) {
   std::vector<int> chosen;
   const auto wanted = std::min(size, static_cast<std::size_t>(count));
@@ -59,7 +60,7 @@ class TrackJoiner {
     if (!first_mesh_.empty()) model_ = std::make_unique<ModelTarget>(first_mesh_, options);
   }
 
-  // By features; where these find nothing, by shape.
+  // Joins by features, or by shape if features give no result.
   Result<Rigid3> find() {
     const std::vector<Way> matched = find_ways();
     if (const std::optional<Rigid3> best = choose(matched, options_.min_correlation)) return *best;
@@ -68,11 +69,11 @@ class TrackJoiner {
     if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.min_correlation : -1)) return *best;
     return Error{fmt::format(
         "the recordings cannot be joined: {} matches at best, {}", matched.empty() ? 0 : matched.front().num_matches,
-        shaped.empty() ? "nothing in common of shape" : "and no way by shape that the print agrees with")};
+        shaped.empty() ? "no common shape" : "and no alignment by shape that the texture supports")};
   }
 
  private:
-  // Of the ways, refined, the one that the views of the second are most like.
+  // Refines the candidates and returns the one that best explains the views of the second recording.
   std::optional<Rigid3> choose(const std::vector<Way>& ways, double min_likeness) {
     std::optional<Rigid3> best;
     double best_score = 0;
@@ -87,7 +88,7 @@ class TrackJoiner {
     return best;
   }
 
-  // Those in which neither surface stands where the views of the other saw nothing.
+  // Alignments in which neither surface occupies free space of the other recording's views.
   std::vector<Way> find_ways_by_shape() {
     std::vector<Way> ways;
     for (const ShapeFit& fit : align_shapes(first_mesh_, second_mesh_, {.num_threads = options_.num_threads})) {
@@ -101,7 +102,7 @@ class TrackJoiner {
     return ways;
   }
 
-  // Share of the surface's points, in the mean over some of the views, before what the view shows there.
+  // Share of the surface's points in front of what the views observe there, over some of the views.
   [[nodiscard]] double contradicted_share(const TriangleMesh& mesh, const Rigid3& views_from_mesh,
                                           const std::vector<TrainingView>& views) const {
     std::size_t before = 0, seen = 0;
@@ -122,7 +123,7 @@ class TrackJoiner {
     return seen == 0 ? 0 : static_cast<double>(before) / static_cast<double>(seen);
   }
 
-  // Features of views of both, each pair with a common pose; those that mean the same added up.
+  // Matches features between views of both recordings. Matches with similar motions are added up.
   std::vector<Way> find_ways() {
     const std::vector<int> of_first = choose_evenly(first_.size(), kMaxMatchedViews);
     const std::vector<int> of_second = choose_evenly(second_.size(), kMaxMatchedViews);
@@ -149,7 +150,7 @@ class TrackJoiner {
     return numbers.empty() ? 0 : numbers[numbers.size() / 2];
   }
 
-  // The best supported first; what is one with a better one is left out.
+  // Sorted by support, without duplicates.
   [[nodiscard]] std::vector<Way> add_up(const std::vector<std::optional<Way>>& found) const {
     std::vector<Way> sums;
     for (const auto& way : found) {
@@ -174,10 +175,10 @@ class TrackJoiner {
     Rigid3 pose;
     double overlap = 0;
     double score = 0;
-    double likeness = 0;  // of brightness
+    double likeness = 0;  // Brightness correlation.
   };
 
-  // Each of some views of the second is aligned to the model; the way most like all of theirs is taken, and again.
+  // Aligns some views of the second recording to the model and takes the medoid of the resulting motions; repeated.
   Refined refine(Rigid3 way) {
     Refined refined;
     for (int round = 0; round < kRefineRounds; ++round) {
@@ -190,7 +191,8 @@ class TrackJoiner {
         const AlignedView& a = aligned[k];
         const double likeness = std::isnan(a.brightness_correlation) ? 0 : a.brightness_correlation;
         refined.overlap += a.overlap / static_cast<double>(chosen.size());
-        // Of a flat thing both recordings share the rim only: prints that agree tell more than much in common.
+        // Both recordings of a flat object share only its rim; matching texture is then more informative than a large
+        // overlap.
         refined.score +=
             (std::min(a.overlap, 0.3) - 2 * a.seen_through + 2 * likeness) / static_cast<double>(chosen.size());
         refined.likeness += likeness / static_cast<double>(chosen.size());
@@ -232,8 +234,8 @@ class TrackJoiner {
   const TrackObjectOptions& options_;
   TriangleMesh first_mesh_, second_mesh_;
   std::unique_ptr<ModelTarget> model_;
-  std::size_t num_keypoints_ = 0;       // a view, of the recording with fewer
-  Vector3d middle_ = Vector3d::Zero();  // of the second's surface, in its frame
+  std::size_t num_keypoints_ = 0;       // Per view, of the recording with fewer keypoints.
+  Vector3d middle_ = Vector3d::Zero();  // Middle of the second surface, in its frame.
 };
 
 }  // namespace

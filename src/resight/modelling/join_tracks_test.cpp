@@ -14,7 +14,7 @@ TrackObjectOptions two_threads() {
   return options;
 }
 
-// A recording that was followed without an error, in the frame `frame_from_object`.
+// An error-free track of a recording, in the frame `frame_from_object`.
 ObjectTrack follow_truly(const std::string& object, double step_deg, bool upside_down,
                          const Rigid3& frame_from_object) {
   ObjectTrack track;

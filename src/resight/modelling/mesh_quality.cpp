@@ -16,9 +16,9 @@ using Eigen::Vector3f;
 
 constexpr double kMinHoleLengthM = 0.02;
 
-using Edge = std::pair<int, int>;  // directed as in its face
+using Edge = std::pair<int, int>;  // In the direction of its face.
 
-// Edges without a partner in the other direction, sorted by where they start.
+// Edges without an opposite partner, sorted by start vertex.
 std::vector<Edge> find_open_edges(const TriangleMesh& mesh) {
   std::vector<Edge> edges;
   for (const auto& f : mesh.faces)
@@ -30,7 +30,7 @@ std::vector<Edge> find_open_edges(const TriangleMesh& mesh) {
   return open;
 }
 
-// Ways along the open edges until they close (or end, where more than two meet).
+// Chains of open edges, up to where they close (or end, where more than two meet).
 std::vector<std::vector<int>> find_loops(const std::vector<Edge>& open) {
   std::vector<bool> used(open.size(), false);
   std::vector<std::vector<int>> loops;

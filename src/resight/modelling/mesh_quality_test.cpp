@@ -6,7 +6,7 @@
 namespace resight {
 namespace {
 
-// n x n squares of side `cell_m`, without those that `is_hole` names.
+// n x n squares with sides of `cell_m`, without those for which `is_hole` is true.
 template <typename IsHole>
 TriangleMesh make_grid(int n, float cell_m, IsHole is_hole) {
   TriangleMesh mesh;
@@ -24,7 +24,7 @@ TriangleMesh make_grid(int n, float cell_m, IsHole is_hole) {
 }
 
 TEST(MeshHoles, AreFoundAndMeasured) {
-  // A sheet of 10 x 10 cm with a hole of 2 x 2 cm and one of 1 mm^2: the sheet's own rim counts as a hole, too.
+  // A sheet of 10 x 10 cm with one hole of 2 x 2 cm and one of 1 mm^2. The rim of the sheet counts as a hole too.
   const TriangleMesh mesh = make_grid(
       100, 0.001F, [](int x, int y) { return (x >= 20 && x < 40 && y >= 50 && y < 70) || (x == 80 && y == 80); });
   const MeshHoles holes = measure_holes(mesh);
@@ -45,7 +45,7 @@ TEST(MeshHoles, AClosedMeshHasNone) {
 }
 
 TEST(KeepLargeParts, DropsSmallOnesWithTheirVertices) {
-  TriangleMesh mesh = make_grid(20, 0.001F, [](int x, int) { return x == 15; });  // parts of 15 and 4 columns
+  TriangleMesh mesh = make_grid(20, 0.001F, [](int x, int) { return x == 15; });  // Components of 15 and 4 columns.
   mesh.colors.resize(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.colors.size(); ++i) mesh.colors[i].r = static_cast<std::uint8_t>(i % 21);
   const TriangleMesh all = keep_large_parts(mesh, 0.2);

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What the sensor's bias leaves between any two views, however many pixels agree.
+// Residual error of the sensor's bias between any two views, independent of the number of agreeing pixels.
 constexpr double kFloorSigmaM = 0.0007;
 constexpr double kFloorSigmaRad = 0.003;
-constexpr int kPixelStep = 9;  // of the surface on which errors are measured
+constexpr int kPixelStep = 9;  // Sampling step on the surface on which errors are measured.
 
 TwistMatrix edge_information(const TwistMatrix& information) {
   return limit_information(information, 1, kFloorSigmaRad, kFloorSigmaM);
@@ -38,7 +38,7 @@ std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<co
   std::optional<AlignedView> best;
   for (const AlignmentStart& start : starts) {
     AlignViewOptions align = align_options(options, start.is_matched);
-    align.num_threads = 1;  // pairs are measured side by side
+    align.num_threads = 1;  // Pairs are measured in parallel.
     AlignedView aligned = align_view(parts[b].alignment, target, start.pose, align);
     if (!is_plausible(aligned, options) || (best && alignment_score(aligned) <= alignment_score(*best))) continue;
     if (start.is_matched) aligned.information += match_information(options);
@@ -48,7 +48,7 @@ std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<co
   return PoseEdge{a, b, poses[a].inverse() * best->world_from_camera, edge_information(best->information)};
 }
 
-// Mean over the points that `view` shows of the object.
+// Mean displacement of the object points that `view` observes.
 double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object) {
   double sum = 0;
   int num = 0;

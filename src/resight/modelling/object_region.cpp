@@ -20,21 +20,23 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSampleStepPx = 4;       // of the points that planes are searched in
-constexpr int kTripleRadiusPx = 60;    // between the three points of a hypothesis
-constexpr double kHeightBinM = 0.004;  // of the histogram of heights
-constexpr double kFootHeightM = 0.03;  // what is so low counts as the object's foot
+constexpr int kSampleStepPx = 4;  // Of the points in which planes are searched.
+// Largest distance between the three points of a plane hypothesis, in rows and columns.
+constexpr int kTripleRadiusPx = 60;
+constexpr double kHeightBinM = 0.004;  // Bin size of the histogram of heights.
+constexpr double kFootHeightM = 0.03;  // Lower points belong to the foot of the object.
 constexpr double kMarginReachM = 0.03;
-constexpr double kMinSeenShare = 0.15;  // of the points beside the foot; the others are hidden by the object
+// Share of the points beside the foot that must be visible; the object occludes the others.
+constexpr double kMinSeenShare = 0.15;
 constexpr int kRefits = 4;
 
-// A point of the view and the area of the level surface that its pixel would cover.
+// A point of the view, with the area on a level surface that its pixel would cover.
 struct Sample {
   Vector3d point;
   double weight = 0;
 };
 
-// Area-weighted least squares; the normal is turned to the camera.
+// Area-weighted least squares. The normal points towards the camera.
 SupportPlane fit_plane(const std::vector<Sample>& samples, const std::vector<int>& inliers) {
   Vector3d mean = Vector3d::Zero();
   double weight = 0;
@@ -53,12 +55,13 @@ SupportPlane fit_plane(const std::vector<Sample>& samples, const std::vector<int
   return {normal, normal.dot(mean)};
 }
 
-// An object as far as it is seen, on one support.
+// The visible part of an object on one support.
 struct Standing {
   ObjectRegion region;
   double image_distance_px = 0;
-  double reach_m = 0;         // radius of what stands there, seen from above
-  double margin_area_m2 = 0;  // of the support around it, as far as is seen, within 3 cm of that radius
+  double reach_m = 0;  // Radius as seen from above.
+  // Visible area of the support around the object, within 3 cm of that radius.
+  double margin_area_m2 = 0;
 };
 
 class RegionFinder {
@@ -95,11 +98,11 @@ class RegionFinder {
   }
 
   [[nodiscard]] bool looks_down_on(const Vector3d& normal) const {
-    return -normal.y() > std::sin(options_.min_tilt_rad);  // y is down in the image
+    return -normal.y() > std::sin(options_.min_tilt_rad);  // y points down in the image.
   }
 
-  // Of those that are as near to where the object should be as the nearest: the most like the previous; without one the
-  // lowest, or the turntable upon it.
+  // Considers the objects that are about as near to the expected position as the nearest. With a previous region, the
+  // most similar one wins; otherwise the one on the lowest support, or on a turntable above it.
   [[nodiscard]] std::optional<ObjectRegion> choose(std::vector<Standing> found) const {
     if (found.empty()) return std::nullopt;
     const double nearest_px = std::ranges::min_element(found, {}, &Standing::image_distance_px)->image_distance_px;
@@ -115,7 +118,8 @@ class RegionFinder {
     return support->region;
   }
 
-  // Low, and a good part of what one would take for an object on the lower support.
+  // Whether `higher` stands on a turntable: low, and its top covers a good part of what would be an object on the lower
+  // support.
   [[nodiscard]] bool is_turntable(const Standing& higher, const Standing& lower) const {
     const double step_m = higher.region.plane.offset_m - lower.region.plane.offset_m;
     return step_m > 0 && step_m <= options_.max_turntable_height_m &&
@@ -152,7 +156,7 @@ class RegionFinder {
     return SupportPlane{normal, normal.dot(corners[0])};
   }
 
-  // The plane that most area lies in, of those that the camera looks down on.
+  // Plane with the largest area among those that the camera looks down on.
   std::optional<SupportPlane> find_dominant_plane() {
     if (samples_.size() < 100) return std::nullopt;
     Rng rng(options_.seed);
@@ -183,7 +187,7 @@ class RegionFinder {
     return plane;
   }
 
-  // Level surfaces with enough area, from the lowest to the highest: peaks of the histogram of heights.
+  // Level surfaces of sufficient area, from bottom to top: peaks of the histogram of heights.
   std::vector<SupportPlane> find_level_planes(const SupportPlane& dominant) {
     const int below = static_cast<int>(options_.max_height_m / kHeightBinM);
     std::vector<double> area(static_cast<std::size_t>(2 * below + 1), 0.0);
@@ -201,7 +205,7 @@ class RegionFinder {
     return planes;
   }
 
-  // A small surface tells its height better than its tilt: the tilt is the dominant plane's.
+  // A small surface determines its height better than its tilt, so the tilt is that of the dominant plane.
   [[nodiscard]] SupportPlane refit_level(SupportPlane level, const SupportPlane& dominant) const {
     for (int k = 0; k < kRefits; ++k) {
       double sum = 0;
@@ -227,7 +231,7 @@ class RegionFinder {
     return above;
   }
 
-  // The part nearest to where the object should be.
+  // The component nearest to the expected position of the object.
   [[nodiscard]] std::optional<Standing> find_standing(const SupportPlane& plane) const {
     std::optional<Standing> best;
     for (const std::vector<int>& part : find_pixel_components(cloud_, mask_above(plane), 2, options_.max_jump_m)) {
@@ -277,8 +281,8 @@ class RegionFinder {
     return area_m2;
   }
 
-  // Whether the plane goes on beside the foot of what stands on it, as far as is seen: the lid of a thing, which may
-  // carry something as well, seldom does. The foot: the lowest point of each column of the image.
+  // Whether the plane continues beside the foot of the object, as far as visible. The lid of an object, which may carry
+  // something too, rarely does. The foot is the lowest point of each image column.
   [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& part) const {
     std::vector<int> lowest(static_cast<std::size_t>(cloud_.width()), -1);
     for (const int i : part)
@@ -293,7 +297,7 @@ class RegionFinder {
       if (i < 0) continue;
       const Vector3d p = cloud_.point(static_cast<std::size_t>(i)).cast<double>();
       const Vector3d foot = p - plane.height_m(p) * plane.normal;
-      for (int k = -2; k <= 2; ++k) {  // to the camera and to both sides
+      for (int k = -2; k <= 2; ++k) {  // Towards the camera and to both sides.
         const double angle_rad = k * std::numbers::pi / 4;
         const int found =
             look_for(plane, foot + options_.min_margin_m * (std::cos(angle_rad) * ahead + std::sin(angle_rad) * aside));
@@ -305,7 +309,7 @@ class RegionFinder {
     return seen >= options_.min_margin_share * (seen + missing) && seen >= kMinSeenShare * asked && seen > 0;
   }
 
-  // 1 if the plane is seen at a point of it, -1 if it is not there, 0 if that is hidden or unknown.
+  // 1 if the plane is visible at a point of it, -1 if it is missing there, 0 if the place is occluded or unknown.
   [[nodiscard]] int look_for(const SupportPlane& plane, const Vector3d& point) const {
     if (point.z() <= 0) return 0;
     const Vector2d pixel = view_.frame.camera.project(point);

@@ -10,18 +10,18 @@
 
 namespace resight {
 
-/// What an object stands on: normal . p = offset_m. The normal points up, to the side of the camera.
+/// Supporting plane of an object: normal . p = offset_m. The normal points up, towards the camera.
 struct SupportPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset_m = 0;
   [[nodiscard]] double height_m(const Eigen::Vector3d& p) const { return normal.dot(p) - offset_m; }
 };
 
-/// Where an object is looked for: an upright cylinder on its support. Frame as said by its user: the camera's, from
-/// find_object_region().
+/// Search region of an object: an upright cylinder on its support. The user defines the frame; find_object_region()
+/// returns the camera frame.
 struct ObjectRegion {
   SupportPlane plane;
-  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< Middle of the cylinder's base, on the plane.
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< Centre of the cylinder's base, on the plane.
   double radius_m = 0;
   double height_m = 0;
   [[nodiscard]] double axis_distance_m(const Eigen::Vector3d& p) const {
@@ -30,7 +30,7 @@ struct ObjectRegion {
   }
 };
 
-/// The same region in frame a.
+/// Transforms a region from frame b to frame a.
 [[nodiscard]] ObjectRegion transform(const Rigid3& a_from_b, const ObjectRegion& region_in_b);
 
 /// All values are ours.
@@ -55,10 +55,10 @@ struct ObjectRegionOptions {
   void check() const;
 };
 
-/// Finds the object that stands nearest to the middle of the view (or to that of `previous`) and its support, camera
-/// frame. The dominant plane that the camera looks down on gives the vertical; of all level surfaces the lowest one is
-/// taken that something stands on and that goes on beside its foot, or a low wide one right above it: the turntable on
-/// a table, not the lid of a box. std::nullopt: nothing stands on anything here.
+/// Finds the object nearest to the middle of the view (or to that of `previous`) and its support. Camera frame. The
+/// dominant plane that the camera looks down on defines the vertical. The support is the lowest level surface that
+/// carries something and continues beside its foot, or a low, wide one just above it: the turntable on a table, not the
+/// lid of a box. std::nullopt if no object stands on a level surface.
 [[nodiscard]] std::optional<ObjectRegion> find_object_region(const PreparedView& view,
                                                              const ObjectRegionOptions& options = {},
                                                              const ObjectRegion* previous = nullptr);
@@ -72,8 +72,8 @@ struct SegmentObjectOptions {
   void check() const;
 };
 
-/// Non-zero where a pixel shows the object of the region (camera frame): points above the support within the cylinder,
-/// of connected parts. Empty of pixels if there are none.
+/// Mask of the object of the region (camera frame), non-zero = object: connected components of points above the
+/// support, within the cylinder. All zero if there are none.
 [[nodiscard]] Image<std::uint8_t> segment_object(const OrganizedCloud& cloud, const ObjectRegion& region_in_camera,
                                                  const SegmentObjectOptions& options = {});
 

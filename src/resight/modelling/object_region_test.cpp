@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-// Share of the pixels of either mask that are in both; truth counts where there is depth.
+// Intersection over union of both masks; the true mask counts where there is depth.
 double mask_overlap(const RecordedView& view, const Image<std::uint8_t>& found) {
   std::size_t both = 0;
   std::size_t either = 0;
@@ -23,7 +23,7 @@ double mask_overlap(const RecordedView& view, const Image<std::uint8_t>& found) 
   return static_cast<double>(both) / static_cast<double>(either);
 }
 
-// Height of the truth's lowest point in the region: the object frame has its origin at the bottom of the object.
+// The origin of the object frame is the bottom of the object, so its height above the found support must be zero.
 void expect_found(const RecordedView& view, const std::optional<ObjectRegion>& region, const PreparedView& prepared,
                   double min_overlap) {
   ASSERT_TRUE(region.has_value()) << view.frame.name;
@@ -77,12 +77,12 @@ TEST(ObjectRegion, MovesWithItsFrame) {
 
 TEST(SegmentObject, LeavesOutTheSupportWhatIsBesideAndSpecks) {
   const Camera camera{100, 80, 100, 100, 49.5, 39.5};
-  Image<float> depth(100, 80, 1.0F);  // a wall as the support: the normal looks at the camera
+  Image<float> depth(100, 80, 1.0F);  // A wall as the support: its normal points towards the camera.
   for (int v = 20; v < 50; ++v)
     for (int u = 30; u < 60; ++u) depth(u, v) = 0.95F;
-  depth(5, 5) = 0.95F;  // a speck
+  depth(5, 5) = 0.95F;  // An isolated pixel.
   for (int v = 60; v < 70; ++v)
-    for (int u = 85; u < 95; ++u) depth(u, v) = 0.95F;  // something else, out of the cylinder
+    for (int u = 85; u < 95; ++u) depth(u, v) = 0.95F;  // Another object, outside the cylinder.
   ObjectRegion region;
   region.plane = {-Eigen::Vector3d::UnitZ(), -1.0};
   region.foot = {0, 0, 1.0};

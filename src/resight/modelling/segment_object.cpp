@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-constexpr int kMinNeighbors = 3;  // of 8: a pixel with fewer is a speck of noise above the support
+constexpr int kMinNeighbors = 3;  // Of 8. A pixel with fewer is noise above the support.
 
 void remove_specks(Image<std::uint8_t>& mask) {
   const Image<std::uint8_t> before = mask;

@@ -11,13 +11,14 @@
 #include "resight/simulation/recording.hpp"
 #include "resight/simulation/surface_sampling.hpp"
 
-/// How far a model is from the object that it was made of.
+/// Deviation of a model from the object it was made of.
 namespace resight::test {
 
 struct SurfaceError {
-  double median_m = 0;  ///< Of the vertices from the true surface, along its normal.
+  double median_m = 0;  ///< Distance of the vertices from the true surface, along its normal.
   double p95_m = 0;
-  double completeness = 0;  ///< Share of what can be seen of the true surface that has a vertex within 3 mm.
+  /// Share of the visible part of the true surface with a vertex within 3 mm.
+  double completeness = 0;
 };
 
 inline SurfaceError measure_surface_error(const TriangleMesh& mesh, const TriangleMesh& truth) {
@@ -29,7 +30,7 @@ inline SurfaceError measure_surface_error(const TriangleMesh& mesh, const Triang
     const PointNeighbor nearest = tree.nearest(p);
     const Eigen::Vector3f d = p - surface.points[nearest.index];
     const double along = std::abs(static_cast<double>(d.dot(surface.normals[nearest.index])));
-    // Beside a sample by more than their spacing: off the rim of the surface.
+    // Farther from a sample than their spacing: beyond the rim of the surface.
     errors.push_back(nearest.distance_sq > 0.002F * 0.002F ? std::sqrt(static_cast<double>(nearest.distance_sq))
                                                            : along);
   }

@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 using Eigen::Vector3i;
 
 constexpr int kSide = DistanceVolume::kSide;
-constexpr int kPadded = kSide + 1;  // a block and the first voxels of the next ones
+constexpr int kPadded = kSide + 1;  // A block and the first voxels of its neighbours.
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 using PaddedBlock = std::array<float, static_cast<std::size_t>(kPadded) * kPadded * kPadded>;
@@ -36,7 +36,7 @@ class SurfaceNets {
  private:
   [[nodiscard]] float value(const DistanceVolume::Block& block, int voxel) const {
     if (block.seen[voxel] < rule_.min_weight) {
-      // Nothing near: free if that was seen, by as much as makes a surface.
+      // No surface nearby: free if free space was observed with sufficient weight.
       return block.free[voxel] >= rule_.min_weight ? static_cast<float>(volume_.truncation_m) : kUnknown;
     }
     if (block.free[voxel] > rule_.max_free_share * block.seen[voxel])
@@ -44,7 +44,7 @@ class SurfaceNets {
     return block.distance_m[voxel];
   }
 
-  // False if all known values have one sign.
+  // Copies a block and its margin. False if all known values have the same sign.
   bool gather(const DistanceVolume::Block& block, PaddedBlock& values) const {
     bool has_inside = false;
     bool has_outside = false;
@@ -112,7 +112,7 @@ class SurfaceNets {
           }
   }
 
-  // The four cells around the edge from `voxel` along `axis`; outwards is along it if `is_outward`.
+  // Adds the quad of the four cells around the edge from `voxel` along `axis`. `is_outward`: the edge points outwards.
   void add_quad(const Vector3i& voxel, int axis, bool is_outward) {
     const Vector3i side = Vector3i::Unit((axis + 1) % 3);
     const Vector3i up = Vector3i::Unit((axis + 2) % 3);
@@ -123,7 +123,7 @@ class SurfaceNets {
       if (q[k] == VoxelMap::kNotFound) return;
     }
     if (!is_outward) std::swap(q[1], q[3]);
-    // Along the shorter diagonal.
+    // Split along the shorter diagonal.
     const auto length = [&](int a, int b) { return (mesh_.vertices[q[a]] - mesh_.vertices[q[b]]).squaredNorm(); };
     if (length(0, 2) <= length(1, 3)) {
       mesh_.faces.push_back({q[0], q[1], q[2]});

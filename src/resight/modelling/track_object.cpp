@@ -17,16 +17,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStillDepthShare = 0.02;  // of z: a pixel that changes by less shows the same
-constexpr int kMinSteps = 6;               // between two views whose edge closes a loop
+constexpr double kStillDepthShare = 0.02;  // Share of z. A pixel whose depth changes by less is static.
+constexpr int kMinSteps = 6;               // Least number of views between two views whose edge closes a loop.
 constexpr std::size_t kMinMaskPixels = 150;
-constexpr int kMinColumns = 160;  // fewer: nothing is left to align at half of the size
+constexpr int kMinColumns = 160;  // Narrower images have nothing left to align at half resolution.
 
 std::size_t count_set(const Image<std::uint8_t>& mask) {
   return mask.size() - static_cast<std::size_t>(std::ranges::count(mask.data(), 0));
 }
 
-// Share of the pixels beside the object, with depth in both, that show the same depth.
+// Share of the pixels beside the object, with depth in both, whose depth is equal.
 double still_share(const RgbdFrame& a, const RgbdFrame& b, const Image<std::uint8_t>& object) {
   std::size_t still = 0;
   std::size_t both = 0;
@@ -38,7 +38,7 @@ double still_share(const RgbdFrame& a, const RgbdFrame& b, const Image<std::uint
   return both == 0 ? 0 : static_cast<double>(still) / static_cast<double>(both);
 }
 
-// z up from the support, the origin at the region's foot.
+// z points up from the support; the origin is the foot of the region.
 Rigid3 make_object_frame(const ObjectRegion& region_in_camera) {
   const Vector3d up = region_in_camera.plane.normal;
   const Vector3d side = up.cross(Vector3d::UnitZ()).normalized();
@@ -81,10 +81,10 @@ class ObjectTracker {
     std::optional<ObjectRegion> region;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].camera.width < kMinColumns)
-        return Error{fmt::format("view {}: is {} columns wide ({} or more were expected)", frames[i].name,
+        return Error{fmt::format("view {}: is {} columns wide (expected {} or more)", frames[i].name,
                                  frames[i].camera.width, kMinColumns)};
       const PreparedView view = prepare_view(std::move(frames[i]));
-      if (i == 1)  // all others are like the first and the second
+      if (i == 1)  // All other views are like the first and the second.
         track_.is_camera_still =
             still_share(track_.views[0].frame, view.frame, track_.views[0].mask) >= options_.min_still_share;
       if (!region || !track_.is_camera_still) {
@@ -111,7 +111,7 @@ class ObjectTracker {
     return align_view(parts_[i].alignment, targets, start.pose, align_options(options_, start.is_matched));
   }
 
-  // From where its features put it, from the last motion on, and from where the last view was.
+  // Aligns the view from feature matches, from constant motion and from the previous pose; the best alignment wins.
   Result<void> follow(std::size_t i) {
     std::vector<AlignmentStart> starts;
     int num_matches = 0;

@@ -45,32 +45,33 @@ struct TrackObjectOptions {
 
 /// A recording with poses and masks.
 struct ObjectTrack {
-  /// All of the recording, in order. frame.world_from_camera is object_from_camera; the object frame has z up from the
-  /// support, and its origin there, below the middle of what was seen of the object first.
+  /// All views of the recording, in order. frame.world_from_camera is object_from_camera. The object frame has z up
+  /// from the support and its origin on the support, below the middle of the object as first observed.
   std::vector<TrainingView> views;
-  bool is_camera_still = false;            ///< The background does not move: a turntable.
-  std::vector<std::pair<int, int>> loops;  ///< Pairs of views between which the way around the object closes.
-  /// How far the object is off where the way closes, at its surface, metres: as it was followed from view to view, and
-  /// after all poses were adjusted. NaN = it does not close.
+  bool is_camera_still = false;  ///< The background does not move: a turntable.
+  /// Pairs of views between which the track around the object closes.
+  std::vector<std::pair<int, int>> loops;
+  /// Median error at the surface where the track closes (m), after view-to-view tracking. NaN = it does not close.
   double drift_m = std::numeric_limits<double>::quiet_NaN();
+  /// Same error after all poses were adjusted. NaN = it does not close.
   double closure_error_m = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Called for each view that was followed, in order.
+/// Called for each tracked view, in order.
 using TrackObjectProgress = std::function<void(int done, const std::string& view)>;
 
-/// Follows the object (not the background) through a recording of a turntable before a still camera, or of a camera
-/// that is carried around the object: only points of the object count. Each view is aligned to those before it, from
-/// where features, the last motion, or no motion put it; then the way around is closed, all poses are adjusted together
-/// (adjust_pose_graph()) and aligned to the fused whole. Poses of the frames do not count.
+/// Tracks the object, not the background, through a recording. Either the object turns on a turntable in front of a
+/// static camera, or the camera moves around the object. Only object points count, and the given poses of the frames
+/// are ignored. Each view is aligned to its predecessors, starting from feature matches, constant motion or no motion.
+/// Then loops are closed, all poses are adjusted jointly (adjust_pose_graph()) and aligned to the fused model.
 ///
-/// The error says where it failed: no object in the first view, or "lost at view 00037: 11 matches".
+/// Errors name the place of the failure: no object in the first view, or "lost at view 00037: 11 matches".
 [[nodiscard]] Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options = {},
                                                const TrackObjectProgress& progress = {});
 
-/// Joins a second recording, of the object lying otherwise, to a first: features of both and alignment to the fused
-/// first. Its views are added, in the object frame of the first; all are then aligned to the fused whole. The error
-/// tells how well the best way to put them together stood.
+/// Joins a second recording, with the object in another orientation, to the first: by features of both and alignment to
+/// the fused first recording, or by shape. The views of the second are appended in the object frame of the first; then
+/// all views are aligned to the fused model. The error describes the best attempt.
 [[nodiscard]] Result<ObjectTrack> join_tracks(ObjectTrack first, ObjectTrack second,
                                               const TrackObjectOptions& options = {});
 

@@ -39,7 +39,7 @@ std::vector<Rigid3> poses_of(const ObjectTrack& track) {
   return poses;
 }
 
-// From files to a model, but for the files: both sides on a turntable before a background with more print.
+// The whole pipeline in memory: both sides of an object on a turntable, in front of a more textured background.
 TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
   Recording first = split(test::record("milk_carton", 20));
   Recording second = split(test::record("milk_carton", 20, true));
@@ -51,7 +51,7 @@ TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
   EXPECT_LT(track->closure_error_m, 0.003);
   const TrajectoryError one_side = find_trajectory_error(first.object_from_camera, poses_of(*track));
   EXPECT_LT(one_side.max_rad, 0.06);
-  // z is up from the turntable, as in the frame of the generated object.
+  // z points up from the turntable, as in the frame of the generated object.
   EXPECT_LT(one_side.reference_from_estimate.rotation.col(2).head<2>().norm(), 0.05);
 
   auto other = track_object(std::move(second.frames), two_threads());
@@ -74,12 +74,12 @@ TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
 
 TEST(TrackObject, SaysWhereItIsLost) {
   const Recording whole = split(test::record("milk_carton", 40));
-  // The object is turned by hand, while nobody looks.
+  // The object is rotated by hand between two views.
   std::vector<RgbdFrame> frames{whole.frames[0], whole.frames[1], whole.frames[5]};
   const auto lost = track_object(std::move(frames), two_threads());
   ASSERT_FALSE(lost.ok());
   EXPECT_THAT(lost.error().message, testing::MatchesRegex("lost at view 00005: [0-9]+ matches"));
-  // It is taken away.
+  // The object is removed.
   frames = {whole.frames[0], whole.frames[0]};
   for (float& z : frames[1].depth_m.data()) z = std::isnan(z) ? z : 3.0F;
   const auto gone = track_object(std::move(frames), two_threads());

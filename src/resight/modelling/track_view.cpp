@@ -15,12 +15,12 @@ namespace resight {
 namespace {
 
 constexpr int kCropMarginPx = 24;
-constexpr int kMinWidthPx = 320;  // so that all views have the same number of levels
-// A view that is already about right is not moved farther by the model; else it has slid along a symmetry.
+constexpr int kMinWidthPx = 320;  // So that all views have the same number of levels.
+// The model may not move an approximately aligned view farther than this; it would have slid along a symmetry.
 constexpr double kMaxShiftM = 0.015;
 constexpr double kMaxTurnRad = 0.12;
 
-// Light that changes nothing: the mesh has the colours that were seen.
+// Neutral lighting, because the mesh has the observed colours.
 Lighting flat_light() {
   Lighting light;
   light.ambient = 1;
@@ -28,7 +28,7 @@ Lighting flat_light() {
   return light;
 }
 
-// A model of one side is open below: what is seen through there is the inside of its surface, where nothing ever was.
+// A model of one side is open at the bottom. This removes rendered back faces, where no surface was observed.
 void drop_insides(const RaycastScene& scene, const Camera& camera, const Rigid3& object_from_camera,
                   Image<float>& depth_m) {
   const Rigid3f pose(object_from_camera);
@@ -122,7 +122,7 @@ void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions&
           model.align(make_alignment_view(prepared, options.view, &part.mask), camera, before, true);
       const Rigid3 step = before.inverse() * aligned.world_from_camera;
       const double turn_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
-      // The shift of the camera goes with its turn: what counts is how far the object's surface moves.
+      // Rotation and translation of the camera are coupled; the displacement of the object's surface counts.
       const Eigen::Vector3d object = before.inverse().translation;
       if (aligned.overlap < options.min_overlap || turn_rad > kMaxTurnRad ||
           (step * object - object).norm() > kMaxShiftM)

@@ -44,7 +44,7 @@ ordered_json report_json(const ModelReport& r) {
           {"troubles", r.troubles}};
 }
 
-// write_tuw_model() makes a folder of the model's name; here its parts belong right into ours.
+// write_tuw_model() creates a folder with the model's name; this moves its contents up into ours.
 Result<void> write_views(const fs::path& folder, std::span<const TrainingView> views, const PointCloud& cloud) {
   if (auto done = write_tuw_model(folder, "model", views, &cloud); !done) return done;
   for (const char* part : {"views", "3D_model.pcd"}) {
@@ -66,7 +66,7 @@ Result<void> write_object_model(const fs::path& directory, std::span<const Train
   std::vector<TrainingView> key_views;
   for (const int i : build.key_views) {
     key_views.push_back(views[i]);
-    key_views.back().frame.name.clear();  // numbered from 0: names of two recordings may be the same
+    key_views.back().frame.name.clear();  // Numbered from 0, because two recordings may use the same names.
   }
   if (auto done = write_views(pending->path(), key_views, build.cloud); !done) return done;
   if (auto done = write_ply(pending->path() / "mesh.ply", build.mesh); !done) return done;

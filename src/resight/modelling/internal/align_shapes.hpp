@@ -23,9 +23,9 @@ struct ShapeFit {
   double agreement = 0;  ///< Share of both surfaces' points that agree with the other surface.
 };
 
-/// The ways in which one surface lies best on another, by shape alone: point-to-plane ICP from all over the rotations,
-/// with the middles of both on each other. Both may be known from some sides only. The best first; those that differ by
-/// less than a centimetre are one. Nothing for a surface without vertices.
+/// Aligns two surfaces by shape alone: point-to-plane ICP from rotations distributed over all orientations, with the
+/// middles of both coincident. Either surface may be partial. Best fit first; fits that differ by less than 1 cm count
+/// as one. Empty if a surface has no vertices.
 [[nodiscard]] std::vector<ShapeFit> align_shapes(const TriangleMesh& fixed, const TriangleMesh& moving,
                                                  const AlignShapesOptions& options);
 

@@ -12,33 +12,34 @@
 
 namespace resight {
 
-/// What the fusion needs of a view of the object.
+/// What fusion needs of a view of the object.
 struct FusionView {
   Camera camera;
   Rigid3 camera_from_object;
   Image<float> depth_m;
-  /// 1 / variance of a point across its surface, in 1/mm^2, less for slanted surface; 0 = not a point of the object, or
-  /// one beside an edge. Where there is depth but no weight, the pixel still tells what is free before it.
+  /// Inverse variance of a point across its surface, in 1/mm^2, lower at grazing incidence. 0 = not on the object, or
+  /// near a depth edge. Pixels with depth but no weight still observe free space.
   Image<float> weight;
-  Image<float> slope;  ///< Distance across the surface per depth: the cosine of incidence times the length of the ray.
+  /// Distance across the surface per unit of depth: cosine of incidence times length of the ray.
+  Image<float> slope;
   Image<Rgb8> color;
 };
 
-/// Voxels of a truncated signed distance field, only where surface was seen: blocks of 8 x 8 x 8. Distances are
-/// positive outside. The values belong to the voxels' corners: voxel (i, j, k) is the point (i, j, k) * voxel_m.
+/// Truncated signed distance field, allocated near observed surface only, in blocks of 8 x 8 x 8 voxels. Distances are
+/// positive outside. Values are sampled at grid points: voxel (i, j, k) is the point (i, j, k) * voxel_m.
 struct DistanceVolume {
   static constexpr int kSide = 8;
   static constexpr int kVoxels = kSide * kSide * kSide;
   struct Block {
-    Eigen::Vector3i index = Eigen::Vector3i::Zero();  ///< Its first voxel is index * kSide.
+    Eigen::Vector3i index = Eigen::Vector3i::Zero();  ///< The first voxel of the block is index * kSide.
     std::array<float, kVoxels> distance_m{};
-    std::array<float, kVoxels> weight{};  ///< Of that distance.
-    std::array<float, kVoxels> seen{};    ///< Weight of the points near it; 0 = none.
-    std::array<float, kVoxels> free{};    ///< Weight of the views that looked through.
+    std::array<float, kVoxels> weight{};  ///< Weight of distance_m.
+    std::array<float, kVoxels> seen{};    ///< Weight of the observed points near the voxel; 0 = none.
+    std::array<float, kVoxels> free{};    ///< Weight of the views that observe free space here.
   };
   double voxel_m = 0.0015;
   double truncation_m = 0.006;
-  VoxelMap map;  ///< Of block indices (voxel_key()) to blocks.
+  VoxelMap map;  ///< From block indices (voxel_key()) to blocks.
   std::vector<Block> blocks;
 
   [[nodiscard]] const Block* find(const Eigen::Vector3i& index) const {
@@ -48,10 +49,10 @@ struct DistanceVolume {
   [[nodiscard]] static int offset(int x, int y, int z) { return (z * kSide + y) * kSide + x; }
 };
 
-/// The blocks around all weighted points, in order of views and pixels.
+/// Allocates the blocks around all weighted points, in order of views and pixels.
 void allocate_blocks(DistanceVolume& volume, std::span<const FusionView> views);
 
-/// Adds all views to all blocks. Same bits for any number of threads.
+/// Integrates all views into all blocks. Same bits for any number of threads.
 void integrate_views(DistanceVolume& volume, std::span<const FusionView> views, int num_threads);
 
 }  // namespace resight

@@ -8,31 +8,33 @@
 
 namespace resight {
 
-/// A pose to align a view from. What features gave tells more of the turn of what is round than its surface does.
+/// Initial pose of an alignment. On round objects, feature matches determine the rotation better than the surface does.
 struct AlignmentStart {
   Rigid3 pose;
   bool is_matched = false;
 };
 
+/// Alignment options; after feature matching, with a prior at the initial pose.
 [[nodiscard]] AlignViewOptions align_options(const TrackObjectOptions& options, bool is_matched);
 
+/// Whether overlap, free space and brightness correlation are within the limits. NaN correlation passes.
 [[nodiscard]] bool is_plausible(const AlignedView& aligned, const TrackObjectOptions& options);
 
-/// Of two ways to align a view the one with the higher score is taken. Brightness tells most of the turn of what is
-/// round.
+/// Score that chooses between two alignments of a view. Brightness counts most for the rotation of round objects.
 [[nodiscard]] double alignment_score(const AlignedView& aligned);
 
-/// The relative poses of pairs of views, each pair by itself: from `object_from_camera` and from their features. Pairs
-/// that cannot be aligned are left out. One pose for each of `parts`.
+/// Measures the relative pose of each pair independently, starting from `object_from_camera` and from feature matches.
+/// Pairs that cannot be aligned are skipped. `parts` has one entry per pose.
 [[nodiscard]] std::vector<PoseEdge> measure_edges(std::span<const Rigid3> object_from_camera,
                                                   std::span<const TrackView> parts,
                                                   std::span<const std::pair<int, int>> pairs,
                                                   const TrackObjectOptions& options);
 
-/// How far apart the two views of an edge put the object's surface, metres: the median over the edges; NaN without any.
+/// Distance between the object's surfaces as placed by the two views of an edge: median over the edges, metres; NaN
+/// without edges.
 [[nodiscard]] double median_error_m(std::span<const TrainingView> views, std::span<const PoseEdge> edges);
 
-/// The same for pairs of views, measured from their poses as they are now.
+/// Measures the pairs again from their current poses and returns median_error_m() of their edges.
 [[nodiscard]] double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops,
                                      const TrackObjectOptions& options);
 

@@ -5,15 +5,16 @@
 
 namespace resight {
 
-/// What makes a voxel count as known.
+/// Decides which voxels count as known.
 struct KnownVoxelRule {
-  float min_weight = 0;      ///< Of the surface seen near it.
-  float max_free_share = 1;  ///< More weight of views that looked through than this share of the surface's: it is free.
+  float min_weight = 0;  ///< Least weight of the surface observed near the voxel.
+  /// A voxel is free if its free-space weight exceeds this multiple of its surface weight.
+  float max_free_share = 1;
 };
 
-/// The zero level of the field as a mesh, faces counter-clockwise from outside (surface nets, Gibson 1998): one vertex
-/// in each cube of eight known voxels with both signs, at the mean of the crossings of its edges; one quad for each
-/// edge with both signs. Cubes with an unknown corner stay open. No normals, no colours.
+/// Extracts the zero level of the field as a mesh (surface nets, Gibson 1998), with faces counter-clockwise as seen
+/// from outside. A cube of eight known voxels with both signs has one vertex, at the mean of the zero crossings of its
+/// edges; an edge with both signs has one quad. Cubes with an unknown corner stay open. No normals, no colours.
 [[nodiscard]] TriangleMesh extract_surface_nets(const DistanceVolume& volume, const KnownVoxelRule& rule);
 
 }  // namespace resight
