@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// A square cost table: the rows and columns added to fill it, and the forbidden pairs, cost more than all allowed
-/// pairs together, so that the cheapest complete assignment holds as many allowed pairs as there can be.
+/// A square cost table. Padding rows, padding columns and forbidden pairs cost more than all allowed pairs together, so
+/// that the cheapest complete assignment has as many allowed pairs as possible.
 struct SquareCost {
   int size = 0;
   std::vector<double> values;
@@ -38,7 +38,7 @@ SquareCost make_square(std::span<const double> cost, int num_rows, int num_colum
   return square;
 }
 
-/// Hungarian method: rows enter one by one, each along the cheapest augmenting path in the reduced costs.
+/// Hungarian method: rows are added one by one, each along the cheapest augmenting path in the reduced costs.
 class HungarianSolver {
  public:
   explicit HungarianSolver(const SquareCost& cost)
@@ -74,7 +74,7 @@ class HungarianSolver {
     }
   }
 
-  /// Updates the slack of the columns not yet reached from `row`; returns the one of least slack.
+  /// Updates the slack of the columns that have not been reached, from `row`; returns the column with the least slack.
   int relax(int row, int from_column, const std::vector<char>& reached, std::vector<double>& slack) {
     int best = -1;
     for (int column = 0; column < cost_.size; ++column) {

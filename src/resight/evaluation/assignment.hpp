@@ -5,9 +5,10 @@
 
 namespace resight {
 
-/// Pairs rows with columns one to one: as many pairs as possible, and among those the cheapest sum (Hungarian method,
-/// cubic in the larger side). `cost`: num_rows x num_columns, row by row, each finite and >= 0, or NaN = the two may
-/// not be paired. Returns the column of each row, -1 = left alone.
+/// Assigns rows to columns one to one: as many pairs as possible and, among those, the smallest sum of costs (Hungarian
+/// method, cubic in the larger side). `cost`: num_rows x num_columns, row by row; each finite and >= 0, or NaN =
+/// forbidden. Returns the column of each row, or -1. Throws std::invalid_argument for other costs or a wrong number of
+/// them.
 [[nodiscard]] std::vector<int> assign_optimally(std::span<const double> cost, int num_rows, int num_columns);
 
 }  // namespace resight

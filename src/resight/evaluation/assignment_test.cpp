@@ -22,10 +22,10 @@ struct Quality {
   }
 };
 
-/// The slow obvious twin: tries every way to hand out the columns, row after row.
+/// Reference implementation: tries all assignments of columns, row by row.
 Quality best_by_trying(const std::vector<double>& cost, int rows, int columns, int row, std::vector<char>& taken) {
   if (row == rows) return {};
-  Quality best = best_by_trying(cost, rows, columns, row + 1, taken);  // this row stays alone
+  Quality best = best_by_trying(cost, rows, columns, row + 1, taken);  // This row remains unassigned.
   for (int column = 0; column < columns; ++column) {
     const double value = cost[static_cast<std::size_t>(row * columns + column)];
     if (taken[static_cast<std::size_t>(column)] || std::isnan(value)) continue;
@@ -80,7 +80,7 @@ TEST(AssignOptimally, EqualsTryingAllAssignments) {
 }
 
 TEST(AssignOptimally, MorePairsBeatCheaperPairs) {
-  // Greedy takes the 0.1 and leaves the second row alone.
+  // A greedy choice takes 0.1 and leaves the second row unassigned.
   const std::vector<double> cost = {0.1, 1.9, 0.2, kForbidden};
   EXPECT_EQ(assign_optimally(cost, 2, 2), (std::vector<int>{1, 0}));
 }

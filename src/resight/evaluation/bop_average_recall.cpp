@@ -14,7 +14,7 @@ constexpr double kReferenceWidthPx = 640;
 
 double threshold(int i) { return 0.05 * (i + 1); }
 
-// Errors of each estimate (rows, by descending score) against each target.
+// Errors of each estimate (rows, by descending score) against each target (columns).
 using Errors = std::vector<std::vector<double>>;
 
 int count_hits(const Errors& errors, std::size_t num_targets, double below) {

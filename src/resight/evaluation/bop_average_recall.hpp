@@ -11,31 +11,31 @@
 
 namespace resight {
 
-/// What BOP's errors need of an object, metres.
+/// What the BOP errors need of an object. Metres.
 struct BopObject {
   TriangleMesh mesh;
-  std::vector<Rigid3> symmetries;  ///< enumerate_symmetries().
+  std::vector<Rigid3> symmetries;  ///< From enumerate_symmetries().
   double diameter_m = 0;           ///< Largest distance between two vertices (models_info.json).
 };
 
-/// Average recalls of the task "6D localization" of the BOP benchmark; NaN without targets.
+/// Average recalls of the BOP task "6D localization"; NaN without targets.
 struct BopAverageRecall {
-  double vsd = 0;   ///< Over tau and theta of 5, 10, .., 50 %.
-  double mssd = 0;  ///< Over 5, 10, .., 50 % of the diameter.
-  double mspd = 0;  ///< Over 5 r, 10 r, .., 50 r px; r = image width / 640.
+  double vsd = 0;   ///< Over tau and theta of 5, 10, ..., 50 %.
+  double mssd = 0;  ///< Over thresholds of 5, 10, ..., 50 % of the diameter.
+  double mspd = 0;  ///< Over thresholds of 5 r, 10 r, ..., 50 r px, with r = image width / 640.
   int num_targets = 0;
-  [[nodiscard]] double mean() const { return (vsd + mssd + mspd) / 3; }  ///< AR, the benchmark's rank.
+  [[nodiscard]] double mean() const { return (vsd + mssd + mspd) / 3; }  ///< AR, by which the benchmark ranks.
 };
 
-/// Counts the recalls view by view.
+/// Counts recalls view by view, following the benchmark.
 ///
-/// As the benchmark does: a target is an instance that is at least 10 % visible (unknown counts as visible); of the n
-/// targets of an object in a view, the n estimates of highest score are looked at, and each takes, from the highest on,
-/// the nearest target below the threshold that is still free. Targets without an estimate are missed. A view without
-/// estimates must be added, too.
+/// A target is an instance with a visible share of at least 10 % (unknown counts as visible). Of n targets of an object
+/// in a view, the n estimates with the highest scores are evaluated. In order of descending score, each takes the
+/// nearest remaining target below the threshold. Targets without an estimate are missed. Views without estimates must
+/// be added too.
 class BopRecallCounter {
  public:
-  /// `objects` by name; must outlive the counter. Truth of other objects is left out.
+  /// `objects` are keyed by name and must outlive the counter. Ground truth of other objects is ignored.
   explicit BopRecallCounter(const std::map<std::string, BopObject>& objects, const VsdOptions& vsd = {});
 
   void add_view(const RgbdFrame& frame, std::span<const GroundTruthObject> truth,
@@ -49,7 +49,7 @@ class BopRecallCounter {
   const std::map<std::string, BopObject>& objects_;
   VsdOptions vsd_options_;
   int num_targets_ = 0;
-  std::vector<int> vsd_hits_;  // per tau and theta
+  std::vector<int> vsd_hits_;  // Per tau and theta.
   std::vector<int> mssd_hits_;
   std::vector<int> mspd_hits_;
 };

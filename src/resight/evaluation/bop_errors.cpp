@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The least over the symmetries of the largest over the vertices; `distance` compares two points in the camera frame.
+// Minimum over the symmetries of the maximum over the vertices. `distance` compares two points in the camera frame.
 template <typename Distance>
 double symmetric_maximum(const Rigid3& estimate, const Rigid3& truth, std::span<const Eigen::Vector3f> vertices,
                          std::span<const Rigid3> symmetries, Distance&& distance) {
   require(!vertices.empty() && !symmetries.empty(),
-          "BOP errors: there must be a vertex, and a symmetry (the identity)");
+          "BOP errors: at least one vertex and one symmetry (the identity) are required");
   double least = kInfinity;
   for (const Rigid3& symmetry : symmetries) {
     const Rigid3 equivalent = truth * symmetry;
@@ -83,7 +83,7 @@ std::vector<double> vsd_errors(const Image<float>& estimate_depth_m, const Image
   check_positive("vsd_errors: diameter_m", diameter_m);
   for (const Image<float>* image : {&estimate_depth_m, &truth_depth_m, &measured_depth_m})
     require(image->width() == camera.width && image->height() == camera.height,
-            "vsd_errors: a depth image has not the camera's size");
+            "vsd_errors: a depth image differs in size from the camera");
   std::size_t num_union = 0;
   std::size_t num_one_only = 0;
   std::vector<std::size_t> num_apart(options.misalignment_shares.size(), 0);

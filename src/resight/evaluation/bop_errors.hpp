@@ -11,21 +11,22 @@
 
 namespace resight {
 
-// The errors of poses by which the BOP benchmark ranks (Hodan et al., "BOP Challenge 2020 on 6D Object Localization",
-// sec. 2.2; its thresholds: bop_average_recall.hpp). Poses: camera_from_object. `symmetries`: motions of the object
-// frame that map the object onto itself, the identity among them (enumerate_symmetries()).
+// Pose errors of the BOP benchmark (Hodan et al., "BOP Challenge 2020 on 6D Object Localization", Sec. 2.2; thresholds:
+// bop_average_recall.hpp). Poses are camera_from_object. `symmetries`: motions of the object frame that map the object
+// onto itself, including the identity (enumerate_symmetries()). Throws std::invalid_argument for empty vertices or
+// symmetries, or images of another size.
 
-/// Maximum symmetry-aware surface distance, metres: the largest distance of a vertex between both poses, for the
-/// symmetry for which it is least.
+/// Maximum symmetry-aware surface distance (MSSD), metres: the largest distance of a vertex between both poses,
+/// minimised over the symmetries.
 [[nodiscard]] double mssd_m(const Rigid3& estimate, const Rigid3& truth, std::span<const Eigen::Vector3f> vertices,
                             std::span<const Rigid3> symmetries);
 
-/// Maximum symmetry-aware projection distance, pixels: the same in the image. Infinite if a vertex is not in front of
-/// the camera.
+/// Maximum symmetry-aware projection distance (MSPD), pixels: the same in the image. Infinite if a vertex is not in
+/// front of the camera.
 [[nodiscard]] double mspd_px(const Rigid3& estimate, const Rigid3& truth, std::span<const Eigen::Vector3f> vertices,
                              std::span<const Rigid3> symmetries, const Camera& camera);
 
-/// Depth (along z, metres; NaN = nothing) of an object alone.
+/// Renders the depth of a single object (along z, metres; NaN = no surface).
 [[nodiscard]] Image<float> render_object_depth(const TriangleMesh& mesh, const Camera& camera,
                                                const Rigid3& camera_from_object);
 
@@ -37,11 +38,11 @@ struct VsdOptions {
   void check() const;
 };
 
-/// Visible surface discrepancy for each tau: of the pixels at which the object is visible in either pose, the share at
-/// which it is visible in one only or its two surfaces are tau or more apart (along the ray, as BOP measures). Visible
-/// is what is not behind the measured surface by more than delta; where nothing was measured, the object counts as
-/// visible (BOP since 2019), and the estimate also where the truth is visible. 1 if the object is visible in neither.
-/// The depth images are of the camera's size, NaN = nothing.
+/// Visible surface discrepancy (VSD) per tau. Of the pixels at which the object is visible in either pose, the share at
+/// which it is visible in one only, or its surfaces are at least tau apart (along the ray, as in BOP). A surface is
+/// visible if it is at most delta behind the measured one. Where nothing was measured, the object counts as visible
+/// (BOP since 2019); the estimate also counts as visible where the truth is. 1 if the object is visible in neither
+/// pose. Depth images have the camera's size; NaN = no surface.
 [[nodiscard]] std::vector<double> vsd_errors(const Image<float>& estimate_depth_m, const Image<float>& truth_depth_m,
                                              const Image<float>& measured_depth_m, const Camera& camera,
                                              double diameter_m, const VsdOptions& options = {});

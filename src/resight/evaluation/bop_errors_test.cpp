@@ -14,7 +14,8 @@ namespace resight {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-// f = 100 px; pixel (10, 10) looks straight ahead. So long a lens that a ray is hardly longer than its depth.
+// f = 100 px; pixel (10, 10) is the optical axis. The field of view is so narrow that rays are hardly longer than
+// depths.
 const Camera kCamera{21, 21, 100, 100, 10, 10};
 const std::vector<Rigid3> kNone{Rigid3::identity()};
 
@@ -34,7 +35,7 @@ Rigid3 turned(double deg) {
 TEST(BopErrors, SurfaceDistanceIsTheFarthestVertexs) {
   const TriangleMesh mesh = plate();
   EXPECT_NEAR(mssd_m(at(0.03, 0, 1.04), at(0, 0, 1), mesh.vertices, kNone), 0.05, 1e-9);
-  // Turned by 90 deg, each corner goes to the next one: the side of the square. By 180: the diagonal.
+  // Rotated by 90 deg, each corner moves to the next one: the side of the square. By 180 deg: the diagonal.
   EXPECT_NEAR(mssd_m(turned(90), turned(0), mesh.vertices, kNone), 0.1, 1e-8);
   EXPECT_NEAR(mssd_m(turned(180), turned(0), mesh.vertices, kNone), 0.1 * std::numbers::sqrt2, 1e-8);
 }
@@ -42,7 +43,7 @@ TEST(BopErrors, SurfaceDistanceIsTheFarthestVertexs) {
 TEST(BopErrors, ProjectionDistanceIsInPixels) {
   const TriangleMesh mesh = plate();
   EXPECT_NEAR(mspd_px(at(0.03, 0, 1), at(0, 0, 1), mesh.vertices, kNone, kCamera), 3.0, 1e-9);
-  // Twice as far: each corner from 5 px off the centre to 2.5 px, along both axes.
+  // Twice as far: each corner moves from 5 px to 2.5 px off the centre, along both axes.
   EXPECT_NEAR(mspd_px(at(0, 0, 2), at(0, 0, 1), mesh.vertices, kNone, kCamera), 2.5 * std::numbers::sqrt2, 1e-6);
   EXPECT_TRUE(std::isinf(mspd_px(at(0, 0, -1), at(0, 0, 1), mesh.vertices, kNone, kCamera)));
 }
@@ -56,7 +57,7 @@ TEST(BopErrors, SymmetriesAreFree) {
   ASSERT_EQ(symmetries.size(), 4U);
   EXPECT_NEAR(mssd_m(turned(90), turned(0), mesh.vertices, symmetries), 0, 1e-7);
   EXPECT_NEAR(mspd_px(turned(270), turned(0), mesh.vertices, symmetries, kCamera), 0, 1e-5);
-  // 100 deg is 10 deg from the nearest quarter turn: a chord of the circle through the corners.
+  // 100 deg is 10 deg from the nearest symmetry: a chord of the circle through the corners.
   const double chord = 2 * 0.05 * std::numbers::sqrt2 * std::sin(5 * std::numbers::pi / 180);
   EXPECT_NEAR(mssd_m(turned(100), turned(0), mesh.vertices, symmetries), chord, 1e-7);
 }
@@ -77,24 +78,26 @@ TEST(BopErrors, VisibleSurfaceDiscrepancyByHand) {
   const Image<float> truth = strip(6, 14, 1.0F);
   EXPECT_EQ(vsd(truth, truth, truth), std::vector<double>(3, 0.0));
   EXPECT_EQ(vsd(nothing, nothing, truth), std::vector<double>(3, 1.0));
-  // Shifted by two of eight pixels: union 10, six in both.
+  // Shifted by two of eight pixels: union 10, intersection 6.
   EXPECT_EQ(vsd(strip(8, 16, 1.0F), truth, strip(0, 21, 1.0F)), std::vector<double>(3, 0.4));
-  // 12 mm nearer all over: more than 5 % and 10 % of the diameter of 0.1 m, less than 20 %.
+  // 12 mm nearer everywhere: more than 5 % and 10 % of the diameter of 0.1 m, less than 20 %.
   EXPECT_EQ(vsd(strip(6, 14, 0.988F), truth, truth), (std::vector<double>{1, 1, 0}));
-  // 30 mm behind the measured surface the estimate is visible only where the truth is: six of eight pixels, all apart.
+  // 30 mm behind the measured surface, the estimate is visible only where the truth is: six of eight pixels, all
+  // misaligned.
   EXPECT_EQ(vsd(strip(8, 16, 1.03F), truth, strip(0, 21, 1.0F)), (std::vector<double>(3, 1.0)));
-  // Half of the truth hidden by something nearer, and so is half of an estimate that equals it.
+  // A nearer surface occludes half of the truth, and half of an estimate equal to it.
   Image<float> hidden = strip(6, 14, 1.0F);
   for (int u = 6; u < 10; ++u) hidden(u, 10) = 0.8F;
   EXPECT_EQ(vsd(truth, truth, hidden), std::vector<double>(3, 0.0));
-  // Only the visible half is compared: an estimate that lacks it has nothing in common.
+  // Only the visible half is compared: an estimate without it has nothing in common.
   EXPECT_EQ(vsd(strip(6, 10, 1.0F), truth, hidden), std::vector<double>(3, 1.0));
-  // No depth measured: the object counts as visible.
+  // Without measured depth, the object counts as visible.
   EXPECT_EQ(vsd(strip(10, 14, 1.0F), truth, nothing), std::vector<double>(3, 0.5));
 }
 
 TEST(BopErrors, DistancesAreAlongTheRay) {
-  // 45 deg off the axis a ray is sqrt(2) as long as its depth: 8 mm of depth are 11.3 mm, more than 10 % of 0.1 m.
+  // 45 deg off the axis, a ray is sqrt(2) times as long as its depth: 8 mm of depth are 11.3 mm, more than 10 % of 0.1
+  // m.
   const Camera wide{21, 21, 10, 10, 10, 10};
   Image<float> truth(21, 21, kNan);
   truth(20, 10) = 1.0F;
@@ -109,7 +112,7 @@ TEST(BopErrors, RenderedDepthIsThePlates) {
   const Image<float> depth_m = render_object_depth(plate(), kCamera, at(0.001, 0.001, 1));
   EXPECT_NEAR(depth_m(10, 10), 1.0F, 1e-6);
   EXPECT_NEAR(depth_m(6, 6), 1.0F, 1e-6);
-  EXPECT_TRUE(std::isnan(depth_m(4, 10)));  // the plate begins at -0.049 m, pixel 5.1
+  EXPECT_TRUE(std::isnan(depth_m(4, 10)));  // The plate begins at -0.049 m, pixel 5.1.
 }
 
 class BopRecall : public testing::Test {
@@ -146,25 +149,25 @@ TEST_F(BopRecall, PerfectAndEmpty) {
 }
 
 TEST_F(BopRecall, CountsThresholdsPassed) {
-  // 3 cm aside: 21.2 % of the diameter passes 25 .. 50 %, six of ten; 3 px pass all ten (5 .. 50 px; r = 21 / 640 makes
-  // them 0.16 .. 1.64 px here: none).
+  // 3 cm to the side: 21.2 % of the diameter passes 25 to 50 %, six of ten thresholds. 3 px pass none of the thresholds
+  // of 0.16 to 1.64 px (r = 21 / 640).
   const BopAverageRecall aside = recall_of({truth(at(0, 0, 1))}, {{"plate", at(0.03, 0, 1), 1}});
   EXPECT_DOUBLE_EQ(aside.mssd, 0.6);
   EXPECT_DOUBLE_EQ(aside.mspd, 0.0);
-  // 5.5 mm to the side: 3.9 % of the diameter, 0.55 px: thresholds 0.66 .. 1.64 px, seven of ten.
+  // 5.5 mm to the side: 3.9 % of the diameter; 0.55 px pass the thresholds of 0.66 to 1.64 px, seven of ten.
   const BopAverageRecall near = recall_of({truth(at(0, 0, 1))}, {{"plate", at(0.0055, 0, 1), 1}});
   EXPECT_DOUBLE_EQ(near.mssd, 1.0);
   EXPECT_DOUBLE_EQ(near.mspd, 0.7);
 }
 
 TEST_F(BopRecall, TheBestScoresCountAndHiddenTruthDoesNot) {
-  // One target: only the estimate of highest score is looked at, and it is wrong.
+  // One target: only the estimate with the highest score counts, and it is wrong.
   EXPECT_EQ(recall_of({truth(at(0, 0, 1))}, {{"plate", at(0, 0, 1), 0.5}, {"plate", at(0.5, 0, 1), 0.9}}).mssd, 0.0);
   const BopAverageRecall hidden =
       recall_of({truth(at(0, 0, 1)), truth(at(0.2, 0, 1), 0.05)}, {{"plate", at(0, 0, 1), 0.5}});
   EXPECT_EQ(hidden.num_targets, 1);
   EXPECT_EQ(hidden.mssd, 1.0);
-  // Two instances, found once: half.
+  // Two instances, one found: half.
   EXPECT_EQ(recall_of({truth(at(0, 0, 1)), truth(at(0.2, 0, 1))}, {{"plate", at(0, 0, 1), 0.5}}).mssd, 0.5);
   // Two estimates of one instance are one hit.
   EXPECT_EQ(recall_of({truth(at(0, 0, 1)), truth(at(0.2, 0, 1))},

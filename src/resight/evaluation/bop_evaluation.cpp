@@ -12,7 +12,7 @@
 namespace resight {
 namespace {
 
-// Quadratic, but over the corners of a coarse grid only: enough for a diameter to a hundredth.
+// Quadratic, but over extreme vertices in sampled directions only; accurate to about 1 %.
 double diameter_of(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> extremes;
   for (int i = 0; i < 64; ++i)
@@ -69,7 +69,8 @@ Result<std::vector<BopConfiguration>> evaluate_bop(
     counters.emplace_back(objects);
     return counters.size() - 1;
   };
-  std::map<std::string, std::vector<const EvaluatedRun*>> by_sequence;  // each view is read once
+  // Groups runs by sequence, so that each view is read only once.
+  std::map<std::string, std::vector<const EvaluatedRun*>> by_sequence;
   for (const EvaluatedRun& run : runs) {
     (void)slot_of(run);
     by_sequence[run.sequence].push_back(&run);
@@ -92,9 +93,9 @@ Result<std::vector<BopConfiguration>> evaluate_bop(
 
 std::string format_bop_table(std::span<const BopConfiguration> configurations) {
   std::string text =
-      "# BOP average recall\n\nLocalization task: targets are at least 10 % visible, each threshold as the benchmark "
-      "has "
-      "it.\n\n| preset | K | AR | AR VSD | AR MSSD | AR MSPD | targets |\n|---|---|---|---|---|---|---|\n";
+      "# BOP average recall\n\nLocalization task: targets are at least 10 % visible; thresholds as in the "
+      "benchmark.\n\n"
+      "| preset | K | AR | AR VSD | AR MSSD | AR MSPD | targets |\n|---|---|---|---|---|---|---|\n";
   for (const BopConfiguration& c : configurations)
     text += fmt::format("| `{}`{} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {} |\n", c.preset,
                         c.is_clustered ? "" : " without clustering", c.num_previous_views, c.recall.mean(),

@@ -16,10 +16,10 @@
 
 namespace resight {
 
-/// The meshes of all models under `path`; models without a mesh are left out, and so is their truth.
+/// Reads the meshes of all models under `path`. Models without a mesh are skipped, and their ground truth is ignored.
 [[nodiscard]] Result<std::map<std::string, BopObject>> read_bop_objects(const std::filesystem::path& path);
 
-/// BOP's average recalls of one configuration over all its sequences.
+/// BOP average recalls of one configuration over all its sequences.
 struct BopConfiguration {
   std::string preset;
   int num_previous_views = 0;
@@ -27,13 +27,13 @@ struct BopConfiguration {
   BopAverageRecall recall;
 };
 
-/// Scores stored runs by BOP's errors, from their detections. `open` opens the sequence of that name. In order of the
-/// first run of each configuration. Views of a sequence that a run lacks count as views without detections.
+/// Scores stored runs with BOP's errors, from their detections. `open` opens a sequence by name. Configurations are in
+/// the order of their first run. If a run lacks views of its sequence, they count as views without detections.
 [[nodiscard]] Result<std::vector<BopConfiguration>> evaluate_bop(
     std::span<const EvaluatedRun> runs, const std::map<std::string, BopObject>& objects,
     const std::function<Result<std::unique_ptr<Sequence>>(const std::string&)>& open);
 
-/// As a Markdown table.
+/// Formats the results as a Markdown table.
 [[nodiscard]] std::string format_bop_table(std::span<const BopConfiguration> configurations);
 
 }  // namespace resight

@@ -17,7 +17,7 @@ double ratio(long part, long whole) {
   return whole == 0 ? kNotANumber : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// How far behind the point the view measures, along z; NaN where it measures nothing.
+// Measured depth minus the depth of the point, along z; NaN without measurement.
 double depth_behind(const RgbdFrame& frame, const Eigen::Vector3d& p_in_world) {
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * p_in_world;
   if (p.z() <= 0) return kNotANumber;
@@ -47,7 +47,7 @@ void ScoreChangePointsOptions::check() const {
   check_in_range("ScoreChangePointsOptions.min_points", min_points, 1, 1000000);
 }
 
-// An object's surface, dense to ask for the nearest point, thin to ask what is expected.
+// An object's surface: dense for nearest-point queries, downsampled for the expected points.
 struct ChangePointScorer::Surface {
   Surface(const PointCloud& cloud, double sample_m) : tree(cloud.points) {
     PointCloud bare;
@@ -57,10 +57,10 @@ struct ChangePointScorer::Surface {
   }
   KdTree tree;
   std::vector<Eigen::Vector3f> samples;
-  double radius_m = 0;  // around the origin
+  double radius_m = 0;  // About the origin.
 };
 
-// A place that an object has left or taken before `view`.
+// A place that an object left or took before `view`.
 struct ChangePointScorer::Place {
   int view = 0;
   bool has_left = true;
@@ -73,7 +73,7 @@ ChangePointScorer::ChangePointScorer(const ModelLibrary& library, const Sequence
                                      const ScoreChangePointsOptions& options)
     : num_previous_views_(num_previous_views), options_(options) {
   options_.check();
-  require(truth.changes.has_value(), "ChangePointScorer: the truth holds no changes");
+  require(truth.changes.has_value(), "ChangePointScorer: the truth has no changes");
   for (const TrueChange& change : *truth.changes) {
     const int object = library.find(change.object);
     const auto unknown = truth.unknown_surfaces.find(change.object);
@@ -130,7 +130,7 @@ void ChangePointScorer::score_expected(const RgbdFrame& frame, const PointCloud&
                                        ChangePointScore& score) {
   const KdTree reported(reported_in_world.points);
   const auto near_sq = static_cast<float>(options_.near_m * options_.near_m);
-  // View number of window_[i] is view_ - window_.size() + i.
+  // The view number of window_[i] is view_ - window_.size() + i.
   const int first = view_ - static_cast<int>(window_.size());
   for (Place& place : places_) {
     if (place.has_left != has_left || place.view > view_ || place.is_counted) continue;

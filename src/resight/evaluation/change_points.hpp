@@ -12,15 +12,15 @@
 
 namespace resight {
 
-/// Points of changes, counted; sums of views add up.
+/// Counts of changed points; counts of views add up.
 struct ChangePointScore {
-  long reported = 0;  ///< Points that the change detection names.
-  long right = 0;     ///< Of them, those on the surface of an object that has left (removed) or come (novel).
-  long expected = 0;  ///< Points of such surfaces that the views prove to have left or come.
-  long found = 0;     ///< Of them, those with a reported point near by.
+  long reported = 0;  ///< Points reported by the change detection.
+  long right = 0;     ///< Reported points on the surface of an object that has left (removed) or arrived (novel).
+  long expected = 0;  ///< Points of such surfaces whose change the views prove.
+  long found = 0;     ///< Expected points with a reported point nearby.
 
-  [[nodiscard]] double precision() const;  ///< NaN where nothing was reported.
-  [[nodiscard]] double recall() const;     ///< NaN where nothing was to be found.
+  [[nodiscard]] double precision() const;  ///< NaN if no point was reported.
+  [[nodiscard]] double recall() const;     ///< NaN if no point was expected.
   ChangePointScore& operator+=(const ChangePointScore& other);
   friend bool operator==(const ChangePointScore&, const ChangePointScore&) = default;
 };
@@ -40,22 +40,23 @@ struct ScoreChangePointsOptions {
   void check() const;
 };
 
-/// Scores the change detection against what really happened, view by view (in order).
+/// Scores the change detection against the true changes, view by view (in order).
 ///
-/// Expected are, once per change and at the first view that proves it: of a thing that has left, its surface points
-/// that one of the last `num_previous_views` views has measured and this view sees through; of a thing that has come,
-/// those that this view measures and one of those views has seen through. What no view has proved is not expected.
-/// Removed points are right on any place left so far, novel points on any place taken so far: N of Eq. (2) also holds
-/// surfaces that are seen for the first time without having changed, and its precision is low for that reason.
+/// Each change is expected once, at the first view that proves it. For an object that has left, the expected points are
+/// those of its surface that one of the last `num_previous_views` views measured and this view sees through. For an
+/// object that has arrived, they are those that this view measures and one of those views saw through. Unproven changes
+/// are not expected. Removed points are right at any place left so far, novel points at any place taken so far. The
+/// precision of novel points is low, because N of Eq. (2) also contains unchanged surfaces that are observed for the
+/// first time.
 class ChangePointScorer {
  public:
-  /// `library` and `truth` must outlive the scorer; truth.changes must be there. Objects without a surface in either
-  /// are not expected.
+  /// `library` and `truth` must outlive the scorer. Throws std::invalid_argument without truth.changes. Objects without
+  /// a surface in either are not expected.
   ChangePointScorer(const ModelLibrary& library, const SequenceTruth& truth, int num_previous_views,
                     const ScoreChangePointsOptions& options = {});
   ~ChangePointScorer();
 
-  /// The reported points in the world frame.
+  /// The reported points are in the world frame.
   [[nodiscard]] ChangePointScores add_view(const RgbdFrame& frame, const PointCloud& removed_in_world,
                                            const PointCloud& novel_in_world);
 
@@ -71,7 +72,7 @@ class ChangePointScorer {
   ScoreChangePointsOptions options_;
   std::map<std::string, std::unique_ptr<Surface>> surfaces_;
   std::vector<Place> places_;
-  std::deque<RgbdFrame> window_;  // views before the current one, without their colours
+  std::deque<RgbdFrame> window_;  // Views before the current one, without colours.
   int view_ = 0;
 };
 

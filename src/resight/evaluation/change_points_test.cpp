@@ -10,7 +10,7 @@ namespace {
 
 using Kind = ObjectEventKind;
 
-// A plate of 20 x 20 cm facing the camera, 5 mm between its points.
+// A plate of 20 x 20 cm facing the camera, with points 5 mm apart.
 PointCloud plate() {
   PointCloud cloud;
   for (int i = -20; i <= 20; ++i)
@@ -23,7 +23,7 @@ constexpr double kPlateDepthM = 1.0;
 constexpr double kWallDepthM = 1.5;
 Rigid3 place() { return Rigid3::from_translation({0, 0, kPlateDepthM}); }
 
-// What a camera at the origin sees: a wall, and the plate before it or not.
+// View of a camera at the origin: a wall, with or without the plate in front of it.
 RgbdFrame frame(bool with_plate) {
   RgbdFrame f;
   f.camera = {160, 120, 130, 130, 79.5, 59.5};
@@ -59,10 +59,10 @@ TEST_F(ChangePoints, ARemovedPlateIsExpectedOnceAndFound) {
   const ChangePointScores at_once = s.add_view(frame(false), plate_in_world(), {});
   EXPECT_EQ(at_once.removed.reported, 41 * 41);
   EXPECT_EQ(at_once.removed.right, 41 * 41);
-  EXPECT_GT(at_once.removed.expected, 300);  // 21 x 21 samples of 1 cm, but for the border
+  EXPECT_GT(at_once.removed.expected, 300);  // 21 x 21 samples 1 cm apart, minus the border.
   EXPECT_EQ(at_once.removed.found, at_once.removed.expected);
   EXPECT_EQ(at_once.novel, ChangePointScore{});
-  EXPECT_EQ(s.add_view(frame(false), {}, {}).removed, ChangePointScore{});  // not expected twice
+  EXPECT_EQ(s.add_view(frame(false), {}, {}).removed, ChangePointScore{});  // Not expected twice.
 }
 
 TEST_F(ChangePoints, HalfOfThePlateReportedIsHalfFound) {
@@ -73,7 +73,7 @@ TEST_F(ChangePoints, HalfOfThePlateReportedIsHalfFound) {
     if (p.x() < -0.02F) half.points.push_back(p);
   const ChangePointScore removed = s.add_view(frame(false), half, {}).removed;
   EXPECT_EQ(removed.precision(), 1.0);
-  EXPECT_NEAR(removed.recall(), 0.5, 0.06);  // 2 cm count as near, and 2 cm were left out
+  EXPECT_NEAR(removed.recall(), 0.5, 0.06);  // Points within 2 cm count as found, and 2 cm were left out.
 }
 
 TEST_F(ChangePoints, PointsElsewhereAreWrong) {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kUnknownSamplesPerSqM = 2.5e5;  // 2 mm apart
+constexpr double kUnknownSamplesPerSqM = 2.5e5;  // 2 mm apart.
 
 std::optional<ObjectEventKind> kind_from(const std::string& text) {
   for (const ObjectEventKind kind : {ObjectEventKind::kAdded, ObjectEventKind::kMoved, ObjectEventKind::kRemoved})
@@ -48,7 +48,7 @@ TrueChange change_from(const json& value) {
   change.world_from_object_after = pose_from_json(value.at("world_from_object_after"));
   if (change.world_from_object_before.has_value() != (*kind != ObjectEventKind::kAdded) ||
       change.world_from_object_after.has_value() != (*kind != ObjectEventKind::kRemoved))
-    throw std::runtime_error("the poses do not fit the kind");
+    throw std::runtime_error("the poses do not match the kind");
   return change;
 }
 
@@ -76,7 +76,7 @@ Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
     for (const json& event : document.at("events")) changes.push_back(change_from(event));
     return changes;
   } catch (const std::exception& error) {
-    return Error{file.string() + ": is no list of events as 'resight simulate' writes it: " + error.what()};
+    return Error{file.string() + ": is not a list of events as written by 'resight simulate': " + error.what()};
   }
 }
 

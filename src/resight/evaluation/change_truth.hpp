@@ -14,7 +14,7 @@
 
 namespace resight {
 
-/// A change of the scene as it really happened, before `view` was seen.
+/// A true change of the scene, which happened before `view` was recorded.
 struct TrueChange {
   int view = 0;
   ObjectEventKind kind = ObjectEventKind::kMoved;  ///< kAdded, kMoved or kRemoved.
@@ -24,26 +24,27 @@ struct TrueChange {
   std::optional<Rigid3> world_from_object_after;   ///< Absent for kRemoved.
 };
 
-/// Reads the events that `resight simulate` writes (docs/formats.md). The error names the file and the rule.
+/// Reads the events written by `resight simulate` (docs/formats.md). Errors name the file and the rule.
 [[nodiscard]] Result<std::vector<TrueChange>> read_true_changes(const std::filesystem::path& file);
 
-/// The places that objects of the library left, by what really happened: unlike find_former_places(), an object that
-/// the camera does not look at any more has not left.
+/// Former places of library objects according to the true changes. Unlike find_former_places(), an object that leaves
+/// the camera's view has not left its place.
 [[nodiscard]] std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes,
                                                         const ModelLibrary& library);
 
-/// All that is known of a sequence beforehand.
+/// Ground truth of a sequence.
 struct SequenceTruth {
-  std::vector<TruthView> views;            ///< Empty without ground truth.
-  std::vector<FormerPlace> former_places;  ///< Of the changes, or else of the truth: find_former_places().
-  /// Absent where the sequence comes without its changes: changes are then not scored.
+  std::vector<TruthView> views;  ///< Empty without ground truth.
+  /// From the true changes if there are any, otherwise from find_former_places().
+  std::vector<FormerPlace> former_places;
+  /// Absent if the sequence has no list of changes; changes are then not scored.
   std::optional<std::vector<TrueChange>> changes;
-  /// Surface of each changing object that is in no library, object frame, by name.
+  /// Surface of each changing object that is not in the library, by name. Object frame.
   std::map<std::string, PointCloud> unknown_surfaces;
 };
 
-/// The ground truth of all views, and the changes if `events_file` exists. Surfaces of unknown objects are sampled from
-/// the meshes in `unknown_models`, if that folder exists.
+/// Reads the ground truth of all views, and the changes if `events_file` exists. Surfaces of unknown objects are
+/// sampled from the meshes in `unknown_models`, if that folder exists.
 [[nodiscard]] Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
                                                         const std::filesystem::path& events_file,
                                                         const std::filesystem::path& unknown_models);

@@ -41,7 +41,7 @@ TEST_F(ReadTrueChanges, ReadsWhatSimulateWrites) {
   library.objects.resize(1);
   library.objects[0].name = "mug";
   const auto places = former_places_of(*changes, library);
-  ASSERT_EQ(places.size(), 2U);  // of the moved and of the removed one
+  ASSERT_EQ(places.size(), 2U);  // Of the moved and of the removed object.
   EXPECT_EQ(places[0].last_view, 2);
 }
 

@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-// The centre of the place is in the image, and what the camera measures there is not clearly in front of the object.
+// The centre of the place projects into the image, and no measured surface clearly occludes the object there.
 bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const ObjectModel& model) {
   const Eigen::Vector3d center = world_from_object * model.center.cast<double>().eval();
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * center;
@@ -17,7 +17,7 @@ bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const Obj
   const Eigen::Vector2d pixel = frame.camera.project(p);
   if (!frame.camera.contains(pixel)) return false;
   const float depth = frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  return depth >= p.z() - 0.5 * model.diameter_m;  // false for NaN
+  return depth >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const Obj
 ChangeVisibilityFinder::ChangeVisibilityFinder(const ModelLibrary& library, const SequenceTruth& truth,
                                                const MatchDetectionsOptions& options)
     : library_(library), truth_(truth), options_(options) {
-  require(truth.changes.has_value(), "ChangeSightFinder: the truth holds no changes");
+  require(truth.changes.has_value(), "ChangeVisibilityFinder: the truth has no changes");
   sights_.resize(truth.changes->size(), {-1, -1, -1, -1});
   for (const TrueChange& change : *truth.changes) stands_since_.push_back(find_arrival_before(change));
 }
@@ -54,7 +54,7 @@ void ChangeVisibilityFinder::add_view(const RgbdFrame& frame) {
   ++view_;
 }
 
-// The last change that brought the object to where it leaves; 0 if it was there from the first view on.
+// View of the last change that brought the object to the place it leaves; 0 if it was there from the first view on.
 int ChangeVisibilityFinder::find_arrival_before(const TrueChange& change) const {
   const int object = library_.find(change.object);
   if (object < 0 || !change.world_from_object_before) return 0;

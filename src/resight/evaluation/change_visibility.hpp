@@ -9,19 +9,23 @@
 
 namespace resight {
 
-/// What the views show of a change, and since when; -1 = never.
+/// What the views show of a change, by view number; -1 = never.
 struct ChangeVisibility {
-  int before_view = -1;  ///< First view, from the change on, that looks at the place left: its centre is in the image
-                         ///< and not hidden, and none of its kind is there again.
-  int after_view = -1;   ///< First view, from the change on, with the object visible at its new place.
-  int last_there_view = -1;  ///< Last view before the change, since it came there, with it visible at the place left.
-  int last_free_view = -1;   ///< Last view before the change that looks at the new place, with none of its kind there.
+  /// First view from the change on that observes the former place: its centre is in the image and not occluded, and no
+  /// object of this kind is there.
+  int before_view = -1;
+  /// First view from the change on with the object visible at its new place.
+  int after_view = -1;
+  /// Last view before the change, and since the object arrived there, with it visible at the former place.
+  int last_there_view = -1;
+  /// Last view before the change that observes the new place without an object of this kind.
+  int last_free_view = -1;
 };
 
-/// Finds the sight of each change, view by view (in order). The views up to the last one added count.
+/// Determines the visibility of each change, view by view (in order), up to the last view added.
 class ChangeVisibilityFinder {
  public:
-  /// All must outlive the finder; truth.changes must be there.
+  /// All arguments must outlive the finder. Throws std::invalid_argument without truth.changes.
   ChangeVisibilityFinder(const ModelLibrary& library, const SequenceTruth& truth,
                          const MatchDetectionsOptions& options = {});
   void add_view(const RgbdFrame& frame);
@@ -36,7 +40,7 @@ class ChangeVisibilityFinder {
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
   std::vector<ChangeVisibility> sights_;
-  std::vector<int> stands_since_;  // by change: the first view with the object at the place that it leaves
+  std::vector<int> stands_since_;  // Per change: the first view with the object at the place it leaves.
   int view_ = 0;
 };
 

@@ -48,16 +48,16 @@ TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
   const ModelLibrary library = make_library();
   SequenceTruth truth = move_mug(4);
   truth.views[0].objects = {mug_at(0, 0.5)};
-  truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // still behind something
+  truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // Still occluded.
   truth.views[3].objects = {mug_at(0.3, 0.5)};
   ChangeVisibilityFinder finder(library, truth);
   EXPECT_EQ(finder.sights()[0].last_there_view, -1);
   EXPECT_EQ(finder.sights()[0].last_free_view, -1);
-  finder.add_view(frame_with_wall(2.0F));  // before the change
+  finder.add_view(frame_with_wall(2.0F));  // Before the change.
   EXPECT_EQ(finder.sights()[0].before_view, -1);
   EXPECT_EQ(finder.sights()[0].last_there_view, 0);
   EXPECT_EQ(finder.sights()[0].last_free_view, 0);
-  finder.add_view(frame_with_wall(0.7F));  // something stands before the place
+  finder.add_view(frame_with_wall(0.7F));  // The place is occluded.
   EXPECT_EQ(finder.sights()[0].before_view, -1);
   finder.add_view(frame_with_wall(2.0F));
   EXPECT_EQ(finder.sights()[0].before_view, 2);
@@ -67,7 +67,7 @@ TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
   EXPECT_EQ(finder.sights()[0].after_view, 3);
 }
 
-// It was seen there once, left, and came back unseen: that it leaves again no view can tell.
+// The mug was visible there, left, and returned unobserved: no view can show its second departure.
 TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   const ModelLibrary library = make_library();
   SequenceTruth truth;
@@ -83,7 +83,8 @@ TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   EXPECT_EQ(finder.sights()[2].last_there_view, -1);
 }
 
-// Another mug stands at the new place before, and at the old one after: no view shows either without a mug.
+// Another mug is at the new place before, and at the former place after the change: no view shows either place without
+// one.
 TEST(ChangeVisibilityFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
   const ModelLibrary library = make_library();
   SequenceTruth truth = move_mug(2);

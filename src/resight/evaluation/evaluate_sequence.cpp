@@ -71,7 +71,7 @@ class SequenceEvaluator {
 
  private:
   void find_losses(const TruthView& truth, const RecognitionTrace& trace, EvaluatedView& view) const {
-    std::size_t entry = 0;  // view.truth leaves out what is not in the library
+    std::size_t entry = 0;  // Index into view.truth, which skips objects that are not in the library.
     FindLossOptions loss_options;
     loss_options.match = options_.match;
     for (const GroundTruthObject& object : truth.objects) {

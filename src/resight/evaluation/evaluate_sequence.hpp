@@ -21,9 +21,9 @@ struct EvaluateSequenceOptions {
   std::function<void(int, const EvaluatedView&)> progress;
 };
 
-/// Recognises every view of a sequence in order and scores each against its own ground truth. Everything but
-/// `sequence`, `fingerprint` and `num_threads` of the run is filled in. The sequence must have ground truth
-/// (`truth.views`).
+/// Recognises every view of a sequence in order and scores it against its own ground truth. Sets all fields of the run
+/// except `sequence`, `fingerprint` and `num_threads`. Fails with the error of the first view that cannot be read.
+/// Throws std::invalid_argument unless `truth.views` has one entry per view.
 [[nodiscard]] Result<EvaluatedRun> evaluate_sequence(const Sequence& sequence, const SequenceTruth& truth,
                                                      const ModelLibrary& library, const RecognizerConfig& config,
                                                      const EvaluateSequenceOptions& options = {});

@@ -184,7 +184,7 @@ Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {
     for (const Json& view : j.at("views")) run.views.push_back(view_from(view));
     return run;
   } catch (const std::exception& error) {
-    return Error{name + ": is no result of 'resight evaluate': " + error.what()};
+    return Error{name + ": is not a result of 'resight evaluate': " + error.what()};
   }
 }
 

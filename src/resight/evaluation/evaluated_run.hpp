@@ -14,18 +14,18 @@
 
 namespace resight {
 
-/// A known object of the ground truth in one view, and what became of it.
+/// A ground-truth object in one view, and its result.
 struct EvaluatedTruth {
   std::string object;
   int instance = 0;
   double visible_share = std::numeric_limits<double>::quiet_NaN();  ///< NaN = unknown.
-  double distance_m = 0;                                            ///< From the camera to its centre.
-  bool counts = true;                                               ///< False: too hidden to be hit or miss.
-  bool found = false;           ///< Within the loose pair of tolerances (5 cm, 30 deg).
-  bool found_strictly = false;  ///< Within the strict pair (1 cm, 10 deg).
-  double center_error_m = std::numeric_limits<double>::quiet_NaN();  ///< Where found.
+  double distance_m = 0;                                            ///< From the camera to the object's centre.
+  bool counts = true;           ///< False: too occluded to count as found or missed.
+  bool found = false;           ///< Within the loose limits (5 cm, 30 deg).
+  bool found_strictly = false;  ///< Within the strict limits (1 cm, 10 deg).
+  double center_error_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN if missed.
   double rotation_error_rad = std::numeric_limits<double>::quiet_NaN();
-  std::string lost_at;  ///< Where missed: the stage (see LossStage); empty = found, or nobody looked.
+  std::string lost_at;  ///< Stage at which a missed object was lost (LossStage); empty = found, or not analysed.
 };
 
 enum class DetectionVerdict : std::uint8_t { kCorrect, kFalsePositive, kGhost, kIgnored };
@@ -49,23 +49,25 @@ struct EvaluatedView {
   StageTimes times;
 };
 
-/// One configuration on one sequence: the unit of work of an evaluation, which is stored and merged as a whole.
+/// Result of one configuration on one sequence: the unit of an evaluation, stored and merged as a whole.
 struct EvaluatedRun {
   std::string sequence;
   std::string preset;
   int num_previous_views = 0;  ///< K.
   bool is_clustered = true;
-  std::string fingerprint;    ///< Of version, settings and models: results of another one are stale.
-  int num_threads = 1;        ///< That the times were taken with.
-  int num_former_places = 0;  ///< Places that known objects left: the changes that ghosts are counted per.
-  bool has_changes = false;   ///< Whether the truth tells the changes, and this preset looks for them.
-  EventScore events;          ///< If has_changes.
+  std::string fingerprint;  ///< Hash of version, settings and models; results with another fingerprint are stale.
+  int num_threads = 1;      ///< Number of threads while times were measured.
+  /// Places that library objects left; ghosts are counted per former place.
+  int num_former_places = 0;
+  /// Whether the ground truth lists changes and the preset detects them.
+  bool has_changes = false;
+  EventScore events;  ///< Only with has_changes.
   std::vector<EvaluatedView> views;
 
   [[nodiscard]] int num_ghosts() const;
 };
 
-/// As JSON, and back: the same run, to the bit.
+/// Converts a run to JSON and back without loss. Parsing fails with an error that names `name`.
 [[nodiscard]] std::string format_run(const EvaluatedRun& run);
 [[nodiscard]] Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name);
 

@@ -25,7 +25,7 @@ double nearest_rank(const std::vector<double>& sorted, double share) {
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-// Gathers one configuration's runs.
+// Accumulates the runs of one configuration.
 class Summarizer {
  public:
   explicit Summarizer(const EvaluatedRun& first) {

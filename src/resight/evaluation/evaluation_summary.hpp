@@ -10,23 +10,23 @@
 
 namespace resight {
 
-/// Hits and misses of a kind of object (by name, or by visible share).
+/// Found and missed objects of one group (by name, or by visible share).
 struct FoundCount {
   int found = 0;
   int missed = 0;
-  int false_positives = 0;             ///< By name only; ghosts included.
+  int false_positives = 0;             ///< By name only; includes ghosts.
   std::map<std::string, int> lost_at;  ///< Missed objects per stage.
 };
 
 struct ErrorQuantiles {
   int count = 0;
-  double median = 0;  ///< NaN without errors.
+  double median = 0;  ///< NaN without values.
   double p95 = 0;
 };
-/// By the nearest rank: the p-quantile of n values is the ceil(p n)-th smallest.
+/// Nearest-rank quantiles: the p-quantile of n values is the ceil(p n)-th smallest.
 [[nodiscard]] ErrorQuantiles error_quantiles(std::vector<double> values);
 
-/// One configuration over all sequences of an evaluation.
+/// Summary of one configuration over all sequences of an evaluation.
 struct ConfigurationSummary {
   std::string preset;
   int num_previous_views = 0;  ///< K.
@@ -35,30 +35,33 @@ struct ConfigurationSummary {
   int num_views = 0;
   RecognitionScore score;         ///< Within 5 cm and 30 deg.
   RecognitionScore strict_score;  ///< Within 1 cm and 10 deg.
-  ErrorQuantiles center_error_m;  ///< Of the true positives within the loose pair.
+  ErrorQuantiles center_error_m;  ///< Of the true positives within the loose limits.
   ErrorQuantiles rotation_error_rad;
-  Reliability reliability;  ///< Of the scores of all detections that count.
+  Reliability reliability;  ///< Of the scores of all detections that are not ignored.
   int num_ghosts = 0;
-  int num_former_places = 0;  ///< Places left, over the sequences.
+  int num_former_places = 0;  ///< Former places, summed over the sequences.
   HypothesisCounts counts;    ///< Sums over the views.
   bool has_changes = false;
   ChangePointScores points;
   EventScore events;
   std::map<std::string, FoundCount> by_object;
-  std::vector<FoundCount> by_visible_share;  ///< Bins of visible_share_bins(); the last one: share unknown.
+  /// Bins of visible_share_bins(); the last one is for unknown shares.
+  std::vector<FoundCount> by_visible_share;
   std::map<std::string, int> lost_at;
-  StageTimes times;                      ///< Sums over the views.
-  std::vector<double> mean_view_wall_s;  ///< Per number of the view in its sequence, mean over the sequences (Fig. 7).
+  StageTimes times;  ///< Sums over the views.
+  /// Per view number, mean over the sequences (paper, Fig. 7).
+  std::vector<double> mean_view_wall_s;
 
-  /// Detections at places left, per such place: how many views long an object is reported where it has left (Fig. 5).
+  /// Ghost detections per former place: the number of views in which an object is still reported at a place it has left
+  /// (paper, Fig. 5).
   [[nodiscard]] double ghosts_per_change() const;
 };
 
-/// Lower ends of the bins of the visible share.
+/// Lower bounds of the bins of the visible share.
 [[nodiscard]] std::span<const double> visible_share_bins();
 
-/// Sums the runs of each configuration (micro average over all views of all sequences), in order of preset as first
-/// seen, clustering, K. The order of the runs does not matter but for that.
+/// Sums the runs of each configuration (micro average over all views of all sequences). Sorted by preset (in order of
+/// appearance), clustering, and K; otherwise independent of the order of the runs.
 [[nodiscard]] std::vector<ConfigurationSummary> summarize_runs(std::span<const EvaluatedRun> runs);
 
 }  // namespace resight

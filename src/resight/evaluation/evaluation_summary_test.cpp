@@ -26,7 +26,7 @@ EvaluatedRun make_run(const std::string& sequence, const std::string& preset, in
   found.object = "mug";
   found.visible_share = 0.9;
   found.found = found.found_strictly = true;
-  found.center_error_m = 0.1 / 3;  // not a short decimal
+  found.center_error_m = 0.1 / 3;  // Not a short decimal.
   found.rotation_error_rad = 1e-17;
   EvaluatedTruth missed;
   missed.object = "soup";
@@ -92,7 +92,7 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_EQ(c.by_object.at("soup").false_positives, 3);
   EXPECT_EQ(c.lost_at.at("rejected"), 3);
   EXPECT_EQ(c.by_visible_share[4].found, 3);       // 0.8 to 1
-  EXPECT_EQ(c.by_visible_share.back().missed, 3);  // unknown
+  EXPECT_EQ(c.by_visible_share.back().missed, 3);  // Unknown.
   ASSERT_EQ(c.mean_view_wall_s.size(), 2U);
   EXPECT_DOUBLE_EQ(c.mean_view_wall_s[1], 0.25);
 }

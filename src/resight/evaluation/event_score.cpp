@@ -16,8 +16,8 @@ struct Half {
   bool known_by_sight = true;
 };
 
-// Truths that do not count are neither hit nor miss, and nor are their reports. Calls hit(truth, report) for each pair
-// that counts.
+// Uncounted truths are neither hit nor miss, and reports of them are ignored. Calls hit(truth, report) for each counted
+// pair.
 template <typename Truth, typename Report, typename Fits, typename Counts, typename Hit>
 RecognitionScore score_matches(const std::vector<Truth>& truths, const std::vector<Report>& reports, Fits&& fits,
                                Counts&& counts, Hit&& hit) {
@@ -62,7 +62,7 @@ EventScore& EventScore::operator+=(const EventScore& other) {
 EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> sights,
                         std::span<const ReportedChange> reported, const ModelLibrary& library,
                         const MatchDetectionsOptions& options) {
-  require(changes.size() == sights.size(), "score_events: one sight a change is needed");
+  require(changes.size() == sights.size(), "score_events: sights must have one entry per change");
   std::vector<SeenChange> truths;
   std::vector<Half> true_departures, true_arrivals, departures, arrivals;
   for (std::size_t i = 0; i < changes.size(); ++i) {

@@ -9,17 +9,20 @@
 namespace resight {
 
 struct EventScore {
-  RecognitionScore events;      ///< Right: same object and kind, both places right.
-  RecognitionScore departures;  ///< Of "moved" the old place, of "removed" the place.
-  RecognitionScore arrivals;    ///< Of "moved" the new place, of "added" the place.
-  std::vector<int> delays;      ///< Views from when it could be known to the report; one per right event.
+  RecognitionScore events;  ///< Right if object, kind and both placements are right.
+  /// Former place of "moved" and "removed" events.
+  RecognitionScore departures;
+  RecognitionScore arrivals;  ///< New place of "moved" and "added" events.
+  /// Views from when a change could be known to its report; one per right event.
+  std::vector<int> delays;
   EventScore& operator+=(const EventScore& other);
 };
 
-/// Scores the reported changes against the true ones of known objects. Pairs are chosen in the order of their views,
-/// one to one; a report before the change is wrong. A move of which the views show only one side (see ChangeVisibility)
-/// is to them a removal or an addition, and right as that, too; what the views cannot tell from what happened is right
-/// as well (reconcile_with_reports()). Changes that no view shows are neither hits nor misses, nor are reports of them.
+/// Scores reported changes against the true changes of library objects. Pairs are chosen one to one, in order of their
+/// views; a report before its change is wrong. If the views show only one side of a move (see ChangeVisibility), a
+/// report of that removal or addition is right too, as is a report that the views cannot distinguish from the truth
+/// (reconcile_with_reports()). Changes that no view shows are neither hits nor misses, and reports of them are ignored.
+/// Throws std::invalid_argument unless `sights` has one entry per change and all reported objects are in the library.
 [[nodiscard]] EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> sights,
                                       std::span<const ReportedChange> reported, const ModelLibrary& library,
                                       const MatchDetectionsOptions& options = {});

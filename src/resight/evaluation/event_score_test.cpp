@@ -34,7 +34,7 @@ TEST(EventScore, RightKindPlacesAndTime) {
   EXPECT_EQ(s.events, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
-  EXPECT_EQ(s.delays, (std::vector<int>{0, 2}));  // by view: the removal at once, the move two views after view 5
+  EXPECT_EQ(s.delays, (std::vector<int>{0, 2}));  // Per event: the removal at once, the move two views after view 5.
 }
 
 TEST(EventScore, AMoveToldAsRemovalAndAdditionHasItsPlacesRight) {

@@ -10,14 +10,15 @@
 
 namespace resight {
 
-/// A place that an object stood at and has left, by the ground truth.
+/// A place that an object has left, according to the ground truth.
 struct FormerPlace {
   std::string object;
   Rigid3 world_from_object;
-  int last_view = 0;  ///< Last view in which the object stood there; it is a former place from the next view on.
+  /// Last view with the object at the place; a former place from the next view on.
+  int last_view = 0;
 };
 
-/// What the ground truth says of one view, in time order.
+/// Ground truth of one view. Views are in time order.
 struct TruthView {
   Rigid3 world_from_camera;
   std::vector<GroundTruthObject> objects;
@@ -30,10 +31,10 @@ struct FindFormerPlacesOptions {
   void check() const;
 };
 
-/// The placements that end before the last view, in order of their first view. An object that is out of the annotations
-/// for a while and then back at the same place had not left it. An object missing since some view counts as gone from
-/// there: see find_ghosts() for the places that a later view does not look at. Objects that are not in the library are
-/// left out.
+/// Placements that end before the last view, in order of their first view. An object that is missing from the
+/// annotations for a while and returns to the same place has not left. An object that is missing from some view on
+/// counts as gone, even if later views do not observe the place; find_ghosts() handles those. Objects that are not in
+/// the library are ignored.
 [[nodiscard]] std::vector<FormerPlace> find_former_places(std::span<const TruthView> views, const ModelLibrary& library,
                                                           const FindFormerPlacesOptions& options = {});
 
@@ -44,13 +45,13 @@ struct Ghost {
   PoseDifference difference;
 };
 
-/// The ghosts among the detections of view number `view` (paper, Fig. 5: false detections caused by a change), by
-/// ascending detection.
+/// Finds the ghosts among the detections of view number `view`, by ascending detection (paper, Fig. 5: false detections
+/// caused by a change).
 ///
-/// A detection is a ghost when it is within the limits of a former place of its object (of several, the nearest) and of
-/// NO present truth, however hidden or already claimed: an object of the same kind put there is no ghost. Deviation
-/// from the paper's protocol, which counts every detection at an old place: places whose centre `camera` does not see
-/// in this view say nothing and are left out.
+/// A detection is a ghost if it is within the limits of a former place of its object (of several, the nearest) and of
+/// NO present ground-truth object, however occluded or already matched: an object of the same kind at that place is no
+/// ghost. Deviation from the paper, which counts every detection at a former place: places whose centre is outside the
+/// image of this view are ignored. Throws std::invalid_argument for objects that are not in the library.
 [[nodiscard]] std::vector<Ghost> find_ghosts(std::span<const FormerPlace> places, const TruthView& truth, int view,
                                              std::span<const DetectedObject> detections, const Camera& camera,
                                              const ModelLibrary& library, const MatchDetectionsOptions& options = {});

@@ -26,7 +26,7 @@ GroundTruthObject object_at(const std::string& name, const Rigid3& camera_from_o
   return object;
 }
 
-/// A camera that looks down the world's z axis from x = `camera_x`, and objects given in the world.
+/// A camera at x = `camera_x` that looks along the world's z axis, and objects given in the world frame.
 TruthView view_at(double camera_x, const std::vector<std::pair<std::string, double>>& object_x_in_world) {
   TruthView view;
   view.world_from_camera = Rigid3::from_translation({camera_x, 0, 0});

@@ -10,7 +10,8 @@
 namespace resight {
 namespace {
 
-constexpr double kNearFactor = 2;  // "At the place": within this many times the allowed distance of the centres.
+// A hypothesis is "at the place" within this multiple of the allowed centre distance.
+constexpr double kNearFactor = 2;
 
 int count_keypoints(const FeatureSet& features, const KdTree& surface, const Rigid3& object_from_camera,
                     double max_distance_m) {
@@ -33,7 +34,8 @@ int count_right(std::span<const Correspondence> correspondences, const Rigid3& c
   return count;
 }
 
-// The hypothesis of the object whose pose is best, by centre and rotation as shares of what is allowed.
+// The hypothesis of the object with the best pose: the larger of centre distance and rotation, relative to their
+// limits.
 struct Nearest {
   int index = -1;
   PoseDifference difference;
@@ -120,7 +122,7 @@ Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, 
     if (nearest.index >= 0) loss.best = nearest.difference;
     return loss;
   };
-  // What was accepted is another object's: this one was missed.
+  // Accepted hypotheses belong to other ground-truth objects, because this one was missed.
   std::vector<Candidate> verified = candidates_of(trace.verified, object);
   std::erase_if(verified, [&](const Candidate& c) { return trace.evidence[c.index].accepted; });
   std::vector<Candidate> refined = verified;

@@ -8,27 +8,34 @@
 
 namespace resight {
 
-/// The first stage after which nothing right was left of an object, in the order of the stages.
+/// The first stage after which no correct hypothesis of an object was left, in the order of the stages.
 enum class LossStage : std::uint8_t {
-  kNoKeypoints,   ///< Too few keypoints on what is seen of it to make a group.
-  kNoMatches,     ///< Keypoints, but too few of them matched to the right place of the right model.
+  kNoKeypoints,  ///< Too few keypoints on its visible part to form a group.
+  /// Enough keypoints, but too few of them matched to the right place of the right model.
+  kNoMatches,
   kNoGroup,       ///< Right correspondences, but no hypothesis of this object near it.
-  kWrongPose,     ///< A hypothesis at the place, but turned or shifted too much.
-  kClusteredOut,  ///< A right hypothesis that clustering merged into a wrong one.
-  kCalledAbsent,  ///< A right hypothesis that the changes excluded; with judge_absent, one that was accepted elsewhere.
-  kRefinedAway,   ///< A right hypothesis that the verification's refinement moved out of tolerance.
-  kRejected,      ///< A right hypothesis that the verification rejected.
+  kWrongPose,     ///< A hypothesis at the place, but with too large an error.
+  kClusteredOut,  ///< A correct hypothesis that clustering merged into a wrong one.
+  /// A correct hypothesis after clustering that was not rejected: excluded by the changes, left out by a deadline, or
+  /// accepted and matched to another ground-truth object.
+  kCalledAbsent,
+  kRefinedAway,  ///< A correct hypothesis that the refinement moved beyond the limits.
+  kRejected,     ///< A correct hypothesis that the verification rejected.
 };
 [[nodiscard]] const char* to_string(LossStage stage);
 
-/// What became of one object that was not found.
+/// Analysis of one object that was not found.
 struct Loss {
   LossStage stage = LossStage::kNoKeypoints;
-  int num_keypoints = 0;        ///< Of both kinds, within keypoint_distance_m of the model's surface at the true pose.
-  int num_correspondences = 0;  ///< Of this object, in this view.
-  int num_right = 0;            ///< Of these, those that the true pose maps within keypoint_distance_m.
-  std::optional<PoseDifference> best;          ///< Of the nearest hypothesis of this object that got farthest.
-  std::optional<HypothesisEvidence> evidence;  ///< Of the best right hypothesis; kRejected only.
+  /// SIFT and SHOT keypoints within keypoint_distance_m of the model's surface at the true pose.
+  int num_keypoints = 0;
+  int num_correspondences = 0;  ///< Of this object in this view.
+  /// Correspondences that the true pose maps to within keypoint_distance_m.
+  int num_right = 0;
+  /// Error of the nearest hypothesis of this object at the latest stage.
+  std::optional<PoseDifference> best;
+  /// Of the best refined hypothesis; for kRejected and kRefinedAway only.
+  std::optional<HypothesisEvidence> evidence;
 };
 
 struct FindLossOptions {
@@ -37,9 +44,9 @@ struct FindLossOptions {
   MatchDetectionsOptions match{};
 };
 
-/// Looks through the trace of a view for the stage at which an object of its ground truth was lost. The keypoints and
-/// correspondences are those of this view; the hypotheses those of the window. Throws std::invalid_argument for an
-/// object that is not in the library.
+/// Finds the stage at which a ground-truth object was lost, from the trace of a view. Keypoints and correspondences are
+/// those of this view, hypotheses those of the window. Throws std::invalid_argument for an object that is not in the
+/// library.
 [[nodiscard]] Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera,
                              const RecognitionTrace& trace, const ModelLibrary& library,
                              const FindLossOptions& options = {});

@@ -12,7 +12,8 @@ const Rigid3 kCameraFromObject = Rigid3::from_translation({0.1, 0, 1});
 const Rigid3 kWorldFromCamera =
     Rigid3::from_translation({1, 2, 3}) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), 2.0);
 
-// A mug and a tin, both a 5 cm cube of surface points; the truth is a mug before a camera that is not at the origin.
+// A mug and a tin, both a 5 cm cube of surface points. The true object is a mug in front of a camera away from the
+// origin.
 class LossTest : public ::testing::Test {
  protected:
   LossTest() {
@@ -32,7 +33,7 @@ class LossTest : public ::testing::Test {
 
   [[nodiscard]] Loss loss() const { return find_loss(truth_, kWorldFromCamera, trace_, library_); }
 
-  // Of the mug (object 1) unless said, displaced along x.
+  // By default of the mug (object 1), displaced along x.
   static Hypothesis hypothesis(double offset_m, int object = 1) {
     Hypothesis h;
     h.object = object;
@@ -44,7 +45,7 @@ class LossTest : public ::testing::Test {
     HypothesisEvidence evidence;
     evidence.accepted = accepted;
     evidence.world_from_object = hypothesis(refined_offset_m).world_from_object;
-    evidence.explained_share = offset_m;  // To tell them apart.
+    evidence.explained_share = offset_m;  // Distinguishes the entries.
     trace_.evidence.push_back(evidence);
   }
   void add_keypoints(int count, double offset_m) {
@@ -72,7 +73,7 @@ TEST_F(LossTest, NothingSeenIsNoKeypoints) {
 }
 
 TEST_F(LossTest, KeypointsAwayFromTheSurfaceDoNotCount) {
-  add_keypoints(6, 0.03);  // Three of the six lie beside the object, two of them beyond 1 cm.
+  add_keypoints(6, 0.03);  // Three of the six lie beside the object, two of them farther than 1 cm.
   EXPECT_EQ(loss().num_keypoints, 4);
   EXPECT_EQ(loss().stage, LossStage::kNoKeypoints);
 }
@@ -92,7 +93,7 @@ TEST_F(LossTest, RightCorrespondencesWithoutHypothesisAreNoGroup) {
   add_correspondences(5, 0.009);
   EXPECT_EQ(loss().num_right, 5);
   EXPECT_EQ(loss().stage, LossStage::kNoGroup);
-  trace_.merged = {hypothesis(0.3), hypothesis(0, 0)};  // Far away, and another object at the place.
+  trace_.merged = {hypothesis(0.3), hypothesis(0, 0)};  // One is far away, one is another object at the place.
   EXPECT_EQ(loss().stage, LossStage::kNoGroup);
   EXPECT_NEAR(loss().best->center_distance_m, 0.3, 1e-9);
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 
-/// Index into the library of each name; -1 = not there.
+/// Library index of each name; -1 = not found.
 template <typename Object>
 std::vector<int> library_indices(std::span<const Object> objects, const ModelLibrary& library) {
   std::vector<int> indices;
@@ -30,14 +30,15 @@ std::vector<int> positions_of(int value, std::span<const int> values, std::span<
   return positions;
 }
 
-/// Each view's objects while they are being handed out.
+/// Ground truth and detections of one view during matching.
 struct Matching {
   std::span<const GroundTruthObject> truth;
   std::span<const DetectedObject> detections;
   const MatchDetectionsOptions& options;
   std::vector<char> free_detections;
 
-  /// Best one-to-one pairs between the free detections and the given truths of one object; takes the detections away.
+  /// Finds the best one-to-one pairs between the free detections and the given ground truth of one object, and removes
+  /// the matched detections from the free ones.
   std::vector<DetectionMatch> pair_up(const ObjectModel& model, std::span<const int> detection_indices,
                                       std::span<const int> truth_indices) {
     std::vector<double> cost;
@@ -118,7 +119,7 @@ MatchDetectionsResult match_detections(std::span<const GroundTruthObject> truth,
   std::vector<char> visible(truth.size());
   std::vector<char> hidden(truth.size());
   for (std::size_t t = 0; t < truth.size(); ++t) {
-    hidden[t] = truth[t].visible_share < options.min_visible_share ? 1 : 0;  // NaN: not known to be hidden
+    hidden[t] = truth[t].visible_share < options.min_visible_share ? 1 : 0;  // NaN is not known to be occluded.
     visible[t] = hidden[t] ? 0 : 1;
   }
 
@@ -127,7 +128,7 @@ MatchDetectionsResult match_detections(std::span<const GroundTruthObject> truth,
   std::vector<char> found(truth.size(), 0);
   for (int object = 0; object < static_cast<int>(library.objects.size()); ++object) {
     const ObjectModel& model = library.objects[static_cast<std::size_t>(object)];
-    // Visible truth first: a hidden one must not take the detection that a countable one needs.
+    // Visible truth first, so that an occluded one does not take the detection of one that counts.
     for (const DetectionMatch& match :
          matching.pair_up(model, positions_of(object, detection_object, matching.free_detections),
                           positions_of(object, truth_object, visible))) {

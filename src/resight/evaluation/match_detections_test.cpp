@@ -26,8 +26,8 @@ ObjectModel make_model(const std::string& name, int id) {
   return model;
 }
 
-/// mug: plain. tin: turns freely about z. book: looks the same after half a turn about z. pan: its centre is 20 cm off
-/// its origin.
+/// mug: no symmetry. tin: continuous symmetry about z. book: two-fold symmetry about z. pan: centre 20 cm from its
+/// origin.
 ModelLibrary make_library() {
   ModelLibrary library;
   library.objects = {make_model("mug", 1), make_model("tin", 2), make_model("book", 3), make_model("pan", 4)};
@@ -125,7 +125,8 @@ TEST(MatchDetections, SymmetricFlipsAreRight) {
 }
 
 TEST(MatchDetections, ComparesCentresNotOrigins) {
-  // A turn of 20 deg about the pan's centre moves its origin by 7 cm; about its origin, it moves the centre by as much.
+  // A rotation by 20 deg about the pan's centre moves its origin by 7 cm; about its origin, it moves the centre by as
+  // much.
   const Rigid3 about_center = at(0.2, 0, 0) * turned(20) * at(-0.2, 0, 0);
   EXPECT_EQ(match({truth_of("pan", at(0))}, {detection_of("pan", at(0) * about_center)}).score.true_positives, 1);
   EXPECT_EQ(match({truth_of("pan", at(0))}, {detection_of("pan", at(0) * turned(20))}).score.true_positives, 0);
@@ -152,7 +153,7 @@ TEST(MatchDetections, HiddenTruthDoesNotTakeAVisibleOnesDetection) {
 }
 
 TEST(MatchDetections, TwoOfAKindAreBothFound) {
-  // Both detections are near truth 0; by greedy choice of the nearest pair, truth 1 would be lost.
+  // Both detections are near truth 0; a greedy choice of the nearest pair would lose truth 1.
   const auto result = match({truth_of("mug", at(0)), truth_of("mug", at(0.06))},
                             {detection_of("mug", at(0.015)), detection_of("mug", at(-0.03))});
   EXPECT_EQ(result.score, (RecognitionScore{2, 0, 0}));

@@ -7,13 +7,13 @@
 
 namespace resight {
 
-/// Share of the object's surface points (of its centre, where the model has none) that project into the image, hidden
-/// or not.
+/// Share of the object's surface points that project into the image, occluded or not. Uses the centre if the model has
+/// no surface.
 [[nodiscard]] double share_in_image(const ObjectModel& model, const Rigid3& camera_from_object, const Camera& camera);
 
-/// Takes back the verdict on false positives that lie outside of the image: less than `min_visible_share` of the object
-/// is within it. The truth of a view tells what is in the image, so it says nothing of them; they become ignored
-/// detections. A recogniser of several views rightly reports what only an earlier view looked at.
+/// Moves false positives outside the image to the ignored detections: those with less than `min_visible_share` of the
+/// object inside. The ground truth of a view lists only objects in the image, but a multi-view recogniser rightly
+/// reports objects that only earlier views observed.
 void ignore_out_of_image(MatchDetectionsResult& result, std::span<const DetectedObject> detections,
                          const Camera& camera, const ModelLibrary& library, double min_visible_share);
 

@@ -50,7 +50,7 @@ PairedDifference compare(const std::vector<RunScores>& a, const std::vector<RunS
 }  // namespace
 
 PairedDifference paired_difference(std::span<const double> a, std::span<const double> b) {
-  require(a.size() == b.size(), "paired_difference: a and b must be as long as each other");
+  require(a.size() == b.size(), "paired_difference: a and b differ in length");
   std::vector<double> differences;
   for (std::size_t i = 0; i < a.size(); ++i)
     if (!std::isnan(a[i]) && !std::isnan(b[i])) differences.push_back(b[i] - a[i]);

@@ -8,16 +8,17 @@
 
 namespace resight {
 
-/// Mean of the differences b - a over pairs, and its standard error (sample deviation over the root of the number of
-/// pairs; NaN for fewer than two). Pairs with a NaN are left out.
+/// Mean of the differences b - a over pairs and its standard error (sample deviation over the square root of the number
+/// of pairs; NaN for fewer than two pairs). Pairs with a NaN are skipped.
 struct PairedDifference {
   int num_pairs = 0;
   double mean = 0;
   double standard_error = 0;
 };
+/// Throws std::invalid_argument if the lengths differ.
 [[nodiscard]] PairedDifference paired_difference(std::span<const double> a, std::span<const double> b);
 
-/// Preset `b` against preset `a` for one K, sequence by sequence: what differs between sequences cancels out.
+/// Preset `b` against preset `a` for one K, paired by sequence, which cancels differences between sequences.
 struct PresetComparison {
   std::string a;
   std::string b;
@@ -29,7 +30,7 @@ struct PresetComparison {
   PairedDifference ghosts_per_change;
 };
 
-/// Every preset against the first one, for each K, over the sequences that both have run on (with clustering).
+/// Compares every preset with the first one, for each K, over the sequences that both were run on (with clustering).
 [[nodiscard]] std::vector<PresetComparison> compare_presets(std::span<const EvaluatedRun> runs);
 
 }  // namespace resight

@@ -40,7 +40,7 @@ EvaluatedRun run_with(const std::string& sequence, const std::string& preset, co
 }
 
 TEST(ComparePresets, PairsBySequence) {
-  // The second sequence is harder for both; the third was run by one only.
+  // The second sequence is harder for both; the third was run with one preset only.
   const auto comparisons = compare_presets(
       std::vector{run_with("1", "mvr", {5, 5, 0}), run_with("2", "mvr", {1, 9, 0}), run_with("3", "mvr", {1, 0, 0}),
                   run_with("2", "mvr-chd", {2, 8, 0}), run_with("1", "mvr-chd", {6, 4, 0})});

@@ -24,8 +24,8 @@ TEST(Reliability, ScoresThatHoldHaveNoError) {
 
 TEST(Reliability, TheErrorIsTheMeanOverTheDetections) {
   Reliability reliability;
-  for (int i = 0; i < 30; ++i) reliability.add(0.8, true);   // .2 too low
-  for (int i = 0; i < 10; ++i) reliability.add(0.6, false);  // .6 too high
+  for (int i = 0; i < 30; ++i) reliability.add(0.8, true);   // 0.2 too low.
+  for (int i = 0; i < 10; ++i) reliability.add(0.6, false);  // 0.6 too high.
   EXPECT_NEAR(reliability.calibration_error(), (30 * 0.2 + 10 * 0.6) / 40, 1e-12);
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 bool contains(std::span<const int> sorted, int value) { return std::ranges::binary_search(sorted, value); }
 
-// Index into view.truth of each entry of the ground truth; -1 = not in the library.
+// Index into view.truth of each ground-truth object; -1 = not in the library.
 std::vector<int> add_truth(const TruthView& truth, const MatchDetectionsResult& matching, const ModelLibrary& library,
                            EvaluatedView& view) {
   std::vector<int> slots(truth.objects.size(), -1);

@@ -9,9 +9,9 @@
 
 namespace resight {
 
-/// Scores what is reported of view number `view` at both pairs of tolerances, and tells the ghosts among the false
-/// positives. Fills all but counts, points, times and lost_at. An empty list of detections is a result, too: every
-/// visible object is then missed. Truth of objects that are not in the library is left out.
+/// Scores the detections of view number `view` with both pairs of limits and identifies ghosts among the false
+/// positives. Sets all fields except counts, points, times and lost_at. If there are no detections, every visible
+/// object is missed. Ground truth of objects that are not in the library is ignored.
 [[nodiscard]] EvaluatedView score_view(int view, const TruthView& truth, std::span<const DetectedObject> detections,
                                        std::span<const FormerPlace> former_places, const Camera& camera,
                                        const ModelLibrary& library, const MatchDetectionsOptions& options = {});

@@ -17,7 +17,7 @@ ModelLibrary make_library() {
   library.objects[0].name = "mug";
   library.objects[1].name = "soup";
   library.objects[2].name = "can";
-  library.objects[2].symmetries.continuous.push_back({});  // about z
+  library.objects[2].symmetries.continuous.push_back({});  // About z.
   return library;
 }
 
@@ -77,7 +77,7 @@ TEST(ScoreView, SwappedIdentitiesCostTwice) {
 TEST(ScoreView, ASecondDetectionOfOneObjectIsWrong) {
   const EvaluatedView view = score({object("mug", at(0))}, {{"mug", at(0.01), 0.9}, {"mug", at(0), 0.2}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
-  EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kCorrect);  // the nearer one
+  EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kCorrect);  // The nearer one.
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kFalsePositive);
 }
 
@@ -113,7 +113,7 @@ TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
   EXPECT_TRUE(view.truth[1].found);
 }
 
-// The Kinect sees +-0.61 m at 1 m.
+// The Kinect covers +-0.61 m at a distance of 1 m.
 TEST(ScoreView, WhatLiesOutsideOfTheImageIsNotJudged) {
   const EvaluatedView view =
       score({object("mug", at(0))}, {{"mug", at(0), 1}, {"soup", at(0.7), 1}, {"can", at(0.5), 1}});
@@ -126,7 +126,7 @@ TEST(ScoreView, WhatLiesOutsideOfTheImageIsNotJudged) {
 TEST(ShareInImage, CountsSurfacePointsWithinTheBorder) {
   ObjectModel model;
   for (int i = 0; i < 10; ++i) model.surface.points.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
-  // The right border lies at x = 320 / 525 = 0.6095 m: of 0.56 .. 0.65 m the first five are inside.
+  // The right border is at x = 320 / 525 = 0.6095 m: of 0.56 to 0.65 m, the first five are inside.
   EXPECT_DOUBLE_EQ(share_in_image(model, at(0.56), make_kinect_camera()), 0.5);
   EXPECT_EQ(share_in_image(model, at(0), make_kinect_camera()), 1.0);
   EXPECT_EQ(share_in_image(model, Rigid3::from_translation({0, 0, -1}), make_kinect_camera()), 0.0);

@@ -7,7 +7,7 @@
 namespace resight {
 namespace {
 
-// A move at some time between two views contradicts none of them.
+// A single move at some time between two views is consistent with all views.
 bool may_be_one_move(const SeenChange& left, const SeenChange& came) {
   return std::max(left.sight.last_there_view, came.sight.last_free_view) <
          std::min(left.sight.before_view, came.sight.after_view);
@@ -27,7 +27,7 @@ void insert_by_view(SeenChange change, std::vector<SeenChange>& truths) {
   truths.insert(std::ranges::upper_bound(truths, change.view, {}, &SeenChange::view), std::move(change));
 }
 
-// Replaces the two changes whose sides the move joins by it and what remains of them.
+// Replaces two changes by the move that joins their sides, and by the remaining sides.
 void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChange>& truths) {
   const SeenChange left = truths[left_index];
   const SeenChange came = truths[came_index];
@@ -36,7 +36,7 @@ void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChan
   insert_by_view(join(left, came), truths);
   if (left.kind == ObjectEventKind::kMoved) {
     SeenChange arrival = left.arrival();
-    if (left.shows_arrival())  // It was not there yet while it was seen at its old place.
+    if (left.shows_arrival())  // It was not at the new place while it was visible at the former one.
       arrival.sight.last_free_view = std::max(arrival.sight.last_free_view, left.sight.last_there_view);
     insert_by_view(arrival, truths);
   }
@@ -114,7 +114,7 @@ bool ChangeMatcher::fits(const SeenChange& truth, const ReportedChange& report) 
 std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
                                                const std::vector<ReportedChange>& reports,
                                                const ChangeMatcher& matcher) {
-  // Ends: no step takes a truth from the reports, and one that gives none more leaves them earlier ones.
+  // Terminates: no step takes a truth away from the reports, and a step that adds none matches them to earlier ones.
   for (bool changed = true; changed;) {
     changed = false;
     const std::vector<int> truth_of = match_in_order(

@@ -9,7 +9,7 @@
 
 namespace resight {
 
-/// An event that a recogniser reports, by name.
+/// A change event that a recogniser reports, with the object's name.
 struct ReportedChange {
   int view = 0;
   ObjectEventKind kind = ObjectEventKind::kMoved;
@@ -18,29 +18,31 @@ struct ReportedChange {
   std::optional<Rigid3> world_from_object_after;
 };
 
-/// A change, and what the views show of it.
+/// A true change, and what the views show of it.
 struct SeenChange : TrueChange {
   ChangeVisibility sight;
   [[nodiscard]] bool shows_departure() const;
-  /// What comes where no view looked before may have been there, unless it was seen to leave elsewhere.
+  /// An object that arrives at a place not observed before may have been there all along, unless its departure from
+  /// elsewhere was observed.
   [[nodiscard]] bool shows_arrival() const;
   [[nodiscard]] bool counts() const { return shows_departure() || shows_arrival(); }
-  /// One side of a move, as the removal or the addition that it is alone; other changes as they are.
+  /// One side of a move, as the removal or addition it would be alone. Other changes are returned unchanged.
   [[nodiscard]] SeenChange departure() const;
+  /// The other side of a move; see departure().
   [[nodiscard]] SeenChange arrival() const;
-  /// The view by which all that is shown can be known; -1 if nothing is.
+  /// First view by which all visible sides of the change are known; -1 if none is visible.
   [[nodiscard]] int known_since() const;
 };
 
-/// When a report says what happened.
+/// Decides whether a report matches a true change.
 class ChangeMatcher {
  public:
-  /// Both must outlive the matcher; every object that is matched must be in the library.
+  /// Both arguments must outlive the matcher. All matched objects must be in the library.
   ChangeMatcher(const ModelLibrary& library, const MatchDetectionsOptions& options)
       : library_(library), options_(options) {}
   [[nodiscard]] bool same_place(const std::string& object, const std::optional<Rigid3>& a,
                                 const std::optional<Rigid3>& b) const;
-  /// The change itself or, where only one side of it is shown, that side.
+  /// True for the change itself or, if the views show only one side of it, for that side.
   [[nodiscard]] bool fits(const SeenChange& truth, const ReportedChange& report) const;
 
  private:
@@ -50,8 +52,8 @@ class ChangeMatcher {
   const MatchDetectionsOptions& options_;
 };
 
-/// The number of the truth of each report, or -1: in the order of the reports each takes the first one left that is not
-/// of a later view and fits.
+/// Index of the truth of each report, or -1. In order, each report takes the first remaining truth that fits and is not
+/// of a later view.
 template <typename Truth, typename Report, typename Fits>
 [[nodiscard]] std::vector<int> match_in_order(const std::vector<Truth>& truths, const std::vector<Report>& reports,
                                               Fits&& fits) {
@@ -66,12 +68,12 @@ template <typename Truth, typename Report, typename Fits>
   return truth_of;
 }
 
-/// The changes as the reports tell them, where no view can tell the difference. Objects of one model are alike: which
-/// of two that left is the one that came, or whether what came is what left, the views show only by when they show it.
-/// A reported move that is none, but whose old place was left and whose new place was come to, stands for these two
-/// sides if it can have happened at one moment: after the last views that show the one still there and the other free,
-/// and before the first ones that show it gone and come. What remains of the two changes are changes of their own. Both
-/// ordered by view.
+/// Rewrites the true changes as the reports describe them, where no view can tell the difference. Objects of one model
+/// are indistinguishable: only the time of observation tells which of two departed objects arrived elsewhere, or
+/// whether an arrived object is a departed one. A reported move that did not happen, but whose former place was left
+/// and whose new place was taken, stands for these two sides if they can have happened at one moment: after the last
+/// views that show the former place occupied and the new one free, and before the first ones that show the opposite.
+/// The remaining sides become changes of their own. Input and output are ordered by view.
 [[nodiscard]] std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
                                                              const std::vector<ReportedChange>& reports,
                                                              const ChangeMatcher& matcher);

@@ -20,7 +20,7 @@ class SeenChangesTest : public ::testing::Test {
     library_.objects[0].name = "mug";
     library_.objects[1].name = "cup";
   }
-  // Seen as it happens, before and after, unless told otherwise.
+  // By default, observed directly before and after it happens.
   void add(int view, Kind kind, std::optional<Rigid3> before, std::optional<Rigid3> after,
            const std::string& object = "mug") {
     changes_.push_back({view, kind, object, true, before, after});
@@ -57,7 +57,7 @@ TEST_F(SeenChangesTest, RemovedAndAddedIsAMoveUnlessAViewShowsBothPlacesFree) {
   add(8, Kind::kAdded, std::nullopt, kB);
   const std::vector<ReportedChange> as_move = {{9, Kind::kMoved, "mug", kA, kB}};
   EXPECT_EQ(score(as_move), (RecognitionScore{0, 1, 2})) << "free are kA from view 5 on, kB until view 7";
-  sights_[0].before_view = 9;  // The place left is looked at later.
+  sights_[0].before_view = 9;  // The former place is observed later.
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({{9, Kind::kRemoved, "mug", kA, {}}, {9, Kind::kAdded, "mug", {}, kB}}), (RecognitionScore{2, 0, 0}))
       << "as it was";
@@ -73,14 +73,14 @@ TEST_F(SeenChangesTest, WhatIsThereBeforeTheOtherLeavesIsAnother) {
   add(5, Kind::kAdded, std::nullopt, kB);
   add(8, Kind::kRemoved, kA, std::nullopt);
   EXPECT_EQ(score({{8, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{0, 1, 2}));
-  sights_[1].last_there_view = 3;  // Nobody saw it at kA since.
+  sights_[1].last_there_view = 3;  // It has not been observed at kA since.
   EXPECT_EQ(score({{8, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{1, 0, 0}));
 }
 
 TEST_F(SeenChangesTest, AStopThatNoViewShowsIsLeftOut) {
   add(3, Kind::kMoved, kA, kB);
   add(6, Kind::kMoved, kB, kC);
-  sights_[0] = {7, -1, 2, 1};  // kA seen free at view 7; never seen at kB
+  sights_[0] = {7, -1, 2, 1};  // kA is observed free at view 7; the object is never observed at kB.
   sights_[1] = {7, 7, -1, 2};
   EXPECT_EQ(score({{7, Kind::kMoved, "mug", kA, kC}}), (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({}), (RecognitionScore{0, 0, 2}));
