@@ -8,13 +8,13 @@
 
 namespace resight {
 
-/// A FeatureSet whose descriptors take 8 bits a component: what a trained object keeps, in memory and in its file.
+/// A FeatureSet with 8 bits per descriptor component. Trained objects keep this form in memory and in their file.
 struct CodedFeatures {
   FeatureType type = FeatureType::kSift;
   int dimension = 0;  ///< 128 (SIFT) or 352 (SHOT).
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;  ///< Unit, as long as points.
-  std::vector<std::uint8_t> codes;       ///< n x dimension, row by row, as of encode_descriptors().
+  std::vector<std::uint8_t> codes;       ///< n x dimension in row-major order, from encode_descriptors().
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] std::span<const std::uint8_t> code(std::size_t i) const {
@@ -22,22 +22,23 @@ struct CodedFeatures {
   }
 };
 
-/// See encode_descriptors(). What decode() returned is encoded without loss.
+/// Encodes the descriptors of a set; see encode_descriptors(). Lossless for the results of decode().
 [[nodiscard]] CodedFeatures encode(const FeatureSet& features);
+/// Decodes the descriptors of a set; see decode_descriptors().
 [[nodiscard]] FeatureSet decode(const CodedFeatures& features);
 
-/// Descriptors at 8 bits a component: each row is scaled so that its largest component becomes 255. The scale need not
-/// be kept, because descriptors are of unit norm. `descriptors`: n x dimension, not negative, no row all zero
-/// (otherwise std::invalid_argument).
+/// Encodes descriptors with 8 bits per component. Each row is scaled so that its largest component becomes 255;
+/// descriptors have unit norm, so the scale need not be stored. `descriptors` is n x dimension. Throws
+/// std::invalid_argument if a component is negative or not finite, or a row is zero.
 [[nodiscard]] std::vector<std::uint8_t> encode_descriptors(std::span<const float> descriptors, int dimension);
 
-/// The unit vectors along the coded rows. Rows of zeros stay zero (see has_zero_row()).
+/// Decodes rows to unit vectors. Rows of zeros stay zero (see has_zero_row()).
 [[nodiscard]] std::vector<float> decode_descriptors(std::span<const std::uint8_t> codes, int dimension);
 
-/// What the components of one coded row are multiplied with to give a unit vector; 0 for a row of zeros.
+/// Factor that scales a coded row to unit norm; 0 for a row of zeros.
 [[nodiscard]] float scale_of_code(std::span<const std::uint8_t> row);
 
-/// True if a row holds only zeros: no direction, the mark of a damaged file.
+/// Whether a row contains only zeros and therefore has no direction. Occurs only in damaged files.
 [[nodiscard]] bool has_zero_row(std::span<const std::uint8_t> codes, int dimension);
 
 }  // namespace resight

@@ -42,7 +42,7 @@ TEST(DescriptorCode, KeepsUnitRowsWithinHalfAStep) {
         error_sq += std::pow(value - rows[r * dimension + i], 2);
       }
       ASSERT_NEAR(norm_sq, 1, 1e-5);
-      ASSERT_LT(std::sqrt(error_sq), 0.01);  // matches are told apart at distances of 0.1 and more
+      ASSERT_LT(std::sqrt(error_sq), 0.01);  // matching distinguishes distances of 0.1 and more
       ASSERT_GT(error_sq, 0);
     }
   }

@@ -19,19 +19,23 @@ using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 using Block = Eigen::Ref<const Matrix, 0, Eigen::OuterStride<>>;
 using Eigen::Index;
 
-constexpr Index kQueriesPerBlock = 128;    // of products with all centroids
-constexpr std::size_t kMinBatch = 256;     // queries looked up together: the more, the more of them share the reading
-constexpr std::size_t kMaxBatch = 2048;    // of a cell...
-constexpr std::size_t kWantedBatches = 8;  // ...but batches are what threads share
+constexpr Index kQueriesPerBlock = 128;  // Queries per product with all centroids.
+// Queries that are processed together. In larger batches, more queries share the reading of a cell; more batches keep
+// more threads busy.
+constexpr std::size_t kMinBatch = 256;
+constexpr std::size_t kMaxBatch = 2048;
+constexpr std::size_t kWantedBatches = 8;
 constexpr Index kRowsPerBlock = 1024;
-constexpr int kSamplesPerCell = 24;  // of the k-means: more changes recall by less than its noise
+constexpr int kSamplesPerCell = 24;  // Of the k-means sample. More change recall by less than its noise.
 constexpr int kMeansIterations = 5;
-constexpr int kSpareCandidates = 4;     // the products round: the exact order is settled among a few more than k...
-constexpr int kSpareOfComponents = 16;  // ...and among more of them where not all of a descriptor was compared
-constexpr Index kSamplesOfComponents = 20000;  // rows, evenly taken
-constexpr float kRounding = 1e-5F;             // of a squared distance between unit vectors
+// Candidates beyond k whose exact distances settle the order, since products are rounded.
+constexpr int kSpareCandidates = 4;
+constexpr int kSpareOfComponents = 16;  // Candidates beyond k that are compared whole after a search by components.
+constexpr Index kSamplesOfComponents = 20000;  // Number of evenly spaced rows.
+constexpr float kRounding = 1e-5F;             // Rounding error of a squared distance between unit vectors.
 
-// The best few of a query, in the strict order (distance, index): the result does not depend on the order of arrival.
+// The best candidates of a query in the strict order (distance, index). The result does not depend on the order of
+// arrival.
 class BestList {
  public:
   explicit BestList(std::size_t capacity) : capacity_(capacity) { entries_.reserve(capacity + 1); }
@@ -54,10 +58,10 @@ class BestList {
   std::vector<DescriptorMatch> entries_;
 };
 
-// |c|^2 - 2 q.c of each centroid: its squared distance but for |q|^2, which does not change the order.
+// |c|^2 - 2 q.c of each centroid: its squared distance without |q|^2, which does not affect the order.
 using Scores = Eigen::ArrayXf;
 
-// Row of `centroids` nearest to each row of `data`.
+// Index of the centroid nearest to each row of `data`.
 std::vector<int> assign_to_cells(const Block& data, const Matrix& centroids, int num_threads) {
   const Scores norms_sq = centroids.rowwise().squaredNorm();
   std::vector<int> cell(static_cast<std::size_t>(data.rows()));
@@ -65,7 +69,8 @@ std::vector<int> assign_to_cells(const Block& data, const Matrix& centroids, int
     const auto rows = static_cast<Index>(end - begin);
     const Matrix products = data.middleRows(static_cast<Index>(begin), rows) * centroids.transpose();
     Scores scores(centroids.rows());
-    for (Index r = 0; r < rows; ++r) {  // first the minimum, then its place: vector code, unlike minCoeff(&place)
+    // Finds the minimum first, then its place: this vectorises, unlike minCoeff(&place).
+    for (Index r = 0; r < rows; ++r) {
       scores = norms_sq - 2.0F * products.row(r).transpose().array();
       const float lowest = scores.minCoeff();
       cell[begin + static_cast<std::size_t>(r)] =
@@ -75,9 +80,9 @@ std::vector<int> assign_to_cells(const Block& data, const Matrix& centroids, int
   return cell;
 }
 
-// The `count` centroids of lowest score (ties: the lower index), in no order.
+// The `count` centroids with the lowest scores (ties: lower index), in arbitrary order.
 void find_nearest_cells(const Scores& scores, std::size_t count, std::vector<DescriptorMatch>& nearest) {
-  nearest.clear();  // a heap, the farthest on top: nearly all centroids are dismissed by one comparison
+  nearest.clear();  // A heap with the farthest on top: one comparison dismisses nearly every centroid.
   for (Index c = 0; c < scores.size(); ++c) {
     if (nearest.size() == count) {
       if (!(scores[c] < nearest.front().distance_sq)) continue;
@@ -89,7 +94,7 @@ void find_nearest_cells(const Scores& scores, std::size_t count, std::vector<Des
   }
 }
 
-// Lloyd's iterations on a seeded sample. A cell that runs empty keeps its centroid.
+// Lloyd's iterations on a seeded sample. An empty cell keeps its centroid.
 Matrix cluster_cells(const Block& data, int num_cells, const DescriptorIndexOptions& options) {
   std::vector<int> order(static_cast<std::size_t>(data.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -114,7 +119,7 @@ Matrix cluster_cells(const Block& data, int num_cells, const DescriptorIndexOpti
   return centroids;
 }
 
-// Which queries look into each cell: those of cell c are queries[begin[c]] to queries[begin[c + 1] - 1].
+// Queries that visit each cell: queries[begin[c]] to queries[begin[c + 1] - 1] visit cell c.
 struct Probes {
   std::vector<int> queries;
   std::vector<std::size_t> begin;
@@ -123,7 +128,7 @@ struct Probes {
   }
 };
 
-// cell_of_probe: `num_probes` cells for each query in turn.
+// Groups queries by cell. `cell_of_probe` contains `num_probes` cells per query, in order of the queries.
 Probes sort_by_cell(const std::vector<int>& cell_of_probe, std::size_t num_probes, std::size_t num_cells) {
   Probes probes;
   probes.begin.assign(num_cells + 1, 0);
@@ -136,14 +141,14 @@ Probes sort_by_cell(const std::vector<int>& cell_of_probe, std::size_t num_probe
   return probes;
 }
 
-// Rows first, first + step, ... of all.
+// Reads `count` rows of `all`: first, first + step, ...
 Matrix read_rows(const DescriptorRows& all, Index first, Index count, Index step = 1) {
   Matrix rows(count, all.dimension());
   for (Index i = 0; i < count; ++i) all.read(static_cast<std::size_t>(first + i * step), rows.row(i).data());
   return rows;
 }
 
-// In blocks, so that not all rows are held as floats at once.
+// Processes blocks, so that only part of the rows is held as floats at a time.
 Eigen::RowVectorXf mean_of(const DescriptorRows& all) {
   const auto n = static_cast<Index>(all.size());
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(all.dimension());
@@ -152,14 +157,14 @@ Eigen::RowVectorXf mean_of(const DescriptorRows& all) {
   return (sum / static_cast<double>(n)).cast<float>();
 }
 
-// The directions in which the descriptors differ most, as columns.
+// The directions of largest variance, as columns.
 Matrix principal_components(const DescriptorRows& all, const Eigen::RowVectorXf& mean, Index count) {
   const auto n = static_cast<Index>(all.size());
   const Index step = std::max<Index>(1, n / kSamplesOfComponents);
   const Matrix sample = read_rows(all, 0, (n + step - 1) / step, step).rowwise() - mean;
   const Eigen::MatrixXf covariance = sample.transpose() * sample;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXf> solver(covariance);
-  return solver.eigenvectors().rightCols(count);  // Eigenvalues ascend.
+  return solver.eigenvectors().rightCols(count);  // Eigenvalues are in ascending order.
 }
 
 }  // namespace
@@ -190,15 +195,15 @@ struct DescriptorIndex::Impl {
 
   DescriptorIndexOptions options;
   Index dimension;
-  Matrix rows;                // what is searched, sorted by cell: the descriptors, or their components
-  DescriptorRows whole;       // the descriptors in the caller's order; empty unless components are searched
-  Eigen::RowVectorXf mean;    // of the descriptors
-  Matrix basis;               // dimension x components; empty: all of a descriptor is compared
+  Matrix rows;                // searched rows in cell order: descriptors or their components
+  DescriptorRows whole;       // descriptors in the caller's order; empty unless components are searched
+  Eigen::RowVectorXf mean;    // mean descriptor
+  Matrix basis;               // dimension x components; empty if whole descriptors are compared
   std::vector<int> original;  // index of each row in the caller's order
-  Eigen::VectorXf norms_sq;   // of the rows
-  Matrix centroids;           // empty: exact search
+  Eigen::VectorXf norms_sq;   // squared norms of the rows
+  Matrix centroids;           // empty for exact search
   Scores centroid_norms_sq;
-  std::vector<Index> cell_begin;  // first row of each cell, and the end
+  std::vector<Index> cell_begin;  // first row of each cell, then the end
 };
 
 DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOptions& settings)
@@ -253,7 +258,7 @@ void DescriptorIndex::Impl::build_cells(const Matrix& data, int num_cells) {
   }
 }
 
-// Compares all `queries` with the rows [begin, end). query_of_row: which list each query fills.
+// Compares all `queries` with the rows [begin, end). `query_of_row` gives the list that each query fills.
 void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
                                  std::vector<BestList>& best) const {
   Scores scores;
@@ -263,7 +268,7 @@ void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> quer
     for (Index q = 0; q < queries.rows(); ++q) {
       BestList& list = best[static_cast<std::size_t>(query_of_row[static_cast<std::size_t>(q)])];
       scores = norms_sq.segment(first, count).array() - 2.0F * products.row(q).transpose().array();
-      if (!list.accepts(scores.minCoeff())) continue;  // Mostly; and vector code tells.
+      if (!list.accepts(scores.minCoeff())) continue;  // the usual case, found by vector code
       for (Index r = 0; r < count; ++r)
         if (list.accepts(scores[r])) list.add(static_cast<int>(first + r), scores[r]);
     }
@@ -307,8 +312,8 @@ void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList
   scan(queries, all, 0, rows.rows(), best);
 }
 
-// The nearest of the candidates, by their true distances and in the caller's order. `compared_norm_sq`: |q|^2 of what
-// was compared, which their scores lack.
+// Finds the nearest candidates by exact distance and in the caller's order. `compared_norm_sq` is |q|^2 of the compared
+// components, which the scores lack.
 void DescriptorIndex::Impl::settle(const Eigen::RowVectorXf& query, float compared_norm_sq, const BestList& candidates,
                                    BestList& nearest) const {
   nearest.clear();
@@ -321,7 +326,7 @@ void DescriptorIndex::Impl::settle(const Eigen::RowVectorXf& query, float compar
   for (const DescriptorMatch& candidate : candidates.entries()) {
     const std::size_t index = original_of(candidate);
     if (is_projected()) {
-      // Components that were not compared only add to a distance: those that follow are farther still.
+      // The remaining components can only increase a distance, so all further candidates are farther away.
       if (!nearest.accepts(candidate.distance_sq + compared_norm_sq - kRounding)) break;
       whole.read(index, row.data());
     } else {

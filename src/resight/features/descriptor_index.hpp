@@ -9,10 +9,10 @@
 
 namespace resight {
 
-/// A found descriptor.
+/// A nearest neighbour of a query descriptor.
 struct DescriptorMatch {
-  int index = -1;         ///< Row of the indexed set; -1 = none.
-  float distance_sq = 0;  ///< Squared L2.
+  int index = -1;         ///< Row in the indexed set; -1 if none.
+  float distance_sq = 0;  ///< Squared L2 distance.
 };
 
 struct DescriptorIndexOptions {
@@ -26,18 +26,20 @@ struct DescriptorIndexOptions {
   void check() const;
 };
 
-/// k nearest neighbours among descriptors: exact for small sets, else an inverted file over k-means cells (IVF-flat),
-/// if wanted of principal components. Deterministic.
+/// k nearest neighbours among descriptors. Search is exact for small sets, and otherwise uses an inverted file over
+/// k-means cells (IVF-flat), optionally of principal components. Deterministic.
 class DescriptorIndex {
  public:
-  /// n x dimension floats, row by row; copied. n = 0 gives an index that finds nothing.
+  /// `descriptors`: n x dimension in row-major order; copied. An empty set gives an index that finds nothing.
   DescriptorIndex(std::span<const float> descriptors, int dimension, const DescriptorIndexOptions& options = {});
   explicit DescriptorIndex(DescriptorRows descriptors, const DescriptorIndexOptions& options = {});
   ~DescriptorIndex();
   DescriptorIndex(DescriptorIndex&&) noexcept;
   DescriptorIndex& operator=(DescriptorIndex&&) noexcept;
 
-  /// For each query (m x dimension) `k` matches, nearest first (ties: lower index); index -1 fills up. m x k results.
+  /// Finds the `k` nearest descriptors of each query (m x dimension), nearest first (ties: lower index). Returns m x k
+  /// matches; missing ones have index -1. Throws std::invalid_argument for a query that is not finite or an incomplete
+  /// row.
   [[nodiscard]] std::vector<DescriptorMatch> search(std::span<const float> queries, int k) const;
   [[nodiscard]] std::size_t size() const;
 

@@ -13,7 +13,7 @@
 namespace resight {
 namespace {
 
-// Unit vectors around random centres: descriptors come in families, unlike uniform noise.
+// Unit vectors around random centres, because real descriptors form clusters, unlike uniform noise.
 std::vector<float> make_clustered(int n, int dimension, int num_centers, double spread, std::uint64_t seed,
                                   std::uint64_t centers_seed = 7) {
   std::vector<float> result;
@@ -75,7 +75,7 @@ TEST(DescriptorIndex, CellsFindNearlyAllNearestNeighbors) {
   EXPECT_GE(hits, 490);
 }
 
-// What differs in few directions is found by these, at its true distance.
+// Descriptors that differ in few directions are found by these directions, with their exact distances.
 TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
   const auto families = make_clustered(20000, kDimension, 12, 0.05, 3);
   const auto queries = make_clustered(300, kDimension, 12, 0.05, 4);
@@ -97,7 +97,7 @@ TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
   EXPECT_LT(sum_found, 1.05 * sum_truth);
 }
 
-// As many as a single object has, by the options that the recogniser takes for SHOT.
+// As many descriptors as a single object has, with the options that the recogniser uses for SHOT.
 TEST(DescriptorIndex, ASingleObjectsDescriptorsAreFoundWithoutComparingAll) {
   constexpr std::size_t kLong = 352;
   const auto object = make_clustered(3000, kLong, 40, 0.1, 3);
@@ -224,9 +224,9 @@ TEST(DescriptorIndex, CodesAreFoundLikeTheFloatsTheyStandFor) {
     }
 }
 
-// Of the candidates by components the nearest, wherever they stand among them.
+// Whole descriptors decide among the candidates found by components, whatever their order.
 TEST(DescriptorIndex, CandidatesAreSettledByWholeDescriptors) {
-  constexpr int kRows = 15;  // No more than are settled: all of them are.
+  constexpr int kRows = 15;  // At most the number of candidates that are compared exactly, so that all of them are.
   const auto data = make_clustered(kRows, kDimension, kRows, 0.6, 21);
   const auto queries = make_clustered(200, kDimension, kRows, 0.9, 22);
   const DescriptorIndex few(data, kDimension, {.num_cells = 2, .num_probes = 2, .exact_below = 0, .num_components = 2});

@@ -36,7 +36,7 @@ void DescriptorRows::prefetch(std::size_t i) const {
   if (codes_.empty()) return;
   constexpr std::size_t kCacheLine = 64;
   for (std::size_t d = 0; d < dimension_; d += kCacheLine) __builtin_prefetch(codes_[i] + d);
-  __builtin_prefetch(codes_[i] + dimension_ - 1);  // Rows begin anywhere in a line.
+  __builtin_prefetch(codes_[i] + dimension_ - 1);  // A row may start anywhere in a cache line.
 }
 
 void DescriptorRows::read(std::size_t i, float* row) const {

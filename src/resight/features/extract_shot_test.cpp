@@ -30,7 +30,7 @@ float distance_to_center(const Eigen::Vector3f& p, double size_m) {
 TEST(ExtractShot, SamplesThePointNearestToTheCenterOfEachCube) {
   const PreparedView view = prepare_view(test::make_wavy_frame(1));
   ShotOptions options = kKeepFlat;
-  options.support_voxel_m = 0;  // the surface is then the measured points
+  options.support_voxel_m = 0;  // the surface consists of the measured points
   options.support_radius_m = 0.02;
   const FeatureSet features = extract_shot(view, options);
   std::map<std::tuple<int, int, int>, float> nearest;
@@ -66,7 +66,7 @@ TEST(ExtractShot, StaysWithinTheMask) {
     for (int u = 80; u < 200; ++u) mask(u, v) = 1;
   const FeatureSet features = extract_shot(view, kKeepFlat, &mask);
   ASSERT_GT(features.size(), 100U);
-  // What lies outside has no part in the descriptors either: the same as of a view that never saw it.
+  // Points outside must not affect the descriptors: they equal those of a view without these points.
   RgbdFrame cut = view.frame;
   PreparedView alone = view;
   for (std::size_t i = 0; i < mask.size(); ++i)
@@ -82,13 +82,13 @@ TEST(ExtractShot, StaysWithinTheMask) {
 TEST(ExtractShot, DropsTheTable) {
   RgbdFrame frame = test::make_wavy_frame(3);
   Rng rng(1);
-  for (int v = 0; v < frame.camera.height; ++v)  // a box edge on a noisy wall
+  for (int v = 0; v < frame.camera.height; ++v)  // a ridge on a noisy wall
     for (int u = 0; u < frame.camera.width; ++u)
       frame.depth_m(u, v) =
           static_cast<float>(0.9 - 0.001 * std::max(0, 60 - std::abs(u - 160)) + 0.0005 * rng.normal());
   const FeatureSet features = extract_shot(prepare_view(frame));
   ASSERT_GT(features.size(), 100U);
-  for (const Eigen::Vector3f& p : features.points) {  // none far from the folds at columns 100, 160 and 220
+  for (const Eigen::Vector3f& p : features.points) {  // all lie near the folds at columns 100, 160 and 220
     const double u = frame.camera.project(p.cast<double>()).x();
     EXPECT_LT(std::min({std::abs(u - 100), std::abs(u - 160), std::abs(u - 220)}), 16) << u;
   }

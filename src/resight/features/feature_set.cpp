@@ -12,7 +12,7 @@ void FeatureSet::append(const FeatureSet& other) {
     return;
   }
   require(type == other.type && dimension == other.dimension,
-          "FeatureSet::append: the sets hold different descriptors");
+          "FeatureSet::append: the sets contain different descriptors");
   points.insert(points.end(), other.points.begin(), other.points.end());
   normals.insert(normals.end(), other.normals.begin(), other.normals.end());
   descriptors.insert(descriptors.end(), other.descriptors.begin(), other.descriptors.end());

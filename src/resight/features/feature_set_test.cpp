@@ -34,7 +34,7 @@ TEST(FeatureSet, TakesOnWhatIsAppendedToAnEmptySet) {
   set.append(make_set(2, 5, FeatureType::kShot));
   EXPECT_EQ(set.type, FeatureType::kShot);
   EXPECT_EQ(set.dimension, 5);
-  set.append(FeatureSet{});  // nothing to add, whatever its type
+  set.append(FeatureSet{});  // an empty set of any type can be appended
   EXPECT_EQ(set.size(), 2U);
 }
 

@@ -12,7 +12,7 @@ namespace resight::test {
 
 inline Camera feature_camera() { return {320, 240, 300.0, 300.0, 159.5, 119.5}; }
 
-/// A wavy, textured surface about 0.8 m away; depth and colour are functions of the pixel, moved by `shift_px`.
+/// A wavy, textured surface at a distance of about 0.8 m. Depth and colour are functions of the pixel and of `seed`.
 inline RgbdFrame make_wavy_frame(std::uint64_t seed) {
   RgbdFrame frame;
   frame.name = "wavy";

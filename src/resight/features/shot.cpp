@@ -15,18 +15,18 @@ namespace {
 
 constexpr std::size_t kKeypointsPerTask = 64;
 
-/// Descriptors of a run of keypoints.
+/// Descriptors of a block of keypoints.
 struct Described {
   std::vector<int> keypoints;
   std::vector<float> descriptors;
 };
 
-/// Buffers for one keypoint after the other.
+/// Buffers that are reused from keypoint to keypoint.
 class Describer {
  public:
   Describer(const SupportGrid& grid, const ShotOptions& options) : grid_(grid), options_(options) {}
 
-  /// Appends the descriptor of `keypoint`, if it has one.
+  /// Appends the descriptor of `keypoint`; returns false if it has none.
   bool describe(const Eigen::Vector3f& keypoint, double noise_variance_sq_m, std::vector<float>& descriptors) {
     if (!keypoint.allFinite()) return false;
     grid_.gather(keypoint, neighborhood_);
@@ -49,7 +49,7 @@ class Describer {
   ShotHistogram histogram_;
 };
 
-// `noise_variance_sq_m`: of the measurement of each keypoint; empty = none.
+// `noise_variance_sq_m` is the variance of the measurement at each keypoint; empty means none.
 std::vector<Described> describe_in_blocks(const PointCloud& support, const PointCloud& keypoints,
                                           std::span<const double> noise_variance_sq_m, const ShotOptions& options) {
   const SupportGrid grid(support, options.support_radius_m);
@@ -66,7 +66,7 @@ std::vector<Described> describe_in_blocks(const PointCloud& support, const Point
   return blocks;
 }
 
-/// The points with normals (within the mask), thinned.
+/// The downsampled points that have normals (within the mask).
 PointCloud support_of_view(const PreparedView& view, const ShotOptions& options, const Image<std::uint8_t>* mask) {
   std::vector<int> pixels;
   PointCloud surface = to_point_cloud(view.cloud, nullptr, true, &pixels);
@@ -126,7 +126,7 @@ FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, co
   options.check();
   require(!view.cloud.nx.empty(), "extract_shot: the view has no normals");
   require(mask == nullptr || (mask->width() == view.cloud.width() && mask->height() == view.cloud.height()),
-          "extract_shot: the mask has not the camera's size");
+          "extract_shot: the mask must have the size of the camera image");
   const PointCloud support = support_of_view(view, options, mask);
   std::vector<int> indices = sample_uniformly(support.points, options.keypoint_spacing_m);
   if (options.max_keypoint_depth_m > 0)

@@ -19,16 +19,16 @@ struct ShotOptions {
   void check() const;
 };
 
-/// SHOT-352 (Tombari, Salti, Di Stefano 2010) of `keypoints` over `support` as it stands (not thinned again); both with
-/// normals, in the same frame. Keypoints without a stable descriptor are left out: too few neighbours, too flat, not
-/// finite, or a frame that is not defined (local_reference_frame()). `kept`, if given, receives the indices of the
-/// others.
+/// Computes SHOT-352 (Tombari, Salti, Di Stefano 2010) of `keypoints` over `support`, which is not downsampled further.
+/// Both need normals and must be in the same frame. Keypoints without a stable descriptor are left out: too few
+/// neighbours, too flat, not finite, or without a local_reference_frame(). `kept`, if given, receives the indices of
+/// the described keypoints. Throws std::invalid_argument if normals are missing.
 [[nodiscard]] FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints,
                                        const ShotOptions& options = {}, std::vector<int>* kept = nullptr);
 
-/// Uniformly sampled, non-planar keypoints of a view and their SHOT over its surface (within `mask` if given: keypoints
-/// AND support). A keypoint is the point of the thinned surface nearest to the centre of its cube of
-/// keypoint_spacing_m. Camera frame.
+/// Samples non-planar keypoints of a view uniformly and computes their SHOT over its surface, in the camera frame.
+/// `mask`, if given, restricts keypoints and support (non-zero = use; size of the camera image). A keypoint is the
+/// point of the downsampled surface nearest to the centre of its cube of side keypoint_spacing_m.
 [[nodiscard]] FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options = {},
                                       const Image<std::uint8_t>* mask = nullptr);
 

@@ -8,19 +8,21 @@
 namespace resight {
 namespace {
 
-// Shares of the largest eigenvalue. Below the first the axes turn with the last digits; below the second the support is
-// a plane to single precision, and the sign of its normal is not defined.
+// Relative to the largest eigenvalue. Below the first limit, rounding errors determine the axes. Below the second, the
+// support is a plane to single precision, and the sign of its normal is undefined.
 constexpr double kMinEigenvalueGap = 1e-3;
 constexpr double kMinThickness = 1e-7;
-constexpr float kMinBalance = 1e-3F;  // of the projections' sum to the sum of their sizes, where the counts tie
+// Smallest ratio of the sum of projections to the sum of their magnitudes that decides a tie of the counts.
+constexpr float kMinBalance = 1e-3F;
 
 constexpr int kLanes = Neighborhood::kLanes;
 using Lanes = Eigen::Array<float, kLanes, 1>;
 
-/// Eigen keeps the order of additions fixed by the number of lanes, not by the address: same bits on any thread.
+/// Eigen fixes the order of additions by the number of lanes, not by the address, which gives the same bits on any
+/// thread.
 Lanes load(const std::vector<float>& values, int i) { return Lanes::Map(values.data() + i); }
 
-/// Second moments sum(w d d^T) of the differences to the keypoint; w = 1 or radius - distance.
+/// Second moments sum(w d d^T) of the differences to the keypoint, with w = 1 or radius - distance.
 struct Moments {
   double weight = 0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -31,7 +33,7 @@ template <typename Weight>
 Moments sum_moments(const Neighborhood& n, Weight&& weight_of) {
   Lanes w_sum = Lanes::Zero(), x = w_sum, y = w_sum, z = w_sum;
   Lanes xx = w_sum, xy = w_sum, xz = w_sum, yy = w_sum, yz = w_sum, zz = w_sum;
-  for (int i = 0; i < n.count; i += kLanes) {  // the padding has zero differences; its weight is taken back below
+  for (int i = 0; i < n.count; i += kLanes) {  // The padding has zero differences; its weight is subtracted below.
     const Lanes w = weight_of(load(n.distance, i));
     const Lanes dx = load(n.dx, i);
     const Lanes dy = load(n.dy, i);
@@ -58,7 +60,7 @@ Moments sum_moments(const Neighborhood& n, Weight&& weight_of) {
   return m;
 }
 
-/// +1 or -1 so that `axis` points to the side with more of the neighbours; 0 if the sides balance.
+/// +1 or -1 such that `axis` points to the side with more neighbours; 0 if both sides balance.
 float majority_sign(const Neighborhood& n, const Eigen::Vector3f& axis, float radius_m) {
   int num_ahead = 0;
   for (int i = 0; i < n.count; ++i)

@@ -11,8 +11,8 @@ namespace {
 constexpr auto kPi = std::numbers::pi_v<float>;
 constexpr int kAzimuthBins = 8;
 
-/// atan2 within 1e-6 rad: arctangent on [0, 1] (Abramowitz & Stegun 4.4.49), then the octant. libm's is a call per
-/// point.
+/// atan2 with an error of 1e-6 rad: arctangent on [0, 1] (Abramowitz & Stegun 4.4.49), then the octant. The function of
+/// libm would be a call per point.
 inline float fast_atan2(float y, float x) {
   const float ax = std::abs(x);
   const float ay = std::abs(y);
@@ -38,15 +38,15 @@ struct Frame {
   float xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
-// Loops of their own with their arrays as parameters: only there compilers trust __restrict, without which they stay
-// scalar.
+// Separate loops with arrays as parameters: compilers honour __restrict only there, and the loops are not vectorised
+// without it.
 void find_angles(const float* __restrict dx, const float* __restrict dy, const float* __restrict dz, Frame f, int count,
                  float* __restrict azimuth, float* __restrict elevation) {
   for (int i = 0; i < count; ++i) {
     const float x = dx[i] * f.xx + dy[i] * f.xy + dz[i] * f.xz;
     const float y = dx[i] * f.yx + dy[i] * f.yy + dz[i] * f.yz;
     const float z = dx[i] * f.zx + dy[i] * f.zy + dz[i] * f.zz;
-    azimuth[i] = (fast_atan2(y, x) + kPi) * (4 / kPi) - 0.5F;                   // bins of 45 deg from -pi on
+    azimuth[i] = (fast_atan2(y, x) + kPi) * (4 / kPi) - 0.5F;                   // bins of 45 deg starting at -pi
     elevation[i] = 1.5F - fast_atan2(std::sqrt(x * x + y * y), z) * (2 / kPi);  // 0: below, 1: above the tangent plane
   }
 }
@@ -65,7 +65,7 @@ void find_husks(const float* __restrict distance, float radius_m, int count, flo
   for (int i = 0; i < count; ++i) radial[i] = scale * distance[i] - 0.5F;
 }
 
-/// Splits coordinates >= -0.5 into the bin whose centre is nearest and the offset from that.
+/// Splits coordinates >= -0.5 into the bin with the nearest centre and the offset from that centre.
 void split(float* __restrict coordinate, int* __restrict bin, int num_bins, int count) {
   for (int i = 0; i < count; ++i) {
     const int nearest = static_cast<int>(coordinate[i] + 0.5F);
@@ -118,7 +118,8 @@ void ShotHistogram::add_votes(std::size_t i, float* descriptor) const {
   const float c = cosine_[i];
   float* own = descriptor + azimuth * kAzimuthStep + radial * kRadialStep + above * kShotCosineBins + bin;
   *own += 4 - (std::abs(a) + std::abs(r) + std::abs(e) + std::abs(c));
-  // Of two bins the other one is nearer when the offset points to it; else the second vote has weight 0: no branch.
+  // If the offset points to the other of two bins, that bin gets a vote. Otherwise its vote has weight 0, which avoids
+  // a branch.
   own[radial == 0 ? kRadialStep : -kRadialStep] += std::max(0.0F, radial == 0 ? r : -r);
   own[above == 0 ? kShotCosineBins : -kShotCosineBins] += std::max(0.0F, above == 0 ? e : -e);
   const int next = bin + (c > 0 ? 1 : -1);

@@ -16,7 +16,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kPi = std::numbers::pi;
 
-/// A bumpy closed surface of about 12 cm with normals, denser than real ones in places.
+/// A bumpy closed surface of about 12 cm with normals. In places it is denser than real surfaces.
 PointCloud bumpy_object(int num_points, std::uint64_t seed) {
   const auto radius = [](const Eigen::Vector3d& d) {
     return 0.06 * (1 + 0.25 * std::sin(5 * d.x() + 1) * std::cos(4 * d.y()) + 0.15 * std::sin(9 * d.z() + 3 * d.x()));
@@ -47,11 +47,11 @@ PointCloud every_nth(const PointCloud& cloud, int n) {
 
 struct Twin {
   bool exists = false;
-  bool is_tie = false;  ///< As many points on either side of an axis: its sign is settled elsewhere.
+  bool is_tie = false;  ///< Equally many points lie on either side of an axis, so another rule decides its sign.
   std::vector<double> descriptor;
 };
 
-/// SHOT from its definition: double precision, all points compared, library functions for angles. No check for
+/// SHOT by its definition: double precision, all points compared, library functions for angles. Does not detect
 /// degenerate frames.
 Twin shot_by_definition(const PointCloud& support, const Eigen::Vector3d& center, double radius) {
   std::vector<Eigen::Vector3d> offsets;
@@ -148,7 +148,7 @@ TEST(DescribeShot, AgreesWithTheDefinitionInDoublePrecision) {
       num_ties += twin.is_tie ? 1 : 0;
       num_equal += !twin.is_tie && cosine_between(features.descriptor(i), twin.descriptor) > 0.999 ? 1 : 0;
     }
-    // The others: a vote so close that the rounding of one projection turns an axis.
+    // In the remaining cases, the vote is so close that the rounding of one projection flips an axis.
     EXPECT_GE(num_equal, (static_cast<int>(features.size()) - num_ties) * 99 / 100);
     EXPECT_LT(num_ties, static_cast<int>(features.size()) / 10);
   }
@@ -199,7 +199,8 @@ TEST(DescribeShot, TellsPlacesApart) {
   const FeatureSet first = describe_shot(support, keypoints, kKeepFlat, &kept);
   const FeatureSet second = describe_shot(resampled, keypoints, kKeepFlat, &kept_again);
   ASSERT_GT(first.size(), 150U);
-  int num_right = 0;  // the nearest descriptor over another sampling of the surface belongs to (about) the same place
+  // Counts descriptors whose nearest one over another sampling of the surface belongs to about the same place.
+  int num_right = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     std::size_t best = 0;
     for (std::size_t j = 1; j < second.size(); ++j)
@@ -233,13 +234,14 @@ TEST(DescribeShot, LeavesOutWhatHasNoStableFrame) {
   off_center.points[0] = {0.02F, 0.011F, 0.0F};
   EXPECT_EQ(describe_shot(patch(0, 0), off_center, kKeepFlat).size(), 0U);  // a plane has no side
   off_center.points[0].z() = 3 * off_center.points[0].head<2>().squaredNorm();
-  EXPECT_EQ(describe_shot(patch(3, 0), off_center, kKeepFlat).size(),
-            1U);  // beside the middle of a bowl all is defined
+  // Beside the middle of a bowl, the frame is defined.
+  EXPECT_EQ(describe_shot(patch(3, 0), off_center, kKeepFlat).size(), 1U);
   PointCloud few = patch(3, 0);
   few.points.resize(12);
   few.normals.resize(12);
   off_center.points[0] = few.points[5];
-  EXPECT_EQ(describe_shot(few, off_center, {.min_surface_variation = 0, .min_neighbors = 12}).size(), 0U);  // 11 others
+  // 11 neighbours.
+  EXPECT_EQ(describe_shot(few, off_center, {.min_surface_variation = 0, .min_neighbors = 12}).size(), 0U);
   EXPECT_EQ(describe_shot(PointCloud{}, center, kKeepFlat).size(), 0U);
   EXPECT_EQ(describe_shot(few, PointCloud{}, kKeepFlat).size(), 0U);
 }

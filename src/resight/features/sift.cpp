@@ -14,20 +14,20 @@ namespace resight {
 namespace {
 
 constexpr int kDimension = 128;
-// OpenCV halves the coordinates found in the doubled image, whose pixel centres lie at (u - 0.5) / 2 of the image: its
-// keypoints are a quarter of a pixel too far right and down (measured on blobs at known places, 4.6).
+// OpenCV halves the coordinates found in the doubled image, whose pixel centres lie at (u - 0.5) / 2 of the image. Its
+// keypoints are therefore a quarter pixel too far right and down (measured on blobs at known places, OpenCV 4.6).
 constexpr double kDoublingShiftPx = 0.25;
 
 cv::Mat grey_image(const Image<Rgb8>& color) {
   static_assert(sizeof(Rgb8) == 3);
-  // OpenCV has no view of constant data; it only reads.
+  // OpenCV has no view of constant data; this one is only read.
   const cv::Mat rgb(color.height(), color.width(), CV_8UC3, const_cast<Rgb8*>(color.data().data()));
   cv::Mat grey;
   cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
   return grey;
 }
 
-/// Where a keypoint may lie: given to the detector, so that no time is spent on describing others.
+/// Pixels that may contain a keypoint. The detector uses them to avoid describing others.
 cv::Mat usable_pixels(const OrganizedCloud& cloud, const Image<std::uint8_t>* mask) {
   cv::Mat usable(cloud.height(), cloud.width(), CV_8UC1);
   for (int v = 0; v < cloud.height(); ++v) {
@@ -37,12 +37,12 @@ cv::Mat usable_pixels(const OrganizedCloud& cloud, const Image<std::uint8_t>* ma
       row[u] = cloud.has_normal(i) && (mask == nullptr || (*mask)[i] != 0) ? 255 : 0;
     }
   }
-  // With the shift of OpenCV's keypoints the pixel right of (below) the nearest one may be asked for.
+  // Because of the shift of OpenCV's keypoints, the detector may query the pixel right of (below) the nearest one.
   cv::dilate(usable, usable, cv::Mat::ones(2, 2, CV_8UC1), cv::Point(1, 1));
   return usable;
 }
 
-/// Rows of keypoints in a total order of their own, whatever order the detector's threads left them in.
+/// Row indices of keypoints in a total order, independent of the threads of the detector.
 std::vector<int> reading_order(const std::vector<cv::KeyPoint>& keypoints) {
   std::vector<int> order(keypoints.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
@@ -54,10 +54,11 @@ std::vector<int> reading_order(const std::vector<cv::KeyPoint>& keypoints) {
   return order;
 }
 
-/// Scales a descriptor to unit L2 norm (RootSIFT: by L1 norm and square root). False if it is zero.
+/// Scales a descriptor to unit L2 norm (RootSIFT: L1 norm and square root). Returns false if it is zero.
 bool normalize(bool root_sift, std::span<float> descriptor) {
   double sum = 0;
-  for (const float x : descriptor) sum += root_sift ? x : static_cast<double>(x) * x;  // SIFT holds no negative values
+  // SIFT has no negative components.
+  for (const float x : descriptor) sum += root_sift ? x : static_cast<double>(x) * x;
   if (!(sum > 0)) return false;
   for (float& x : descriptor) x = static_cast<float>(root_sift ? std::sqrt(x / sum) : x / std::sqrt(sum));
   return true;
@@ -76,9 +77,9 @@ FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, co
   const OrganizedCloud& cloud = view.cloud;
   const Image<Rgb8>& color = view.frame.color;
   require(color.width() == cloud.width() && color.height() == cloud.height(),
-          "extract_sift: the colour image has not the cloud's size");
+          "extract_sift: the colour image must have the size of the cloud");
   require(mask == nullptr || (mask->width() == cloud.width() && mask->height() == cloud.height()),
-          "extract_sift: the mask has not the camera's size");
+          "extract_sift: the mask must have the size of the camera image");
   FeatureSet features;
   features.type = FeatureType::kSift;
   features.dimension = kDimension;

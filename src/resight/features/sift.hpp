@@ -13,9 +13,10 @@ struct SiftOptions {
   void check() const;
 };
 
-/// SIFT at the DoG keypoints (Lowe 2004, by OpenCV, its quarter-pixel shift undone) of the grey image that have depth
-/// and a normal at the nearest pixel (and lie in `mask`, if given: the camera's size, non-zero = use). A point lies on
-/// the ray of its sub-pixel position, at the depth of the nearest pixel. Camera frame; in order of v, then u.
+/// Computes SIFT (Lowe 2004, by OpenCV, without its shift of a quarter pixel) at the DoG keypoints of the grey image.
+/// Keypoints need depth and a normal at the nearest pixel (and a non-zero `mask` there, if given; size of the camera
+/// image). A point lies on the ray of its sub-pixel position, at the depth of the nearest pixel. Camera frame; in order
+/// of v, then u.
 [[nodiscard]] FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options = {},
                                       const Image<std::uint8_t>* mask = nullptr);
 

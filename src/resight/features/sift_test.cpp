@@ -81,7 +81,7 @@ TEST(ExtractSift, PutsABlobWhereItIs) {
     sum_u += best.x();
     sum_v += best.y();
   }
-  EXPECT_NEAR(sum_u / kBlobs, 0, 0.05);  // no shift: the image is taken at its own pixel centres
+  EXPECT_NEAR(sum_u / kBlobs, 0, 0.05);  // no shift: keypoints are relative to the pixel centres of the image
   EXPECT_NEAR(sum_v / kBlobs, 0, 0.05);
 }
 
@@ -97,7 +97,7 @@ TEST(ExtractSift, LeavesOutPixelsWithoutDepthAndOutsideTheMask) {
   const PreparedView view = prepare_view(frame);
   const FeatureSet masked = extract_sift(view, {}, &mask);
   ASSERT_GT(masked.size(), 50U);
-  // Exactly those of the whole image whose nearest pixel is usable.
+  // Exactly the keypoints of the whole image whose nearest pixel is usable.
   std::size_t expected = 0;
   for (const Eigen::Vector3f& p : all.points) {
     const Eigen::Vector2d pixel = frame.camera.project(p.cast<double>());

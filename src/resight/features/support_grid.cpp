@@ -9,8 +9,8 @@
 namespace resight {
 namespace {
 
-// Loops of their own with their arrays as parameters: only there compilers trust __restrict, without which they stay
-// scalar.
+// Separate loops with arrays as parameters: compilers honour __restrict only there, and the loops are not vectorised
+// without it.
 void find_distances_sq(const float* __restrict x, const float* __restrict y, const float* __restrict z, float cx,
                        float cy, float cz, int count, float* __restrict distance_sq) {
   for (int i = 0; i < count; ++i) {
@@ -96,8 +96,8 @@ void SupportGrid::gather(const Eigen::Vector3f& center, Neighborhood& n) const {
     float* distance_sq = n.candidate_distance_sq.data();
     find_distances_sq(&x_[begin], &y_[begin], &z_[begin], center.x(), center.y(), center.z(), end - begin, distance_sq);
     int* rows = n.rows.data();
-    for (int i = begin; i < end;
-         ++i) {  // every row is written, one that lies outside is overwritten by the next: no branch
+    // Branch-free: each row is written, and the next one overwrites a row outside the radius.
+    for (int i = begin; i < end; ++i) {
       const float candidate_sq = distance_sq[i - begin];
       rows[count] = i;
       count += static_cast<int>(candidate_sq <= radius_sq) & static_cast<int>(candidate_sq > 0);

@@ -8,9 +8,8 @@
 
 namespace resight {
 
-/// The support points around a keypoint as structure of arrays, relative to it: buffers that are used again for the
-/// next keypoint. Rows beyond `count`, up to the next multiple of kLanes, are zero (so that sums may run over whole
-/// vectors).
+/// The support points around a keypoint, relative to it, as structure of arrays. The buffers are reused for the next
+/// keypoint. Rows from `count` to the next multiple of kLanes are zero, so that sums can run over whole vectors.
 struct Neighborhood {
   static constexpr int kLanes = 8;
   int count = 0;
@@ -18,23 +17,23 @@ struct Neighborhood {
   std::vector<float> distance;    ///< Metres, in (0, radius].
   std::vector<float> nx, ny, nz;  ///< Normals of the support points.
 
-  /// Makes room for `capacity` neighbours; never shrinks.
+  /// Makes room for `capacity` neighbours. Never shrinks.
   void reserve(std::size_t capacity);
 
   std::vector<float> candidate_distance_sq;  ///< Scratch of SupportGrid::gather().
-  std::vector<int> rows;                     ///< Likewise: rows of the neighbours in the grid.
+  std::vector<int> rows;                     ///< Scratch of SupportGrid::gather(): rows of the neighbours in the grid.
 };
 
-/// Support points sorted into cubes of the size of the support radius, cube after cube in one array.
+/// Support points sorted into cubes with the support radius as side, contiguous per cube.
 class SupportGrid {
  public:
-  /// Points with a coordinate or normal that is not finite are left out.
+  /// Leaves out points whose coordinates or normals are not finite.
   SupportGrid(const PointCloud& support, double radius_m);
 
-  /// Number of points in the cubes around `center`: room enough for gather().
+  /// Number of points in the cubes around `center`: enough capacity for gather().
   [[nodiscard]] std::size_t max_neighbors(const Eigen::Vector3f& center) const;
-  /// All points within the radius of `center`, except those that coincide with it. Order: by cube, then as in the
-  /// cloud.
+  /// Gathers all points within the radius of `center`, except those that coincide with it. Ordered by cube, then as in
+  /// the cloud.
   void gather(const Eigen::Vector3f& center, Neighborhood& neighborhood) const;
 
  private:
@@ -44,7 +43,7 @@ class SupportGrid {
   float radius_m_;
   float inverse_size_;
   VoxelMap cells_;
-  std::vector<int> cell_begin_;  ///< First point of each cube, and the end.
+  std::vector<int> cell_begin_;  ///< First point of each cube, then the end.
   std::vector<float> x_, y_, z_, nx_, ny_, nz_;
 };
 

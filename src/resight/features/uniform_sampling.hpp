@@ -6,8 +6,8 @@
 
 namespace resight {
 
-/// Of the points in each cube of side `spacing_m` the one nearest to its centre (ties: the first): indices, in order of
-/// the cubes' first points. All points must be finite.
+/// Indices of one point per occupied cube of side `spacing_m`: the point nearest to its centre (ties: the first). Cubes
+/// are in order of their first points. All points must be finite.
 [[nodiscard]] std::vector<int> sample_uniformly(std::span<const Eigen::Vector3f> points, double spacing_m);
 
 }  // namespace resight
