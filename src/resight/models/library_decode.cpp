@@ -79,7 +79,7 @@ bool read_all(const flatbuffers::Vector<const Stored*>* stored, std::vector<Valu
   return true;
 }
 
-// Empty if all is well, else which part is damaged.
+// Decodes one object. Returns the name of the damaged part, or an empty string.
 std::string read(const schema::Object& stored, ObjectModel& object) {
   object.name = stored.name()->str();
   object.bop_id = stored.bop_id();
@@ -109,9 +109,9 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
   ModelLibrary library;
   library.surface_voxel_m = stored.surface_voxel_m();
   if (!(library.surface_voxel_m > 0 && std::isfinite(library.surface_voxel_m)) || stored.objects() == nullptr)
-    return Error{"damaged: no objects, or no voxel size of their surfaces"};
+    return Error{"damaged: it has no objects, or no voxel size of surfaces"};
   const auto& objects = *stored.objects();
-  std::set<std::string> names;  // First: nothing is decoded twice.
+  std::set<std::string> names;  // Names are checked first, so that duplicates are not decoded.
   for (const schema::Object* object : objects) {
     if (object->name() == nullptr || object->name()->size() == 0)
       return Error{"damaged: the name of an object cannot be read"};

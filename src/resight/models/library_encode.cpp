@@ -85,7 +85,8 @@ Offset<schema::Object> write(FlatBufferBuilder& builder, const ObjectModel& obje
 Result<std::vector<std::uint8_t>> encode_payload(const ModelLibrary& library) {
   const std::size_t bytes = estimate_bytes(library);
   if (bytes > kMaxPayloadBytes)
-    return Error{fmt::format("the library would take {:.1f} GB, a file holds 2 GB", 1e-9 * static_cast<double>(bytes))};
+    return Error{fmt::format("the library would take {:.1f} GB (a file can contain at most 2 GB)",
+                             1e-9 * static_cast<double>(bytes))};
   FlatBufferBuilder builder(bytes);
   std::vector<Offset<schema::Object>> objects;
   for (const ObjectModel& object : library.objects) objects.push_back(write(builder, object));

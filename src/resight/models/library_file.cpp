@@ -29,7 +29,7 @@ struct Header {
   std::uint32_t reserved = 0;
   std::uint64_t options_hash = 0;
   std::uint64_t payload_bytes = 0;
-  std::uint64_t checksum = 0;  ///< Of the fields above and the payload.
+  std::uint64_t checksum = 0;  ///< Covers the fields above and the payload.
 };
 static_assert(sizeof(Header) == 40);
 
@@ -48,7 +48,7 @@ std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The bytes of a file, in memory that nobody fills beforehand.
+/// The bytes of a file. The memory is not initialised before reading.
 struct FileBytes {
   std::unique_ptr<std::uint8_t[]> data;
   std::size_t size = 0;
@@ -69,7 +69,7 @@ Result<FileBytes> read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-// The order of the tests decides what the user is told first: the kind of file, its version, its wholeness.
+// The order of the tests determines the first error that the user sees: kind of file, version, completeness.
 Result<Header> read_header(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   Header header;
   const std::size_t magic_bytes = std::min(bytes.size(), kMagic.size());
@@ -84,7 +84,7 @@ Result<Header> read_header(const std::filesystem::path& path, std::span<const st
   }
   const std::uint64_t present = bytes.size() - sizeof(Header);
   if (present < header.payload_bytes)
-    return fail(path, fmt::format("truncated: {} of {} bytes are there", present, header.payload_bytes));
+    return fail(path, fmt::format("truncated: {} of {} bytes present", present, header.payload_bytes));
   if (present > header.payload_bytes)
     return fail(path, fmt::format("damaged: {} bytes too many at its end", present - header.payload_bytes));
   if (header.checksum != compute_checksum(header, bytes.subspan(sizeof(Header))))

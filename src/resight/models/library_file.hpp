@@ -9,14 +9,14 @@
 
 namespace resight {
 
-/// Writes a library into one file: a header of 40 bytes (magic "RESIGHTM", format version, options hash, size and
-/// checksum of the payload, little-endian) and a FlatBuffers payload (model_library.fbs). It appears under `path` only
-/// when it is complete. The same library gives the same bytes. Descriptors take 8 bits a component, as in memory
-/// (coded_features.hpp). At most 2 GB.
+/// Writes a library to one file: a header of 40 bytes (magic "RESIGHTM", format version, options hash, size and
+/// checksum of the payload, little-endian) and a FlatBuffers payload (model_library.fbs). The file appears under `path`
+/// only when it is complete. Equal libraries give equal bytes. Descriptors take 8 bits per component, as in memory
+/// (coded_features.hpp). Fails above 2 GB.
 [[nodiscard]] Result<void> save_library(const ModelLibrary& library, const std::filesystem::path& path);
 
-/// Reads a library. Damage, another kind or version of file, and (if `expected_options_hash` is given,
-/// TrainOptions::hash()) training with other options are errors.
+/// Reads a library. Fails if the file is damaged, of another kind or version, or (if `expected_options_hash`, a
+/// TrainOptions::hash(), is given) trained with other options.
 [[nodiscard]] Result<ModelLibrary> load_library(const std::filesystem::path& path,
                                                 std::optional<std::uint64_t> expected_options_hash = std::nullopt);
 

@@ -175,7 +175,7 @@ TEST_F(LibraryFile, AFailedSaveLeavesTheOldFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-// The header with a checksum that fits, as an attacker or a bug of ours would write it.
+// Writes a header with a matching checksum, as an attacker or a bug of ours would.
 void fix_checksum(Bytes& bytes) {
   const std::uint64_t of_header = checksum_bytes(std::span(bytes).first(kChecksumAt));
   const std::uint64_t sum = checksum_bytes(std::span(bytes).subspan(kHeaderBytes), of_header);
@@ -240,7 +240,7 @@ TEST_F(LibraryFile, RefusesMissingFilesFoldersAndStaleOptions) {
               HasSubstr("trained with other options (hash 123456789abcdef0, expected 0000000000000001)"));
 }
 
-// What a valid checksum cannot vouch for: the meaning of the content.
+// A valid checksum does not guarantee the meaning of the content.
 TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
   struct Case {
     std::function<void(ModelLibrary&)> spoil;
@@ -318,8 +318,8 @@ TEST_F(LibraryFile, NoticesEveryTruncation) {
   }
 }
 
-// Mutations with a checksum that fits: they may pass (a changed colour is as good as any) or fail, but what passes is
-// sound.
+// Mutations with a matching checksum. They may pass (a changed colour is a valid colour) or fail, but a library that
+// passes must be valid.
 TEST_F(LibraryFile, SurvivesMaliciousContent) {
   ASSERT_TRUE(save_library(make_library(), path_).ok());
   const Bytes original = read();
@@ -328,7 +328,7 @@ TEST_F(LibraryFile, SurvivesMaliciousContent) {
   for (int i = 0; i < 500; ++i) {
     Bytes bytes = original;
     for (int k = 0; k < 1 + i % 4; ++k) {
-      // Half of the hits go to the tables (offsets and sizes), which lie at the two ends of the payload.
+      // Half of the changes hit the tables (offsets and sizes) at both ends of the payload.
       const std::uint32_t range = i % 2 == 0 ? 300 : static_cast<std::uint32_t>(bytes.size() - kHeaderBytes);
       bytes[kHeaderBytes + rng.below(range)] = static_cast<std::uint8_t>(rng.below(3) == 0 ? 255 : rng.next());
     }

@@ -10,28 +10,29 @@
 
 namespace resight {
 
-/// A trained object. Everything in the object frame, metres.
+/// A trained object. All data are in the object frame, in metres.
 struct ObjectModel {
-  std::string name;    ///< Unique in its library; also the name in TUW files.
-  int bop_id = 0;      ///< obj_id of BOP files, >= 1, unique in its library.
-  PointCloud surface;  ///< Voxelised complete surface with normals, for verification and drawing; with colours, unless
-                       ///< they are not known: then the object is recognised by its shape alone, and has no SIFT.
+  std::string name;  ///< Unique in its library. Also the name in TUW files.
+  int bop_id = 0;    ///< obj_id of BOP files, >= 1, unique in its library; 0 = not assigned yet.
+  /// Complete surface on a voxel grid, with normals, for verification and drawing. Without colours if they are unknown;
+  /// the object is then recognised by its shape alone and has no SIFT features.
+  PointCloud surface;
   CodedFeatures sift;
   CodedFeatures shot;
   ObjectSymmetries symmetries;
-  ObjectSymmetries
-      shape_symmetries{};  ///< Of the surface whatever its colours (shape_symmetry_motions()); none if not sought.
-  Eigen::Vector3f center =
-      Eigen::Vector3f::Zero();  ///< Centroid of the surface: poses are compared there, not at the origin.
+  /// Symmetries of the surface regardless of its colours (shape_symmetry_motions()); none if they were not detected.
+  ObjectSymmetries shape_symmetries{};
+  /// Centroid of the surface. Poses are compared there, not at the origin.
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
   float diameter_m = 0;
 };
 
-/// All trained objects. What a recogniser is given.
+/// All trained objects: the input of a recogniser.
 struct ModelLibrary {
   std::vector<ObjectModel> objects;
-  std::uint64_t options_hash = 0;                         ///< Of the training options: tells a stale library.
-  float surface_voxel_m = 0.003F;                         ///< Of every object's surface.
-  [[nodiscard]] int find(const std::string& name) const;  ///< Index, or -1.
+  std::uint64_t options_hash = 0;                         ///< Hash of the training options; identifies stale libraries.
+  float surface_voxel_m = 0.003F;                         ///< Voxel size of each surface.
+  [[nodiscard]] int find(const std::string& name) const;  ///< Index of the object, or -1.
 };
 
 }  // namespace resight

@@ -11,6 +11,8 @@ struct SamePlaceOptions {
   void check() const;
 };
 
+/// Whether two poses (a_from_object) place the object at the same place. The symmetries of its appearance count as
+/// equal.
 [[nodiscard]] bool is_same_place(const ObjectModel& model, const Rigid3& a, const Rigid3& b,
                                  const SamePlaceOptions& options);
 

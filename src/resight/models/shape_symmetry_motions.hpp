@@ -6,9 +6,10 @@
 
 namespace resight {
 
-/// Motions of the object frame that leave an object's shape as it is but not its colours, the identity first: poses
-/// that differ by one of them are told apart by the print alone. About an axis in steps of at most `max_step_rad`. Only
-/// the identity for what has no colours or no such motion, and for a ball, which has too many of them to be tried.
+/// Motions of the object frame that leave the shape of an object unchanged, but not its colours. Only the texture
+/// distinguishes poses that differ by one of them. The identity is first; motions about an axis are in steps of at most
+/// `max_step_rad`. Returns only the identity for an object without colours, without such motions, or with the shape of
+/// a ball, which has too many of them.
 [[nodiscard]] std::vector<Rigid3> shape_symmetry_motions(const ObjectModel& model, double max_step_rad);
 
 }  // namespace resight

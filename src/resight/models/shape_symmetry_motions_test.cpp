@@ -38,7 +38,7 @@ TEST(ShapeSymmetryMotions, WhatIsTheSameInPrintAsWellIsNoTurn) {
   ObjectModel can = colored();
   can.symmetries = can.shape_symmetries = round_about(kZ);
   EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 1U);
-  can.shape_symmetries.discrete.push_back(half_turn(kX));  // Only the lid tells what is up.
+  can.shape_symmetries.discrete.push_back(half_turn(kX));  // Only the lid distinguishes top and bottom.
   EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 2U);
 }
 

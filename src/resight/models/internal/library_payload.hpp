@@ -10,11 +10,11 @@
 
 namespace resight::internal {
 
-/// The FlatBuffers payload of a library. An error for one above the format's 2 GB.
+/// Encodes a library as FlatBuffers payload. Fails if the payload exceeds the 2 GB of the format.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_payload(const ModelLibrary& library);
 
-/// The library in a payload, of which nothing is trusted: offsets, sizes, values, names and ids are checked. The errors
-/// do not name the file. `options_hash` stays 0 (it is in the header).
+/// Decodes the library in an untrusted payload: checks offsets, sizes, values, names and ids. Errors do not name the
+/// file. `options_hash` stays 0 (it is in the header).
 [[nodiscard]] Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload);
 
 }  // namespace resight::internal
