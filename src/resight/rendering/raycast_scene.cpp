@@ -26,7 +26,7 @@ void check_mesh(const TriangleMesh& mesh) {
   for (const auto& v : mesh.vertices) require(v.allFinite(), "RaycastScene::add_mesh: a vertex is not finite");
 }
 
-// Texels per metre of a face: how many texels of the pyramid's finest level a metre of it carries.
+// Texels of the finest pyramid level per metre of a face.
 float texel_density(const TriangleMesh& mesh, const std::array<int, 3>& f) {
   const Eigen::Vector3f a = mesh.vertices[f[1]] - mesh.vertices[f[0]];
   const Eigen::Vector3f b = mesh.vertices[f[2]] - mesh.vertices[f[0]];
@@ -41,7 +41,7 @@ struct MeshEntry {
   std::shared_ptr<const TriangleMesh> mesh;
   RTCScene scene = nullptr;
   TexturePyramid texture;
-  std::vector<float> texels_per_m;  // Of each face; empty without a texture.
+  std::vector<float> texels_per_m;  // Per face; empty without a texture.
 };
 
 struct InstanceEntry {
@@ -54,7 +54,7 @@ struct InstanceEntry {
 
 RTCScene build_mesh_scene(RTCDevice device, const TriangleMesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads vertices 16 bytes at a time, so it gets buffers of its own, which it pads.
+  // Embree reads 16 bytes per vertex. Its own buffers are padded accordingly.
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                            mesh.vertices.size());
   void* faces =
@@ -80,7 +80,7 @@ void set_transform(RTCGeometry geometry, const Rigid3& world_from_mesh) {
 
 struct RaycastScene::Impl {
   Impl() : device(rtcNewDevice(nullptr)) {
-    if (device == nullptr) throw std::runtime_error("RaycastScene: Embree does not start on this machine");
+    if (device == nullptr) throw std::runtime_error("RaycastScene: Embree cannot start on this machine");
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }
@@ -111,7 +111,7 @@ RaycastScene::RaycastScene(RaycastScene&&) noexcept = default;
 RaycastScene& RaycastScene::operator=(RaycastScene&&) noexcept = default;
 
 int RaycastScene::add_mesh(std::shared_ptr<const TriangleMesh> mesh) {
-  require(mesh != nullptr, "RaycastScene::add_mesh: no mesh");
+  require(mesh != nullptr, "RaycastScene::add_mesh: the mesh is missing");
   check_mesh(*mesh);
   MeshEntry entry{mesh, build_mesh_scene(impl_->device, *mesh), TexturePyramid({}), {}};
   if (mesh->has_texture()) {

@@ -14,7 +14,7 @@
 namespace resight {
 namespace {
 
-// A textbook intersection in double precision, with no acceleration structure. Returns infinity for a miss.
+// A textbook intersection in double precision, without an acceleration structure. Returns infinity for a miss.
 double intersect(const Eigen::Vector3d& o, const Eigen::Vector3d& d, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                  const Eigen::Vector3d& c) {
   Eigen::Matrix3d m;
@@ -82,7 +82,7 @@ TEST(RaycastScene, AgreesWithBruteForceOverPosedInstances) {
     ++hits;
     EXPECT_EQ(hit.face, face) << "ray " << i;
     EXPECT_NEAR(hit.distance, nearest, 1e-5);
-    // The barycentric weights give the same point.
+    // The barycentric weights must give the same point.
     const auto& f = mesh.faces[hit.face];
     const Eigen::Vector3f p =
         hit.b0 * mesh.vertices[f[0]] + hit.b1 * mesh.vertices[f[1]] + (1 - hit.b0 - hit.b1) * mesh.vertices[f[2]];

@@ -17,10 +17,10 @@ namespace resight {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kEdgeJump = 0.03;  // Share of z that makes a discontinuity.
+constexpr double kEdgeJump = 0.03;  // Share of z; a larger step is a discontinuity.
 constexpr double kIncidenceRampDeg = 10.0;
 constexpr double kSelfShadowGapM = 2e-3;
-constexpr std::uint64_t kColorStream = 0xC0104ULL;  // Keeps the colour's numbers apart from the depth's.
+constexpr std::uint64_t kColorStream = 0xC0104ULL;  // Separates the random numbers of colour from those of depth.
 
 double incidence_rad(const Eigen::Vector3f& normal, const Eigen::Vector3f& direction) {
   const double cosine = std::abs(normal.dot(direction)) / (normal.norm() * direction.norm());
@@ -50,7 +50,7 @@ class DepthSensor {
         projector_((world_from_camera * Eigen::Vector3d(options.baseline_m, 0, 0)).cast<float>()) {}
 
   void sense_row(int v, Rng rng, std::span<float> depth_m) const {
-    std::vector<int> columns;  // Where there may be a return.
+    std::vector<int> columns;  // Columns of pixels that may have a return.
     std::vector<Ray> rays;
     for (int u = 0; u < camera_.width; ++u) {
       if (std::isnan(view_.depth_m(u, v)) || is_lost_at_edge(u, v, rng)) continue;
@@ -71,7 +71,7 @@ class DepthSensor {
     return options_.edge_dropout > 0 && is_beside_edge(view_.depth_m, u, v) && rng.uniform() < options_.edge_dropout;
   }
 
-  // NaN = no return.
+  // Measured depth; NaN means no return.
   double measure(const Ray& ray, const RayHit& hit, Rng& rng) const {
     if (!hit.has_hit()) return kMissing;
     const Eigen::Vector3f normal = scene_.face_normal(hit);
@@ -109,7 +109,7 @@ class DepthSensor {
 
   bool is_lit(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, const Eigen::Vector3f& view_direction) const {
     const Eigen::Vector3f to_projector = projector_ - p;
-    if (normal.dot(to_projector) * normal.dot(-view_direction) <= 0) return false;  // lit from behind only
+    if (normal.dot(to_projector) * normal.dot(-view_direction) <= 0) return false;  // lit only from behind
     return !scene_.is_blocked({p, to_projector}, static_cast<float>(kSelfShadowGapM) / to_projector.norm(), 1.0F);
   }
 
@@ -146,7 +146,7 @@ Image<float> sense_depth(const RaycastScene& scene, const Camera& camera, const 
                          const RenderedView& view, const SensorOptions& options, std::uint64_t seed, int num_threads) {
   options.check();
   require(view.depth_m.width() == camera.width && view.depth_m.height() == camera.height,
-          "sense_depth: the view has not the camera's size");
+          "sense_depth: the view must have the size of the camera image");
   if (options.noise_free) return view.depth_m;
   Image<float> depth_m(camera.width, camera.height, kMissing);
   const DepthSensor sensor(scene, camera, world_from_camera, view, options);

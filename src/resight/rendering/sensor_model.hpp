@@ -6,7 +6,7 @@
 
 namespace resight {
 
-/// A structured-light camera (Kinect v1 and its kin). Each effect can be switched off by itself.
+/// A structured-light camera (Kinect v1 and similar). Each effect can be switched off separately.
 struct SensorOptions {
   bool noise_free = false;           ///< Exact depth and colour, whatever the fields below say (even the range).
   double lateral_noise = 1.0;        ///< Factor on Nguyen's lateral sigma; the ray of each pixel is perturbed. 0 = off.
@@ -25,17 +25,17 @@ struct SensorOptions {
   void check() const;
 };
 
-/// The depth image that the sensor delivers of a rendered view (which must be of this scene, camera and pose): metres,
-/// NaN = no return.
+/// Simulates the depth image of the sensor in metres (NaN = no return). `view` must be rendered from the same scene,
+/// camera and pose. Throws std::invalid_argument if the size of the view differs from that of the camera image.
 [[nodiscard]] Image<float> sense_depth(const RaycastScene& scene, const Camera& camera, const Rigid3& world_from_camera,
                                        const RenderedView& view, const SensorOptions& options, std::uint64_t seed,
                                        int num_threads = 1);
 
-/// The colour image that the sensor delivers of an ideal one: gain, white balance, pixel noise.
+/// Simulates the colour image of the sensor from an ideal image: gain, white balance and pixel noise.
 [[nodiscard]] Image<Rgb8> sense_color(const Image<Rgb8>& ideal, const SensorOptions& options, std::uint64_t seed,
                                       int num_threads = 1);
 
-/// Depth whose disparity is the nearest multiple of the step; `focal_baseline` = focal length (px) times baseline (m).
+/// Depth whose disparity is the nearest multiple of the step. `focal_baseline` is focal length (px) times baseline (m).
 [[nodiscard]] double quantize_depth(double depth_m, double focal_baseline, double disparity_step_px);
 
 }  // namespace resight

@@ -41,7 +41,7 @@ TriangleMesh block(const Eigen::Vector3d& size) {
   return mesh;
 }
 
-// A wall whose centre is `z` in front of the camera, turned by `angle` about the image's y axis.
+// A wall with its centre `z` in front of the camera, rotated by `angle_rad` about the y axis of the image.
 struct Wall {
   explicit Wall(double z, double angle_rad = 0) {
     Rigid3 pose = Rigid3::from_translation({0, 0, z}) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitY(), angle_rad);
@@ -95,7 +95,7 @@ TEST(SenseDepth, AxialNoiseHasNguyensSigma) {
 }
 
 TEST(SenseDepth, LateralNoiseMovesSlantedSurfaces) {
-  // On a plane z = z0 + x tan(angle), a lateral shift of s px moves the depth by about s z tan(angle) / f.
+  // On a plane z = z0 + x tan(angle), a lateral shift of s px changes the depth by about s z tan(angle) / f.
   constexpr double kAngle = 0.6;
   const Wall wall(1.2, -kAngle);
   SensorOptions options = all_off();
@@ -131,16 +131,16 @@ TEST(SenseDepth, DisparityComesInSteps) {
     distinct_from_exact += std::abs(steps - exact) > 0.1;
   }
   EXPECT_GT(distinct_from_exact, 5000);
-  // The Kinect at 1 m: steps of z^2 / (8 f b), about 3 mm.
+  // Kinect at 1 m: steps of z^2 / (8 f b), about 3 mm.
   const double focal_baseline = 525 * 0.075;  // 315 eighths of a pixel at exactly 1 m
   EXPECT_NEAR(quantize_depth(1.0010, focal_baseline, 0.125), 1.0, 1e-12);
   EXPECT_NEAR(quantize_depth(0.9975, focal_baseline, 0.125), 315.0 / 316.0, 1e-12);
 }
 
 TEST(SenseDepth, ProjectorShadowLiesBesideTheBoxOnTheFarSide) {
-  // A box 0.2 m wide, front at 1.0 m, before a wall at 2.0 m. The projector stands 7.5 cm to the right (+x), so the
-  // strip of the wall that it does not see lies left of the box: 0.1 m in front (x = -0.1) projects from x = 0.075 to x
-  // = -0.275 at 2 m.
+  // A box of 0.2 m width, with its front at 1.0 m, before a wall at 2.0 m. The projector is 7.5 cm to the right (+x),
+  // so the strip of the wall hidden from it lies left of the box: the edge at x = -0.1 projects from x = 0.075 to x =
+  // -0.275 at 2 m.
   RaycastScene scene;
   scene.add_instance(scene.add_mesh(block({6, 6, 0.1})), Rigid3::from_translation({0, 0, 2.0}));
   scene.add_instance(scene.add_mesh(block({0.2, 0.2, 0.001})), Rigid3::from_translation({0, 0, 1.0}));
@@ -159,7 +159,8 @@ TEST(SenseDepth, ProjectorShadowLiesBesideTheBoxOnTheFarSide) {
   }
   EXPECT_GT(shadowed, 5);
   EXPECT_FALSE(std::isnan(depth(column(-0.285, 2.0), v)));
-  for (int u = column(0.1, 1.0) + 2; u < 300; ++u) EXPECT_FALSE(std::isnan(depth(u, v))) << u;  // none on the right
+  // No shadow on the right.
+  for (int u = column(0.1, 1.0) + 2; u < 300; ++u) EXPECT_FALSE(std::isnan(depth(u, v))) << u;
   for (int u = column(-0.1, 1.0) + 1; u < column(0.1, 1.0); ++u) EXPECT_NEAR(depth(u, v), 1.0, 1e-5);  // the box itself
 }
 
@@ -187,7 +188,7 @@ TEST(SenseDepth, DropsGrazingFarNearAndEdges) {
   options.edge_dropout = 0.5;
   const Image<float> depth = sense_depth(scene, kCamera, Rigid3::identity(), view, options, 3);
   const std::size_t lost = depth.size() - count_valid(depth);
-  const double edge_pixels = 2 * 4 * 0.2 * 525;  // both sides of the outline, where it lies within the image
+  const double edge_pixels = 2 * 4 * 0.2 * 525;  // both sides of the outline, as far as it lies within the image
   EXPECT_GT(lost, 0.25 * edge_pixels);
   EXPECT_LT(lost, 0.75 * edge_pixels);
   EXPECT_FALSE(std::isnan(depth(80, 60)));

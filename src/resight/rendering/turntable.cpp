@@ -35,8 +35,8 @@ Bounds bounds_of(const TriangleMesh& mesh) {
   return {(0.5F * (low + high)).cast<double>(), static_cast<double>(diameter(mesh.vertices))};
 }
 
-// Camera poses around the object. For the other side the object is turned upside down, not the camera: in the object's
-// frame the camera is below, and its image is upright for -z.
+// Camera poses around the object. For the other side, the object is turned upside down, not the camera: in the object
+// frame the camera is below, and -z is up in its image.
 std::vector<Rigid3> ring_of_poses(const Eigen::Vector3d& center, double distance_m, double elevation_rad,
                                   double step_deg, bool upside_down) {
   const int count = std::max(1, static_cast<int>(std::lround(360.0 / step_deg)));
@@ -59,12 +59,13 @@ TrainingView render_training_view(const RaycastScene& scene, const Rigid3& objec
   view.frame.world_from_camera = object_from_camera;
   RenderOptions render;
   render.background = kBackdrop;
-  // The lamp stands fixed above and beside the camera, as over a real turntable: light and print do not turn together.
+  // The lamp is fixed above and beside the camera, as over a real turntable. Light and texture therefore rotate
+  // relative to each other.
   render.lighting.lamp_in_world_m = object_from_camera * Eigen::Vector3d(0.8, -1.5, -0.3);
   RenderedView rendered = render_scene(scene, view.frame.camera, object_from_camera, render);
   SensorOptions sensor;
   sensor.noise_free = !options.sensor_noise;
-  sensor.min_depth_m = 0.4;  // a turntable may stand nearer than a room's furniture
+  sensor.min_depth_m = 0.4;  // a turntable may be closer than the furniture of a room
   view.frame.depth_m = sense_depth(scene, view.frame.camera, object_from_camera, rendered, sensor, view_seed);
   view.frame.color = sense_color(rendered.color, sensor, view_seed);
   view.mask = Image<std::uint8_t>(rendered.labels.width(), rendered.labels.height());

@@ -19,8 +19,8 @@ struct TurntableOptions {
   void check() const;
 };
 
-/// Ray-casts a mesh from a ring of views at +elevation (and -elevation for the other side). The mask is where the
-/// object is hit.
+/// Ray-casts a mesh from a ring of views at +elevation (and at -elevation for the other side). The mask contains the
+/// pixels that hit the object.
 [[nodiscard]] std::vector<TrainingView> render_turntable(const TriangleMesh& mesh,
                                                          const TurntableOptions& options = {});
 

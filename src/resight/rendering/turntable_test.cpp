@@ -79,7 +79,7 @@ TEST(Turntable, RefusesBadOptions) {
 }
 
 TEST(SampleVisibleSurface, LeavesOutWhatIsHidden) {
-  // A box around a sphere: nothing of the sphere is seen.
+  // A box encloses a sphere, so that no point of the sphere is visible.
   TriangleMesh mesh = make_procedural_object("plain_box")->mesh;
   const std::size_t box_points = sample_visible_surface(mesh, 0.004).size();
   TriangleMesh inner = make_procedural_object("plain_can")->mesh;

@@ -13,7 +13,7 @@ namespace resight {
 namespace {
 
 constexpr float kNoReturn = std::numeric_limits<float>::quiet_NaN();
-constexpr float kShadowGapM = 1e-3F;  // Beyond this a surface may shade itself.
+constexpr float kShadowGapM = 1e-3F;  // Surfaces closer than this cast no shadow, which prevents self-shadowing.
 
 class RowRenderer {
  public:
@@ -75,8 +75,8 @@ class RowRenderer {
     }
     const Eigen::Vector3f p = ray.origin + hit.distance * ray.direction;
     const Eigen::Vector3f normal = towards_viewer(scene_.shading_normal(hit), ray);
-    // The side of a sample on the surface, as a geometric mean over both directions: on slanted surfaces the mean blurs
-    // less than the longer side would and aliases less than the shorter one.
+    // Side length of a sample on the surface, as geometric mean over both directions. On slanted surfaces, it blurs
+    // less than the longer side would, and aliases less than the shorter one.
     const float cosine = std::max(0.1F, std::abs(normal.dot(ray.direction)) / ray.direction.norm());
     const float footprint_m =
         hit.distance / static_cast<float>(camera_.fx * options_.samples_per_side) / std::sqrt(cosine);

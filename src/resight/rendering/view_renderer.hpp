@@ -9,12 +9,12 @@
 
 namespace resight {
 
-/// One lamp and a soft light from everywhere, a little more of it from above. Shares of the surface's own colour.
+/// One lamp and ambient light that is slightly stronger from above. Intensities are relative to the surface colour.
 struct Lighting {
   Eigen::Vector3d lamp_in_world_m = Eigen::Vector3d(1.2, -1.0, 2.8);
   double ambient = 0.55;
   double diffuse = 0.55;
-  bool shadows = false;  ///< Cast by the lamp; costs a ray a sample.
+  bool shadows = false;  ///< Whether the lamp casts shadows; costs one ray per sample.
   void check() const;
 };
 
@@ -26,23 +26,26 @@ struct RenderOptions {
   void check() const;
 };
 
-/// What an ideal camera sees, registered pixel by pixel.
+/// An ideal view. All images are registered pixel by pixel.
 struct RenderedView {
   Image<Rgb8> color;
-  Image<float> depth_m;                      ///< Along z; NaN = no surface.
-  Image<int> labels;                         ///< Instance in the scene; -1 = no surface.
-  Image<Eigen::Vector3f> normals_in_camera;  ///< Of the face, unit, turned to the camera; NaN = no surface.
+  Image<float> depth_m;  ///< Along z; NaN if there is no surface.
+  Image<int> labels;     ///< Instance in the scene; -1 if there is no surface.
+  /// Unit normal of the face, oriented towards the camera; NaN if there is no surface.
+  Image<Eigen::Vector3f> normals_in_camera;
 };
 
-/// Ray-casts the visible instances of a committed scene. Pixel centres at whole numbers, no distortion.
+/// Ray-casts the visible instances of a committed scene. Pixel centres are at whole numbers; there is no distortion.
+/// Throws std::invalid_argument for an invalid camera or pose.
 [[nodiscard]] RenderedView render_scene(const RaycastScene& scene, const Camera& camera,
                                         const Rigid3& world_from_camera, const RenderOptions& options = {});
 
-/// Ray through pixel (u, v), which may lie between pixel centres; its direction has z = 1 in the camera frame, so that
+/// Ray through pixel (u, v), which may lie between pixel centres. Its direction has z = 1 in the camera frame, so that
 /// distances along it are depths.
 [[nodiscard]] Ray pixel_ray(const Camera& camera, const Rigid3f& world_from_camera, float u, float v);
 
-/// A camera at `eye` that looks at `target`, with world +z (or `up`) upwards in the image. The directions must differ.
+/// Pose of a camera at `eye` that looks at `target`, with +z of the world (or `up`) upwards in the image. Throws
+/// std::invalid_argument if eye and target coincide or lie along `up`.
 [[nodiscard]] Rigid3 look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
                              const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 

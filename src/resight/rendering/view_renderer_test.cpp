@@ -38,7 +38,7 @@ TEST(RenderScene, SphereHasItsClosedFormDepth) {
       const double a = ray.squaredNorm();
       const double b = ray.dot(center);
       const double discriminant = b * b - a * (center.squaredNorm() - kRadius * kRadius);
-      if (std::abs(discriminant) < 2e-3) continue;  // the polyhedron's silhouette differs a little
+      if (std::abs(discriminant) < 2e-3) continue;  // the silhouette of the polyhedron differs slightly
       if (discriminant < 0) {
         EXPECT_TRUE(std::isnan(view.depth_m(u, v)));
         EXPECT_EQ(view.labels(u, v), -1);
@@ -57,7 +57,7 @@ TEST(RenderScene, SphereHasItsClosedFormDepth) {
 }
 
 TEST(RenderScene, PointsAppearAtThePixelTheyProjectTo) {
-  // A tiny coloured square, seen by a posed camera: its centre of mass in the image is its projection.
+  // A tiny coloured square in the view of a posed camera. Its centre of mass in the image is its projection.
   TextureAtlas atlas(64, 1.0);
   const PixelRect red = atlas.solid({255, 0, 0});
   TriangleMesh chip = make_box_part({0.02, 0.02, 0.0005}, {red, red, red, red, red, red}, 1);
@@ -67,7 +67,7 @@ TEST(RenderScene, PointsAppearAtThePixelTheyProjectTo) {
   const Rigid3 world_from_camera = look_at({1.0, -0.2, 0.9}, {0.25, 0.5, 0.2});
   Rigid3 facing;  // the square faces the camera
   facing.rotation = look_at(p_in_world, world_from_camera.translation).rotation;
-  // Turned in the image plane, or a whole side would cross the pixel grid at once.
+  // Rotated in the image plane, because otherwise a whole side would cross the pixel grid at once.
   facing.rotation = facing.rotation * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.35).rotation;
   facing.translation = p_in_world;
   scene.add_instance(scene.add_mesh(chip), facing);
@@ -88,7 +88,7 @@ TEST(RenderScene, PointsAppearAtThePixelTheyProjectTo) {
 }
 
 TEST(RenderScene, PrintIsUprightAndNotMirrored) {
-  // Front of a package: its left border red, its top border green; bottom right stays white.
+  // Front of a package: the left border is red, the top border green, and the bottom right is white.
   TextureAtlas atlas(512, 1.0);
   const PixelRect front = atlas.allocate(100, 100);
   TextureCanvas canvas = atlas.canvas(front);
