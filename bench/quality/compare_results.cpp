@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     add_runs(argv[i], i / 2, "A", runs_of_preset);
     add_runs(argv[i + 1], i / 2, "B", runs_of_preset);
   }
-  fmt::print("| preset | K | sequences | precision | recall | F | strict F | ghosts per place left |\n");
+  fmt::print("| preset | K | sequences | precision | recall | F | strict F | ghosts per former place |\n");
   fmt::print("|---|---|---|---|---|---|---|---|\n");
   for (const auto& [preset, runs] : runs_of_preset)
     for (const PresetComparison& c : compare_presets(runs))

@@ -41,7 +41,7 @@ ordered_json report_json(const ModelReport& r) {
           {"num_symmetry_axes", r.symmetries.continuous.size()},
           {"num_symmetry_motions", r.symmetries.discrete.size()},
           {"closure_error_m", number_or_null(r.closure_error_m)},
-          {"troubles", r.troubles}};
+          {"warnings", r.troubles}};
 }
 
 // write_tuw_model() creates a folder with the model's name; this moves its contents up into ours.

@@ -9,11 +9,13 @@ namespace resight::report {
 namespace {
 
 constexpr float kMinDepth_m = 0.05F;
-constexpr double kRemovedPointSize_m = 0.005;  // removed points come from clouds thinned to 5 mm
-constexpr int kMaxSplat_px = 24;  // a surface right before the lens must not fill the picture with one point
+// Removed points come from clouds downsampled to 5 mm.
+constexpr double kRemovedPointSize_m = 0.005;
+// Limits the size of points just in front of the lens.
+constexpr int kMaxSplat_px = 24;
 
 void fill_square(Image<std::uint8_t>& mask, float u, float v, int radius) {
-  // Anything far outside is dropped before the conversion to int, which could not hold it.
+  // Coordinates far outside are dropped before the conversion to int, which could not represent them.
   const float limit = static_cast<float>(std::max(mask.width(), mask.height()) + kMaxSplat_px);
   if (!(std::abs(u) < limit + limit) || !(std::abs(v) < limit + limit)) return;
   const int cu = static_cast<int>(std::lround(u));
@@ -25,7 +27,7 @@ void fill_square(Image<std::uint8_t>& mask, float u, float v, int radius) {
   }
 }
 
-/// Half the side, in pixels, of a square that covers `size_m` at the mean depth of the points before the camera.
+/// Half the side, in pixels, of a square that covers `size_m` at the mean depth of the points in front of the camera.
 int splat_radius_px(const Camera& camera, const Rigid3f& camera_from_cloud, const PointCloud& cloud, double size_m) {
   double depth_sum_m = 0;
   int count = 0;
@@ -39,7 +41,7 @@ int splat_radius_px(const Camera& camera, const Rigid3f& camera_from_cloud, cons
   return std::min(kMaxSplat_px, static_cast<int>(std::ceil(0.5 * camera.fx * size_m * count / depth_sum_m)));
 }
 
-/// Marks where the points project, each as a square.
+/// Marks a square at the projection of each point.
 Image<std::uint8_t> splat(const Camera& camera, const Rigid3f& camera_from_cloud, const PointCloud& cloud,
                           int radius_px) {
   Image<std::uint8_t> mask(camera.width, camera.height, 0);
@@ -77,7 +79,7 @@ Outline project_outline(const Camera& camera, const Rigid3& camera_from_object, 
   cv::Mat mask_mat(mask.height(), mask.width(), CV_8UC1, mask.data().data());
   const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(5, 5));
   cv::morphologyEx(mask_mat, mask_mat, cv::MORPH_CLOSE, disc);
-  // The squares reach beyond the outermost points; taken off again, so that the line lies on the object's border.
+  // The squares extend beyond the outermost points; erosion puts the outline back on the object's border.
   const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * radius_px + 1, 2 * radius_px + 1));
   cv::erode(mask_mat, mask_mat, square);
   Outline outline;

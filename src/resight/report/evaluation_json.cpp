@@ -73,8 +73,8 @@ Json configuration_json(const ConfigurationSummary& c) {
   json["rotation_error_rad"] = {{"median", number(c.rotation_error_rad.median)},
                                 {"p95", number(c.rotation_error_rad.p95)}};
   json["ghosts"] = {{"detections", c.num_ghosts},
-                    {"places_left", c.num_former_places},
-                    {"per_place_left", number(c.ghosts_per_change())}};
+                    {"former_places", c.num_former_places},
+                    {"per_former_place", number(c.ghosts_per_change())}};
   json["reliability"] = reliability_json(c.reliability);
   json["hypotheses"] = {{"correspondences", c.counts.correspondences},
                         {"generated", c.counts.generated},

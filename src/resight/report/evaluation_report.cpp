@@ -16,7 +16,7 @@ namespace {
 
 std::string series_name(const ConfigurationSummary& c) { return c.preset + (c.is_clustered ? "" : " (no clustering)"); }
 
-// One line per preset (with and without clustering apart) over K.
+// One line per preset over K, separately with and without clustering.
 std::string plot_over_k(const std::string& title, const std::string& y_label,
                         std::span<const ConfigurationSummary> configurations,
                         const std::function<double(const ConfigurationSummary&)>& value, bool is_share) {
@@ -34,9 +34,9 @@ std::string plot_over_k(const std::string& title, const std::string& y_label,
   return format_svg(plot);
 }
 
-// Fig. 7 for the largest K of each preset: how the time of a view grows with its number until the window is full.
+// Paper, Fig. 7, for the largest K of each preset: the time of a view grows with its number until the window is full.
 std::string plot_view_times(std::span<const ConfigurationSummary> configurations) {
-  LinePlot plot{"Time of a view over the sequence", "view", "seconds", {}, {}, {}};
+  LinePlot plot{"Time per view over the sequence", "view", "seconds", {}, {}, {}};
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     const ConfigurationSummary& c = configurations[i];
     if (i + 1 < configurations.size() && series_name(configurations[i + 1]) == series_name(c)) continue;
@@ -65,9 +65,9 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
                          "Recall", "recall", c, [](const C& x) { return x.score.recall(); }, true)},
       {"f.svg", plot_over_k(
                     "F", "F", c, [](const C& x) { return x.score.f_score(); }, true)},
-      {"ghosts.svg", plot_over_k(
-                         "Detections at places left", "views per place left", c,
-                         [](const C& x) { return x.ghosts_per_change(); }, false)},
+      {"ghosts.svg",
+       plot_over_k(
+           "Ghost detections", "views per former place", c, [](const C& x) { return x.ghosts_per_change(); }, false)},
       {"view_time.svg", plot_view_times(c)}};
   for (const auto& [name, text] : files)
     if (auto written = write_file(directory / name, text); !written.ok()) return written;

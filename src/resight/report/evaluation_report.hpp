@@ -10,29 +10,31 @@
 
 namespace resight {
 
-/// What the numbers of an evaluation are of.
+/// What was evaluated.
 struct EvaluationHeader {
-  std::string dataset;  ///< Name or path, for the reader.
-  std::string version;  ///< Of resight.
+  std::string dataset;  ///< Name or path, for display.
+  std::string version;  ///< Version of resight.
 };
 
-/// All scores of all configurations (docs/formats.md). No times: the same runs give the same bytes.
+/// Formats all scores of all configurations as JSON (docs/formats.md). Contains no times, so that the same runs give
+/// the same bytes.
 [[nodiscard]] std::string format_evaluation_json(const EvaluationHeader& header,
                                                  std::span<const ConfigurationSummary> configurations);
-/// Seconds per stage and per view, of each configuration.
+/// Formats the seconds per stage and per view of each configuration as JSON.
 [[nodiscard]] std::string format_evaluation_times_json(const EvaluationHeader& header,
                                                        std::span<const ConfigurationSummary> configurations);
-/// The scores as Markdown tables: recognition over K, ghosts, differences between presets, clustering, changes, losses,
-/// objects, visibility. No times.
+/// Formats the scores as Markdown tables: recognition over K, ghosts, differences between presets, clustering, changes,
+/// losses, objects, visibility. Contains no times.
 [[nodiscard]] std::string format_evaluation_tables(const EvaluationHeader& header,
                                                    std::span<const ConfigurationSummary> configurations,
                                                    std::span<const PresetComparison> comparisons = {});
-/// The times as Markdown tables.
+/// Formats the times as Markdown tables.
 [[nodiscard]] std::string format_evaluation_times(const EvaluationHeader& header,
                                                   std::span<const ConfigurationSummary> configurations);
 /// Writes results.json, times.json, tables.md, times.md, worst.md, and the plots precision.svg, recall.svg, f.svg,
-/// ghosts.svg (Fig. 5) and view_time.svg (Fig. 7) into `directory`. Each file appears under its name only when it is
-/// whole. `num_pictures`: of the worst views of each configuration, which the caller draws (worst_views.hpp).
+/// ghosts.svg (paper, Fig. 5) and view_time.svg (Fig. 7) to `directory`. Each file appears under its name only when it
+/// is complete. `num_pictures`: pictures of the worst views per configuration that the report refers to; the caller
+/// draws them (worst_views.hpp).
 [[nodiscard]] Result<void> write_evaluation(const std::filesystem::path& directory, const EvaluationHeader& header,
                                             std::span<const EvaluatedRun> runs, int num_pictures = 0);
 

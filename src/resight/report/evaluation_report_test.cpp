@@ -48,7 +48,7 @@ std::vector<EvaluatedRun> make_runs() {
           make_run("mvr-chd", 5)};
 }
 
-// Rows of a Markdown table have as many cells as its header.
+// Rows of a Markdown table must have as many cells as the header.
 void expect_whole_tables(const std::string& text) {
   std::istringstream lines(text);
   std::ptrdiff_t bars = 0;
@@ -72,11 +72,11 @@ TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
   const std::string text = format_evaluation_tables({"set", "1.2.3"}, summaries, compare_presets(runs));
   expect_whole_tables(text);
   expect_whole_tables(format_evaluation_times({"set", "1.2.3"}, summaries));
-  EXPECT_NE(text.find("| `mvr` | 5 | .600 | .231 | .333 |"), std::string::npos) << text;
-  EXPECT_NE(text.find("| 2 | 0.50 |"), std::string::npos);          // ghosts, per place left
-  EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // clustering keeps 10 of 40
+  EXPECT_NE(text.find("| `mvr` | 5 | 0.600 | 0.231 | 0.333 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 2 | 0.50 |"), std::string::npos);          // Ghosts, and per former place.
+  EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // Clustering keeps 10 of 40.
   EXPECT_NE(text.find("no keypoints"), std::string::npos);
-  EXPECT_NE(text.find("| `mvr` | 5 | .500 | - | - | .500 / .000 (2) | - |"), std::string::npos)
+  EXPECT_NE(text.find("| `mvr` | 5 | 0.500 | - | - | 0.500 / 0.000 (2) | - |"), std::string::npos)
       << "two ghosts of score .5";
   EXPECT_NE(text.find("| `mvr-chd` - `mvr` | 5 | 1 | +0.000 ± - |"), std::string::npos);
 }

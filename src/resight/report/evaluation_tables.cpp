@@ -20,11 +20,8 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 std::string format_number(double value, int digits) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
 }
-// As the paper writes shares: .93
-std::string share(double value) {
-  std::string text = format_number(value, 3);
-  return text.starts_with("0.") ? text.substr(1) : text;
-}
+// Share with three decimals; "-" for NaN.
+std::string share(double value) { return format_number(value, 3); }
 std::string prf(const RecognitionScore& s) {
   return fmt::format("{} | {} | {}", share(s.precision()), share(s.recall()), share(s.f_score()));
 }
@@ -37,7 +34,7 @@ std::string recognition_table(Configurations configurations) {
       "## Recognition over K\n\n"
       "| preset | K | precision | recall | F | strict precision | strict recall | strict F | centre median | centre 95 "
       "% | "
-      "rotation median | rotation 95 % | ghosts | per place left |\n"
+      "rotation median | rotation 95 % | ghosts | per former place |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ConfigurationSummary& c : configurations)
     text += fmt::format(
@@ -56,9 +53,9 @@ std::string difference(const PairedDifference& d, int digits) {
 std::string comparison_table(std::span<const PresetComparison> comparisons) {
   if (comparisons.empty()) return {};
   std::string text =
-      "\n## Differences between presets\n\nMean over the sequences of the difference in each, and its standard "
+      "\n## Differences between presets\n\nMean difference over the sequences, and its standard "
       "error.\n\n"
-      "| presets | K | sequences | precision | recall | F | strict F | ghosts per place left |\n"
+      "| presets | K | sequences | precision | recall | F | strict F | ghosts per former place |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const PresetComparison& c : comparisons)
     text += fmt::format("| `{}` - `{}` | {} | {} | {} | {} | {} | {} | {} |\n", c.b, c.a, c.num_previous_views,
@@ -111,9 +108,8 @@ std::string reliability_table(Configurations configurations) {
     for (const ScoreBin& bin : c.reliability.bins()) rows += fmt::format(" {} |", bin_cell(bin));
     rows += "\n";
   }
-  return fmt::format(
-      "\n## Scores\n\nDetections by their score: mean score / share of them that is right (how many).\n\n{}\n{}\n{}",
-      header, rule, rows);
+  return fmt::format("\n## Scores\n\nDetections by score: mean score / share that is right (count).\n\n{}\n{}\n{}",
+                     header, rule, rows);
 }
 
 std::string points_cells(const ChangePointScore& s) {
@@ -137,14 +133,12 @@ std::string change_table(Configurations configurations) {
                         share(c.events.arrivals.precision()), share(c.events.arrivals.recall()));
   }
   if (rows.empty()) return {};
-  return "\n## Changes\n\nPoints of what has left (removed) and come (novel), and events: added, moved, removed, with "
-         "their "
-         "places. A departure is the place of what was removed or moved, an arrival that of what was added or "
-         "moved.\n\n"
+  return "\n## Changes\n\nPoints of objects that have left (removed) or arrived (novel), and events: added, moved, "
+         "removed, with their places. A departure is the former place of a removed or moved object, an arrival the new "
+         "place of an added or moved one.\n\n"
          "| preset | K | removed precision | removed recall | novel precision | novel recall | event precision | event "
          "recall | mean delay (views) | later than one view | departure precision | departure recall | arrival "
-         "precision "
-         "| arrival recall |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" +
+         "precision | arrival recall |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" +
          rows;
 }
 
@@ -165,7 +159,7 @@ std::string loss_header(const std::string& first, const std::vector<std::string>
     text += " " + stage + " |";
     rule += "---|";
   }
-  // `first` begins with a bar that opens no column.
+  // The leading bar of `first` opens no column.
   return text + "\n" + rule.substr(0, rule.size() - 4) + "\n";
 }
 
@@ -187,10 +181,10 @@ std::string found_row(const std::string& first, const FoundCount& count, const s
 
 std::string breakdown(const ConfigurationSummary& c, const std::vector<std::string>& stages) {
   std::string text = fmt::format("\n## {}, K = {}: objects and visibility\n\n", name_of(c), c.num_previous_views);
-  text += loss_header("| object | to find | recall | false |", stages);
+  text += loss_header("| object | instances | recall | false |", stages);
   for (const auto& [name, count] : c.by_object) text += found_row(name, count, stages);
   text += '\n';
-  text += loss_header("| visible share | to find | recall | false |", stages);
+  text += loss_header("| visible share | instances | recall | false |", stages);
   const auto bins = visible_share_bins();
   for (std::size_t i = 0; i < c.by_visible_share.size(); ++i) {
     if (i == bins.size() && c.by_visible_share[i].found + c.by_visible_share[i].missed == 0) continue;
@@ -202,7 +196,7 @@ std::string breakdown(const ConfigurationSummary& c, const std::vector<std::stri
   return text;
 }
 
-// The stages that occur, in the order of the way through the recogniser.
+// The stages that occur, in processing order.
 std::vector<std::string> stages_of(Configurations configurations) {
   std::set<std::string> names;
   for (const ConfigurationSummary& c : configurations)
@@ -229,7 +223,7 @@ std::string format_evaluation_tables(const EvaluationHeader& header, Configurati
   std::string text =
       title("Evaluation", header, configurations) +
       " Right: within 5 cm and 30 deg (strict: 1 cm and 10 deg) of an object that is at least 5 % visible. "
-      "Ghost: an object reported at a place that it has left.\n\n";
+      "Ghost: an object reported at a place it has left.\n\n";
   text += recognition_table(configurations) + comparison_table(comparisons) + reliability_table(configurations) +
           clustering_table(configurations) + change_table(configurations);
   text += loss_table(configurations, stages);
@@ -239,11 +233,11 @@ std::string format_evaluation_tables(const EvaluationHeader& header, Configurati
 
 std::string format_evaluation_times(const EvaluationHeader& header, Configurations configurations) {
   std::string text = title("Times", header, configurations) +
-                     " Wall seconds a view. Features, matching and hypotheses of a view are made once and counted in "
+                     " Per view. Features, matching and hypotheses of a view are computed once and counted in "
                      "every configuration that uses them.\n";
   for (const ConfigurationSummary& c : configurations) {
-    text += fmt::format("\n## {}, K = {}\n\n| stage | wall ms a view | CPU ms a view |\n|---|---|---|\n", name_of(c),
-                        c.num_previous_views);
+    text += fmt::format("\n## {}, K = {}\n\n| stage | wall ms per view | CPU ms per view |\n|---|---|---|\n",
+                        name_of(c), c.num_previous_views);
     double cpu_s = 0;
     for (const StageTime& stage : c.times.stages()) {
       text += fmt::format("| {} | {:.2f} | {:.2f} |\n", stage.stage, 1e3 * stage.wall_s / c.num_views,

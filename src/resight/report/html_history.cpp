@@ -13,7 +13,7 @@ namespace {
 struct CellLook {
   const char* css_class;
   const char* glyph;
-  int weight;  // of several events in one cell, the weightiest is shown
+  int weight;  // Of several events in one cell, the one with the largest weight is shown.
 };
 
 CellLook style_of_event(ObjectEventKind kind) {
@@ -34,13 +34,13 @@ CellLook style_of_event(ObjectEventKind kind) {
   return {"none", "", -1};
 }
 
-/// The rows of the table: what happened to each tracked object, by view.
+/// Rows of the table: events of each track by view.
 struct Timeline {
   struct Row {
     int object = -1;
-    std::map<int, ObjectEventKind> events;  // by view
+    std::map<int, ObjectEventKind> events;  // By view.
   };
-  std::map<int, Row> rows;  // by track
+  std::map<int, Row> rows;  // By track.
 
   void add(const ObjectEvent& event) {
     Row& row = rows[event.track];
@@ -109,7 +109,7 @@ std::string history_section(std::span<const ReportRun> runs, const ModelLibrary&
               timeline_table(run, timeline, library) + "</section>\n";
   }
   if (tables.empty()) return "";
-  return "<h2 id=\"history\">What happened to the objects</h2>\n" + legend() + tables;
+  return "<h2 id=\"history\">Object history</h2>\n" + legend() + tables;
 }
 
 }  // namespace resight::report

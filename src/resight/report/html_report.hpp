@@ -9,14 +9,14 @@
 
 namespace resight {
 
-/// The runs side by side as one HTML page that needs no other file and no network: what was found and when it changed,
-/// scores where there is ground truth, times, and each view with its overlay, detections and events. The runs may be of
-/// different presets over one sequence; views are lined up by their number. Throws std::invalid_argument without a run.
+/// Formats the runs side by side as one self-contained HTML page: objects and their changes, scores if there is ground
+/// truth, times, and each view with its overlay, detections and events. The runs may use different presets on one
+/// sequence; views are aligned by their numbers. Throws std::invalid_argument without a run.
 [[nodiscard]] std::string format_report(const std::string& title, std::span<const ReportRun> runs,
                                         const ModelLibrary& library);
 
-/// format_report() into a file, which appears under its name only when it is whole; its folder is made if it is
-/// missing.
+/// Writes format_report() to a file, which appears under its name only when it is complete. Creates the folder if
+/// necessary.
 [[nodiscard]] Result<void> write_report(const std::filesystem::path& path, const std::string& title,
                                         std::span<const ReportRun> runs, const ModelLibrary& library);
 

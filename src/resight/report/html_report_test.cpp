@@ -27,7 +27,7 @@ int count_of(const std::string& text, const std::string& part) {
 
 std::string report_of(const std::vector<ReportRun>& runs) { return format_report("A title", runs, make_library()); }
 
-/// Names the first tag that is closed out of turn, or "" if all are well nested. Counts the tags it has seen.
+/// Returns the first tag that is closed out of order, or "" if all are properly nested. Counts the tags.
 std::string first_bad_tag(const std::string& html, int& num_tags) {
   const std::set<std::string> never_closed = {"!DOCTYPE", "meta", "img", "br"};
   std::vector<std::string> open;
@@ -57,7 +57,7 @@ TEST(FormatReport, IsWellNested) {
 TEST(FormatReport, NeedsNoNetworkAndNoOtherFile) {
   const std::string html = report_of({make_run()});
   for (const char* outside : {"http:", "https:", "//", "<link", "<script", "@import", "url("}) {
-    // Base64 holds slashes, so pictures are left out of the search.
+    // Base64 contains slashes, so pictures are excluded.
     std::string text = html;
     for (std::size_t at = text.find("base64,"); at != std::string::npos; at = text.find("base64,", at + 1)) {
       text.erase(at + 7, text.find('"', at) - at - 7);
@@ -169,7 +169,7 @@ TEST(Base64, KnownWordsAndRoundTrip) {
   const auto encode = [](const std::string& text) {
     return report::base64(std::vector<std::uint8_t>(text.begin(), text.end()));
   };
-  EXPECT_EQ(encode(""), "");  // RFC 4648, section 10
+  EXPECT_EQ(encode(""), "");  // RFC 4648, Sec. 10.
   EXPECT_EQ(encode("f"), "Zg==");
   EXPECT_EQ(encode("fo"), "Zm8=");
   EXPECT_EQ(encode("foobar"), "Zm9vYmFy");

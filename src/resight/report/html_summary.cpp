@@ -40,7 +40,7 @@ void add_score_rows(SummaryTable& table) {
   table.add_row("Found / false / missed", [](const ReportRun&, const RunSummary& s) { return counts_text(s.score); });
   table.add_row("Precision / recall / F <span class=\"soft\">within 1 cm, 10°</span>",
                 [](const ReportRun&, const RunSummary& s) { return score_text(s.strict_score); });
-  table.add_row("Ghosts <span class=\"soft\">reported where the object has left</span>",
+  table.add_row("Ghosts <span class=\"soft\">objects reported at a place they have left</span>",
                 [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_ghosts); });
   table.add_row("Views with ground truth",
                 [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_judged_views); });
@@ -151,7 +151,7 @@ std::string settings_section(std::span<const ReportRun> runs) {
   }
   if (names.empty()) return "";
   std::string html = "<h2 id=\"settings\">Settings</h2>\n<section class=\"card\"><details><summary>All " +
-                     std::to_string(names.size()) + " settings; those in bold differ</summary><table>" +
+                     std::to_string(names.size()) + " settings; differences in bold</summary><table>" +
                      run_header_row(runs) + "<tbody>\n";
   for (const std::string& name : names) {
     const std::string first = setting_of(runs.front(), name);

@@ -16,7 +16,7 @@ std::string position_text(const Rigid3& pose) {
   return fmt::format("{:.3f} {:.3f} {:.3f}", t.x(), t.y(), t.z());
 }
 
-/// Rotation vector in degrees: the axis, as long as the angle.
+/// Rotation vector in degrees: rotation axis times angle.
 std::string rotation_text(const Rigid3& pose) {
   const Eigen::AngleAxisd turn(pose.rotation);
   const Eigen::Vector3d degrees = turn.axis() * (turn.angle() * 180 / std::numbers::pi);
@@ -31,13 +31,13 @@ std::string verdict_cell(DetectionMark mark) {
 }
 
 std::string detections_table(const ViewRecord& view, const ModelLibrary& library) {
-  if (view.update.detections.empty()) return "<p class=\"soft\">Nothing recognised.</p>\n";
+  if (view.update.detections.empty()) return "<p class=\"soft\">No objects recognised.</p>\n";
   const bool judged = view.evaluation.has_value();
   std::string html = "<table><thead><tr><th>Object</th>";
   if (judged) html += "<th>Verdict</th>";
   html +=
       "<th class=\"n\">Track</th><th class=\"n\">Score</th><th class=\"n\">Visible</th>"
-      "<th>Position in world, m</th><th title=\"Rotation vector: the axis, as long as the angle\">Rotation, "
+      "<th>Position in world, m</th><th title=\"Rotation vector: axis times angle\">Rotation, "
       "°</th></tr></thead><tbody>\n";
   for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
     const Detection& detection = view.update.detections[i];
@@ -86,13 +86,13 @@ std::string details(const ViewRecord& view) {
   std::string html = fmt::format(
       "<details><summary>{} in {} stages; {} hypotheses verified</summary>"
       "<p>Correspondences {} · hypotheses of this view {} · with those of earlier views {} · after clustering {} · "
-      "accepted {}<br>Scene points {} · novel {} · removed {} · share of the seen surface that changed {}{}</p>"
+      "accepted {}<br>Scene points {} · novel {} · removed {} · changed share of the visible surface {}{}</p>"
       "<table><thead><tr><th>Stage</th><th class=\"n\">Wall</th><th class=\"n\">CPU</th></tr></thead><tbody>\n",
       duration(view.update.times.total_wall_s()), view.update.times.stages().size(), counts.clustered,
       counts.correspondences, counts.generated, counts.merged, counts.clustered, counts.accepted,
       view.update.reconstruction_points, view.num_novel_points, view.num_removed_points,
       percent(view.update.changes.changed_share),
-      view.update.changes.pose_suspect ? " · <b>camera pose suspect: no changes taken from this view</b>" : "");
+      view.update.changes.pose_suspect ? " · <b>camera pose suspect: changes of this view ignored</b>" : "");
   for (const StageTime& time : view.update.times.stages()) {
     html += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n", escape(time.stage),
                         duration(time.wall_s), duration(time.cpu_s));
@@ -112,11 +112,9 @@ std::string view_column(const ReportRun& run, const ViewRecord& view, const Mode
 }
 
 std::string picture_legend() {
-  return "<p class=\"soft\">Solid outline: recognised. Dashed: false by the ground truth (crossed out: a ghost, where "
-         "the "
-         "object has left). Dotted white: missed. <span class=\"patch\" style=\"background:#1ec83c\"></span>new "
-         "surface, "
-         "<span class=\"patch\" style=\"background:#eb1e28\"></span>surface seen to be gone.</p>\n";
+  return "<p class=\"soft\">Solid outline: recognised. Dashed: false positive (crossed out: a ghost, at a place the "
+         "object has left). Dotted white: missed. <span class=\"patch\" style=\"background:#1ec83c\"></span>novel "
+         "surface, <span class=\"patch\" style=\"background:#eb1e28\"></span>removed surface.</p>\n";
 }
 
 }  // namespace
@@ -138,7 +136,7 @@ std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& l
   for (const ReportRun& run : runs) {
     const std::string late = events_list(run.final_events, library);
     if (late.empty()) continue;
-    html += "<article><h3>Known after the last view <span class=\"soft\">" + escape(run.preset) + "</span></h3>\n" +
+    html += "<article><h3>Reported after the last view <span class=\"soft\">" + escape(run.preset) + "</span></h3>\n" +
             late + "</article>\n";
   }
   return html;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kWidth = 560, kHeight = 360;
 constexpr double kLeft = 64, kRight = 16, kTop = 36, kBottom = 78;
-// Distinguishable with the common colour deficiencies (Okabe and Ito).
+// Distinguishable with common colour vision deficiencies (Okabe and Ito).
 constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
 struct Range {
@@ -30,7 +30,7 @@ struct Range {
   [[nodiscard]] bool empty() const { return !(low <= high); }
 };
 
-// 1, 2 or 5 times a power of ten, so that about `count` steps fill the range.
+// Step of 1, 2 or 5 times a power of ten, such that about `count` steps fill the range.
 double round_step(double range, int count) {
   const double raw = range / count;
   const double power = std::pow(10, std::floor(std::log10(raw)));

@@ -6,11 +6,11 @@
 
 namespace resight {
 
-/// A line of a plot. Points with a NaN are left out, and the line is interrupted there.
+/// A line of a plot. NaN points are skipped and interrupt the line.
 struct PlotSeries {
   std::string name;
   std::vector<double> x;
-  std::vector<double> y;  ///< As long as x.
+  std::vector<double> y;  ///< Same length as x.
 };
 
 struct LinePlot {
@@ -18,11 +18,11 @@ struct LinePlot {
   std::string x_label;
   std::string y_label;
   std::vector<PlotSeries> series;
-  std::optional<double> y_min, y_max;  ///< Absent: from the data, zero included.
+  std::optional<double> y_min, y_max;  ///< Absent: from the data, including zero.
 };
 
-/// The plot as a stand-alone SVG picture. Series keep their colour by their position. Throws std::invalid_argument for
-/// a series whose x and y differ in length.
+/// Formats the plot as a stand-alone SVG image. The colour of a series depends on its position. Throws
+/// std::invalid_argument if x and y of a series differ in length.
 [[nodiscard]] std::string format_svg(const LinePlot& plot);
 
 }  // namespace resight

@@ -25,7 +25,7 @@ constexpr Rgb8 kMissedColor{255, 255, 255};
 
 struct OutlineLook {
   LineStyle style = LineStyle::kSolid;
-  double thickness = 1.0;  // share of the thickness asked for
+  double thickness = 1.0;  // Factor of DrawOverlayOptions::outline_px.
 };
 
 OutlineLook look_of(DetectionMark mark) {
@@ -71,7 +71,7 @@ void require_valid(const RgbdFrame& frame) {
   require(valid.ok(), valid.ok() ? "" : valid.error().message);
 }
 
-/// One frame's drawing: what is drawn last lies on top, so labels come after all outlines.
+/// Draws one frame. Later drawings cover earlier ones, so labels come last.
 class OverlayPainter {
  public:
   OverlayPainter(Image<Rgb8>& picture, const RgbdFrame& frame, const ModelLibrary& library,
@@ -93,7 +93,8 @@ class OverlayPainter {
     if (outline.empty()) return;
     const OutlineLook look = look_of(mark);
     const int width = line_width_px(options_.outline_px, look.thickness);
-    report::draw_outline(canvas_, outline, {0, 0, 0}, look.style, width + 2);  // a dark rim shows on any ground
+    // A dark rim makes the line visible on any background.
+    report::draw_outline(canvas_, outline, {0, 0, 0}, look.style, width + 2);
     report::draw_outline(canvas_, outline, color, look.style, width);
     const cv::Rect box = report::bounding_box(outline);
     if (mark == DetectionMark::kGhost) cross_out(canvas_, box, color, width);
@@ -175,7 +176,7 @@ Image<Rgb8> draw_overlay(const RgbdFrame& frame, const ModelLibrary& library, co
           "draw_overlay: marks must be empty or one per detection");
   for (const Detection& detection : update.detections) {
     require(detection.object >= 0 && detection.object < static_cast<int>(library.objects.size()),
-            "draw_overlay: a detection names no object of the library");
+            "draw_overlay: the object of a detection is not in the library");
   }
   Image<Rgb8> picture = frame.color;
   if (options.show_changes) tint_changes(picture, frame, update.changes, options.change_opacity);

@@ -42,7 +42,7 @@ TEST(DrawOverlay, OutlineOfABallIsItsCircle) {
   const double depth_m = 0.8;
   const double radius_m = 0.05;
   const Image<Rgb8> picture = overlay_of({make_detection(frame, 0, at(0, 0, depth_m))});
-  // On the optical axis the silhouette of a ball is a circle of this radius.
+  // On the optical axis, the silhouette of a ball is a circle of this radius.
   const double circle_px = frame.camera.fx * radius_m / std::sqrt(depth_m * depth_m - radius_m * radius_m);
   int drawn = 0;
   std::vector<int> per_direction(36, 0);

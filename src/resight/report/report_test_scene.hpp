@@ -7,13 +7,13 @@
 
 #include "resight/report/view_record.hpp"
 
-// A small made-up scene for the tests of the report: two balls and a slab before a wall.
+// A small synthetic scene for the tests of the report: two balls and a slab in front of a wall.
 namespace resight::test {
 
 inline PointCloud make_ball(double radius_m) {
   PointCloud cloud;
   const int num_points = 4000;
-  for (int i = 0; i < num_points; ++i) {  // Fibonacci sphere
+  for (int i = 0; i < num_points; ++i) {  // Fibonacci sphere.
     const double z = 1 - 2 * (i + 0.5) / num_points;
     const double angle = i * 2.399963229728653;
     const double ring = std::sqrt(1 - z * z);
@@ -85,7 +85,7 @@ inline SceneUpdate make_update(const RgbdFrame& frame, int view) {
   return update;
 }
 
-/// View 0: ball and slab are recognised. View 1: the ball has moved, the slab is gone, and something new stands there.
+/// View 0: ball and slab are recognised. View 1: the ball has moved, the slab is removed, and a new surface appears.
 inline std::vector<SceneUpdate> make_updates(const RgbdFrame& frame) {
   std::vector<SceneUpdate> updates = {make_update(frame, 0), make_update(frame, 1)};
   const Rigid3 old_ball = at(-0.2, 0, 1);

@@ -8,7 +8,7 @@
 namespace resight {
 
 Result<void> write_results(const std::filesystem::path& directory, const ReportRun& run, const ModelLibrary& library) {
-  // All are made before the first is written: a mistake in one must not leave half a set.
+  // All texts are formatted before the first is written, so that an error in one leaves no partial set.
   const std::pair<const char*, std::string> files[] = {{"detections.csv", format_detections_csv(run, library)},
                                                        {"detections.json", format_detections_json(run, library)},
                                                        {"changes.json", format_changes_json(run, library)},

@@ -15,7 +15,7 @@ std::string format_detections_csv(const ReportRun& run, const ModelLibrary& libr
     const Rigid3 camera_from_world = view.update.world_from_camera.inverse();
     for (const Detection& detection : view.update.detections) {
       require(detection.object >= 0 && static_cast<std::size_t>(detection.object) < library.objects.size(),
-              "format_detections_csv: a detection names no object of the library");
+              "format_detections_csv: the object of a detection is not in the library");
       const Rigid3 pose = camera_from_world * detection.world_from_object;
       const Eigen::Matrix3d& r = pose.rotation;
       const Eigen::Vector3d t_mm = pose.translation * 1000.0;

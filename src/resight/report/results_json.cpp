@@ -27,7 +27,7 @@ Json pose_json(const Rigid3& pose) {
 
 Json optional_pose_json(const std::optional<Rigid3>& pose) { return pose ? pose_json(*pose) : Json(nullptr); }
 
-// Numbers row by row; null where it is not known.
+// Numbers row by row; null if unknown.
 Json uncertainty_json(const PoseUncertainty& uncertainty) {
   if (!uncertainty.is_known()) return nullptr;
   const auto& c = uncertainty.covariance;
@@ -37,8 +37,8 @@ Json uncertainty_json(const PoseUncertainty& uncertainty) {
   std::vector<double> rows;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k) rows.push_back(c(i, k));
-  return {{"turn_std_rad", {std_of(0), std_of(1), std_of(2)}},
-          {"shift_std_m", {std_of(3), std_of(4), std_of(5)}},
+  return {{"rotation_std_rad", {std_of(0), std_of(1), std_of(2)}},
+          {"translation_std_m", {std_of(3), std_of(4), std_of(5)}},
           {"covariance", rows},
           {"free_directions", free}};
 }

@@ -31,7 +31,7 @@ std::string read_all(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A folder of its own, gone at the end of the test.
+/// A temporary folder per test.
 class ResultsFolder : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -174,7 +174,7 @@ TEST_F(ResultsFolder, AFileInTheWayIsAnErrorThatNamesIt) {
 }
 
 TEST_F(ResultsFolder, NothingHalfWrittenStaysBehind) {
-  // The target is a folder, so the last step, the renaming, fails.
+  // The target is a folder, so the final renaming fails.
   fs::create_directories(folder_ / "detections.csv" / "full");
   ASSERT_FALSE(write_results(folder_, make_run(), make_library()).ok());
   int entries = 0;

@@ -14,7 +14,7 @@ std::vector<DetectionMark> marks_of(const ViewEvaluation& evaluation, std::size_
   std::vector<DetectionMark> marks(num_detections, DetectionMark::kUnjudged);
   const auto set = [&marks](int detection, DetectionMark mark) {
     require(detection >= 0 && static_cast<std::size_t>(detection) < marks.size(),
-            "make_view_record: the evaluation is of other detections");
+            "make_view_record: the evaluation does not match the detections");
     marks[static_cast<std::size_t>(detection)] = mark;
   };
   for (const DetectionMatch& match : evaluation.matching.matches) set(match.detection, DetectionMark::kCorrect);
@@ -43,7 +43,7 @@ std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const
   std::vector<DetectedObject> objects;
   for (const Detection& detection : update.detections) {
     require(detection.object >= 0 && static_cast<std::size_t>(detection.object) < library.objects.size(),
-            "to_detected_objects: a detection names no object of the library");
+            "to_detected_objects: the object of a detection is not in the library");
     objects.push_back({library.objects[static_cast<std::size_t>(detection.object)].name,
                        camera_from_world * detection.world_from_object, detection.score});
   }

@@ -13,43 +13,44 @@
 
 namespace resight {
 
-/// How a view compares with its ground truth.
+/// Comparison of a view with its ground truth.
 struct ViewEvaluation {
-  MatchDetectionsResult matching;  ///< Within 5 cm and 30 deg, unless asked otherwise.
+  MatchDetectionsResult matching;  ///< Within 5 cm and 30 deg by default.
   RecognitionScore strict_score;   ///< Within 1 cm and 10 deg.
   std::vector<Ghost> ghosts;
-  std::vector<GroundTruthObject> missed;  ///< The false negatives.
+  std::vector<GroundTruthObject> missed;  ///< False negatives.
 };
 
-/// What the results and the report keep of a view: no clouds and no images but one compressed picture, so that a long
-/// run stays small.
+/// What results and report keep of a view. Instead of clouds and images, it holds one compressed picture, so that long
+/// runs need little memory.
 struct ViewRecord {
-  int scene_id = 0;    ///< BOP scene; 0 elsewhere.
-  int image_id = 0;    ///< BOP image; the number of the view elsewhere.
+  int scene_id = 0;    ///< BOP scene, or 0.
+  int image_id = 0;    ///< BOP image, or the number of the view.
   SceneUpdate update;  ///< Without the clouds and the mask of `changes`.
   std::size_t num_novel_points = 0;
   std::size_t num_removed_points = 0;
   std::vector<DetectionMark> marks;          ///< One per detection.
-  std::optional<ViewEvaluation> evaluation;  ///< Where there is ground truth.
-  std::vector<std::uint8_t> picture_jpeg;    ///< The overlay; empty = none.
+  std::optional<ViewEvaluation> evaluation;  ///< If there is ground truth.
+  std::vector<std::uint8_t> picture_jpeg;    ///< Overlay; empty = none.
 };
 
-/// One recognition run over a sequence: what the results files and a column of the report show.
+/// One recognition run over a sequence: the content of the results files and of one column of the report.
 struct ReportRun {
   std::string preset;
-  std::string sequence;                                       ///< Name or path, for the reader.
-  std::string version;                                        ///< Of resight.
-  std::vector<std::pair<std::string, std::string>> settings;  ///< RecognizerConfig::to_settings().
+  std::string sequence;                                       ///< Name or path, for display.
+  std::string version;                                        ///< Version of resight.
+  std::vector<std::pair<std::string, std::string>> settings;  ///< From RecognizerConfig::to_settings().
   std::vector<ViewRecord> views;
-  std::vector<ObjectEvent> final_events;  ///< SceneRecognizer::finish(): events that were waiting for a further view.
-  std::size_t peak_memory_bytes = 0;      ///< 0 = unknown.
-  int num_threads = 0;                    ///< 0 = unknown.
+  /// From SceneRecognizer::finish(): events that were waiting for a further view.
+  std::vector<ObjectEvent> final_events;
+  std::size_t peak_memory_bytes = 0;  ///< 0 = unknown.
+  int num_threads = 0;                ///< 0 = unknown.
 };
 
-/// The detections of a view in the camera frame, by name, as the evaluation takes them.
+/// Detections of a view in the camera frame, by name, as input of the evaluation.
 [[nodiscard]] std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const ModelLibrary& library);
 
-/// Scores one view. `former_places`: see find_former_places(); `update.view` says which of them are former by now.
+/// Scores one view. `former_places`: see find_former_places(); `update.view` determines which of them apply.
 [[nodiscard]] ViewEvaluation evaluate_view(const SceneUpdate& update, std::span<const GroundTruthObject> truth,
                                            std::span<const FormerPlace> former_places, const Camera& camera,
                                            const ModelLibrary& library, const MatchDetectionsOptions& options = {});
@@ -62,7 +63,7 @@ struct MakeViewRecordOptions {
   void check() const;  ///< Throws std::invalid_argument: field, value, rule.
 };
 
-/// Condenses one view for the results and the report: draws its overlay, judged by `evaluation` if there is one, and
+/// Condenses one view for results and report: draws its overlay, with the verdicts of `evaluation` if there is one, and
 /// drops the clouds.
 [[nodiscard]] ViewRecord make_view_record(const RgbdFrame& frame, const ModelLibrary& library, SceneUpdate update,
                                           std::optional<ViewEvaluation> evaluation = std::nullopt,
@@ -72,8 +73,8 @@ struct MakeViewRecordOptions {
 struct RunSummary {
   int num_views = 0;
   int num_detections = 0;
-  int num_events = 0;        ///< Changes of the scene: events added, moved and removed.
-  int num_judged_views = 0;  ///< Views with ground truth; the scores are theirs.
+  int num_events = 0;        ///< Changes of the scene: added, moved and removed events.
+  int num_judged_views = 0;  ///< Views with ground truth, which the scores refer to.
   RecognitionScore score;
   RecognitionScore strict_score;
   int num_ghosts = 0;

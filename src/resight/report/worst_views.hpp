@@ -14,26 +14,26 @@ namespace resight {
 struct WorstView {
   const EvaluatedRun* run = nullptr;
   int view = 0;  ///< Index into run->views.
-  int rank = 0;  ///< In its configuration; 0 = the worst.
+  int rank = 0;  ///< Rank within its configuration; 0 = worst.
   int num_missed = 0;
   int num_wrong = 0;
 
   [[nodiscard]] const EvaluatedView& evaluated() const { return run->views[static_cast<std::size_t>(view)]; }
 };
 
-/// The views of each configuration with most missed and wrong objects, these first; of equals in the order of the runs.
-/// The runs must outlive the result.
+/// Finds the views of each configuration with the most missed and wrong objects, worst first (ties in the order of the
+/// runs). The runs must outlive the result.
 [[nodiscard]] std::vector<WorstView> find_worst_views(std::span<const EvaluatedRun> runs,
                                                       int max_views_per_configuration = 25);
 
-/// A page of them: each missed object with the stage at which it was lost, and each wrong one. Views of rank below
-/// `num_pictures` refer to the picture of worst_view_picture().
+/// Formats a Markdown page with each missed object, the stage at which it was lost, and each wrong object. Views of
+/// rank below `num_pictures` refer to the picture worst_view_picture().
 [[nodiscard]] std::string format_worst_views(std::span<const WorstView> views, int num_pictures = 0);
 
-/// Where the picture of a view is to lie beside the page: "worst/<preset>_k<K>_<sequence>_<view>.jpg".
+/// Path of a view's picture relative to the page: "worst/<preset>_k<K>_<sequence>_<view>.jpg".
 [[nodiscard]] std::string worst_view_picture(const WorstView& view);
 
-/// The view with its right and wrong detections, and what was missed in white. `truth`: that of the view.
+/// Draws the view with its right and wrong detections, and missed objects in white. `truth`: ground truth of the view.
 [[nodiscard]] Image<Rgb8> draw_evaluated_view(const RgbdFrame& frame, const ModelLibrary& library,
                                               std::span<const GroundTruthObject> truth, const EvaluatedView& view);
 

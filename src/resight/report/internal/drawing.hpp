@@ -10,33 +10,33 @@
 
 namespace resight::report {
 
-/// Closed pixel lines around the parts of a shape, pixel by pixel.
+/// Closed pixel contours of the components of a shape.
 using Outline = std::vector<std::vector<cv::Point>>;
 
 enum class LineStyle { kSolid, kDashed, kDotted };
 
-/// The image as OpenCV sees it, in the same memory and in the order red, green, blue.
+/// Wraps the image for OpenCV without copying. Channel order: red, green, blue.
 [[nodiscard]] cv::Mat as_mat(Image<Rgb8>& image);
 [[nodiscard]] cv::Scalar to_scalar(Rgb8 color);
 
-/// Outline of a surface (object frame) as it projects into the image; gaps between its points, `voxel_m` apart, are
-/// closed. Empty where nothing of it lies before the camera and within the image.
+/// Outline of the projection of a surface (object frame). Gaps between its points, which are `voxel_m` apart, are
+/// closed. Empty if no part lies in front of the camera and within the image.
 [[nodiscard]] Outline project_outline(const Camera& camera, const Rigid3& camera_from_object, const PointCloud& surface,
                                       double voxel_m);
 [[nodiscard]] cv::Rect bounding_box(const Outline& outline);
 void draw_outline(cv::Mat& canvas, const Outline& outline, Rgb8 color, LineStyle style, int thickness_px);
 
-/// Mixes `color` into the pixels where `mask` is set.
+/// Blends `color` into the pixels with non-zero `mask`.
 void tint(Image<Rgb8>& image, const Image<std::uint8_t>& mask, Rgb8 color, double opacity);
-/// Non-zero where a point projects, a small square each; points behind the camera are left out.
+/// Mask of the projected points, a small square each. Points behind the camera are skipped.
 [[nodiscard]] Image<std::uint8_t> project_points(const Camera& camera, const Rigid3& camera_from_world,
                                                  const PointCloud& points_in_world);
 
-/// Places text on coloured boxes so that they do not cover each other as long as there is room.
+/// Places text on coloured boxes that do not overlap as long as there is room.
 class LabelPainter {
  public:
   explicit LabelPainter(cv::Mat& canvas) : canvas_(canvas) {}
-  /// Above the box `target`, or as near to that as is free.
+  /// Draws the label above the box `target`, or at the nearest free position.
   void draw(const std::string& text, const cv::Rect& target, Rgb8 color);
 
  private:
