@@ -19,7 +19,7 @@ float descriptor_distance_sq(std::span<const float> a, std::span<const float> b)
       .squaredNorm();
 }
 
-// For each feature the others it may stand for, in ascending order.
+// For each feature, the similar features in ascending order.
 std::vector<std::vector<int>> find_similar(const FeatureSet& features, const FeatureMerging& merging, int num_threads) {
   const KdTree tree(features.points);
   const auto max_descriptor_sq = static_cast<float>(merging.max_descriptor_distance * merging.max_descriptor_distance);
@@ -39,7 +39,7 @@ std::vector<std::vector<int>> find_similar(const FeatureSet& features, const Fea
   return similar;
 }
 
-// Group number of each feature, groups in order of their lowest index.
+// Group number of each feature. Groups are in order of their lowest index.
 std::vector<int> group_greedily(const std::vector<std::vector<int>>& similar) {
   std::vector<int> order(similar.size());
   std::iota(order.begin(), order.end(), 0);

@@ -4,17 +4,18 @@
 
 namespace resight {
 
-/// When two features of an object count as one seen twice.
+/// Limits within which two features of an object count as one feature that was observed twice.
 struct FeatureMerging {
-  double max_distance_m = 0;           ///< Between their points; 0 = nothing is merged.
-  double max_descriptor_distance = 0;  ///< L2 between the unit descriptors.
+  double max_distance_m = 0;           ///< Largest distance of their points; 0 = nothing is merged.
+  double max_descriptor_distance = 0;  ///< Largest L2 distance of the unit descriptors.
   void check() const;
 };
 
-/// Merges what neighbouring training views repeat: each feature that has not been taken yet, those with most neighbours
-/// first (ties: lower index), takes all its remaining neighbours (near in space and in descriptor, normals within 60
-/// deg: the two sides of a thin wall stay apart) and stands for them with their mean point, normal and descriptor,
-/// renormalised. In order of the lowest index of each group. Same bytes for any `num_threads` >= 1.
+/// Merges features that adjacent training views repeat. Features are processed by falling number of neighbours (ties:
+/// lower index). Each feature that is still free takes its free neighbours: features close in space and in descriptor
+/// whose normals differ by less than 60 deg, so that both sides of a thin wall stay apart. The mean point, normal and
+/// descriptor of the group, renormalised, replace its members. Groups are in order of their lowest index. Gives the
+/// same bytes for any `num_threads` >= 1.
 [[nodiscard]] FeatureSet merge_similar_features(const FeatureSet& features, const FeatureMerging& merging,
                                                 int num_threads = 1);
 

@@ -27,7 +27,7 @@ Eigen::VectorXf random_descriptor(Rng& rng) {
   return d.normalized();
 }
 
-// `places` places far apart, each seen `times` times with small errors of place and descriptor.
+// Features of `places` distant places, each observed `times` times with small errors of point and descriptor.
 FeatureSet make_repeated(int places, int times, std::uint64_t seed) {
   Rng rng(seed);
   std::vector<Eigen::Vector3f> points;
@@ -53,7 +53,7 @@ TEST(MergeSimilarFeatures, LeavesOneOfEachRepetition) {
   const FeatureSet merged = merge_similar_features(make_repeated(50, 6, 1), kMerging);
   ASSERT_EQ(merged.size(), 50U);
   ASSERT_EQ(merged.descriptors.size(), 50U * kDimension);
-  for (int i = 0; i < 50; ++i) {  // in order of the first of each
+  for (int i = 0; i < 50; ++i) {  // in order of the first feature of each place
     const Eigen::Vector3f place(0.02F * static_cast<float>(i % 10), 0.02F * static_cast<float>(i / 10), 0.0F);
     EXPECT_LT((merged.points[i] - place).norm(), 0.0005F);
     EXPECT_NEAR(merged.normals[i].norm(), 1, 1e-5);
@@ -61,8 +61,8 @@ TEST(MergeSimilarFeatures, LeavesOneOfEachRepetition) {
   }
 }
 
-// No two that are left may be mergeable as representatives were chosen from the originals: every original lies within
-// the limits of some group's mean, roughly, and no group mixes what is farther apart than twice the limit.
+// Each original must lie roughly within the limits of the mean of some group, and no group may mix features that are
+// more than twice the limit apart.
 TEST(MergeSimilarFeatures, EachFeatureKeepsAStandIn) {
   Rng rng(2);
   FeatureSet set;
@@ -92,7 +92,7 @@ TEST(MergeSimilarFeatures, KeepsApartWhatDiffersInPlaceDescriptorOrSide) {
   b(3) = 1;
   FeatureSet set;
   add_feature(set, {0, 0, 0}, a);
-  add_feature(set, {0.0051F, 0, 0}, a);                   // too far
+  add_feature(set, {0.0051F, 0, 0}, a);                   // too far away
   add_feature(set, {0, 0, 0}, b);                         // another descriptor
   add_feature(set, {0, 0, 0.001F}, a, {0, 0, -1});        // the other side of a thin wall
   add_feature(set, {-0.001F, 0, 0}, a, {0, 0.6F, 0.8F});  // merges with the first
@@ -105,7 +105,7 @@ TEST(MergeSimilarFeatures, TheOneWithMostNeighboursStandsForAChain) {
   FeatureSet set;
   for (const float x : {0.0F, 0.004F, 0.008F}) add_feature(set, {x, 0, 0}, d);
   const FeatureSet merged = merge_similar_features(set, kMerging);
-  ASSERT_EQ(merged.size(), 1U);  // taken in order of index, 0 would swallow 4 mm and leave 8 mm alone
+  ASSERT_EQ(merged.size(), 1U);  // taken in order of index, 0 would absorb 4 mm and isolate 8 mm
   EXPECT_NEAR(merged.points[0].x(), 0.004, 1e-6);
 }
 
@@ -116,8 +116,8 @@ TEST(MergeSimilarFeatures, WhatIsTakenStaysTaken) {
   for (const float x : {0.0F, 0.004F, 0.008F, 0.012F, 0.016F}) add_feature(set, {x, 0, 0}, d);
   const FeatureSet merged = merge_similar_features(set, kMerging);
   ASSERT_EQ(merged.size(), 2U);
-  EXPECT_NEAR(merged.points[0].x(), 0.004, 1e-6);  // of 0, 4 and 8 mm
-  EXPECT_NEAR(merged.points[1].x(), 0.014, 1e-6);  // of what is left: 12 and 16 mm
+  EXPECT_NEAR(merged.points[0].x(), 0.004, 1e-6);  // mean of 0, 4 and 8 mm
+  EXPECT_NEAR(merged.points[1].x(), 0.014, 1e-6);  // mean of the remaining 12 and 16 mm
 }
 
 TEST(MergeSimilarFeatures, SameBytesForAnyNumberOfThreads) {

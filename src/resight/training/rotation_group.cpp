@@ -9,11 +9,11 @@ namespace {
 using Rotations = std::vector<Eigen::Matrix3d>;
 
 constexpr std::size_t kMaxElements = 60;
-constexpr double kSameElement_rad = 0.21;  // 12 deg; the elements of a group of orders up to 12 are 30 deg apart
-constexpr int kPolishingSteps = 6;         // each squares the error
+constexpr double kSameElement_rad = 0.21;  // 12 deg; elements of groups of orders up to 12 are 30 deg apart
+constexpr int kPolishingSteps = 6;         // each step squares the error
 constexpr double kPolishedError = 1e-9;
 
-// Index of the element that is nearest to a rotation; -1 if none is near enough to be the same.
+// Index of the element nearest to a rotation; -1 if none is near enough to be the same.
 int find_element(const Rotations& group, const Eigen::Matrix3d& rotation) {
   int best = -1;
   double best_angle = kSameElement_rad;
@@ -26,8 +26,8 @@ int find_element(const Rotations& group, const Eigen::Matrix3d& rotation) {
   return best;
 }
 
-// Each element b replaced by the mean of (b a) a^-1 over all a, which is a group but for the square of the errors
-// (Grove, Karcher, Ruh 1974). The largest change; none if a product is no element.
+// Replaces each element b by the mean of (b a) a^-1 over all a. The result is a group except for the square of the
+// errors (Grove, Karcher, Ruh 1974). Returns the largest change, or none if a product is not an element.
 std::optional<double> average_products(Rotations& group) {
   Rotations sums(group.size(), Eigen::Matrix3d::Zero());
   for (std::size_t b = 0; b < group.size(); ++b)

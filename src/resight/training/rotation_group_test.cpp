@@ -38,7 +38,7 @@ TEST(RotationGroup, KnownGroupsHaveTheirSize) {
   EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 2)}), 12U);               // tetrahedron
   EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 4)}), 24U);               // cube
   EXPECT_EQ(size_of({turn({0, 1, golden}, 5), turn({1, 1, 1}, 3)}), 60U);          // icosahedron
-  EXPECT_EQ(size_of({turn({0, 0, 1}, 5), turn({0, 1, 0}, 3)}), 0U) << "no group";  // dense in all rotations
+  EXPECT_EQ(size_of({turn({0, 0, 1}, 5), turn({0, 1, 0}, 3)}), 0U) << "no group";  // dense in the set of all rotations
 }
 
 TEST(RotationGroup, ErrorsOfAFewDegreesAreAveragedAway) {

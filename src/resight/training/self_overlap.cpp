@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::size_t kMaxPoints = 20000;  // more only cost time
+constexpr std::size_t kMaxPoints = 20000;  // more points only take longer
 constexpr std::size_t kPointsPerTask = 256;
 constexpr int kAreaNeighbors = 12;
 constexpr int kMatchNeighbors = 12;  // all within about two spacings
@@ -29,9 +29,11 @@ constexpr int kIcpSamples = 120;
 constexpr int kIcpNeighbors = 4;
 constexpr int kIcpSteps = 10;
 constexpr float kIcpMinCosine = 0.7F;
-constexpr double kIcpReach = 0.15;    // of the radius at first: what half a turn about an axis 4 deg off moves
-constexpr double kIcpDecay = 0.7;     // a step
-constexpr double kIcpDamping = 1e-4;  // of the mean square of a residual's derivative; for what the shape leaves free
+// Initial share of the radius: the displacement of a half turn if its axis is off by 4 deg.
+constexpr double kIcpReach = 0.15;
+constexpr double kIcpDecay = 0.7;  // per step
+// Relative to the mean square of the derivatives of residuals. Damps directions that the shape does not determine.
+constexpr double kIcpDamping = 1e-4;
 
 PointCloud downsample(const PointCloud& surface) {
   if (surface.size() <= kMaxPoints) return surface;
@@ -40,7 +42,7 @@ PointCloud downsample(const PointCloud& surface) {
   return select(surface, kept);
 }
 
-// The area that each point stands for, up to a factor: points of a voxel grid are denser where the surface is oblique.
+// Area that each point represents, up to a factor. Points of a voxel grid are denser where the surface is oblique.
 std::vector<double> find_areas(const PointCloud& surface, const KdTree& tree, int num_threads) {
   std::vector<double> areas(surface.size());
   parallel_for_blocks(surface.size(), kPointsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
@@ -57,7 +59,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// `count` points of which each stands for the same area (low-variance resampling).
+// Selects `count` points that represent equal areas (low-variance resampling).
 std::vector<int> spread_samples(const std::vector<double>& areas, int count) {
   double total = 0;
   for (const double area : areas) total += area;
@@ -70,20 +72,20 @@ std::vector<int> spread_samples(const std::vector<double>& areas, int count) {
   return samples;
 }
 
-// ITU-R BT.601.
+// Converts by ITU-R BT.601.
 Vector3f to_ycbcr(const Vector3f& rgb) {
   const float y = 0.299F * rgb.x() + 0.587F * rgb.y() + 0.114F * rgb.z();
   return {y, 0.564F * (rgb.z() - y), 0.713F * (rgb.x() - y)};
 }
 
-// The mean colour around each point, of what faces its way.
+// Mean colour around each point, over points with similar normals.
 std::vector<Vector3f> blur_colors(const PointCloud& surface, const KdTree& tree, double radius_m, int num_threads) {
   std::vector<Vector3f> blurred(surface.colors.size());
   parallel_for_blocks(blurred.size(), kPointsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
     std::vector<PointNeighbor> neighbors;
     for (std::size_t i = begin; i < end; ++i) {
       tree.within(surface.points[i], radius_m, neighbors);
-      neighbors.push_back({.index = static_cast<int>(i), .distance_sq = 0});  // never none
+      neighbors.push_back({.index = static_cast<int>(i), .distance_sq = 0});  // never empty
       Vector3f sum = Vector3f::Zero();
       float count = 0;
       for (const PointNeighbor& neighbor : neighbors) {
@@ -99,13 +101,13 @@ std::vector<Vector3f> blur_colors(const PointCloud& surface, const KdTree& tree,
   return blurred;
 }
 
-// What the normal equations of ICP are made of.
+// Normal equations of ICP.
 struct NormalEquations {
   Matrix6d a = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
 
-  // A residual n . (motion p - s) and how it changes if the axis is turned and moved by a twist about `center`, in
-  // units of `scale` metres: motion' = T motion T^-1.
+  // Adds a residual n . (motion p - s) with its derivative by a twist of the axis about `center`, in units of `scale`
+  // metres: motion' = T motion T^-1.
   void add(const Rigid3& motion, const Vector3d& p, const Vector3d& s, const Vector3d& n, const Vector3d& center,
            double scale) {
     const Vector3d q = motion * p;

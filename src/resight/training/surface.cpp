@@ -38,7 +38,7 @@ void append_mean(PointCloud& cloud, const WeightedMean& mean, const PointCloud& 
   cloud.colors.push_back({round(c.x()), round(c.y()), round(c.z())});
 }
 
-// Index of the most certain sample of each cube, cubes in order of their first sample.
+// Index of the most certain sample of each cube. Cubes are in order of their first samples.
 std::vector<std::size_t> find_best_samples(const SurfaceSamples& samples, VoxelMap& cubes, float inverse_size) {
   std::vector<std::size_t> best;
   for (std::size_t i = 0; i < samples.cloud.size(); ++i) {

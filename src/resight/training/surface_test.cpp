@@ -16,7 +16,7 @@
 namespace resight {
 namespace {
 
-// A closed tube of `radius` and height 0.1 m around z, facets outward.
+// A closed tube of `radius` and height 0.1 m around z. Facets face outwards.
 TriangleMesh make_cylinder(float radius) {
   TriangleMesh mesh;
   constexpr int kSides = 64;
@@ -117,7 +117,7 @@ TEST(FuseSurface, RefusesNonsenseAndPassesNothing) {
   EXPECT_THROW((void)fuse_surface(samples, 0.003), std::invalid_argument);
 }
 
-// A 4x1 view: object, object without a normal, object beside an edge, background.
+// A view of 4x1 pixels: object, object without a normal, object beside an edge, background.
 TEST(CollectSurfaceSamples, TakesObjectPixelsAwayFromEdgesIntoTheObjectFrame) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   PreparedView view;

@@ -27,16 +27,16 @@ using internal::TurnAxis;
 using Axes = std::vector<TurnAxis>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kGoldenAngle_rad = 2.399963;  // of its multiples no two are ever the same turn
+constexpr double kGoldenAngle_rad = 2.399963;  // no two of its multiples are the same rotation
 constexpr int kContinuousTurns = 16;
-constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not what the other half looks like
-constexpr double kAlike = 0.8;           // principal moments whose quotient is above this do not tell their axes apart
+constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not half of the object
+constexpr double kAlike = 0.8;           // principal moments with a larger quotient do not distinguish their axes
 constexpr int kCircleDirections = 36;
-constexpr int kSphereDirections = 800;        // of which half are tried: 7 deg apart
-constexpr double kDirectionError_rad = 0.07;  // of the nearest direction that is tried
+constexpr int kSphereDirections = 800;        // half of them are tried, 7 deg apart
+constexpr double kDirectionError_rad = 0.07;  // largest error of the nearest tested direction
 constexpr double kMinRoughShare = 0.8;
-constexpr double kMinSeparation_rad = 0.12;  // of candidates: nearer ones are refined to the same axis
-constexpr std::size_t kMaxRefined = 24;      // candidates of an order; an icosahedron has 15 axes of half turns
+constexpr double kMinSeparation_rad = 0.12;  // of candidates; closer ones converge to the same axis
+constexpr std::size_t kMaxRefined = 24;      // candidates per order; an icosahedron has 15 axes of half turns
 constexpr std::array kOrders = {12, 10, 8, 6, 5, 4, 3, 2};
 constexpr double kMinGain = 0.02;
 constexpr double kSameAxis_rad = 0.17;
@@ -48,7 +48,7 @@ bool is_usable(const PointCloud& surface) {
          std::ranges::all_of(surface.points, is_finite) && std::ranges::all_of(surface.normals, is_finite);
 }
 
-/// Directions that an axis of symmetry may have: orders above 2 and continuous ones only in `main`.
+/// Possible directions of symmetry axes. Axes of orders above 2 and continuous axes are only in `main`.
 struct Directions {
   std::vector<Vector3d> main;
   std::vector<Vector3d> half_turn;
@@ -64,11 +64,11 @@ std::vector<Vector3d> half_sphere() {
   return directions;
 }
 
-// A symmetry leaves the tensor of second moments as it is: its axis is an eigenvector, and if it turns by less than
-// half the other two moments are equal.
+// A symmetry preserves the tensor of second moments. Its axis is therefore an eigenvector, and if its angle is less
+// than half a turn, the other two moments are equal.
 Directions find_directions(const Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
-  const Vector3d moments = solver.eigenvalues().cwiseMax(1e-12);  // ascending
+  const Vector3d moments = solver.eigenvalues().cwiseMax(1e-12);  // in ascending order
   const Matrix3d axes = solver.eigenvectors();
   const bool low_alike = moments(0) > kAlike * moments(1);
   const bool high_alike = moments(1) > kAlike * moments(2);
@@ -90,7 +90,7 @@ Directions find_directions(const Matrix3d& covariance) {
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), std::abs(a.dot(b))); }
 
-// The directions of the highest shares (0 = none), best first, none beside a better one.
+// Directions with the highest shares, best first. Omits those with share 0 and those close to a better one.
 std::vector<Vector3d> pick_best(const std::vector<Vector3d>& directions, const std::vector<double>& shares) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < directions.size(); ++i)
@@ -107,14 +107,14 @@ std::vector<Vector3d> pick_best(const std::vector<Vector3d>& directions, const s
   return picked;
 }
 
-// The axes through the centre about which turns by all the angles may be symmetries, the best first.
+// Axes through the centre about which rotations by all the angles may be symmetries, best first.
 Axes find_rough_axes(const SelfOverlap& overlap, const std::vector<Vector3d>& directions,
                      std::span<const double> angles_rad, int num_threads) {
   std::vector<double> shares(directions.size(), 1.0);
   parallel_for(directions.size(), num_threads, [&](std::size_t i) {
     for (const double angle : angles_rad) {
       if (shares[i] == 0) return;
-      // An axis that is off by e puts what is turned about it off by 2 sin(angle / 2) e.
+      // An error e of the axis displaces the result of a rotation about it by 2 sin(angle / 2) e.
       const double slack_rad = 2 * std::abs(std::sin(angle / 2)) * kDirectionError_rad;
       const Rigid3 turn = turn_about({directions[i], overlap.center()}, angle);
       shares[i] = std::min(shares[i], overlap.rough_share(turn, slack_rad, kMinRoughShare));
@@ -125,7 +125,7 @@ Axes find_rough_axes(const SelfOverlap& overlap, const std::vector<Vector3d>& di
   return axes;
 }
 
-// Rough axes refined, of which those stay about which a test holds; of axes that have become the same the first.
+// Refines rough axes and keeps those that pass a test. Of axes that have become the same, the first is kept.
 template <typename Test>
 Axes keep_true_axes(const SelfOverlap& overlap, Axes axes, std::span<const double> angles_rad, int num_threads,
                     const Test& test) {
@@ -150,7 +150,7 @@ bool is_continuous(const SelfOverlap& overlap, const TurnAxis& axis) {
   return true;
 }
 
-/// The point nearest to all axes; where they leave it free, as near as possible to `center`.
+/// The point nearest to all axes. Where they do not determine it, it is as close as possible to `center`.
 Vector3d meeting_point(const Axes& axes, const Vector3d& center) {
   constexpr double kPull = 1e-6;
   Matrix3d a = kPull * Matrix3d::Identity();
@@ -168,7 +168,7 @@ Vector3d any_perpendicular(const Vector3d& direction) {
   return (least - least.dot(direction) * direction).normalized();
 }
 
-// The sign that makes the largest component positive.
+// Chooses the sign that makes the largest component positive.
 Vector3d canonical(const Vector3d& direction) {
   Eigen::Index largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);
@@ -179,7 +179,7 @@ ObjectSymmetries::Continuous to_continuous(const Vector3d& direction, const Vect
   return {.axis = canonical(direction), .offset = point};
 }
 
-// A second axis across the first one: then it is a ball.
+// Tests a second axis perpendicular to the first one. If both are continuous, the object is a ball.
 std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const TurnAxis& axis) {
   const TurnAxis across =
       overlap.refine({any_perpendicular(axis.direction), meeting_point({axis}, overlap.center())}, kSpinAngles_rad);
@@ -194,11 +194,11 @@ std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const 
   return ball;
 }
 
-// A half turn across the axis, if the object is the same upside down.
+// A half turn perpendicular to the axis, if the object is the same upside down.
 std::optional<Rigid3> find_flip(const SelfOverlap& overlap, const TurnAxis& axis) {
   const Vector3d start = meeting_point({axis}, overlap.center());
   const TurnAxis across = overlap.refine({any_perpendicular(axis.direction), start}, std::array{kPi});
-  // Where along the axis it lies is what has been sought; the rest follows from the axis.
+  // Only the position along the axis is unknown; the axis determines the rest.
   const Vector3d point = axis.point + axis.direction.dot(across.point - axis.point) * axis.direction;
   const Rigid3 flip = turn_about({any_perpendicular(axis.direction), point}, kPi);
   return overlap.is_symmetry(flip) ? std::optional(flip) : std::nullopt;
@@ -216,20 +216,20 @@ std::optional<ObjectSymmetries> find_round(const SelfOverlap& overlap, const Dir
   return round;
 }
 
-/// An axis and the order of the turns about it.
+/// An axis with the order of the rotations about it.
 struct OrderedAxis {
   TurnAxis axis;
   int order = 2;
 };
 
-// A turn that fits no better than half of it tells nothing about the order: a round thing whose colours vary a little
-// passes at some angles and fails at others.
+// A rotation that fits no better than half of its angle does not determine the order: a round object with slightly
+// varying colours passes at some angles and fails at others.
 bool is_of_order(const SelfOverlap& overlap, const TurnAxis& axis, int order) {
   const Rigid3 turn = turn_about(axis, 2 * kPi / order);
   return overlap.is_symmetry(turn) && overlap.share(turn) > overlap.share(turn_about(axis, kPi / order)) + kMinGain;
 }
 
-// In descending order; of each axis only the turns that do not follow from those found before.
+// Axes in descending order. For each axis, omits rotations that follow from those found before.
 std::vector<OrderedAxis> find_ordered_axes(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
   std::vector<OrderedAxis> found;
   for (const int order : kOrders) {
@@ -248,7 +248,7 @@ std::vector<OrderedAxis> find_ordered_axes(const SelfOverlap& overlap, const Dir
   return found;
 }
 
-// All motions of the group that the turns generate, without the identity, if each of them is a symmetry.
+// All motions of the group that the rotations generate, without the identity, provided that each of them is a symmetry.
 std::optional<std::vector<Rigid3>> complete_group(const SelfOverlap& overlap, const std::vector<OrderedAxis>& turns) {
   std::vector<Matrix3d> generators;
   Axes axes;
@@ -268,7 +268,7 @@ std::optional<std::vector<Rigid3>> complete_group(const SelfOverlap& overlap, co
   return motions;
 }
 
-// By axis (those of most turns first, then x before y before z), and about each axis by angle.
+// Sorts by axis (highest order first, then x before y before z), and for each axis by angle.
 void sort_motions(std::vector<Rigid3>& motions) {
   struct Entry {
     Rigid3 motion;
@@ -294,7 +294,7 @@ void sort_motions(std::vector<Rigid3>& motions) {
   for (std::size_t i = 0; i < entries.size(); ++i) motions[i] = entries[i].motion;
 }
 
-// The largest group, as far as taking turns in one by one finds it.
+// The largest group that is found by adding the rotations one by one.
 std::vector<Rigid3> find_discrete(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
   std::vector<OrderedAxis> turns;
   std::vector<Rigid3> motions;

@@ -21,20 +21,20 @@ struct SymmetryOptions {
   void check() const;
 };
 
-/// The motions that put an object back onto itself in shape and in colour (in shape alone if the surface has no
-/// colours): axes of any angle, and turns of the orders 2 to 6, 8, 10 and 12 with all their products, so that
-/// enumerate_symmetries() gives a group. A ball has two continuous axes at right angles. With a continuous axis the
-/// only other motion listed is a half turn across it, if the object is the same upside down. Mirror images are no
-/// motions. `surface`: points (metres, object frame) with normals, of about the same distance from each other; what of
-/// the object it does not hold cannot speak against a symmetry.
+/// Finds the motions that map an object onto itself in shape and colour (in shape alone if the surface has no colours):
+/// continuous axes, and rotations of orders 2 to 6, 8, 10 and 12 with all their products, so that
+/// enumerate_symmetries() gives a group. A ball has two continuous axes at right angles. With a continuous axis, the
+/// only other motion is a half turn perpendicular to it, if the object is the same upside down. Reflections are not
+/// motions. `surface` contains evenly spaced points (metres, object frame) with normals. Missing parts of the object
+/// cannot contradict a symmetry.
 ///
-/// An axis of symmetry is a principal axis of the surface: these are tried, and where two or three of them are alike a
-/// dense set of directions, each moved into place by point-to-plane ICP. Where a print alone tells an axis (two labels
-/// on a can, a ball with a pattern) it is the direction that was tried, 2.5 deg off at most on what is round, and up to
-/// 4 deg on a ball, where it may therefore be missed.
+/// Each symmetry axis is a principal axis of the surface. Principal axes are tried, and a dense set of directions if
+/// two or three principal moments are similar; point-to-plane ICP refines each candidate. If only the texture
+/// determines an axis (two labels on a can, a ball with a pattern), the axis is the tested direction: off by up to 2.5
+/// deg for a round object, and by up to 4 deg for a ball, where it may therefore be missed.
 ///
-/// None for what tells nothing: fewer than 100 points, no normals, values that are not finite, a surface that is known
-/// from one side only (its mean normal is longer than 0.35, where that of a closed one is 0).
+/// Returns no symmetries without sufficient data: fewer than 100 points, no normals, values that are not finite, or a
+/// surface known from one side only (length of the mean normal above 0.35; 0 for a closed surface).
 [[nodiscard]] ObjectSymmetries find_symmetries(const PointCloud& surface, const SymmetryOptions& options = {});
 
 }  // namespace resight

@@ -21,12 +21,12 @@ constexpr double kSpacing_m = 0.0012;
 constexpr Rgb8 kGrey{150, 150, 145};
 constexpr Rgb8 kRed{190, 40, 30};
 
-// Points of a surface, origin in the middle of the body unless said otherwise.
+// Points of a surface. The origin is in the middle of the body unless stated otherwise.
 struct Shape {
   std::vector<Vector3d> points;
   std::vector<Vector3d> normals;
 
-  // A parallelogram from `corner` along two edges.
+  // A parallelogram at `corner`, spanned by two edges.
   void add_face(const Vector3d& corner, const Vector3d& a, const Vector3d& b) {
     const int na = std::max(1, static_cast<int>(a.norm() / kSpacing_m));
     const int nb = std::max(1, static_cast<int>(b.norm() / kSpacing_m));
@@ -44,7 +44,7 @@ struct Shape {
       add_face(center + 0.5 * (-edge[0] - edge[1] - edge[2]), edge[2], edge[1]);
     }
   }
-  // What a path of (radius, height) sweeps about z; outside is to its right as it goes up.
+  // The surface that a path of (radius, height) sweeps about z. The outside is on its right as the path rises.
   void add_lathe(const std::vector<Eigen::Vector2d>& path) {
     for (std::size_t s = 1; s < path.size(); ++s) {
       const Eigen::Vector2d along = path[s] - path[s - 1];
@@ -126,7 +126,7 @@ Shape make_mug() {
 using Paint = std::function<Rgb8(const Vector3d&)>;
 Rgb8 paint_grey(const Vector3d& /*point*/) { return kGrey; }
 
-// Where and how well a shape has been measured.
+// Pose and measurement quality of a shape.
 struct Placement {
   Rigid3 object_from_shape;
   double noise_m = 0;
@@ -160,7 +160,7 @@ std::vector<Rigid3> turns(const Vector3d& axis, int order) {
   for (int i = 1; i < order; ++i) result.push_back(Rigid3::from_axis_angle(axis, 2 * kPi * i / order));
   return result;
 }
-// All turns about z, and half turns across it, the first about `across`.
+// All rotations about z, and half turns perpendicular to it, the first about `across`.
 std::vector<Rigid3> dihedral(int order, const Vector3d& across) {
   std::vector<Rigid3> result = turns({0, 0, 1}, order);
   for (int i = 0; i < order; ++i)
@@ -172,7 +172,7 @@ struct Motion {
   double angle_rad = 0;
   double shift_m = 0;
 };
-// How far two motions are apart, seen at a point.
+// Difference of two motions at a point.
 Motion difference(const Rigid3& a, const Rigid3& b, const Vector3d& at) {
   return {rotation_angle_rad(a.rotation, b.rotation), (a * at - b * at).norm()};
 }
@@ -209,7 +209,7 @@ void expect_discrete(const Shape& shape, const Paint& paint, const std::vector<R
   }
 }
 
-// An axis along z, and perhaps a half turn across it.
+// Expects an axis along z, and a half turn perpendicular to it if `can_be_turned_over`.
 void expect_round(const Shape& shape, const Paint& paint, bool can_be_turned_over) {
   for (const Placement& placement : placements()) {
     const ObjectSymmetries found = find_symmetries(measure(shape, paint, placement));
@@ -251,7 +251,7 @@ TEST(FindSymmetries, OfACubeAreAllItsTurns) {
 TEST(FindSymmetries, OfRoundThings) {
   expect_round(make_can(), paint_grey, true);
   expect_round(make_frustum(0.05, 0.03, 0.08), paint_grey, false);
-  expect_round(make_frustum(0.02, 0.02, 0.0355), paint_grey, true);  // whose moments are nearly those of a ball
+  expect_round(make_frustum(0.02, 0.02, 0.0355), paint_grey, true);  // its moments are nearly those of a ball
 }
 
 TEST(FindSymmetries, OfABallAreTwoAxes) {
@@ -281,8 +281,9 @@ TEST(FindSymmetries, APrintBreaksThem) {
   const auto label = [](const Vector3d& p) {
     return std::abs(p.z()) < 0.03 && std::abs(std::atan2(p.y(), p.x())) < 0.6 && p.x() > 0.025 ? kRed : kGrey;
   };
-  // Only the half turn that swaps the ends of the can keeps a label of one colour in its place. Where the shape leaves
-  // an axis free, it is one of those tried: 5 deg apart, and a half turn is off by twice as much as its axis.
+  // Only the half turn that exchanges the ends of the can keeps a label of one colour in place. If the shape does not
+  // determine an axis, the axis is one of the tested directions, which are 5 deg apart; a half turn doubles the error
+  // of its axis.
   expect_discrete(make_can(), label, turns({1, 0, 0}, 2), 0.1);
   const auto slanted = [&](const Vector3d& p) {
     return p.x() > 0 && p.y() > 0 && p.z() > 0 && p.z() < 0.04 && p.head<2>().norm() > 0.034 ? kRed : kGrey;
@@ -330,7 +331,7 @@ TEST(FindSymmetries, OfWhatTellsNothingAreNone) {
   bad.normals[7].y() = std::numeric_limits<float>::infinity();
   EXPECT_TRUE(find_symmetries(bad).none());
   EXPECT_TRUE(find_symmetries(select(good, std::vector<int>{5})).none());
-  bad = select(good, std::vector<int>(500, 5));  // one point many times
+  bad = select(good, std::vector<int>(500, 5));  // the same point many times
   EXPECT_NO_THROW((void)find_symmetries(bad));
   for (std::size_t i = 0; i < bad.size(); ++i) bad.points[i] = {0, 0, 0.001F * static_cast<float>(i)};
   EXPECT_NO_THROW((void)find_symmetries(bad));

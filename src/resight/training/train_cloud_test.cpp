@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Training from a coloured cloud without faces.
+// Tests training from a coloured cloud without faces.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr double kRadius_m = 0.06;
 const Eigen::Vector3d kCenter(0.01, -0.02, 0.05);
 
-// Evenly spread (Fibonacci) points of a printed ball: blotches of three colours.
+// Evenly spread (Fibonacci) points of a textured ball with blotches of three colours.
 PointCloud make_ball(int count) {
   PointCloud ball;
   for (int i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ TEST(TrainObjectFromCloud, ViewsShowTheBallWithItsColours) {
         red += c.r > 2 * c.b ? 1 : 0;
         blue += c.b > 2 * c.r ? 1 : 0;
       }
-    // The disc that a ball is in the image: tan^2 of its half angle.
+    // The image of a ball is a disc (tan^2 of its half angle).
     const double d = center.norm();
     const double tan_sq = kRadius_m * kRadius_m / (d * d - kRadius_m * kRadius_m);
     EXPECT_NEAR(num_pixels, std::numbers::pi * tan_sq * view.frame.camera.fx * view.frame.camera.fy, 0.04 * num_pixels);
@@ -99,7 +99,7 @@ TEST(TrainObjectFromCloud, GivenNormalsAreTurnedOutwards) {
     ASSERT_GT(surface->normals[i].cast<double>().dot((surface->points[i].cast<double>() - kCenter).normalized()), 0.99);
 }
 
-// A label painted over a segmented cloud, a default grey: no statement about what a camera will see.
+// A label painted over a segmented cloud, or a default grey, does not describe what a camera sees.
 TEST(TrainObjectFromCloud, WithoutColoursOrWithOneOnlyItsShapeCounts) {
   PointCloud ball = make_ball(20000);
   ball.colors.clear();

@@ -36,7 +36,7 @@ Result<ObjectModel> train_from_views(const ModelSource& source, const TrainOptio
   if (!model.ok() || !is_usable_surface(source.surface)) return model;
   Result<PointCloud> surface = train_surface(source.name, *source.surface, options);
   if (!surface.ok()) return surface.error();
-  if (!model->surface.has_colors()) surface->colors.clear();  // The views tell whether they were measured.
+  if (!model->surface.has_colors()) surface->colors.clear();  // Views show whether the colours were measured.
   set_surface(*model, *std::move(surface));
   return model;
 }
@@ -48,7 +48,7 @@ Result<ObjectModel> train_from_any(const ModelSource& source, const TrainOptions
   return Error{fmt::format("model '{}': neither training views nor a mesh nor a cloud", source.name)};
 }
 
-// Names twice in the list would make detections ambiguous; told before hours of training.
+// Duplicate names would make detections ambiguous. Reported before hours of training.
 Result<void> check_names(std::span<const ModelLocation> locations) {
   std::map<std::string, const ModelLocation*> seen;
   for (const ModelLocation& location : locations) {

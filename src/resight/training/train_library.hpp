@@ -9,29 +9,32 @@
 
 namespace resight {
 
-/// Trains from what a data set holds of an object. Features: of its views, or of a turntable around its mesh (else its
-/// complete cloud) if it has none. Surface: of its mesh, else its complete cloud (if that has colours), else fused from
-/// the views.
-/// The name and the bop_id (0 stays 0) are the source's, and so are the symmetries if it declares them (be it that
-/// there are none); else they are found from the surface (find_symmetries()).
+/// Trains from all data of an object in a data set.
+/// - Features: from its views; without views, from a turntable around its mesh, else around its complete cloud.
+/// - Surface: from its mesh, else from its complete cloud (if there are views, only a coloured one), else fused from
+///   its views.
+/// - Name and bop_id (0 stays 0): from the source.
+/// - Symmetries: from the source if it declares them (also if it declares none), else by find_symmetries().
+/// - Symmetries of the shape alone: by find_symmetries() for each surface with colours.
+/// TrainOptions::find_symmetries = false skips both searches.
 [[nodiscard]] Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options = {});
 
-/// Called before each object with its place (0 ..), the number of objects and its name.
+/// Called before each object with its index (from 0), the number of objects and its name.
 using TrainProgress = std::function<void(int index, int count, const std::string& name)>;
 
-/// Called with one line on what is amiss with a model: those of ModelSource::warnings, or that it has no features and
-/// so can never be recognised.
+/// Called with one line for each problem of a model: a line of ModelSource::warnings, or that the object has no
+/// features and cannot be recognised.
 using TrainWarning = std::function<void(const std::string& line)>;
 
-/// Reads and trains every location, one after the other (the views of an object are spread over the threads). Names
-/// must be unique, and so must the bop_ids that are given; objects without one get the lowest free numbers from 1 on,
-/// in order. The first failure ends it.
+/// Reads and trains all locations one by one (the views of each object are processed in parallel). Names and given
+/// bop_ids must be unique. Objects without a bop_id get the lowest free numbers from 1, in order. Stops at the first
+/// failure.
 [[nodiscard]] Result<ModelLibrary> train_library(std::span<const ModelLocation> locations,
                                                  const TrainOptions& options = {}, const TrainProgress& progress = {},
                                                  const TrainWarning& warning = {});
 
-/// Fills the bop_ids that are 0 as above. An error if two objects have the same name or the same given id, or an id is
-/// negative.
+/// Replaces bop_ids of 0 by the lowest free numbers. Fails if two objects have the same name or the same given id, or
+/// an id is negative.
 [[nodiscard]] Result<void> assign_bop_ids(std::vector<ObjectModel>& objects);
 
 }  // namespace resight

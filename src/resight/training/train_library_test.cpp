@@ -66,7 +66,7 @@ TEST_F(MeshFolder, IsTrainedIntoALibraryThatAFileGivesBack) {
   ASSERT_TRUE(save_library(*library, file).ok());
   const Result<ModelLibrary> loaded = load_library(file, options.hash());
   ASSERT_TRUE(loaded.ok()) << loaded.error().message;
-  for (std::size_t i = 0; i < 2; ++i) {  // memory equals file, descriptors included
+  for (std::size_t i = 0; i < 2; ++i) {  // memory equals file, including descriptors
     EXPECT_EQ(loaded->objects[i].sift.codes, library->objects[i].sift.codes);
     EXPECT_EQ(loaded->objects[i].shot.codes, library->objects[i].shot.codes);
     EXPECT_EQ(loaded->objects[i].surface.points, library->objects[i].surface.points);
@@ -172,7 +172,7 @@ TEST(TrainObjectFromSource, FindsWhatOnlyThePrintTellsApart) {
   EXPECT_EQ(found->shape_symmetries.continuous.size(), 1U);
 }
 
-// Programs and prints say what these are; the sponge is symmetric but for its pores.
+// Procedural objects declare their symmetries. The sponge is skipped, because it is symmetric except for its pores.
 TEST(TrainSurface, OfProceduralObjectsHasTheSymmetriesTheyWereDrawnWith) {
   int symmetric = 0;
   for (const std::string& name : procedural_object_names()) {

@@ -8,11 +8,11 @@
 namespace resight {
 namespace {
 
-// Counts up whenever the same options give another result, or the library file changes.
+// Increases whenever the same options give another result, or the library file changes.
 constexpr int kTrainingVersion = 4;
 
-// Each options struct is taken apart completely: a field that is added to it does not compile here until it is hashed
-// (or left out on purpose, as numbers of threads are).
+// Destructures each options struct completely, so that a new field does not compile here until it is hashed (or
+// deliberately left out, like numbers of threads).
 std::string describe(const SiftOptions& options) {
   const auto& [contrast_threshold, edge_threshold, num_octave_layers, root_sift] = options;
   return fmt::format("sift {} {} {} {}\n", contrast_threshold, edge_threshold, num_octave_layers, root_sift);

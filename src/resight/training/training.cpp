@@ -21,11 +21,11 @@ namespace {
 
 constexpr double kMinDiameter_m = 0.005;
 constexpr double kMaxDiameter_m = 5.0;
-constexpr int kCropMargin_px = 48;            // what keypoints near the silhouette see of their surroundings
-constexpr double kSamplesPerVoxelFace = 6.0;  // of voxel_size^2: a face that fills its voxel is missed once in 400
+constexpr int kCropMargin_px = 48;            // surroundings that keypoints near the silhouette use
+constexpr double kSamplesPerVoxelFace = 6.0;  // per voxel_size^2: misses a face that fills its voxel once in 400
 
-constexpr double kMinCloudSpacing_m = 0.001;  // a pixel of a training view; more points than that only cost time
-constexpr double kMaxCloudSpacings = 400.0;   // over the diameter, for the same reason
+constexpr double kMinCloudSpacing_m = 0.001;  // size of a pixel of a training view; denser points only take longer
+constexpr double kMaxCloudSpacings = 400.0;   // largest diameter in spacings; denser points only take longer
 constexpr std::size_t kMinCloudPoints = 100;
 constexpr Rgb8 kUnknownColor{128, 128, 128};
 
@@ -48,7 +48,7 @@ Result<void> check_views(const std::string& name, std::span<const TrainingView> 
   return {};
 }
 
-// No sensor measures one and the same colour everywhere: it was put there by hand or by default.
+// No sensor measures the same colour everywhere: such colours were set by hand or by default.
 bool has_measured_color(std::span<const TrainingView> views) {
   std::optional<Rgb8> first;
   for (const TrainingView& view : views)
@@ -65,7 +65,7 @@ bool has_measured_color(const PointCloud& cloud) {
          !std::ranges::all_of(cloud.colors, [&](const Rgb8& c) { return c == cloud.colors.front(); });
 }
 
-// A plain colour of a mesh counts: whoever drew it says so.
+// A single colour of a mesh is valid, because its author chose it.
 bool has_color(const TriangleMesh& mesh) { return mesh.has_texture() || mesh.colors.size() == mesh.vertices.size(); }
 
 struct ViewPart {
@@ -80,14 +80,14 @@ ViewPart process_view(const TrainingView& whole_view, const TrainOptions& option
   const PreparedView prepared = prepare_view(view.frame);
   const Rigid3& object_from_camera = view.frame.world_from_camera;
   ShotOptions shot = options.shot;
-  shot.num_threads = 1;  // the views are already spread over the threads
+  shot.num_threads = 1;  // the views already run in parallel
   part.features.sift = transform(object_from_camera, extract_sift(prepared, options.sift, &view.mask));
   part.features.shot = transform(object_from_camera, extract_shot(prepared, shot, &view.mask));
   if (with_surface) part.samples = collect_surface_samples(prepared, view.mask, options.min_edge_distance_px);
   return part;
 }
 
-// All views, joined in their order, whatever thread was done first.
+// Processes all views in parallel and joins the results in order.
 ViewPart process_views(std::span<const TrainingView> views, const TrainOptions& options, bool with_surface) {
   std::vector<ViewPart> parts(views.size());
   parallel_for(views.size(), options.num_threads,
@@ -106,10 +106,10 @@ ViewPart process_views(std::span<const TrainingView> views, const TrainOptions& 
 
 Result<ObjectFeatures> reduce_features(const std::string& name, ObjectFeatures features, bool color_is_known,
                                        const TrainOptions& options) {
-  if (!color_is_known) features.sift = ObjectFeatures{}.sift;  // of shading and silhouettes alone
+  if (!color_is_known) features.sift = ObjectFeatures{}.sift;  // would describe only shading and silhouettes
   if (features.sift.size() + features.shot.size() == 0) {
-    return fail(name, fmt::format("no SIFT and no SHOT feature in any training view; it could never be recognised{}",
-                                  color_is_known ? "" : " (its colours are not known)"));
+    return fail(name, fmt::format("no SIFT and no SHOT feature in any training view, so it cannot be recognised{}",
+                                  color_is_known ? "" : " (its colours are unknown)"));
   }
   return ObjectFeatures{merge_similar_features(features.sift, options.sift_merging, options.num_threads),
                         merge_similar_features(features.shot, options.shot_merging, options.num_threads)};
@@ -132,7 +132,7 @@ std::vector<TrainingView> render_views(const TriangleMesh& mesh, const TrainOpti
   return render_turntable(mesh, turntable);
 }
 
-// Features of the views of a mesh, which have colours if its surface has.
+// Extracts features from views of a mesh. SIFT is used only if the surface has colours.
 Result<ObjectModel> train_from_renderings(const std::string& name, const TriangleMesh& mesh, PointCloud surface,
                                           const TrainOptions& options) {
   const std::vector<TrainingView> views = render_views(mesh, options);
@@ -189,7 +189,7 @@ Result<void> check_cloud(const std::string& name, const PointCloud& cloud) {
   return check_diameter(name, "cloud", diameter(cloud.points));
 }
 
-// Evenly thinned, with normals outwards and with colours, be they grey.
+// Downsamples a cloud evenly, orients its normals outwards, and adds grey colours if there are none.
 Result<PointCloud> prepare_cloud(const std::string& name, const PointCloud& cloud, int num_threads) {
   const Result<void> checked = check_cloud(name, cloud);
   if (!checked.ok()) return checked.error();

@@ -29,45 +29,46 @@ struct TrainOptions {
   [[nodiscard]] std::uint64_t hash() const;  ///< Of every field that changes the result, and of the format version.
 };
 
-/// The parts of an object that its training can be given by itself.
+/// Features of one object, before they are coded.
 struct ObjectFeatures {
   FeatureSet sift{.type = FeatureType::kSift, .dimension = 128, .points = {}, .normals = {}, .descriptors = {}};
   FeatureSet shot{.type = FeatureType::kShot, .dimension = 352, .points = {}, .normals = {}, .descriptors = {}};
 };
 
-/// Trains from registered views (frame.world_from_camera is object_from_camera; mask: non-zero = object): SIFT and SHOT
-/// of each view in the object frame, merged (TrainOptions.*_merging) and at 8 bits a component (coded_features.hpp),
-/// and the surface fused by sensor noise. Symmetries and bop_id are the caller's to set (train_object() of a
-/// ModelSource does).
+/// Trains from registered views (frame.world_from_camera is object_from_camera; mask: non-zero = object). Extracts SIFT
+/// and SHOT of each view in the object frame, merges them (TrainOptions.*_merging) and stores them with 8 bits per
+/// component (coded_features.hpp). Fuses the surface weighted by sensor noise. The caller must set symmetries and
+/// bop_id, as train_object(ModelSource) does.
 ///
-/// Colours that are not known (the same in every pixel of all views, a mesh with neither texture nor vertex colours, a
-/// cloud with none or one) are left out of the model, and so is SIFT: it is then recognised by its shape alone.
+/// The model omits unknown colours (the same colour in all pixels of all views; a mesh with neither texture nor vertex
+/// colours; a cloud with no or only one colour). It then omits SIFT as well, and the object is recognised by its shape
+/// alone.
 ///
-/// An error, which names the object and the view: no views, a bad frame or mask size, no object pixel with depth and
-/// normal in any view, and an object none of whose views has a feature (one kind is enough).
+/// Errors name the object and the view: no views, an invalid frame or mask size, no object pixel with depth and normal
+/// in any view, or no feature in any view (one kind is enough).
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
                                                const TrainOptions& options = {});
 
-/// Trains from a mesh: its views are ray-cast, its surface is sampled from all its triangles (also those that no view
-/// sees). An error besides the above: no triangles, bad indices or coordinates, or a diameter outside [5 mm, 5 m],
-/// which is the sign of a wrong unit.
+/// Trains from a mesh: ray-casts its views and samples its surface from all triangles, including hidden ones.
+/// Additional errors: no triangles, invalid indices or coordinates, or a diameter outside [5 mm, 5 m], which indicates
+/// a wrong unit.
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const TriangleMesh& mesh,
                                                const TrainOptions& options = {});
 
-/// Trains from a cloud of the whole surface, with or without normals (estimate_outward_normals(); given ones are turned
-/// outwards as a whole): its views are ray-cast from a splat of each point (make_splat_mesh()). An error: points that
-/// are not finite, too few points, or a diameter as above.
+/// Trains from a cloud of the whole surface. Missing normals are estimated (estimate_outward_normals()); given ones are
+/// oriented outwards as a whole. Views are ray-cast from a splat per point (make_splat_mesh()). Additional errors:
+/// points that are not finite, too few points, or a diameter outside [5 mm, 5 m].
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 
-/// The features alone, as train_object() extracts and merges them, before they are coded.
+/// Extracts and merges only the features, as train_object() does before it codes them.
 [[nodiscard]] Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
                                                     const TrainOptions& options = {});
 
-/// The surface of a mesh as train_object() samples it, after the same checks.
+/// Samples only the surface of a mesh, as train_object() does after the same checks.
 [[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh,
                                                const TrainOptions& options = {});
-/// The same of a cloud of the whole surface.
+/// Computes only the surface of a cloud of the whole surface. Keeps its colours even if they are all the same.
 [[nodiscard]] Result<PointCloud> train_surface(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 

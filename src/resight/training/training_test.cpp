@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 const Eigen::Vector3f kSize(0.12F, 0.08F, 0.16F);
 
-// A closed box around the origin, each face with its own random blotches: one texture, faces side by side.
+// A closed box around the origin with random blotches on each face: one texture, faces side by side.
 TriangleMesh make_printed_box(const Eigen::Vector3f& size = kSize) {
   constexpr int kCell = 256;
   TriangleMesh box;
@@ -60,13 +60,13 @@ TriangleMesh make_printed_box(const Eigen::Vector3f& size = kSize) {
   return box;
 }
 
-// Signed distance to the box: negative inside.
+// Signed distance to the box, negative inside.
 float box_distance(const Eigen::Vector3f& p) {
   const Eigen::Vector3f q = p.cwiseAbs() - 0.5F * kSize;
   return q.cwiseMax(0.0F).norm() + std::min(q.maxCoeff(), 0.0F);
 }
 
-// The outward normal of the face that p is nearest to.
+// Outward normal of the face nearest to p.
 Eigen::Vector3f box_normal(const Eigen::Vector3f& p) {
   int axis = 0;
   (p.cwiseAbs() - 0.5F * kSize).maxCoeff(&axis);
@@ -105,7 +105,7 @@ void expect_surface_on_box(const ObjectModel& model, float tolerance_m) {
     if (box_distance(p) > -0.0015F) faces.insert(static_cast<int>(n.dot(Eigen::Vector3f(1, 2, 3))));
   }
   EXPECT_GT(agreeing, 0.9 * static_cast<double>(model.surface.size()));
-  EXPECT_EQ(faces.size(), 6U);  // all six sides are there
+  EXPECT_EQ(faces.size(), 6U);  // all six sides are present
 }
 
 double box_area() { return 2.0 * (kSize.x() * kSize.y() + kSize.y() * kSize.z() + kSize.z() * kSize.x()); }
@@ -138,14 +138,14 @@ TEST(TrainObjectFromMesh, GivesACompleteSurfaceAndFeaturesOnIt) {
 TEST(TrainObjectFromViews, GivesTheSurfaceThatTheViewsSee) {
   const Result<ObjectModel> model = train_object("box", printed_box_views());
   ASSERT_TRUE(model.ok()) << model.error().message;
-  expect_surface_on_box(*model, 0.0015F);  // the views are free of noise
+  expect_surface_on_box(*model, 0.0015F);  // the views have no noise
   expect_features_on_box(*model);
   EXPECT_GT(static_cast<double>(model->surface.size()), 0.85 * box_area() / (0.003 * 0.003));
   EXPECT_LT(model->center.norm(), 0.005F);
   EXPECT_NEAR(model->diameter_m, kSize.norm(), 0.01);
 }
 
-// A feature of one view must find its own physical point in a neighbouring view: both are in the object frame.
+// A feature of one view must find its own physical point in an adjacent view. Both are in the object frame.
 TEST(TrainFeatures, KeypointsOfTwoViewsLandOnTheSamePoint) {
   TurntableOptions turntable;
   turntable.both_sides = false;
@@ -168,7 +168,7 @@ TEST(TrainFeatures, KeypointsOfTwoViewsLandOnTheSamePoint) {
         match = j;
       }
     }
-    if (best > 0.1F) continue;  // seen in one view only
+    if (best > 0.1F) continue;  // visible in one view only
     ++matched;
     same_place += (a->sift.points[i] - b->sift.points[match]).norm() < 0.003F ? 1 : 0;
   }
@@ -270,7 +270,7 @@ TEST(TrainObjectFromViews, EachBadInputHasItsLine) {
     EXPECT_THAT(model.error().message, HasSubstr("model 'box'"));
   }
   std::vector<TrainingView> one_empty = good;
-  std::ranges::fill(one_empty[0].mask.data(), std::uint8_t{0});  // as when the object leaves the image
+  std::ranges::fill(one_empty[0].mask.data(), std::uint8_t{0});  // as if the object left the image
   const Result<ObjectModel> model = train_object("box", one_empty, make_quick_options());
   ASSERT_TRUE(model.ok());
   EXPECT_EQ(model->sift.type, FeatureType::kSift);
@@ -368,7 +368,7 @@ TEST(TrainOptions, HashTellsEveryFieldThatChangesTheResult) {
     options.turntable.num_threads = 7;
     options.shot.num_threads = 7;
     options.symmetry.num_threads = 7;
-    hashes.insert(options.hash());  // the threads change nothing
+    hashes.insert(options.hash());  // numbers of threads do not change the hash
   }
   EXPECT_EQ(hashes.size(), changes.size());
 }

@@ -7,10 +7,10 @@
 
 namespace resight::internal {
 
-/// The group that rotations generate which are known to a few degrees only: products within 12 deg of each other are
-/// one element, and in the end each element is the mean of all products that give it, so that the group is one to
-/// double precision. The identity first. None if there are more than 60 elements (no finite group that is not about a
-/// single axis has more), or if the products do not fit together.
+/// Generates the finite group of rotations that are known only to a few degrees. Products within 12 deg of each other
+/// count as one element. Each element is finally the mean of all products that give it, which makes the group exact to
+/// double precision. The identity is first. Returns none if there are more than 60 elements (all larger finite groups
+/// rotate about a single axis), or if the products are inconsistent.
 [[nodiscard]] std::optional<std::vector<Eigen::Matrix3d>> generate_rotation_group(
     std::span<const Eigen::Matrix3d> generators);
 
