@@ -3,7 +3,8 @@
 #
 # Each folder is one target `resight::NAME`. Its *.cpp are the sources, its *.hpp the installed headers, and its
 # *_test.cpp the tests (one executable `resight_NAME_test`). A module may depend only on modules that precede it in
-# RESIGHT_LAYERS; any other edge is a configure error. TEST_DEPS may lie higher and serve the tests only.
+# RESIGHT_LAYERS; any other edge is a configure error, and so is a difference between DEPS and the includes. TEST_DEPS
+# may lie higher and serve the tests only.
 set(RESIGHT_LAYERS
     core
     geometry appearance
@@ -76,6 +77,38 @@ if(RESIGHT_PRECOMPILED_HEADERS)
   endif()
 endif()
 
+# Compares the includes of a module with its DEPS, and those of its tests with DEPS and TEST_DEPS: all modules share one
+# include root, so the compiler accepts an include of any module. DEPS that no file includes are errors, too.
+function(resight_check_includes name deps test_deps)
+  file(GLOB_RECURSE files *.cpp *.hpp)
+  foreach(file IN LISTS files)
+    file(STRINGS ${file} includes REGEX "^#include \"resight/")
+    list(TRANSFORM includes REPLACE "^#include \"resight/([^/]+)/.*" "\\1")
+    if(file MATCHES "/testing/|test[^/]*\\.(hpp|cpp)$")
+      list(APPEND included_by_tests ${includes})
+    else()
+      list(APPEND included ${includes})
+    endif()
+  endforeach()
+  list(REMOVE_ITEM included ${name})
+  list(REMOVE_DUPLICATES included)
+  list(REMOVE_ITEM included_by_tests ${name} ${deps})
+  list(REMOVE_DUPLICATES included_by_tests)
+  resight_compare_lists("${name}" DEPS "${deps}" "${included}")
+  resight_compare_lists("${name}" TEST_DEPS "${test_deps}" "${included_by_tests}")
+endfunction()
+
+function(resight_compare_lists name keyword declared included)
+  set(undeclared ${included})
+  list(REMOVE_ITEM undeclared ${declared})
+  set(unused ${declared})
+  list(REMOVE_ITEM unused ${included})
+  if(undeclared OR unused)
+    message(SEND_ERROR "resight module '${name}', ${keyword}: included but not declared: [${undeclared}]; "
+                        "declared but not included: [${unused}]")
+  endif()
+endfunction()
+
 function(resight_add_module name)
   cmake_parse_arguments(ARG "" "" "DEPS;PUBLIC_LIBS;PRIVATE_LIBS;TEST_DEPS;TEST_LIBS" ${ARGN})
   list(FIND RESIGHT_LAYERS ${name} own_layer)
@@ -88,6 +121,8 @@ function(resight_add_module name)
       message(FATAL_ERROR "resight module '${name}' may not depend on '${dep}': edges point down only")
     endif()
   endforeach()
+
+  resight_check_includes(${name} "${ARG_DEPS}" "${ARG_TEST_DEPS}")
 
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   file(GLOB headers CONFIGURE_DEPENDS *.hpp)

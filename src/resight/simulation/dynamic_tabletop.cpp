@@ -111,10 +111,10 @@ class SequenceBuilder {
     unknown.insert(unknown.end(), kLookAlikes.begin(), kLookAlikes.end());
     rng_.shuffle(unknown);
     known.insert(known.begin(), {known[0], known[2]});  // these two kinds stand there twice
-    for (int i = 0; i < options_.num_tracked; ++i) add_thing(known, i, true);
+    for (int i = 0; i < options_.num_known; ++i) add_thing(known, i, true);
     for (int i = 0; i < options_.num_unknown; ++i) add_thing(unknown, i, false);
-    num_starting_ = options_.num_tracked + options_.num_unknown;
-    for (int i = 0; i < options_.num_waiting; ++i) add_thing(known, options_.num_tracked + i, true);
+    num_starting_ = options_.num_known + options_.num_unknown;
+    for (int i = 0; i < options_.num_waiting; ++i) add_thing(known, options_.num_known + i, true);
   }
 
   void add_thing(const std::vector<std::string>& models, int i, bool known) {
@@ -344,7 +344,7 @@ class SequenceBuilder {
 }  // namespace
 
 void DynamicTabletopOptions::check() const {
-  check_in_range("DynamicTabletopOptions.num_known", num_tracked, 1, 100);
+  check_in_range("DynamicTabletopOptions.num_known", num_known, 1, 100);
   check_in_range("DynamicTabletopOptions.num_waiting", num_waiting, 0, 100);
   check_in_range("DynamicTabletopOptions.num_unknown", num_unknown, 0, 100);
   check_in_range("DynamicTabletopOptions.num_changes", num_changes, 0, 1000);

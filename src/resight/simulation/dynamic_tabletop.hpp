@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kDynamicTabletopTestSeed = 2;
 
 /// How hard the benchmark is. The defaults ARE the benchmark: docs/benchmark.md tells how they were found.
 struct DynamicTabletopOptions {
-  int num_tracked = 12;         ///< Known things at the start of a sequence, as far as there is room.
+  int num_known = 12;         ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;          ///< Further known things, which may come in later.
   int num_unknown = 5;          ///< Things that are in no library.
   int num_changes = 32;         ///< Of a sequence, at most (what finds no room does not happen).

@@ -103,13 +103,13 @@ Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed)
   RandomTabletopOptions options;
   if (name == "demo") return make_demo_scene(seed);
   if (name == "crowded") {
-    options.num_tracked = 14;
+    options.num_known = 14;
     options.gap_m = 0.002;
   } else if (name == "twins") {
     options.models = {"cereal_red", "cereal_blue", "soup_tomato", "soup_pea"};
   } else if (name == "plain") {
     options.models = {"plain_mug", "bowl", "plain_can", "paper_roll", "brick", "plain_box"};
-    options.num_tracked = 6;
+    options.num_known = 6;
   } else if (name != "tabletop") {
     std::string known;
     for (const std::string& n : preset_scene_names()) known += (known.empty() ? "" : ", ") + n;

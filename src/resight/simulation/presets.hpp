@@ -16,7 +16,7 @@ namespace resight {
 [[nodiscard]] SceneScript make_demo_scene(std::uint64_t seed = 1);
 
 struct RandomTabletopOptions {
-  int num_tracked = 8;
+  int num_known = 8;
   int num_distractors = 3;
   int num_views = 12;
   int num_changes = 4;          ///< Spread evenly; moves, removals and additions in turn.

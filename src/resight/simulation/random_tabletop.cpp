@@ -50,7 +50,7 @@ class TabletopBuilder {
     build_room();
     const int num_added = count_additions();
     choose_things(options_.models.empty() ? procedural_object_names() : options_.models,
-                  options_.num_tracked + num_added, true);
+                  options_.num_known + num_added, true);
     choose_things(distractor_names(), options_.num_distractors, false);
     place_at_start(num_added);
     for (int i = 0; i < options_.num_changes; ++i) {
@@ -99,7 +99,7 @@ class TabletopBuilder {
     std::vector<TabletopObject> kept;
     int index = 0;
     for (TabletopObject& thing : things_) {
-      const bool waits = thing.known && index >= options_.num_tracked && index < options_.num_tracked + num_added;
+      const bool waits = thing.known && index >= options_.num_known && index < options_.num_known + num_added;
       ++index;
       ObjectScript object{thing.key, thing.model, {}, thing.known, std::nullopt};
       if (!waits) {
@@ -190,7 +190,7 @@ class TabletopBuilder {
 }  // namespace
 
 void RandomTabletopOptions::check() const {
-  check_in_range("RandomTabletopOptions.num_known", num_tracked, 1, 100);
+  check_in_range("RandomTabletopOptions.num_known", num_known, 1, 100);
   check_in_range("RandomTabletopOptions.num_distractors", num_distractors, 0, 100);
   check_in_range("RandomTabletopOptions.num_views", num_views, 2, 100000);
   check_in_range("RandomTabletopOptions.num_changes", num_changes, 0, 1000);

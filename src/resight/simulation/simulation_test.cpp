@@ -259,7 +259,7 @@ TEST(Simulation, SameSeedSameBytesForAnyThreadsAndOrder) {
 TEST(RandomTabletop, IsSeededAndFullOfChanges) {
   RandomTabletopOptions options;
   options.num_changes = 6;
-  options.num_tracked = 6;
+  options.num_known = 6;
   const SceneScript a = make_random_tabletop(1, options);
   const SceneScript b = make_random_tabletop(1, options);
   const SceneScript c = make_random_tabletop(2, options);
@@ -270,7 +270,7 @@ TEST(RandomTabletop, IsSeededAndFullOfChanges) {
   EXPECT_NE(a.objects[0].start->x_m, c.objects[0].start->x_m);
   EXPECT_TRUE(check_script(a).ok());
   options.models = {"mug"};
-  options.num_tracked = 3;
+  options.num_known = 3;
   const SceneScript mugs = make_random_tabletop(1, options);
   EXPECT_EQ(mugs.objects[1].key, "mug_2");
   options.models = {"unicorn"};
