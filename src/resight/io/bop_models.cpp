@@ -42,7 +42,7 @@ Result<std::vector<ModelLocation>> list_models_folder(const fs::path& folder) {
     const auto infos = read_models_info(folder / "models_info.json");
     if (!infos) return infos.error();
     for (const auto& [id, info] : *infos) {
-      if (!found.contains(id)) add(id);  // known by its training views alone
+      if (!found.contains(id)) add(id);  // only training views exist
       found[id].name = info.name;
     }
   }
@@ -51,7 +51,7 @@ Result<std::vector<ModelLocation>> list_models_folder(const fs::path& folder) {
   return locations;
 }
 
-/// Scenes of single objects, named by their obj_id.
+/// Lists scenes of single objects, which are named by their obj_id.
 std::vector<ModelLocation> list_training_split(const fs::path& split) {
   std::vector<ModelLocation> locations;
   for (const std::string& name : list_directories(split)) {
@@ -68,16 +68,16 @@ Result<Image<std::uint8_t>> read_object_mask(const fs::path& scene, const Listed
     if (!is_file(file)) continue;
     auto mask = read_mask(file);
     if (mask && (mask->width() != frame.camera.width || mask->height() != frame.camera.height))
-      return file_error(file, "has not the size of its view");
+      return file_error(file, "must have the size of its view");
     return mask;
   }
-  // Training images without masks show nothing but the object.
+  // Training images without masks show only the object.
   Image<std::uint8_t> mask(frame.camera.width, frame.camera.height, 0);
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = std::isnan(frame.depth_m[i]) ? 0 : 255;
   return mask;
 }
 
-/// The views of a scene that shows nothing but this object; empty if it is none.
+/// Views of a scene that shows only this object; empty if the scene shows others.
 Result<std::vector<TrainingView>> read_training_scene(const fs::path& scene, int bop_id, std::string* name) {
   auto table = read_bop_scene(scene);
   if (!table) return table.error();
@@ -107,7 +107,7 @@ Result<std::vector<TrainingView>> find_training_views(const fs::path& dataset, i
   return std::vector<TrainingView>{};
 }
 
-/// Mesh if the PLY has faces, else its points as the surface.
+/// Reads a mesh if the PLY has faces, else its points as the surface.
 Result<void> read_geometry(const fs::path& file, ModelSource& model) {
   auto content = read_ply(file);
   if (!content) return content.error();
@@ -146,8 +146,8 @@ Result<ModelSource> read_bop_model(const ModelLocation& location) {
     auto views = read_training_scene(location.path, location.bop_id, &model.name);
     if (!views) return views.error();
     if (views->empty())
-      return file_error(location.path, fmt::format("no image shows object {} alone; expected a training scene of it",
-                                                   location.bop_id));
+      return file_error(location.path,
+                        fmt::format("no image shows only object {}; expected a training scene of it", location.bop_id));
     model.views = std::move(*views);
     return model;
   }

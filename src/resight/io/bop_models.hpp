@@ -9,17 +9,18 @@
 
 namespace resight {
 
-/// Writes models into a BOP data set one by one: meshes (or, without one, surface clouds) as models/obj_%06d.ply in
-/// millimetres with models_info.json (diameter, box, symmetries, and our key "name"), training views as train/%06d.
-/// Both folders appear with finish(); neither may exist before.
+/// Writes models to a BOP data set one by one. Meshes (or surface clouds, if there is no mesh) become
+/// models/obj_%06d.ply in millimetres, with models_info.json (diameter, box, symmetries, and our key "name"). Training
+/// views become train/%06d. Both folders appear with finish(); neither may exist before.
 class BopModelsWriter {
  public:
   [[nodiscard]] static Result<std::unique_ptr<BopModelsWriter>> create(const std::filesystem::path& dataset);
   ~BopModelsWriter();
   BopModelsWriter(const BopModelsWriter&) = delete;
   BopModelsWriter& operator=(const BopModelsWriter&) = delete;
-  /// `bop_id` > 0, different for each model.
+  /// `bop_id` must be > 0 and unique.
   [[nodiscard]] Result<void> write_model(const ModelSource& model, int bop_id);
+  /// Moves both folders to their final names.
   [[nodiscard]] Result<void> finish();
 
  private:
@@ -28,10 +29,10 @@ class BopModelsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// All models at once. Those with bop_id 0 get the smallest free ids, in order.
+/// Writes all models at once. Models with bop_id 0 get the smallest free ids, in order.
 [[nodiscard]] Result<void> write_bop_models(const std::filesystem::path& dataset, std::span<const ModelSource> models);
 
-/// The given ids with each 0 replaced by the smallest one that is free. Error if one is there twice or negative.
+/// Replaces each 0 by the smallest free id. Fails if an id occurs twice or is negative.
 [[nodiscard]] Result<std::vector<int>> assign_bop_ids(std::span<const int> ids);
 
 }  // namespace resight

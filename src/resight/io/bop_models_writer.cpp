@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1000;
 
-/// Points that stand for the object's extent: of its mesh, its surface, or of what its views show.
+/// Points that determine the extent of the object: those of its mesh, of its surface, or of its views.
 std::vector<Eigen::Vector3f> extent_points(const ModelSource& model) {
   if (model.mesh) return model.mesh->vertices;
   if (model.surface) return model.surface->points;

@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::map<int, BopModelInfo>;
 
-/// The image of a view in one of several folders, with one of several extensions.
+/// Finds the image of a view in one of several folders, with one of several extensions.
 std::optional<fs::path> find_image(const fs::path& scene, std::initializer_list<const char*> folders, int image_id) {
   for (const char* folder : folders)
     for (const char* extension : {".png", ".jpg", ".jpeg"}) {
@@ -56,7 +56,7 @@ Result<ListedView> parse_camera(const fs::path& scene, int image_id, const nlohm
   return view;
 }
 
-/// Share of the silhouette; NaN where the file does not say, or says -1.
+/// Visible share of the silhouette; NaN if the file does not state it, or states -1.
 double visible_share(const nlohmann::json& info, int image_id, std::size_t index) {
   const nlohmann::json& list = member(info, std::to_string(image_id));
   if (!list.is_array() || index >= list.size()) return std::numeric_limits<double>::quiet_NaN();

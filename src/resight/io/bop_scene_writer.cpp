@@ -55,13 +55,13 @@ Result<int> BopSceneWriter::find_id(const GroundTruthObject& object) {
     return known->second;
   }
   int id = object.bop_id;
-  const auto is_replaced = [&](int candidate) {
+  const auto is_used = [&](int candidate) {
     return std::ranges::any_of(ids_, [&](const auto& entry) { return entry.second == candidate; });
   };
-  if (id > 0 && is_replaced(id))
+  if (id > 0 && is_used(id))
     return file_error(directory_, fmt::format("the id {} of object '{}' belongs to another one", id, object.object));
   if (id <= 0)
-    for (id = 1; is_replaced(id);) ++id;
+    for (id = 1; is_used(id);) ++id;
   ids_[object.object] = id;
   return id;
 }
@@ -95,7 +95,7 @@ Result<int> BopSceneWriter::write_view(const RgbdFrame& frame, const std::vector
     nlohmann::json entry = {{"obj_id", *id},
                             {"cam_R_m2c", rotation_to_json(object.camera_from_object.rotation)},
                             {"cam_t_m2c", translation_to_json_mm(object.camera_from_object.translation)}};
-    // Two keys of ours, so that nothing is lost without a models folder; other readers skip them.
+    // Our two additional keys, which keep names and instances without a models folder. Other readers skip them.
     if (object.object != bop_object_name(*id)) entry["name"] = object.object;
     if (object.instance != counts[object.object]++) entry["instance"] = object.instance;
     truth_[key].push_back(std::move(entry));

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A scene of `num_views` 4x3 images, camera and truth written by hand as other tools write them.
+/// A scene of `num_views` images of 4x3 pixels. Camera and ground truth are written as text, as by other tools.
 void write_scene(const std::filesystem::path& scene, int num_views, bool with_poses) {
   nlohmann::json cameras;
   nlohmann::json truth;
@@ -49,7 +49,7 @@ TEST(BopScene, ReadsUnitsNamesAndPoses) {
   ASSERT_TRUE(frame.ok()) << frame.error().message;
   EXPECT_EQ(frame->camera, (Camera{4, 3, 500, 501, 1.5, 1.25}));
   EXPECT_NEAR(frame->depth_m(1, 1), 0.5, 1e-7);
-  // w2c turns x to y and moves 1 m ahead, so that the camera stands 1 m behind the origin.
+  // w2c rotates x to y and shifts by 1 m forward, so that the camera is 1 m behind the origin.
   EXPECT_LT((frame->world_from_camera.translation - Eigen::Vector3d(0, 0, -1)).norm(), 1e-12);
   EXPECT_LT((frame->world_from_camera.rotation * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitX()).norm(), 1e-12);
   const auto truth = (*sequence)->read_ground_truth(0);

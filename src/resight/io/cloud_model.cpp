@@ -13,10 +13,11 @@
 namespace resight::io {
 namespace {
 
-/// A point that misses the image would be lost; more than this share of them means another camera or another frame.
+/// Points outside the image would be lost. A larger share of them indicates another camera or another frame.
 constexpr double kMaxOutsideShare = 0.05;
-/// The share of points behind others that no single view can show, and how far behind: in cells of the image that hold
-/// about four points each, times this (a surface at 80 deg incidence falls back by six of its cells).
+/// A single view cannot have a larger share of points behind others than this. "Behind" means by more than this
+/// multiple of an image cell that contains about four points (on a surface at 80 deg incidence, depth changes by six
+/// cells per cell).
 constexpr double kMaxHiddenShare = 0.1;
 constexpr double kHiddenBehindCells = 8.0;
 
@@ -29,10 +30,10 @@ TrainingView empty_view(const Camera& camera) {
   return view;
 }
 
-/// A point in an image: u, v in pixels, and z in metres.
+/// Points in an image: u, v in pixels, and z in metres.
 using ImagePoints = std::vector<Eigen::Vector3d>;
 
-/// The points in the image of the camera, in their order. None if the cloud is not in front of it.
+/// Projects the points into the image of the camera, in their order. None if the cloud is not in front of it.
 std::optional<ImagePoints> project(const PointCloud& cloud, const Camera& camera, const Rigid3& camera_from_points) {
   ImagePoints projected;
   std::size_t num_outside = 0;
@@ -46,7 +47,7 @@ std::optional<ImagePoints> project(const PointCloud& cloud, const Camera& camera
   return projected;
 }
 
-/// Whether points lie behind others, as they do in a cloud of all sides of an object and in no single view.
+/// Whether points lie behind others. This is the case for a cloud of all sides of an object, but not for a single view.
 bool hides_itself(const ImagePoints& points, const Camera& camera) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& p : points)
@@ -69,7 +70,7 @@ bool hides_itself(const ImagePoints& points, const Camera& camera) {
   return static_cast<double>(num_hidden) > kMaxHiddenShare * static_cast<double>(points.size());
 }
 
-/// The nearest point of each pixel.
+/// Draws the nearest point of each pixel.
 TrainingView draw(const PointCloud& cloud, const ImagePoints& points, const Camera& camera) {
   TrainingView view = empty_view(camera);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -86,7 +87,7 @@ TrainingView draw(const PointCloud& cloud, const ImagePoints& points, const Came
   return view;
 }
 
-/// A single view if it can be one, else the whole surface.
+/// Converts points to a single view if possible, else to the whole surface.
 Result<ModelSource> model_of_points(PointCloud cloud, const fs::path& file) {
   if (cloud.empty()) return file_error(file, "holds no points");
   if (const auto done = check_size(cloud.points, {}, file); !done) return done.error();
@@ -106,7 +107,7 @@ Result<ModelSource> model_of_points(PointCloud cloud, const fs::path& file) {
 Result<ModelSource> model_of_grid(const PcdCloud& cloud, const fs::path& file) {
   auto frame = to_frame(cloud, file.string());
   if (!frame) return frame.error();
-  frame->world_from_camera = find_points_from_camera(cloud.points);  // the object's frame is that of its points
+  frame->world_from_camera = find_points_from_camera(cloud.points);  // the object frame is that of the points
   TrainingView view = empty_view(frame->camera);
   for (std::size_t i = 0; i < view.mask.size(); ++i) view.mask[i] = std::isnan(frame->depth_m[i]) ? 0 : 255;
   view.frame = std::move(*frame);

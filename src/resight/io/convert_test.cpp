@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Views 0, 2, 4, .. with two objects each, in `format`.
+/// Writes views 0, 2, 4, ... with two objects each in `format`.
 void write_sequence(const std::filesystem::path& directory, DatasetFormat format) {
   const auto writer = create_sequence(directory, format);
   ASSERT_TRUE(writer.ok());
@@ -25,7 +25,7 @@ void write_sequence(const std::filesystem::path& directory, DatasetFormat format
   ASSERT_TRUE((*writer)->finish().ok());
 }
 
-/// `depth_tolerance_m`: what a rounding on the way may have cost.
+/// `depth_tolerance_m` is the largest acceptable rounding error.
 void expect_same(const Sequence& a, const Sequence& b, double depth_tolerance_m) {
   ASSERT_EQ(a.num_views(), 4);
   ASSERT_EQ(b.num_views(), 4);
@@ -71,7 +71,7 @@ TEST_P(SequenceRoundTrip, ThereAndBack) {
   const auto c = open_sequence(directory / "c");
   ASSERT_TRUE(c.ok()) << c.error().message;
   EXPECT_EQ((*a)->format(), (*c)->format());
-  // The depths are whole tenths of millimetres, which BOP keeps; float rounding is all that remains.
+  // Depths are multiples of 0.1 mm, which BOP preserves; only float rounding remains.
   expect_same(**a, **b, 1e-7);
   expect_same(**a, **c, 1e-7);
   EXPECT_EQ((*a)->image_id(3), (*c)->image_id(3));
@@ -171,13 +171,13 @@ TEST_P(ModelRoundTrip, ViewsThereAndBack) {
     const auto t = read_model((*tuw2)[i]);
     const auto b2 = read_model((*bop2)[i]);
     ASSERT_TRUE(original.ok() && b.ok() && t.ok() && b2.ok());
-    if (original->bop_id == 0) original->bop_id = 1;  // a BOP model has an id
+    if (original->bop_id == 0) original->bop_id = 1;  // a BOP model needs an id
     expect_same_models(*original, *b);
     expect_same_models(*original, *t);
     expect_same_models(*original, *b2);
     EXPECT_EQ(original->views[2].frame.name, t->views[2].frame.name);
   }
-  // The training split on its own is enough, too.
+  // The training split alone is also sufficient.
   const auto split = find_models({directory / "bop/train"});
   ASSERT_TRUE(split.ok()) << split.error().message;
   ASSERT_EQ(split->size(), 2U);

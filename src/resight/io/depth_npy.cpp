@@ -20,7 +20,7 @@ struct NpyHeader {
   std::size_t data_offset = 0;
 };
 
-/// The two numbers of "'shape': (480, 640)".
+/// Parses the two numbers of "'shape': (480, 640)".
 std::optional<std::pair<std::int64_t, std::int64_t>> parse_shape(std::string_view dictionary) {
   const std::size_t key = dictionary.find("'shape'");
   const std::size_t open = dictionary.find('(', key == dictionary.npos ? dictionary.size() : key);
@@ -59,7 +59,7 @@ Result<Image<float>> read_depth_npy(const std::filesystem::path& file) {
   if (!bytes) return bytes.error();
   const auto header = parse_npy_header(*bytes);
   if (!header)
-    return io::file_error(file, "is not a NumPy array we read (expected '<f4', C order, shape (height, width))");
+    return io::file_error(file, "is not a supported NumPy array (expected '<f4', C order, shape (height, width))");
   const std::size_t num_pixels = static_cast<std::size_t>(header->width) * static_cast<std::size_t>(header->height);
   if (bytes->size() - header->data_offset < num_pixels * sizeof(float))
     return io::file_error(file, "is cut off: fewer values than its shape says");

@@ -11,20 +11,20 @@
 #include "resight/io/tuw_changes.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
 
-/// Damaged files: always a value or an error, never a crash (most telling under sanitizers). Same seeds, same files.
+/// Damaged files must give a value or an error, but never a crash (most effective with sanitizers). Seeds are fixed.
 namespace resight {
 namespace {
 
 constexpr int kMutations = 400;
-constexpr int kFileMutations = 80;  ///< Where each one has to be written to disk.
+constexpr int kFileMutations = 80;  ///< For formats that must be written to disk.
 
-/// One to eight changes: a byte, a run cut out or doubled, a number made wild, the end cut off.
+/// Makes one to eight changes: replaces a byte, cuts or doubles a run, inserts an extreme number, or truncates.
 std::string mutate(std::string bytes, Rng& rng) {
   constexpr std::string_view kWild[] = {
       "-1", "0", "99999999999999999999", "2147483647", "4294967295", "nan", "inf", "1e308", "{", "\"", "\n", " "};
   const int num_changes = 1 + static_cast<int>(rng.below(8));
   for (int i = 0; i < num_changes && !bytes.empty(); ++i) {
-    // Headers are short and matter most: half of the changes go there.
+    // Half of the changes affect the header, which is short and most important.
     const auto range =
         static_cast<std::uint32_t>(rng.below(2) == 0 ? std::min<std::size_t>(bytes.size(), 300) : bytes.size());
     const std::size_t at = rng.below(range);
@@ -199,7 +199,7 @@ TEST(Fuzz, TumLists) {
 }
 
 TEST(Fuzz, ImageHeaders) {
-  // The decoder behind is a library's; ours are the header and the decision to call it.
+  // Decoding itself is done by a library. This tests the header and the decision to decode.
   io::TestDirectory directory;
   for (const char* file : {"c.png", "c.jpg"}) {
     ASSERT_TRUE(write_color(directory / file, io::random_frame("a", 1, 8, 6).color).ok());

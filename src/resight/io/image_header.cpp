@@ -30,7 +30,7 @@ constexpr CrcTables make_crc_tables() {
   return tables;
 }
 
-/// CRC-32 as PNG defines it, four bytes at a step.
+/// CRC-32 of PNG, four bytes per step.
 std::uint32_t compute_crc(std::string_view bytes) {
   static constexpr CrcTables kTables = make_crc_tables();
   std::uint32_t crc = 0xFFFFFFFFU;
@@ -46,7 +46,7 @@ std::uint32_t compute_crc(std::string_view bytes) {
 }
 static_assert(std::endian::native == std::endian::little);
 
-/// Walks over the chunks: length, type, data, checksum. A chunk matters if its type begins with a capital letter.
+/// Walks over the chunks: length, type, data, checksum. A chunk is critical if its type starts with a capital letter.
 std::optional<ImageHeader> parse_png(std::string_view bytes) {
   constexpr std::size_t kSignature = 8;
   if (bytes.size() < kSignature + 25 || bytes.substr(12, 4) != "IHDR") return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<ImageHeader> parse_png(std::string_view bytes) {
   return header;
 }
 
-/// Walks over the segments up to the start of frame, which holds the size.
+/// Walks over the segments up to the start of frame, which contains the size.
 std::optional<ImageHeader> parse_jpeg(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 9 < bytes.size()) {

@@ -20,7 +20,7 @@ constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
   const auto header = io::parse_image_header(bytes);
-  if (!header) return fail("is not an image we read (expected PNG or JPEG)");
+  if (!header) return fail("is not a supported image (expected PNG or JPEG)");
   if (header->width <= 0 || header->height <= 0 || header->width > kMaxImageSide_px ||
       header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > kMaxImagePixels)
     return fail(fmt::format("the image size {}x{} is out of range", header->width, header->height));
@@ -42,7 +42,7 @@ Result<cv::Mat> read(const std::filesystem::path& file, int flags) {
   return decode(*bytes, file.string(), flags);
 }
 
-/// Colour order and rotation are those of the file: depth and colour must stay in register.
+/// Keeps the orientation of the file, so that depth and colour remain registered.
 constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
 
 Image<Rgb8> to_color(const cv::Mat& bgr) {

@@ -17,7 +17,7 @@ TEST(Images, PngColourAndDepthAreExact) {
   ASSERT_TRUE(write_depth(directory / "d.png", frame.depth_m, 1e-4).ok());
   EXPECT_EQ(*read_color(directory / "c.png"), frame.color);
   EXPECT_EQ(io::depth_difference_m(*read_depth(directory / "d.png", 1e-4), frame.depth_m), 0);
-  // In whole millimetres half of one is lost at most.
+  // Rounding to whole millimetres loses at most half a millimetre.
   ASSERT_TRUE(write_depth(directory / "mm.png", frame.depth_m, 1e-3).ok());
   const double lost = io::depth_difference_m(*read_depth(directory / "mm.png", 1e-3), frame.depth_m);
   EXPECT_GT(lost, 1e-4);

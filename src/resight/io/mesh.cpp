@@ -30,7 +30,8 @@ Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
   if (result.mesh.has_texture())
     result.mesh.colors.clear();
   else if (!content->texture_file.empty())
-    io::drop_plain_colors(result.mesh.colors);  // what they were to be painted over with is not known
+    // The missing texture would have covered a uniform colour, so the true colour is unknown.
+    io::drop_plain_colors(result.mesh.colors);
   return result;
 }
 
@@ -40,7 +41,7 @@ Result<MeshFile> import_mesh(const std::filesystem::path& file) {
   return MeshFile{io::join_parts(std::move(imported->parts)), std::move(imported->warnings)};
 }
 
-/// What the numbers would be in if they were plausible: a hint, not a decision.
+/// Suggests the unit that would make the size plausible, as a hint for the error message.
 std::string guess_unit(double size_m, double metres_per_unit) {
   const double size_units = size_m / metres_per_unit;
   if (metres_per_unit == 0.001 && size_m < 0.005)
@@ -78,7 +79,7 @@ Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMes
 Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options) {
   options.check();
   if (!is_mesh_file(file))
-    return io::file_error(file, "is not a mesh file we read (expected ply, obj, glb, gltf or stl)");
+    return io::file_error(file, "is not a supported mesh file (expected ply, obj, glb, gltf or stl)");
   auto result = io::extension_of(file) == "ply" ? read_ply_mesh(file) : import_mesh(file);
   if (!result) return result;
   TriangleMesh& mesh = result->mesh;

@@ -17,20 +17,21 @@ struct ReadMeshOptions {
 };
 
 struct MeshFile {
-  TriangleMesh mesh;                  ///< Metres, with normals (computed where the file has none).
-  std::vector<std::string> warnings;  ///< What the file names but what could not be read: a missing texture.
+  TriangleMesh mesh;                  ///< In metres, with normals (computed if the file has none).
+  std::vector<std::string> warnings;  ///< References that could not be read, such as a missing texture.
 };
 
-/// Reads a triangle mesh: PLY by ourselves (read_ply()), OBJ, GLB/glTF and STL through Assimp. Scene transforms are
-/// applied, polygons become triangles, points and lines are dropped. Several textures are stacked into one. A mesh
-/// whose texture is missing has no colours, unless its vertices have several. Same file, same bytes: vertices come in
-/// the order of the file (PLY) or of Assimp's importer.
+/// Reads a triangle mesh: PLY by read_ply(), OBJ, GLB/glTF and STL through Assimp. Applies scene transforms, splits
+/// polygons into triangles, and drops points and lines. Several textures are stacked into one. A mesh with a missing
+/// texture has no colours unless its vertices have different colours. Deterministic: vertices are in the order of the
+/// file (PLY) or of Assimp's importer.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options = {});
 
 /// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
 
-/// Error when the points do not span between min and max metres, with the unit that the file seems to have.
+/// Fails if the extent of the points is not between the minimum and the maximum. The error suggests the unit of the
+/// file.
 [[nodiscard]] Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMeshOptions& options,
                                       const std::filesystem::path& file);
 

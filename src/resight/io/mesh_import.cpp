@@ -21,7 +21,7 @@ std::uint8_t to_channel(float value) {
 
 Rgb8 to_color(const aiColor4D& c) { return {to_channel(c.r), to_channel(c.g), to_channel(c.b)}; }
 
-/// The texture of a material, as the file names it; empty = none.
+/// The texture of a material as named in the file; empty if none.
 std::string texture_name(const aiMaterial& material) {
   aiString name;
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
@@ -32,7 +32,7 @@ std::string texture_name(const aiMaterial& material) {
   return text;
 }
 
-/// Loads each texture once. One that cannot be read leaves a warning and an empty image.
+/// Loads each texture once. A texture that cannot be read gives a warning and an empty image.
 class TextureLoader {
  public:
   TextureLoader(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings)
@@ -53,7 +53,7 @@ class TextureLoader {
   Result<Image<Rgb8>> read(const std::string& name) const {
     const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
     if (embedded == nullptr) return read_color(file_.parent_path() / name);
-    if (embedded->mHeight == 0)  // a compressed image, mWidth bytes
+    if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
       return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
                           file_.string() + " (texture)");
     Image<Rgb8> texture(static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight));
@@ -74,7 +74,7 @@ TriangleMesh convert_geometry(const aiMesh& source) {
   for (unsigned i = 0; i < source.mNumVertices; ++i) {
     mesh.vertices.push_back(vector3(source.mVertices[i]));
     if (source.HasNormals()) mesh.normals.push_back(vector3(source.mNormals[i]));
-    // Assimp puts the origin bottom left for every format.
+    // For all formats, Assimp has its origin at the bottom left.
     if (source.HasTextureCoords(0))
       mesh.uvs.push_back({source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y});
     if (source.HasVertexColors(0)) mesh.colors.push_back(to_color(source.mColors[0][i]));
@@ -90,7 +90,7 @@ TriangleMesh convert_geometry(const aiMesh& source) {
   return mesh;
 }
 
-/// The colour of a part whose picture is missing is not known: a plain one was to be painted over.
+/// Forgets the uniform colour of a part with a missing texture, because the texture would have covered it.
 void forget_plain_color(MeshPart& part) {
   part.has_color = false;
   part.color = MeshPart{}.color;
@@ -105,7 +105,7 @@ MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader&
   aiString material_name;
   material.Get(AI_MATKEY_NAME, material_name);
   aiColor4D color;
-  // Assimp's own default material is no statement of the file about its colour.
+  // The default material of Assimp says nothing about the colour in the file.
   part.has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
                    (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
                     material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
@@ -119,7 +119,7 @@ MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader&
   return part;
 }
 
-/// Parts of the same texture become one, so that a texture shared by several meshes is not stacked several times.
+/// Merges parts with the same texture, so that a shared texture is not stacked several times.
 bool try_merge(std::vector<MeshPart>& parts, const MeshPart& part) {
   for (MeshPart& other : parts) {
     const bool same_kind = other.mesh.uvs.empty() == part.mesh.uvs.empty() &&
@@ -134,7 +134,7 @@ bool try_merge(std::vector<MeshPart>& parts, const MeshPart& part) {
   return false;
 }
 
-/// Normals and uvs that not every part has would be lost or wrong in the whole.
+/// Removes normals and uvs unless all parts have them, because they would be lost or wrong in the joined mesh.
 void unify_attributes(std::vector<MeshPart>& parts) {
   if (std::ranges::any_of(parts, [](const MeshPart& p) { return p.mesh.normals.empty(); }))
     for (MeshPart& part : parts) part.mesh.normals.clear();

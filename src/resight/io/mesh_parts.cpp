@@ -9,7 +9,7 @@
 namespace resight::io {
 namespace {
 
-constexpr int kSwatch_px = 4;  // a plain colour as a texture; wide enough for bilinear reading
+constexpr int kSwatch_px = 4;  // size of a uniform colour as a texture; sufficient for bilinear sampling
 
 bool has_plain_uvs(const TriangleMesh& mesh) {
   constexpr float kSlack = 1e-3F;
@@ -37,7 +37,7 @@ void bake_vertex_colors(MeshPart& part) {
   mesh.uvs.clear();
 }
 
-/// Stacks the textures of all parts (a swatch for those without) into one and moves the uvs.
+/// Stacks the textures of all parts (a swatch for parts without a texture) into one and adjusts the uvs.
 void stack_textures(std::vector<MeshPart>& parts) {
   int width = 0;
   int height = 0;
@@ -56,7 +56,7 @@ void stack_textures(std::vector<MeshPart>& parts) {
     const Image<Rgb8>& texture = part.mesh.texture;
     for (int v = 0; v < texture.height(); ++v) std::ranges::copy(texture.row(v), stacked.row(top + v).begin());
     for (Eigen::Vector2f& uv : part.mesh.uvs) {
-      // Half a texel inside, so that bilinear reading does not see the neighbour.
+      // Half a texel inside, so that bilinear sampling does not reach the adjacent texture.
       const float x =
           std::clamp(uv.x() * static_cast<float>(texture.width()), 0.5F, static_cast<float>(texture.width()) - 0.5F);
       const float y =

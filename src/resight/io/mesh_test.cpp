@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A square in the plane z = 0 with a texture: left half red, right half blue, top row of the picture green.
+/// A square in the plane z = 0 with a texture: the left half is red, the right half blue, the top row green.
 void write_square_obj(const io::TestDirectory& directory, double scale) {
   const std::string s = std::to_string(scale);
   io::write_text(directory / "square.obj", "mtllib square.mtl\nv 0 0 0\nv " + s + " 0 0\nv " + s + " " + s +
@@ -35,7 +35,7 @@ TEST(Mesh, ObjTextureStandsUpright) {
   ASSERT_EQ(read->mesh.faces.size(), 2U);
   int num_green = 0;
   for (std::size_t i = 0; i < read->mesh.vertices.size(); ++i) {
-    const bool at_top = read->mesh.vertices[i].y() > 0.1F;  // y up = v up = first row of the picture
+    const bool at_top = read->mesh.vertices[i].y() > 0.1F;  // y up = v up = first row of the image
     EXPECT_EQ(read->mesh.uvs[i].y() < 0.5F, at_top);
     num_green += at_top ? 1 : 0;
     EXPECT_NEAR(read->mesh.normals[i].z(), 1, 1e-6);
@@ -91,7 +91,7 @@ TEST(Mesh, StlWithoutColours) {
 }
 
 TEST(Mesh, GltfNodesTexturesAndColours) {
-  // Two triangles under a node that moves them by 0.5 along x; uv (0, 0) is top left in glTF.
+  // Two triangles below a node that moves them by 0.5 along x. In glTF, uv (0, 0) is at the top left.
   io::TestDirectory directory;
   std::string buffer;
   const auto add = [&](float x) { buffer.append(reinterpret_cast<const char*>(&x), 4); };

@@ -20,7 +20,8 @@ namespace {
 using io::fs::path;
 using Locations = std::vector<ModelLocation>;
 
-/// Of several files of one stem, the first of these is the model: the others are conversions of it with less in them.
+/// If several files have the same stem, the first of these extensions is the model. The others are conversions with
+/// less content.
 constexpr std::array<std::string_view, 6> kExtensions = {"obj", "glb", "gltf", "ply", "stl", "pcd"};
 
 std::size_t extension_rank(const path& file) {
@@ -29,13 +30,13 @@ std::size_t extension_rank(const path& file) {
 
 std::string format_of(const path& file) { return io::extension_of(file) == "pcd" ? "cloud" : "mesh"; }
 
-/// Scene views and damaged files that lie in a folder are no models; whoever means such a file names it.
+/// Scene views and damaged files in a folder are not models. To train from such a file, name it explicitly.
 bool is_model_cloud(const path& file) {
   const auto size = read_pcd_size(file);
   return size.ok() && size->height == 1;
 }
 
-/// The model files right in a directory, one for each stem.
+/// The model files directly in a directory, one per stem.
 std::map<std::string, path> list_model_files(const path& directory) {
   std::map<std::string, path> files;
   for (const std::string& name : io::list_files(directory)) {
@@ -54,7 +55,7 @@ Result<ModelLocation> locate_tuw_model(const path& directory) {
   return ModelLocation{io::folder_name(directory), extras->bop_id, directory, "tuw"};
 }
 
-/// The mesh of a folder of its own: the only one, the one called like the folder, or "textured".
+/// The mesh of a folder of its own: the only one, the one with the name of the folder, or "textured".
 std::optional<path> find_own_mesh(const path& folder) {
   const auto files = list_model_files(folder);
   if (files.size() == 1) return files.begin()->second;
@@ -64,7 +65,7 @@ std::optional<path> find_own_mesh(const path& folder) {
   return std::nullopt;
 }
 
-/// Models in a folder of models: files, sub-folders of one model, and (one level deeper) the same by class.
+/// Collects models in a folder: files, sub-folders with one model, and (one level deeper) the same per class.
 Result<void> collect(const path& directory, int levels_below, Locations& found) {
   for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
   for (const std::string& name : io::list_directories(directory)) {
@@ -104,7 +105,7 @@ Result<Locations> find_under(const path& where) {
   }
   auto bop = io::find_bop_models(where);
   if (!bop || !bop->empty()) return bop;
-  // A folder of one mesh and its conversions is that model.
+  // A folder with one mesh and its conversions is one model.
   if (const auto mesh = find_own_mesh(where); mesh && mesh->stem() == "textured") {
     const auto extras = io::read_model_extras(where / "model_info.json");
     if (!extras) return extras.error();

@@ -13,19 +13,19 @@
 
 namespace resight {
 
-/// What an object can be trained from: views, a mesh or a complete cloud (at least one of them), metres, object frame.
+/// Training data of an object in metres, object frame: at least one of views, a mesh or a complete cloud.
 struct ModelSource {
   std::string name;
-  int bop_id = 0;                   ///< obj_id; 0 = none given.
-  std::vector<TrainingView> views;  ///< TUW training views (or BOP train split).
+  int bop_id = 0;                   ///< obj_id; 0 if not given.
+  std::vector<TrainingView> views;  ///< TUW training views, or views of a BOP training split.
   std::optional<TriangleMesh> mesh;
-  std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd, a PLY without faces), if any.
+  std::optional<PointCloud> surface;  ///< Complete model cloud (3D_model.pcd, or a PLY without faces).
   ObjectSymmetries symmetries;
-  bool symmetries_known = false;      ///< Somebody has declared them, be it that there are none.
-  std::vector<std::string> warnings;  ///< What the model names but lacks (a texture file), one line each.
+  bool symmetries_known = false;      ///< The source declares the symmetries, possibly that there are none.
+  std::vector<std::string> warnings;  ///< Missing references of the model (such as a texture file), one line each.
 };
 
-/// Where a model lies on disk; cheap to list, read one by one.
+/// Location of a model on disk. Listing is cheap; models are read one by one.
 struct ModelLocation {
   std::string name;
   int bop_id = 0;
@@ -33,9 +33,9 @@ struct ModelLocation {
   std::string format;  ///< "tuw", "bop", "mesh", "cloud".
 };
 
-/// Lists the models under each path: a TUW model folder (or a folder of those), a BOP models folder or data set, a
-/// folder of meshes or clouds (each file, or each sub-folder with one), or such a file. In order
-/// of name. The error says what was looked for.
+/// Lists the models under each path, in order of name. A path is a TUW model folder (or a folder of these), a BOP
+/// models folder or data set, a folder of meshes or clouds (one per file or per sub-folder), or such a file. The error
+/// says what was expected.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_models(const std::vector<std::filesystem::path>& paths);
 [[nodiscard]] Result<ModelSource> read_model(const ModelLocation& location);
 

@@ -147,7 +147,7 @@ TEST(CloudModel, OneViewInFrontOfTheCamera) {
   EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("looks like millimetres"));
 }
 
-// All sides of a ball, around the origin or before the camera: no single view has points behind one another.
+// All sides of a ball, around the origin or in front of the camera. In a single view, no point hides another.
 TEST(CloudModel, AllSidesOfAnObjectAreItsSurface) {
   for (const float z : {0.0F, 0.8F}) {
     io::TestDirectory directory;
@@ -164,7 +164,7 @@ TEST(CloudModel, AllSidesOfAnObjectAreItsSurface) {
     EXPECT_TRUE(model->views.empty());
     ASSERT_TRUE(model->surface.has_value()) << z;
     EXPECT_EQ(model->surface->size(), 4000U);
-    std::erase_if(ball.points, [&](const Eigen::Vector3f& p) { return p.z() > z - 0.01F; });  // the side that is seen
+    std::erase_if(ball.points, [&](const Eigen::Vector3f& p) { return p.z() > z - 0.01F; });  // keep the visible side
     ball.colors.resize(ball.points.size());
     ASSERT_TRUE(write_ply(directory / "ball.ply", ball).ok());
     const auto half = read_model(find_models({directory / "ball.ply"})->front());

@@ -11,7 +11,7 @@ namespace {
 
 bool is_return(const Eigen::Vector3f& p) { return p.allFinite() && p.z() > 0; }
 
-/// Fits pixel = f * slope + c.
+/// Fits pixel = f * slope + c by least squares.
 class LineFit {
  public:
   void add(double slope, double pixel) {
@@ -22,7 +22,7 @@ class LineFit {
     sum_sp_ += slope * pixel;
     sum_pp_ += pixel * pixel;
   }
-  /// False without spread along this axis.
+  /// Returns false if the slopes do not vary.
   bool solve() {
     const double var_s = sum_ss_ / n_ - (sum_s_ / n_) * (sum_s_ / n_);
     const double var_p = sum_pp_ / n_ - (sum_p_ / n_) * (sum_p_ / n_);
@@ -58,7 +58,7 @@ Result<Camera> find_camera(const PcdCloud& cloud, std::span<const Eigen::Vector3
 
 std::optional<CameraFit> fit_camera(std::span<const Eigen::Vector3f> points, int width, int height) {
   require(points.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-          "fit_camera: width x height is not the number of points");
+          "fit_camera: width x height must be the number of points");
   LineFit horizontal;
   LineFit vertical;
   int num_points = 0;
@@ -67,7 +67,7 @@ std::optional<CameraFit> fit_camera(std::span<const Eigen::Vector3f> points, int
       const Eigen::Vector3f& p =
           points[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)];
       if (!is_return(p)) continue;
-      // Pixels are counted from the image centre, which keeps the sums small and exact.
+      // Pixels are relative to the image centre, which keeps the sums small and exact.
       horizontal.add(static_cast<double>(p.x()) / p.z(), u - width / 2.0);
       vertical.add(static_cast<double>(p.y()) / p.z(), v - height / 2.0);
       ++num_points;
@@ -126,7 +126,7 @@ PcdCloud to_pcd_cloud(const RgbdFrame& frame) {
     for (int u = 0; u < cloud.width; ++u) {
       const std::size_t i = frame.depth_m.index(u, v);
       const float z = frame.depth_m[i];
-      // A NaN depth makes all three NaN, as the format wants it.
+      // NaN depth makes all three coordinates NaN, as the format requires.
       cloud.points[i] = frame.camera.unproject(u, v, z).cast<float>();
       cloud.points[i].z() = z;
     }

@@ -9,7 +9,7 @@
 
 namespace resight {
 
-/// Fewer points than this say nothing about the camera.
+/// Fewer points do not determine a camera.
 inline constexpr int kMinPointsForCamera = 100;
 /// Largest root mean square deviation of the points from the pixel grid of a pinhole camera.
 inline constexpr double kMaxCameraResidual_px = 1.0;
@@ -20,22 +20,22 @@ struct CameraFit {
   int num_points = 0;
 };
 
-/// The pinhole camera of an organised cloud, by least squares from u = fx x/z + cx and v = fy y/z + cy over all its
-/// points (z > 0). None with fewer than kMinPointsForCamera points, or if they lie in one row or column.
+/// Fits a pinhole camera to an organised cloud by least squares of u = fx x/z + cx and v = fy y/z + cy over all points
+/// with z > 0. None for fewer than kMinPointsForCamera points, or if these lie in one row or column.
 [[nodiscard]] std::optional<CameraFit> fit_camera(std::span<const Eigen::Vector3f> points, int width, int height);
 
-/// The rotation that turns the optical frame (z forward) into the frame of the points: the identity, or half a turn
-/// about x where no point lies before and all lie behind the camera. Such clouds have x right, y up, z backward, as
-/// OpenGL and the first Kinect recordings of PCL.
+/// Rotation from the optical frame (z forward) to the frame of the points: the identity, or a half turn about x if all
+/// points lie behind the camera. Such clouds have x right, y up, z backward, as in OpenGL and the first Kinect
+/// recordings of PCL.
 [[nodiscard]] Rigid3 find_points_from_camera(std::span<const Eigen::Vector3f> points);
 
-/// The RGB-D view that an organised cloud is: depth = z, colour of every pixel, pose = viewpoint. A point that is NaN,
-/// or has no positive z, is no return; a cloud with all z negative is turned (find_points_from_camera()). The camera is
-/// the one of the file's comment; else fit_camera(), with an error when the points do not lie on a pinhole grid; else
-/// (next to no points) f = 525 px and the centre of the image.
+/// Converts an organised cloud to an RGB-D view: depth = z, colour per pixel, pose = viewpoint. Points with NaN or
+/// without positive z become missing depth; a cloud with only negative z is rotated first (find_points_from_camera()).
+/// The camera is that of the comment in the file, else that of fit_camera(). Fails if the points do not lie on a
+/// pinhole grid. If there are too few points, the camera has f = 525 px and its centre in the middle of the image.
 [[nodiscard]] Result<RgbdFrame> to_frame(const PcdCloud& cloud, std::string_view name);
 
-/// The organised cloud of a view, with its camera, so that to_frame() gives back the same view bit by bit.
+/// Converts a view to an organised cloud with its camera. to_frame() restores the same view bit for bit.
 [[nodiscard]] PcdCloud to_pcd_cloud(const RgbdFrame& frame);
 
 }  // namespace resight

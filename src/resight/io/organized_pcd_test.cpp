@@ -46,7 +46,7 @@ TEST(ToFrame, NoPinholeGridIsAnError) {
 TEST(ToFrame, NoPointsGiveTheKinectCamera) {
   PcdCloud cloud = to_pcd_cloud(io::random_frame("view", 6));
   cloud.camera.reset();
-  for (auto& p : cloud.points) p.setZero();  // some writers put zeros where there is no return
+  for (auto& p : cloud.points) p.setZero();  // some writers store zeros for missing points
   const auto frame = to_frame(cloud, "view");
   ASSERT_TRUE(frame.ok());
   EXPECT_EQ(frame->camera, (Camera{48, 36, 525, 525, 23.5, 17.5}));
@@ -61,7 +61,7 @@ TEST(ToFrame, BackwardCloudsAreTurnedAndStayInPlace) {
   const auto turned = to_frame(cloud, "view");
   ASSERT_TRUE(turned.ok()) << turned.error().message;
   EXPECT_EQ(io::depth_difference_m(turned->depth_m, frame.depth_m), 0);
-  // Where a point of the file is in the world does not change.
+  // The world position of each point must not change.
   int num_points = 0;
   for (int v = 0; v < 36; ++v)
     for (int u = 0; u < 48; ++u) {

@@ -43,7 +43,7 @@ class PcdHeaderParser {
     return fail(fmt::format("{} of the PCD header is wrong (expected {})", entry, expected));
   }
 
-  /// "# camera fx fy cx cy"; what follows is ignored.
+  /// Parses "# camera fx fy cx cy"; ignores the rest of the line.
   void parse_comment(const std::vector<std::string_view>& words) {
     if (words.size() < 6 || words[0] != "#" || words[1] != "camera") return;
     std::vector<double> numbers;
@@ -65,7 +65,7 @@ class PcdHeaderParser {
     return fail(fmt::format("is not a PCD file (unknown header line starting with '{:.20}')", printable(key)));
   }
 
-  /// Bytes of a foreign file must not get into a terminal.
+  /// Replaces unprintable bytes, because bytes of an untrusted file must not reach a terminal.
   static std::string printable(std::string_view text) {
     std::string result(text);
     std::ranges::replace_if(
@@ -140,7 +140,7 @@ class PcdHeaderParser {
 
   Result<PcdHeader> finish() {
     if (header_.fields.empty()) return fail("the PCD header has no FIELDS");
-    if (!width_ && points_) width_ = points_;  // old files: POINTS alone
+    if (!width_ && points_) width_ = points_;  // old files have POINTS only
     if (!width_) return fail("the PCD header has no WIDTH");
     header_.width = static_cast<int>(*width_);
     header_.height = static_cast<int>(height_.value_or(1));

@@ -18,11 +18,11 @@ using io::PcdField;
 using io::PcdHeader;
 
 constexpr std::size_t kHeaderBytes = 64 * 1024;
-/// An LZF block expands at most 264 bytes from 3; more than this is a lie of the header.
+/// LZF expands a block by a factor of at most 264 / 3. A header that claims a larger one is wrong.
 constexpr std::size_t kMaxLzfRatio = 100;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// One field over all points of a binary body: point i stands at data + i * stride.
+/// One field of all points of a binary body. The value of point i is at data + i * stride.
 struct FieldColumn {
   const char* data = nullptr;
   std::size_t stride = 0;
@@ -59,7 +59,7 @@ Rgb8 unpack(std::uint32_t packed) {
           static_cast<std::uint8_t>(packed)};
 }
 
-/// The fields that we read; null = not there.
+/// The fields that are read; null if missing.
 struct KnownFields {
   explicit KnownFields(const PcdHeader& header)
       : position{header.find("x"), header.find("y"), header.find("z")},
@@ -104,7 +104,7 @@ class BodyReader {
   }
 
   Result<void> read_ascii() {
-    // A value takes two bytes at least; the last one may lack its separator.
+    // A value takes at least two bytes; the separator after the last value may be missing.
     if (num_points_ > (body_.size() + 1) / (2 * header_.values_per_point)) return cut_off();
     allocate();
     io::TextCursor cursor(body_);
@@ -145,7 +145,7 @@ class BodyReader {
     return {};
   }
 
-  /// Sizes, then an LZF block that holds all values of the first field, then all of the second, and so on.
+  /// Reads the sizes, then an LZF block with all values of the first field, then all of the second, and so on.
   Result<void> read_compressed() {
     if (body_.size() < 8) return cut_off();
     const std::size_t compressed = load<std::uint32_t>(body_.data());
@@ -153,7 +153,7 @@ class BodyReader {
     if (compressed > body_.size() - 8) return cut_off();
     if (plain % header_.point_bytes != 0 || plain / header_.point_bytes != num_points_ ||
         plain > compressed * kMaxLzfRatio)
-      return fail(fmt::format("its compressed block of {} bytes does not fit to {} points of {} bytes", plain,
+      return fail(fmt::format("its compressed block of {} bytes does not match {} points of {} bytes", plain,
                               num_points_, header_.point_bytes));
     std::string bytes(plain, '\0');
     if (plain > 0 && lzf_decompress(body_.data() + 8, static_cast<unsigned>(compressed), bytes.data(),

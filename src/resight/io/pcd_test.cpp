@@ -90,7 +90,7 @@ TEST(Pcd, AnyOrderSizeTypeAndCountOfFields) {
 }
 
 TEST(Pcd, AsciiWithFloatPackedColour) {
-  // 0x00102030 as a float is a denormal number; with 9 digits it comes back.
+  // 0x00102030 as a float is a denormal number. Nine digits restore it.
   const float packed = std::bit_cast<float>(std::uint32_t{0x00102030});
   char digits[40];
   std::snprintf(digits, sizeof(digits), "%.9g", static_cast<double>(packed));

@@ -16,7 +16,7 @@ std::uint32_t pack(Rgb8 c) {
   return static_cast<std::uint32_t>(c.r) << 16 | static_cast<std::uint32_t>(c.g) << 8 | c.b;
 }
 
-/// Fields in the order x y z, rgb, normals, as bit patterns: all of them are four bytes wide.
+/// Fields in the order x y z, rgb, normals as bit patterns. Each value has four bytes.
 std::vector<std::vector<std::uint32_t>> make_columns(const PcdCloud& cloud) {
   std::vector<std::vector<std::uint32_t>> columns;
   const auto add_vectors = [&](const std::vector<Eigen::Vector3f>& vectors) {
@@ -37,7 +37,7 @@ std::vector<std::vector<std::uint32_t>> make_columns(const PcdCloud& cloud) {
 std::string make_pcd_header(const PcdCloud& cloud, PcdEncoding encoding) {
   const bool color = !cloud.colors.empty();
   const bool normal = !cloud.normals.empty();
-  // PCL wants rgb as a packed float; as text a float would lose it, so that it becomes a whole number there.
+  // PCL expects rgb as a packed float. A float would lose it as text, so ascii files store a whole number.
   const std::string_view color_type = encoding == PcdEncoding::kAscii ? " U" : " F";
   const auto line = [&](std::string_view key, std::string_view xyz, std::string_view rgb, std::string_view normals) {
     return fmt::format("{} {}{}{}\n", key, xyz, color ? rgb : "", normal ? normals : "");
@@ -90,7 +90,7 @@ bool append_compressed(std::string& bytes, const std::vector<std::vector<std::ui
   plain.reserve(4 * columns.size() * num_points);
   for (const auto& column : columns) plain.append(reinterpret_cast<const char*>(column.data()), 4 * column.size());
   if (plain.size() > std::numeric_limits<std::uint32_t>::max() / 2) return false;
-  std::string packed(plain.size() + plain.size() / 16 + 64, '\0');  // LZF grows what it cannot compress by 1/32
+  std::string packed(plain.size() + plain.size() / 16 + 64, '\0');  // LZF expands incompressible data by 1/32
   const std::uint32_t sizes[2] = {plain.empty() ? 0
                                                 : lzf_compress(plain.data(), static_cast<unsigned>(plain.size()),
                                                                packed.data(), static_cast<unsigned>(packed.size())),
@@ -107,9 +107,9 @@ Result<void> write_pcd(const std::filesystem::path& file, const PcdCloud& cloud,
   const auto fits = [&](std::size_t size) { return size == 0 || size == cloud.points.size(); };
   require(cloud.width >= 0 && cloud.height >= 0 &&
               cloud.points.size() == static_cast<std::size_t>(cloud.width) * static_cast<std::size_t>(cloud.height),
-          "write_pcd: width x height is not the number of points");
+          "write_pcd: width x height must be the number of points");
   require(fits(cloud.normals.size()) && fits(cloud.colors.size()),
-          "write_pcd: an attribute has not as many entries as there are points");
+          "write_pcd: an attribute must have one entry per point");
   require(cloud.viewpoint.is_rigid(), "write_pcd: the viewpoint is not rigid");
   std::string bytes = make_pcd_header(cloud, encoding);
   if (encoding == PcdEncoding::kAscii) {

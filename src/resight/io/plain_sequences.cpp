@@ -11,14 +11,14 @@
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
 
-/// Colour and depth images beside each other with a text file about the camera, in the layouts of some small public
-/// sets.
+/// Readers for layouts of some small public data sets: colour and depth images beside each other, with a text file
+/// about the camera.
 namespace resight::io {
 namespace {
 
 constexpr double kTenthMillimetre_m = 1e-4;
 
-/// The names `<stem><suffix>` of a directory, without the suffix, in natural order.
+/// Stems of the files `<stem><suffix>` in a directory, in natural order.
 std::vector<std::string> list_stems(const fs::path& directory, std::string_view suffix) {
   std::vector<std::string> stems;
   for (const std::string& name : list_files(directory))
@@ -48,7 +48,7 @@ ListedView make_view(const fs::path& directory, const std::string& stem, std::st
   return view;
 }
 
-/// "INTRINSICS: [618.0, 0.0, ...]", the list over one or more lines.
+/// Parses "INTRINSICS: [618.0, 0.0, ...]"; the list may extend over several lines.
 Result<Intrinsics> read_meta_yml(const fs::path& file) {
   const auto text = read_file(file);
   if (!text) return text.error();
@@ -70,7 +70,7 @@ Result<Rigid3> parse_matrix(const nlohmann::json& json, std::string_view what) {
   return rigid_from_matrix(matrix, what);
 }
 
-/// derived/pseudo_gt.json {"frames": {"<view>": [{"object": .., "camera_from_object": 4x4}]}}
+/// Reads derived/pseudo_gt.json {"frames": {"<view>": [{"object": .., "camera_from_object": 4x4}]}}.
 Result<void> add_truth_per_view(const fs::path& file, SequenceTable& table) {
   if (!is_file(file)) return {};
   const auto json = read_json(file);
@@ -92,7 +92,7 @@ Result<void> add_truth_per_view(const fs::path& file, SequenceTable& table) {
   return {};
 }
 
-/// derived/pseudo_gt.json {"<object>": {"T_world_model": 4x4}}, for a scene that does not change.
+/// Reads derived/pseudo_gt.json {"<object>": {"T_world_model": 4x4}} of a static scene.
 Result<void> add_truth_in_world(const fs::path& file, SequenceTable& table) {
   if (!is_file(file)) return {};
   const auto json = read_json(file);
@@ -111,7 +111,7 @@ Result<void> add_truth_in_world(const fs::path& file, SequenceTable& table) {
   return {};
 }
 
-/// Blocks of numbers, each under a comment line that says what it is.
+/// Blocks of numbers, each below a comment line with its title.
 struct CameraInfo {
   Intrinsics color;
   std::vector<Rigid3> world_from_camera;
@@ -228,7 +228,7 @@ SequenceResult open_numbered_cameras_sequence(const fs::path& directory) {
   table.format = "numbered-cameras";
   for (const std::string& stem : list_stems(directory, ".color.png")) {
     const auto number = trailing_number(stem);
-    if (!number) continue;  // other images that lie there
+    if (!number) continue;  // other images in the folder
     const std::string camera = fmt::format("camera-{}", *number);
     const auto intrinsics = read_camera_matrix(directory / (camera + ".intrinsics.txt"));
     if (!intrinsics) return intrinsics.error();

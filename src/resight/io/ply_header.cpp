@@ -55,7 +55,7 @@ std::optional<PlyProperty> parse_property(const std::vector<std::string_view>& w
   return property;
 }
 
-/// Smallest number of bytes that one item takes.
+/// Smallest number of bytes per item.
 std::size_t min_item_bytes(const PlyElement& element, PlyEncoding encoding) {
   std::size_t bytes = 0;
   for (const PlyProperty& p : element.properties)
@@ -75,7 +75,7 @@ class PlyHeaderParser {
       const std::string_view line = cut_line(rest);
       ended = line == "end_header";
       if (!ended && !parse_line(line))
-        return fail(fmt::format("line {} of the PLY header is not understood", line_number));
+        return fail(fmt::format("line {} of the PLY header cannot be parsed", line_number));
     }
     if (!ended || !has_format_) return fail("the PLY header has no 'format' or no 'end_header'");
     header_.body_offset = bytes.size() - rest.size();
@@ -101,7 +101,7 @@ class PlyHeaderParser {
   bool parse_comment(std::string_view line, const std::vector<std::string_view>& words) {
     if (words.size() < 3 || words[1] != "TextureFile" || !header_.texture_file.empty()) return true;
     std::string_view file =
-        line.substr(static_cast<std::size_t>(words[2].data() - line.data()));  // names may hold blanks
+        line.substr(static_cast<std::size_t>(words[2].data() - line.data()));  // names may contain blanks
     while (!file.empty() && (file.back() == ' ' || file.back() == '\t')) file.remove_suffix(1);
     header_.texture_file = file;
     return true;
@@ -131,7 +131,7 @@ class PlyHeaderParser {
   Result<PlyHeader> check_counts(std::size_t body_bytes) {
     for (const PlyElement& element : header_.elements) {
       const std::size_t item_bytes = min_item_bytes(element, header_.encoding);
-      // One byte more: the last line of a text needs no end.
+      // One more byte, because the last line of a text needs no end.
       if (element.count > 0 && (item_bytes == 0 || element.count > (body_bytes + 1) / item_bytes))
         return fail(fmt::format("claims {} items of '{}', more than the file can hold (cut off?)", element.count,
                                 element.name));

@@ -19,14 +19,14 @@ using io::PlyType;
 
 constexpr int kMaxPolygonCorners = 10000;
 
-/// Column of the first of several names for the same property, -1 if there is none.
+/// Column of the first of several names for the same property, or -1.
 int find_first(const PlyElement& element, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names)
     if (const int i = element.find(name); i >= 0 && !element.properties[i].is_list) return i;
   return -1;
 }
 
-/// Where the attributes of a vertex stand in its row.
+/// Columns of the attributes in a vertex row.
 struct VertexColumns {
   explicit VertexColumns(const PlyElement& e)
       : position{find_first(e, {"x"}), find_first(e, {"y"}), find_first(e, {"z"})},
@@ -75,10 +75,10 @@ class PlyReader {
  private:
   Error fail(std::string_view what) const { return Error{fmt::format("{}: {}", name_, what)}; }
   Error cut_off(const PlyElement& element) const {
-    return fail(fmt::format("the data of '{}' end too early or are no numbers", element.name));
+    return fail(fmt::format("the data of '{}' end too early or are not numbers", element.name));
   }
 
-  /// The values of a list, at most kMaxPolygonCorners of them.
+  /// Reads the values of a list, at most kMaxPolygonCorners.
   bool read_list(const PlyProperty& property, std::vector<double>& list) {
     double count = 0;
     if (!values_.next(property.count_type, count) || !(count >= 0 && count <= kMaxPolygonCorners) ||
@@ -88,7 +88,7 @@ class PlyReader {
     return std::ranges::all_of(list, [&](double& value) { return values_.next(property.type, value); });
   }
 
-  /// One item: scalars into `row`, lists into `lists`, both by column.
+  /// Reads one item: scalars to `row`, lists to `lists`, both by column.
   bool read_item(const PlyElement& element, std::vector<double>& row, std::vector<std::vector<double>>& lists) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
@@ -164,7 +164,8 @@ class PlyReader {
     return {};
   }
 
-  /// Texture coordinates per corner become per vertex: a vertex with several is repeated.
+  /// Converts texture coordinates per corner to coordinates per vertex. Vertices with several coordinates are
+  /// duplicated.
   void split_at_seams() {
     std::map<std::tuple<int, float, float>, int> numbers;
     TriangleMesh split;

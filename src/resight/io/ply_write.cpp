@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-/// What a vertex row is made of; empty attributes are left out.
+/// The attributes of vertex rows. Empty attributes are left out.
 struct VertexArrays {
   const std::vector<Eigen::Vector3f>& points;
   const std::vector<Eigen::Vector3f>& normals;
@@ -42,7 +42,7 @@ void append_vertices(std::string& bytes, const VertexArrays& vertices, double un
       for (int k = 0; k < 3; ++k) append(bytes, vertices.normals[i][k]);
     if (!vertices.uvs.empty()) {
       append(bytes, vertices.uvs[i].x());
-      append(bytes, 1 - vertices.uvs[i].y());  // PLY: v axis up
+      append(bytes, 1 - vertices.uvs[i].y());  // the v axis of PLY points up
     }
     if (!vertices.colors.empty()) append(bytes, vertices.colors[i]);
   }
@@ -51,7 +51,7 @@ void append_vertices(std::string& bytes, const VertexArrays& vertices, double un
 void check_attributes(const VertexArrays& vertices, double units_per_metre) {
   const auto fits = [&](std::size_t size) { return size == 0 || size == vertices.points.size(); };
   require(fits(vertices.normals.size()) && fits(vertices.uvs.size()) && fits(vertices.colors.size()),
-          "write_ply: an attribute has not as many entries as there are points");
+          "write_ply: an attribute must have one entry per point");
   require(units_per_metre > 0 && std::isfinite(units_per_metre), "write_ply: units_per_metre must be positive");
 }
 

@@ -9,24 +9,25 @@
 
 namespace resight {
 
-/// A rotation or pose of a file may deviate from a rigid motion by this much (matrix elements); more is an error, less
-/// comes from few digits and is repaired.
+/// Tolerance for the deviation of a rotation or pose in a file from a rigid motion (matrix elements). Smaller
+/// deviations come from few digits and are repaired; larger ones are errors.
 inline constexpr double kPoseTolerance = 1e-2;
 
-/// The rigid motion of a homogeneous matrix. Its rotation is replaced by the nearest proper one when it is off by more
-/// than 1e-9. Error (starting with `what`) for NaN, scale, shear, reflection, or a last row other than 0 0 0 1.
+/// The rigid motion of a homogeneous matrix. Replaces the rotation by the nearest proper one if it deviates by more
+/// than 1e-9. Fails (with `what` at the start of the message) for NaN, scale, shear, reflection, or a last row other
+/// than 0 0 0 1.
 [[nodiscard]] Result<Rigid3> rigid_from_matrix(const Eigen::Matrix4d& matrix, std::string_view what);
 
-/// From a quaternion, of which the norm may be off by kPoseTolerance.
+/// From a quaternion. Its norm may deviate from 1 by kPoseTolerance.
 [[nodiscard]] Result<Rigid3> rigid_from_quaternion(const Eigen::Quaterniond& rotation,
                                                    const Eigen::Vector3d& translation, std::string_view what);
 
-/// Sixteen numbers row by row (twelve: without the last row), in any white space; one word in front of them is skipped
-/// (old files carry a label).
+/// Parses sixteen numbers in row-major order (twelve: without the last row), separated by any white space. Skips one
+/// word in front of them (a label in old files).
 [[nodiscard]] Result<Rigid3> parse_pose(std::string_view text, std::string_view what);
 [[nodiscard]] Result<Rigid3> read_pose(const std::filesystem::path& file);
 
-/// Sixteen numbers row by row on one line, all digits (read back bit by bit).
+/// Sixteen numbers in row-major order on one line, with all digits (read back bit for bit).
 [[nodiscard]] std::string format_pose(const Rigid3& pose);
 
 }  // namespace resight

@@ -20,7 +20,7 @@ struct FormatEntry {
   io::SequenceResult (*open)(const path& directory);
 };
 
-/// In the order in which they are tried: the most specific first.
+/// In the order in which they are tried, most specific first.
 constexpr std::array<FormatEntry, 7> kFormats = {
     {{io::is_bop_scene, io::open_bop_scene},
      {io::is_tum_sequence, io::open_tum_sequence},
@@ -35,8 +35,8 @@ const FormatEntry* find_format(const path& directory) {
   return it == kFormats.end() ? nullptr : &*it;
 }
 
-/// Sequences below a data set's root: its sub-folders, and the scenes of its BOP splits. Test splits go before training
-/// ones, and folders of models are none.
+/// Sequences below the root of a data set: its sub-folders, and the scenes of its BOP splits. Test splits precede
+/// training splits; model folders are skipped.
 std::vector<path> find_sequences_below(const path& directory) {
   std::vector<path> found;
   std::vector<path> training;
@@ -56,7 +56,7 @@ std::vector<path> find_sequences_below(const path& directory) {
 constexpr std::string_view kExpectedSequences =
     "expected a BOP scene (scene_camera.json), a TUM recording (rgb, depth, associations.txt or rgb.txt and "
     "depth.txt), "
-    "organised *.pcd views (TUW), or colour and depth images with their camera as docs/formats.md says";
+    "organised *.pcd views (TUW), or colour and depth images with their camera as described in docs/formats.md";
 
 }  // namespace
 
@@ -77,7 +77,7 @@ Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory) {
   if (sequence.ok() && !(*sequence)->has_poses() && (*sequence)->num_views() > 1)
     return io::file_error(directory,
                           "holds no camera poses (cam_R_w2c of each view in BOP, groundtruth.txt in TUM); "
-                          "several views can only be used with them: resight track finds them");
+                          "several views need them; resight track estimates them");
   return sequence;
 }
 

@@ -9,13 +9,13 @@
 
 namespace resight {
 
-/// Opens a sequence directory; the format is detected from what lies in it. The error says what was looked for.
+/// Opens a sequence directory and detects the format from its contents. The error says what was expected.
 [[nodiscard]] Result<std::unique_ptr<Sequence>> open_sequence(const std::filesystem::path& directory);
 
-/// The same, for what needs camera poses: several views without them are an error.
+/// Same, for uses that need camera poses. Fails for several views without poses.
 [[nodiscard]] Result<std::unique_ptr<Sequence>> open_posed_sequence(const std::filesystem::path& directory);
 
-/// Writes a sequence view by view; it appears under its final name only with finish().
+/// Writes a sequence view by view. It appears under its final name only with finish().
 class SequenceWriter {
  public:
   virtual ~SequenceWriter() = default;

@@ -8,7 +8,7 @@
 #include "resight/io/pcd.hpp"
 #include "resight/io/sequence.hpp"
 
-/// Real and independent data, where this machine has them.
+/// Tests with real data from independent sources, if available.
 namespace resight {
 namespace {
 
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-/// Share of an object's mesh vertices that have a depth measurement within 2 cm, among those that fall on valid pixels.
+/// Share of the mesh vertices of an object that have a depth measurement within 2 cm, among those on valid pixels.
 double agreement(const RgbdFrame& frame, const Rigid3& camera_from_object,
                  const std::vector<Eigen::Vector3f>& vertices) {
   int close = 0;
@@ -88,7 +88,7 @@ void expect_truth_fits(const Sequence& sequence, const std::vector<ModelLocation
         ASSERT_TRUE(model->mesh.has_value());
         loaded[object.object] = std::move(*model);
       }
-      // About half of the vertices are on the side that is seen.
+      // About half of the vertices are on the visible side.
       EXPECT_GT(agreement(*frame, object.camera_from_object, loaded[object.object].mesh->vertices), 0.15)
           << object.object << " in view " << view;
       ++num_checked;
@@ -136,7 +136,7 @@ TEST(SharedData, TheSameObjectAsPlyInMillimetresAndObjInMetres) {
   RESIGHT_NEEDS_DATA("ycb-meshes");
   const auto bop = find_models({shared_data("table-rendered/models/obj_000005.ply")});
   ASSERT_TRUE(bop.ok());
-  const auto as_metres = read_model(bop->front());  // a PLY on its own is read in metres
+  const auto as_metres = read_model(bop->front());  // a separate PLY is read in metres
   ASSERT_FALSE(as_metres.ok());
   EXPECT_THAT(as_metres.error().message, HasSubstr("looks like millimetres"));
   const auto all = find_models({shared_data("table-rendered/models")});
@@ -150,7 +150,8 @@ TEST(SharedData, TheSameObjectAsPlyInMillimetresAndObjInMetres) {
   ASSERT_TRUE(obj->mesh->has_texture());
   ASSERT_EQ(ply->mesh->faces.size(), obj->mesh->faces.size());
   EXPECT_NEAR(diameter(ply->mesh->vertices), diameter(obj->mesh->vertices), 1e-5);
-  // Same corner, same place, same place in the picture; and the picture is not upside down against the other reader's.
+  // The same corner must have the same position in space and in the texture, and the texture must not be upside down
+  // relative to the other reader.
   for (std::size_t f = 0; f < ply->mesh->faces.size(); f += 97)
     for (int k = 0; k < 3; ++k) {
       const int a = ply->mesh->faces[f][k];
@@ -170,7 +171,7 @@ TEST(SharedData, MilkCartonIsOneView) {
   const auto model = read_model(models->front());
   ASSERT_TRUE(model.ok()) << model.error().message;
   ASSERT_EQ(model->views.size(), 1U);
-  // 12,575 points of another capture: most keep a pixel of their own.
+  // 12,575 points of another capture. Most have a pixel of their own.
   EXPECT_GT(count_valid(model->views[0].frame.depth_m), 10500U);
   EXPECT_LT((model->views[0].frame.world_from_camera * Eigen::Vector3d::UnitZ()).z(), 0)
       << "the cloud has its z axis backward";
@@ -200,7 +201,7 @@ TEST(SharedData, ShelfModelsPreferTheMeshOverItsConversions) {
     ASSERT_TRUE(model.ok()) << model.error().message;
     EXPECT_TRUE(model->mesh.has_value());
   }
-  // The picture of the second one is not there: said, not silently grey.
+  // The second texture is missing. This must give a warning, not silent grey.
   EXPECT_TRUE(read_model(models->front())->mesh->has_texture());
   EXPECT_EQ(read_model(models->back())->warnings.size(), 1U);
 }
@@ -214,7 +215,7 @@ TEST(SharedData, TumPosesAreInterpolated) {
   const auto last = (*sequence)->read_view(54);
   ASSERT_TRUE(first.ok() && last.ok());
   EXPECT_NEAR(first->camera.fx, 517.3, 1e-9);
-  // Depth at ..02.763549, between ..02.7559 (x = 1.1986) and ..02.7659 (x = 1.1962).
+  // Depth at ..02.763549, between poses at ..02.7559 (x = 1.1986) and ..02.7659 (x = 1.1962).
   EXPECT_NEAR(first->world_from_camera.translation.x(), 1.19676, 1e-5);
   EXPECT_GT((first->world_from_camera.translation - last->world_from_camera.translation).norm(), 1e-3);
 }

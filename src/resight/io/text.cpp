@@ -10,13 +10,13 @@ namespace {
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// std::from_chars refuses a leading plus sign, which C and Fortran programs write.
+/// Removes a leading plus sign, which C and Fortran programs write and std::from_chars rejects.
 std::string_view without_plus(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-' && token[1] != '+') token.remove_prefix(1);
   return token;
 }
 
-/// Cuts the leading run of digits off `text`, without its zeros in front.
+/// Removes the leading run of digits from `text` and returns it without leading zeros.
 std::string_view cut_digits(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && is_digit(text[end])) ++end;
@@ -47,7 +47,7 @@ std::optional<double> parse_number(std::string_view token) {
   const char* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(token.data(), end, value);
   if (stop != end) return std::nullopt;
-  // Too small for a double is zero for us; too large is no number that any format means.
+  // A number too small for a double becomes zero. A number too large is not valid in any format.
   if (error == std::errc::result_out_of_range)
     return token.find("e-") != token.npos || token.find("E-") != token.npos ? std::optional<double>(0.0) : std::nullopt;
   if (error != std::errc()) return std::nullopt;
@@ -105,7 +105,7 @@ bool natural_less(std::string_view a, std::string_view b) {
     }
   }
   if (a.empty() != b.empty()) return a.empty();
-  return whole_a < whole_b;  // "1" and "01" are different names; any fixed order will do
+  return whole_a < whole_b;  // "1" and "01" are different names; any fixed order is sufficient
 }
 
 std::optional<int> trailing_number(std::string_view name) {

@@ -14,11 +14,11 @@ struct TrajectoryPose {
   Rigid3 world_from_camera;
 };
 
-/// "tx ty tz qx qy qz qw", metres, all digits.
+/// "tx ty tz qx qy qz qw" in metres, with all digits.
 [[nodiscard]] std::string format_tum_pose(const Rigid3& pose);
 
-/// Writes a trajectory as TUM does: a line "stamp tx ty tz qx qy qz qw" a view, metres, after the lines of `comment`
-/// (each of which gets a "# "). All digits: read back they give the same pose.
+/// Writes a trajectory in the format of TUM: one line "stamp tx ty tz qx qy qz qw" per view in metres, after the lines
+/// of `comment` (each prefixed by "# "). All digits are written, so that reading gives the same pose.
 [[nodiscard]] Result<void> write_tum_trajectory(const std::filesystem::path& file,
                                                 std::span<const TrajectoryPose> poses, const std::string& comment);
 

@@ -15,8 +15,9 @@
 namespace resight::io {
 namespace {
 
-constexpr double kMaxImageGap_s = 0.02;  ///< Between a colour image and its depth image (the tools of the data set).
-constexpr double kMaxPoseGap_s = 0.1;    ///< Between an image and the poses around it.
+/// Largest time between a colour image and its depth image (as in the tools of the data set).
+constexpr double kMaxImageGap_s = 0.02;
+constexpr double kMaxPoseGap_s = 0.1;  ///< Largest time between an image and the poses before and after it.
 
 struct StampedFile {
   double time_s = 0;
@@ -27,7 +28,7 @@ struct StampedPose {
   Rigid3 world_from_camera;
 };
 
-/// Calls row(line number, words) for each line that is neither empty nor a comment, until it returns an error.
+/// Calls row(words) for each line that is neither empty nor a comment, until it returns false.
 template <typename Row>
 Result<void> for_each_row(const fs::path& file, const Row& row) {
   const auto text = read_file(file);
@@ -36,7 +37,7 @@ Result<void> for_each_row(const fs::path& file, const Row& row) {
   for (int number = 1; !rest.empty(); ++number) {
     const auto words = split_tokens(cut_line(rest));
     if (words.empty() || words[0].starts_with('#')) continue;
-    if (!row(words)) return file_error(file, fmt::format("line {} is not understood", number));
+    if (!row(words)) return file_error(file, fmt::format("line {} cannot be parsed", number));
   }
   return {};
 }
@@ -54,7 +55,7 @@ Result<std::vector<StampedFile>> read_file_list(const fs::path& list) {
   return files;
 }
 
-using ImagePairs = std::vector<std::pair<StampedFile, StampedFile>>;  ///< Colour, depth.
+using ImagePairs = std::vector<std::pair<StampedFile, StampedFile>>;  ///< Colour and depth.
 
 Result<ImagePairs> read_associations(const fs::path& file) {
   ImagePairs pairs;
@@ -65,7 +66,7 @@ Result<ImagePairs> read_associations(const fs::path& file) {
     if (!first || !second) return false;
     StampedFile color{*first, file.parent_path() / std::string(words[1])};
     StampedFile depth{*second, file.parent_path() / std::string(words[3])};
-    if (words[1].starts_with("depth")) std::swap(color, depth);  // both orders are met
+    if (words[1].starts_with("depth")) std::swap(color, depth);  // both orders occur
     pairs.emplace_back(std::move(color), std::move(depth));
     return true;
   });
@@ -73,7 +74,8 @@ Result<ImagePairs> read_associations(const fs::path& file) {
   return pairs;
 }
 
-/// Each colour image with the depth image nearest in time; one that is used up goes to the first who asks.
+/// Pairs each colour image with the depth image nearest in time. A depth image belongs to the first colour image that
+/// claims it.
 Result<ImagePairs> associate(const fs::path& directory) {
   const auto colors = read_file_list(directory / "rgb.txt");
   if (!colors) return colors.error();
@@ -109,7 +111,7 @@ Result<std::vector<StampedPose>> read_trajectory(const fs::path& file) {
   return poses;
 }
 
-/// The pose at a time, between its two neighbours; none if they are too far away.
+/// Interpolates the pose at a given time between its two neighbours. None if they are too far away.
 std::optional<Rigid3> interpolate(const std::vector<StampedPose>& poses, double time_s) {
   const auto after = std::ranges::lower_bound(poses, time_s, {}, &StampedPose::time_s);
   const bool has_after = after != poses.end() && after->time_s - time_s <= kMaxPoseGap_s;
@@ -122,7 +124,7 @@ std::optional<Rigid3> interpolate(const std::vector<StampedPose>& poses, double 
     return Rigid3{q.normalized().toRotationMatrix(),
                   (1 - t) * a.world_from_camera.translation + t * after->world_from_camera.translation};
   }
-  // At the ends of the recording the nearest one must do, if it is really near.
+  // At the ends of the recording, the nearest pose is used if it is close enough.
   if (has_after && after->time_s - time_s <= kMaxImageGap_s) return after->world_from_camera;
   if (has_before && time_s - std::prev(after)->time_s <= kMaxImageGap_s) return std::prev(after)->world_from_camera;
   return std::nullopt;
@@ -139,7 +141,7 @@ Result<Intrinsics> read_intrinsics(const fs::path& directory) {
     if (!numbers) return file_error(file, "expected 'fx fy cx cy' or a 3x3 camera matrix");
     return intrinsics_from_matrix(*numbers, file.string());
   }
-  // The calibrations published with the data set, by the name of the recording.
+  // Published calibrations of the data set, selected by the name of the recording.
   const std::string name = to_lower(folder_name(directory));
   if (name.find("freiburg2") != name.npos || name.find("fr2") != name.npos)
     return Intrinsics{520.9, 521.0, 325.1, 249.7};
@@ -169,7 +171,7 @@ SequenceResult open_tum_sequence(const fs::path& directory) {
   if (table.has_poses) poses = read_trajectory(directory / "groundtruth.txt");
   if (!poses) return poses.error();
   for (const auto& [color, depth] : *pairs) {
-    // The pose is that of the depth image: it is the geometry that is put into the world.
+    // Uses the pose of the depth image, because its geometry is placed in the world.
     const auto pose = table.has_poses ? interpolate(*poses, depth.time_s) : std::optional(Rigid3::identity());
     if (!pose) continue;
     ListedView view;

@@ -46,7 +46,7 @@ TEST(Tum, AssociatesAndInterpolates) {
   ASSERT_TRUE(without.ok()) << without.error().message;
   EXPECT_EQ((*without)->num_views(), 3) << "the third colour image has no depth";
   EXPECT_FALSE((*without)->has_poses());
-  // Half way between no turn and a turn of 0.2 rad about z; the view at 13.51 has no pose near it.
+  // Half-way between the identity and a rotation of 0.2 rad about z. The view at 13.51 has no pose near it.
   io::write_text(directory / "groundtruth.txt",
                  "# t tx ty tz qx qy qz qw\n10.500 0 0 0 0 0 0 1\n10.520 1 2 4 0 0 0.0998334166 0.9950041653\n11.515 5 "
                  "5 5 0 0 0 1\n");

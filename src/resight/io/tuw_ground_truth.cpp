@@ -19,13 +19,13 @@ namespace {
 using io::fs::path;
 constexpr std::string_view kOcclusion = "occlusion_";
 
-/// The view that a file belongs to, and the rest of its stem.
+/// The view of a file, and the rest of the file stem.
 struct Assignment {
   std::size_t view = 0;
   std::string_view rest;
 };
 
-/// Finds the view `<view>_..` of file stems: the longest view name that fits, with any number of digits.
+/// Finds the view of file stems `<view>_..`: the longest matching view name, with any number of digits.
 class ViewMatcher {
  public:
   explicit ViewMatcher(const std::vector<std::string>& views) {
@@ -182,7 +182,7 @@ Result<void> write_tuw_anno(const path& directory, const std::string& view,
   if (const auto done = check_objects(directory, objects); !done) return done;
   std::string text;
   for (const GroundTruthObject& object : objects) {
-    // The style has no word for "unknown"; a whole object is the reading under which it still counts.
+    // The format cannot express "unknown". A share of 1 keeps the object in evaluations.
     const double share = std::isnan(object.visible_share) ? 1.0 : object.visible_share;
     text += fmt::format("{} ({}): {}\n", object.object, share, format_pose(object.camera_from_object));
   }

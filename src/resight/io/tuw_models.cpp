@@ -25,7 +25,7 @@ bool is_view_cloud(const std::string& name) {
   return name.find(kCloud) != name.npos && io::extension_of(name) == "pcd";
 }
 
-/// The companion of a view: the last "cloud_" of its name replaced, as V4R does.
+/// The companion file of a view: the last "cloud_" of its name is replaced, as in V4R.
 path companion(const path& cloud, std::string_view prefix, std::string_view extension) {
   std::string stem = cloud.stem().string();
   stem.replace(stem.rfind(kCloud), kCloud.size(), prefix);
@@ -40,7 +40,8 @@ Result<Image<std::uint8_t>> read_indices(const path& file, int width, int height
   for (std::string_view token = cursor.next(); !token.empty(); token = cursor.next()) {
     const auto index = io::parse_integer(token);
     if (!index || *index < 0 || static_cast<std::size_t>(*index) >= mask.size())
-      return io::file_error(file, fmt::format("'{:.20}' is no pixel index of an image of {}x{}", token, width, height));
+      return io::file_error(file,
+                            fmt::format("'{:.20}' is not a pixel index of an image of {}x{}", token, width, height));
     mask[static_cast<std::size_t>(*index)] = 255;
   }
   return mask;
@@ -52,7 +53,7 @@ Result<Image<std::uint8_t>> read_view_mask(const path& cloud, int width, int hei
   if (io::is_file(indices) || !io::is_file(image)) return read_indices(indices, width, height);
   auto mask = read_mask(image);
   if (mask && (mask->width() != width || mask->height() != height))
-    return io::file_error(image, "has not the size of its view");
+    return io::file_error(image, "must have the size of its view");
   return mask;
 }
 
@@ -82,9 +83,9 @@ Result<void> read_surface(const path& file, ModelSource& model) {
 Result<void> write_training_view(const path& views, int number, const TrainingView& view) {
   if (const auto done = check_frame(view.frame); !done) return done;
   require(view.mask.width() == view.frame.camera.width && view.mask.height() == view.frame.camera.height,
-          "write_tuw_model: the mask has not the size of its view");
+          "write_tuw_model: the mask must have the size of its view");
   PcdCloud cloud = to_pcd_cloud(view.frame);
-  cloud.viewpoint = Rigid3::identity();  // the pose goes into its own file; PCL would apply both
+  cloud.viewpoint = Rigid3::identity();  // the pose has a file of its own; PCL would apply both
   const std::string digits = fmt::format("{:08}", number);
   if (const auto done = write_pcd(views / fmt::format("cloud_{}.pcd", digits), cloud); !done) return done;
   const auto done =
@@ -122,7 +123,7 @@ PointCloud clean_normals(PointCloud cloud) {
     cloud.normals[i] /= norm;
     kept.push_back(static_cast<int>(i));
   }
-  if (kept.empty()) cloud.normals.clear();  // a file with a column for normals that nobody filled
+  if (kept.empty()) cloud.normals.clear();  // the file has an empty column of normals
   return kept.empty() || kept.size() == cloud.size() ? cloud : select(cloud, kept);
 }
 

@@ -13,7 +13,7 @@ std::string normalized_view(std::string_view name) {
   for (std::size_t i = 0; i < name.size(); ++i) {
     const bool leading_zero = name[i] == '0' && (i == 0 || !is_decimal_digit(name[i - 1])) && i + 1 < name.size() &&
                               is_decimal_digit(name[i + 1]);
-    // Several zeros: each but the last is a leading one, since the one before it was dropped.
+    // In a run of zeros, all but the last are leading zeros, since the zero before them was dropped.
     if (leading_zero) {
       while (i + 1 < name.size() && name[i] == '0' && is_decimal_digit(name[i + 1])) ++i;
     }

@@ -53,7 +53,7 @@ class TuwSequenceWriter final : public SequenceWriter {
     if (const auto done = check_frame(frame); !done) return done;
     if (!is_safe_name(frame.name))
       return file_error(directory_.final_path(), "the view name '" + frame.name + "' cannot be a file name");
-    // Readers take the files in the order of their names as the order of time.
+    // Readers sort files by name and assume this to be the order of time.
     if (!last_name_.empty() && !natural_less(last_name_, frame.name))
       return file_error(directory_.final_path(),
                         "view '" + frame.name + "' comes after '" + last_name_ + "'; names must ascend in time");
@@ -93,7 +93,7 @@ SequenceResult open_tuw_sequence(const fs::path& directory) {
     if (!is_pcd(name)) continue;
     const auto size = read_pcd_size(directory / name);
     if (!size) return size.error();
-    // Model clouds that lie beside the views are unorganised.
+    // Unorganised clouds beside the views are models.
     if (size->height > 1)
       files.push_back(directory / name);
     else

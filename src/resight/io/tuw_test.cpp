@@ -24,7 +24,7 @@ const std::string kPose = "1 0 0 0.1 0 1 0 0.2 0 0 1 0.9 0 0 0 1";
 TEST(TuwSequence, PoseFilesInTheSequenceFolder) {
   io::TestDirectory directory;
   write_views(directory.path(), {"cloud_9", "cloud_10"});
-  // Another number of digits, underscores in names, things to be ignored.
+  // Another number of digits, underscores in names, and files to be ignored.
   io::write_text(directory / "cloud_09_red_mug_white_spots_0.txt", kPose);
   io::write_text(directory / "cloud_09_occlusion_red_mug_white_spots_0.txt", "0.75\n");
   io::write_text(directory / "cloud_09_red_mug_white_spots_1.txt", kPose);

@@ -10,19 +10,19 @@
 
 namespace resight::io {
 
-/// Metres of one unit of a depth image in which all depths fit: 0.1 mm up to 6.5 m, 1 mm beyond.
+/// Size in metres of the unit that fits all depths of an image: 0.1 mm up to 6.5 m, 1 mm beyond.
 [[nodiscard]] double choose_depth_unit_m(const Image<float>& depth_m);
 
-/// Fills a BOP scene directory view by view: images at once, the JSON files with finish().
+/// Fills a BOP scene directory view by view. Images are written at once, JSON files by finish().
 class BopSceneWriter {
  public:
-  /// `names` = obj_ids already given to names; an unknown name gets the next free one.
+  /// `ids` contains the obj_ids of known names. A new name gets the next free id.
   BopSceneWriter(fs::path directory, std::map<std::string, int> ids)
       : directory_(std::move(directory)), ids_(std::move(ids)) {}
-  /// The image id is the number at the end of the frame's name if that ascends, else the next one. Returned.
+  /// Returns the image id: the number at the end of the frame's name if these numbers ascend, else the next number.
   Result<int> write_view(const RgbdFrame& frame, const std::vector<GroundTruthObject>& ground_truth,
                          bool with_camera_pose);
-  /// The mask of the `index`-th object of the view.
+  /// Writes the mask of the `index`-th object of the view.
   [[nodiscard]] Result<void> write_object_mask(int image_id, int index, const Image<std::uint8_t>& mask) const;
   [[nodiscard]] Result<void> finish() const;
   [[nodiscard]] int num_views() const { return num_views_; }

@@ -8,11 +8,11 @@ namespace resight::io {
 struct ImageHeader {
   int width = 0;
   int height = 0;
-  bool complete = false;  ///< The file has its end mark: it was not cut off.
-  bool intact = true;     ///< PNG: the checksums of the chunks that matter are right.
+  bool complete = false;  ///< The file contains its end mark, so it was not truncated.
+  bool intact = true;     ///< PNG: the checksums of the critical chunks are correct.
 };
 
-/// Size of a PNG or JPEG, from its first bytes, before anything is decoded (or allocated). None for any other content.
+/// Reads the size of a PNG or JPEG from its bytes before anything is decoded or allocated. None for other content.
 [[nodiscard]] std::optional<ImageHeader> parse_image_header(std::string_view bytes);
 
 }  // namespace resight::io

@@ -10,25 +10,25 @@
 
 namespace resight::io {
 
-/// Parses without exceptions; the error names the file.
+/// Parses without exceptions. The error names the file.
 [[nodiscard]] Result<nlohmann::json> read_json(const fs::path& file);
 [[nodiscard]] Result<void> write_json(const fs::path& file, const nlohmann::json& json);
 
-/// json[key], or null if json is no object or has no such key.
+/// json[key], or null if json is not an object or has no such key.
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& json, std::string_view key);
-/// An array of finite numbers, nested arrays flattened; none for anything else.
+/// An array of finite numbers, with nested arrays flattened; none for other values.
 [[nodiscard]] std::optional<std::vector<double>> as_numbers(const nlohmann::json& json);
 [[nodiscard]] std::optional<double> as_number(const nlohmann::json& json);
 [[nodiscard]] std::optional<int> as_integer(const nlohmann::json& json);
 [[nodiscard]] std::optional<std::string> as_text(const nlohmann::json& json);
 
-/// A rotation (9 numbers) and a translation in mm (3 numbers), as BOP writes them. `what` begins the error message.
+/// Parses a rotation (9 numbers) and a translation in mm (3 numbers), as in BOP. `what` starts the error message.
 [[nodiscard]] Result<Rigid3> rigid_from_bop(const nlohmann::json& rotation, const nlohmann::json& translation_mm,
                                             std::string_view what);
 [[nodiscard]] nlohmann::json rotation_to_json(const Eigen::Matrix3d& rotation);
 [[nodiscard]] nlohmann::json translation_to_json_mm(const Eigen::Vector3d& translation_m);
 
-/// {"0": .., "12": ..} in numerical order; an error if json is no object or a key is no whole number.
+/// Entries of {"0": .., "12": ..} in numerical order. Fails if json is not an object or a key is not a whole number.
 [[nodiscard]] Result<std::vector<std::pair<int, const nlohmann::json*>>> numbered_members(const nlohmann::json& json,
                                                                                           std::string_view what);
 

@@ -16,19 +16,19 @@ enum class DepthStorage {
   kNpy,         ///< float32 NumPy array in metres.
 };
 
-/// Focal lengths and centre, px; the image size is that of the images.
+/// Focal lengths and centre in pixels. The images determine the image size.
 struct Intrinsics {
   double fx = 0, fy = 0, cx = 0, cy = 0;
 };
 
-/// A view of which all but the images is already known.
+/// A view without its images; everything else is already known.
 struct ListedView {
   std::string name;
   int image_id = 0;
   std::filesystem::path color;
   std::filesystem::path depth;
   Intrinsics intrinsics;
-  double metres_per_unit = 0.001;  ///< Of the depth image; unused for kNpy.
+  double metres_per_unit = 0.001;  ///< Unit of the depth image; unused for kNpy.
   Rigid3 world_from_camera;
   std::vector<GroundTruthObject> ground_truth;
 };
@@ -42,11 +42,11 @@ struct SequenceTable {
   std::vector<ListedView> views;
 };
 
-/// A sequence of separate colour and depth images: every format but TUW.
+/// A sequence of separate colour and depth images, which all formats except TUW use.
 [[nodiscard]] std::unique_ptr<Sequence> make_listed_sequence(SequenceTable table);
 
-/// fx, fy, cx, cy of nine numbers (a camera matrix, row by row). Error for focal lengths that are not positive, skew,
-/// or another last row.
+/// Extracts fx, fy, cx, cy from nine numbers (a camera matrix in row-major order). Fails for focal lengths that are not
+/// positive, for skew, and for another last row.
 [[nodiscard]] Result<Intrinsics> intrinsics_from_matrix(const std::vector<double>& matrix, std::string_view what);
 
 }  // namespace resight::io

@@ -9,25 +9,25 @@
 
 namespace resight::io {
 
-/// One material's share of a mesh file. Without a texture, `color` is its plain colour.
+/// The part of a mesh file with one material. Without a texture, `color` is its uniform colour.
 struct MeshPart {
   TriangleMesh mesh;
   Rgb8 color{128, 128, 128};
-  bool has_color = false;  ///< The material names a plain colour.
+  bool has_color = false;  ///< The material defines a uniform colour.
 };
 
-/// The parts as one mesh: one texture where all share one; several stacked into one; vertex colours where texture
-/// coordinates repeat beyond [0, 1] (which a stacked texture cannot do).
+/// Joins the parts to one mesh. A texture shared by all parts is kept; several textures are stacked into one. If
+/// texture coordinates repeat beyond [0, 1], which a stacked texture cannot represent, textures become vertex colours.
 [[nodiscard]] TriangleMesh join_parts(std::vector<MeshPart> parts);
 
-/// Empties the colours if all are the same.
+/// Clears the colours if they are all the same.
 void drop_plain_colors(std::vector<Rgb8>& colors);
 
 struct ImportedParts {
   std::vector<MeshPart> parts;
   std::vector<std::string> warnings;
 };
-/// OBJ, GLB/glTF and STL through Assimp; coordinates in the file's unit.
+/// Imports OBJ, GLB/glTF and STL through Assimp. Coordinates are in the unit of the file.
 [[nodiscard]] Result<ImportedParts> import_mesh_parts(const std::filesystem::path& file);
 
 }  // namespace resight::io

@@ -10,25 +10,25 @@
 
 namespace resight::io {
 
-/// Our own optional model_info.json beside a TUW model or a mesh in a folder of its own.
+/// Our optional model_info.json beside a TUW model, or beside a mesh in a folder of its own.
 struct ModelExtras {
   int bop_id = 0;
   ObjectSymmetries symmetries;
-  bool symmetries_known = false;  ///< The file has one of their keys.
+  bool symmetries_known = false;  ///< The file has one of the symmetry keys.
 };
-/// Empty if there is no such file.
+/// Empty if the file does not exist.
 [[nodiscard]] Result<ModelExtras> read_model_extras(const std::filesystem::path& file);
 
-/// Normals made unit; points whose normal is none are dropped.
+/// Normalises normals and drops points without a valid normal. If no normal is valid, removes the normals instead.
 [[nodiscard]] PointCloud clean_normals(PointCloud cloud);
 
-/// The models of a BOP models folder, data set or training split: empty if `directory` is none of these.
+/// Finds the models of a BOP models folder, data set or training split. Empty if `directory` is none of these.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_bop_models(const std::filesystem::path& directory);
 [[nodiscard]] Result<ModelSource> read_bop_model(const ModelLocation& location);
 
-/// A cloud (PCD, or PLY without faces): of one view of an object, projected into the camera that saw it, if it
-/// is organised, or lies before a camera at its origin and (as far as one tells) hides nothing of itself; else of the
-/// whole surface.
+/// Reads a cloud (PCD, or PLY without faces). An organised cloud is one view of an object. An unorganised cloud is also
+/// one view if it lies in front of a camera at its origin and hides no part of itself, as far as its points show; it is
+/// then projected into that camera. Any other cloud is the whole surface.
 [[nodiscard]] Result<ModelSource> read_cloud_model(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace resight::io

@@ -8,7 +8,7 @@
 
 namespace resight::io {
 
-/// The keys symmetries_discrete and symmetries_continuous of an entry of models_info.json (mm on disk).
+/// Parses the keys symmetries_discrete and symmetries_continuous of an entry of models_info.json (mm in the file).
 [[nodiscard]] Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::string_view what);
 void add_symmetries(nlohmann::json& json, const ObjectSymmetries& symmetries);
 

@@ -11,7 +11,7 @@
 
 namespace resight::io {
 
-/// One column of a PCD: `count` values of `size` bytes and type 'F', 'I' or 'U'.
+/// One field of a PCD: `count` values of `size` bytes and type 'F', 'I' or 'U'.
 struct PcdField {
   std::string name;
   int size = 4;
@@ -27,7 +27,7 @@ struct PcdHeader {
   int width = 0;
   int height = 0;
   Rigid3 viewpoint;
-  std::optional<Camera> camera;  ///< Without the image size if the file says none (it is that of the cloud).
+  std::optional<Camera> camera;  ///< The image size is that of the cloud if the file does not state it.
   PcdEncoding encoding = PcdEncoding::kAscii;
   std::size_t body_offset = 0;
   std::size_t point_bytes = 0;
@@ -39,7 +39,7 @@ struct PcdHeader {
   [[nodiscard]] const PcdField* find(std::string_view name) const;
 };
 
-/// The header; `bytes` may end anywhere after it.
+/// Parses the header. `bytes` may end anywhere after it.
 [[nodiscard]] Result<PcdHeader> parse_pcd_header(std::string_view bytes, std::string_view name);
 
 }  // namespace resight::io

@@ -14,16 +14,16 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, 
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::kFloat32;  ///< Of the value, or of each value of a list.
+  PlyType type = PlyType::kFloat32;  ///< Type of the value, or of each value of a list.
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;  ///< Of a list's length.
+  PlyType count_type = PlyType::kUint8;  ///< Type of the length of a list.
 };
 
 struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<PlyProperty> properties;
-  /// Index of the property of that name, -1 if there is none.
+  /// Index of the property with that name, or -1.
   [[nodiscard]] int find(std::string_view property) const;
 };
 
@@ -36,14 +36,15 @@ struct PlyHeader {
 
 [[nodiscard]] std::size_t size_of(PlyType type);
 
-/// The header, checked against the size of the file: no element claims more items than the bytes behind it can hold.
+/// Parses the header and checks it against the file size: no element may claim more items than the remaining bytes can
+/// contain.
 [[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name);
 
-/// Reads the values of a body one after the other.
+/// Reads the values of a body one by one.
 class PlyValueReader {
  public:
   PlyValueReader(std::string_view body, PlyEncoding encoding) : rest_(body), encoding_(encoding) {}
-  /// The next value; false at the end of the body or if it is no number.
+  /// Reads the next value. Returns false at the end of the body or if the value is not a number.
   bool next(PlyType type, double& value);
   [[nodiscard]] std::size_t bytes_left() const { return rest_.size(); }
 

@@ -6,7 +6,7 @@
 
 #include "resight/io/sequence.hpp"
 
-/// The openers of the single formats, and what a directory has to hold for each. is_*() only look at names.
+/// Functions that detect and open each format. is_*() only look at file names.
 namespace resight::io {
 
 using SequenceResult = Result<std::unique_ptr<Sequence>>;
@@ -19,7 +19,7 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 
 [[nodiscard]] bool is_tuw_sequence(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_tuw_sequence(const std::filesystem::path& directory);
-/// One organised PCD as a sequence of one view.
+/// Opens one organised PCD as a sequence of one view.
 [[nodiscard]] SequenceResult open_single_pcd(const std::filesystem::path& file);
 
 [[nodiscard]] bool is_npy_sequence(const std::filesystem::path& directory);

@@ -13,7 +13,7 @@
 /// Small data for the tests of this module.
 namespace resight::io {
 
-/// A directory of the running test, empty at its start and removed at its end.
+/// A directory for the running test. It is empty at the start and removed at the end.
 class TestDirectory {
  public:
   TestDirectory() {
@@ -52,7 +52,7 @@ inline Rigid3 random_pose(Rng& rng) {
   return pose;
 }
 
-/// Random colours, a slanted depth in whole tenths of millimetres with holes, an odd camera, a random pose.
+/// Random colours, a slanted depth in multiples of 0.1 mm with holes, an asymmetric camera, a random pose.
 inline RgbdFrame random_frame(const std::string& name, std::uint64_t seed, int width = 48, int height = 36) {
   Rng rng(seed);
   RgbdFrame frame;
@@ -84,12 +84,12 @@ inline TrainingView random_training_view(const std::string& name, std::uint64_t 
   return view;
 }
 
-/// Largest deviation of two poses: matrix elements (metres for the translation).
+/// Largest deviation of two poses over all matrix elements (metres for the translation).
 inline double pose_difference(const Rigid3& a, const Rigid3& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
 }
 
-/// Largest depth deviation; infinite when holes or sizes differ.
+/// Largest deviation of depth; infinite if holes or sizes differ.
 inline double depth_difference_m(const Image<float>& a, const Image<float>& b) {
   if (a.width() != b.width() || a.height() != b.height()) return std::numeric_limits<double>::infinity();
   double largest = 0;
@@ -104,7 +104,7 @@ inline std::filesystem::path shared_data(const std::string& name) {
   return std::filesystem::path(RESIGHT_SHARED_DATA_DIR) / name;
 }
 
-/// Skips the running test when that data set is not on this machine.
+/// Skips the running test if the data set is not available.
 #define RESIGHT_NEEDS_DATA(name) \
   if (!std::filesystem::exists(resight::io::shared_data(name))) GTEST_SKIP() << "no data set " << (name)
 

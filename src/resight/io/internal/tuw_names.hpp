@@ -6,17 +6,17 @@
 
 namespace resight::io {
 
-/// A view's name without the zeros in front of its numbers: "cloud_003" and "cloud_03" are the same view.
+/// The name of a view without leading zeros of its numbers: "cloud_003" and "cloud_03" are the same view.
 [[nodiscard]] std::string normalized_view(std::string_view name);
 
-/// `<object>_<instance>`, where the object's name may hold underscores.
+/// `<object>_<instance>`. The name of the object may contain underscores.
 struct ObjectInstance {
   std::string object;
   int instance = 0;
 };
 [[nodiscard]] std::optional<ObjectInstance> split_object_instance(std::string_view text);
 
-/// `<view>_<object>_<instance>` where the view's name is not known: it ends with the first run of digits (`cloud_03`,
+/// `<view>_<object>_<instance>` for an unknown view name. The view name ends with the first run of digits (`cloud_03`,
 /// `00003`).
 struct AnnotationName {
   std::string view;
