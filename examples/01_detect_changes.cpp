@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changed between views? No models are needed. A made-up camera looks at a wall; a box stands before it, and is
-// gone.
+// Detects what changed between views, without models. A synthetic camera looks at a wall; a box in front of it
+// disappears.
 #include <cstdio>
 
 #include "resight/reconstruction/dynamic_scene.hpp"
@@ -10,7 +10,7 @@ namespace {
 constexpr float kWallDepth_m = 1.5F;
 constexpr float kBoxDepth_m = 1.2F;
 
-/// A view straight at the wall; with the box in the middle, or without it.
+/// A frontal view of the wall, with or without a box in the middle.
 resight::RgbdFrame make_view(const char* name, bool with_box) {
   resight::RgbdFrame frame;
   frame.name = name;
@@ -20,7 +20,7 @@ resight::RgbdFrame make_view(const char* name, bool with_box) {
   for (int v = 200; with_box && v < 280; ++v) {
     for (int u = 280; u < 360; ++u) frame.depth_m(u, v) = kBoxDepth_m;
   }
-  return frame;  // frame.world_from_camera is the identity: the camera stands still
+  return frame;  // frame.world_from_camera is the identity: the camera is static.
 }
 
 }  // namespace
@@ -38,5 +38,5 @@ int main() {
                 num_removed, where.x(), where.y(), where.z(), changes.novel_in_world.size(),
                 scene.reconstruction().size());
   }
-  return num_removed > 0 ? 0 : 1;  // the removed points are those of the box
+  return num_removed > 0 ? 0 : 1;  // The removed points are those of the box.
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which objects are where, and what happened to them? Usage: 02_recognize MODELS SEQUENCE, where MODELS was written by
-// `resight train` and SEQUENCE is a folder of views (`resight demo` makes both).
+// Recognises objects and reports what happened to them. Usage: 02_recognize MODELS SEQUENCE. MODELS is written by
+// `resight train`; SEQUENCE is a folder of views (`resight demo` creates both).
 #include <cstdio>
 
 #include "resight/core/allocator.hpp"
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s MODELS SEQUENCE\n", argv[0]);
     return 2;
   }
-  resight::keep_freed_memory();  // Each view needs as much again: a tenth of the time.
+  resight::keep_freed_memory();  // Every view needs as much memory again; saves a tenth of the time.
   const auto library = resight::load_library(argv[1]);
   const auto sequence = resight::open_posed_sequence(argv[2]);
   if (!library.ok() || !sequence.ok()) {

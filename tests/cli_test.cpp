@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole command line, given what it should not be given: one row a mistake. Each row runs the program in a folder
-// of its own, with good data of which the row spoils something, and says how the program must end, what its one line on
-// standard error must say, and that nothing is left behind.
+// Invalid input to the command line, one row per error. Each row runs the program in its own folder with valid data, of
+// which the row damages something, and defines the exit status, the single line on standard error, and that no files
+// are left.
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 constexpr int kViews = 3;
 
-// ---- Good data, small: what lies in the folder of each row before it is spoilt.
+// ---- Small valid data: the content of each row's folder before it is damaged.
 
 // A slanted wall in random colours.
 RgbdFrame make_frame(int index) {
@@ -83,7 +83,7 @@ void write_tum(const fs::path& folder) {
   write_text(folder / "camera.txt", "60 60 31.5 23.5\n");
 }
 
-// A cube of 8 cm around the origin; each side on its own, so that edges are sharp.
+// A cube of 8 cm around the origin. The sides share no vertices, so that edges are sharp.
 TriangleMesh make_cube(float metre) {
   TriangleMesh mesh;
   for (int axis = 0; axis < 3; ++axis)
@@ -150,7 +150,7 @@ void write_good_data(const fs::path& folder) {
   write_text(folder / "file", "a file\n");
 }
 
-// ---- Ways to spoil it.
+// ---- Ways to damage it.
 
 using Spoil = std::function<void(const fs::path& folder)>;
 
@@ -166,7 +166,7 @@ Spoil cut(const char* path, double share) {
     fs::resize_file(folder / path, static_cast<std::uintmax_t>(share * size));
   };
 }
-// One bit of the byte at this share of the file.
+// Flips one bit of the byte at this share of the file.
 Spoil flip(const char* path, double share) {
   return [=](const fs::path& folder) {
     std::string bytes = read_text(folder / path);
@@ -184,7 +184,7 @@ Spoil replace(const char* path, const char* what, const char* by) {
     write_text(folder / path, text.replace(at, std::string(what).size(), by));
   };
 }
-// The entry of the second view in a JSON file of the BOP scene.
+// Edits the entry of the second view in a JSON file of the BOP scene.
 Spoil edit(const char* path, const std::function<void(Json&)>& change) {
   return [=](const fs::path& folder) {
     Json json = Json::parse(read_text(folder / path));
@@ -215,10 +215,12 @@ Spoil mesh(const char* path, const std::function<TriangleMesh()>& make) {
 struct Row {
   const char* name;
   Spoil spoil;
-  const char* command;  // run in the row's folder
+  const char* command;  // Run in the row's folder.
   int status;
-  const char* line;             // a pattern of the one line on standard error; "" = none is expected
-  const char* makes = nullptr;  // what is there afterwards; null: nothing new
+  // Pattern of the one line on standard error; "" = no line.
+  const char* line;
+  // What exists afterwards; null: nothing new.
+  const char* makes = nullptr;
 };
 
 constexpr const char* kRecognize = "recognize --models models.resight --sequence views --out out";
@@ -249,7 +251,7 @@ ModelLibrary make_empty_library() {
 }
 
 const Row kRows[] = {
-    // The good data are good: what the other rows refuse is what they spoil.
+    // The valid data are accepted, so the other rows fail because of what they damage.
     {"Version", kNothing, "--version", 0, ""},
     {"Help", kNothing, "recognize --help", 0, ""},
     {"Recognize", kNothing, kRecognize, 0, "", "out/report.html"},
@@ -262,7 +264,7 @@ const Row kRows[] = {
      "out/results.json"},
     {"Train", kNothing, kTrain, 0, "", "new.resight"},
 
-    // The command line itself.
+    // The command line.
     {"NoCommand", kNothing, "", 2, "no command was given .*recognize"},
     {"UnknownCommand", kNothing, "nonsense", 2, "unknown command 'nonsense' .*recognize"},
     {"UnknownOptionBeforeTheCommand", kNothing, "--nonsense", 2, "unknown option '--nonsense'"},
@@ -310,7 +312,7 @@ const Row kRows[] = {
     {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
      "--shard: '3/2'"},
 
-    // Settings from a file.
+    // Settings files.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: cannot be read"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
     {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
@@ -320,7 +322,7 @@ const Row kRows[] = {
     {"SettingOutOfRange", write("c.toml", "[changes]\nvoxel_m = -0.01\n"),
      "changes --sequence views --out out --config c.toml", 2, "c\\.toml: .*voxel_m = -0\\.01"},
 
-    // Where results should go.
+    // Output paths.
     {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
      "file/out: "},
     {"RecognizeOntoAFile", kNothing, "recognize --models models.resight --sequence views --out file", 2,
@@ -347,11 +349,11 @@ const Row kRows[] = {
     {"LibraryOfAFewBytes", cut("models.resight", 0.0001), kRecognize, 2, "models\\.resight: truncated"},
     {"LibraryWithAFlippedBit", flip("models.resight", 0.5), kRecognize, 2, "models\\.resight: damaged"},
     {"LibraryOfOtherOptions", library(make_stale_library), kRecognize, 2, "trained with other options"},
-    {"LibraryWithoutModels", library(make_empty_library), kRecognize, 2, "models\\.resight: holds no models"},
+    {"LibraryWithoutModels", library(make_empty_library), kRecognize, 2, "models\\.resight: contains no models"},
     {"LibraryWithoutFeatures", library([] { return make_library(0); }), kRecognize, 0, "warning: .*cube.* no features",
      "out/detections.csv"},
 
-    // What to train from.
+    // Training input.
     {"MissingMeshes", kNothing, "train nowhere --out new.resight", 2, "nowhere: no such file"},
     {"NoMeshes", kNothing, "train empty --out new.resight", 2, "empty: no model found"},
     {"TextAsMesh", kNothing, "train file --out new.resight", 2, "file: is no model file"},
@@ -423,7 +425,7 @@ const Row kRows[] = {
     {"SmallerColorOfTheLastView", small_image("views/rgb/000002.png"), kRecognize, 2,
      "000002\\.png: is 64x48, but its colour image 32x48"},
     {"EvaluateAMissingFolder", kNothing, "evaluate --models models.resight --dataset nowhere --out out", 2,
-     "nowhere: is no folder"},
+     "nowhere: is not a folder"},
     {"EvaluateAnEmptyFolder", kNothing, "evaluate --models models.resight --dataset empty --out out", 2,
      "empty: no sequence found"},
     {"EvaluateWithoutTruth", remove("views/scene_gt.json"),
@@ -439,7 +441,7 @@ const Row kRows[] = {
      "cloud_01\\.pcd: .*VIEWPOINT"},
     {"PcdWithAZeroQuaternion", replace("tuw/cloud_01.pcd", "VIEWPOINT 0 0 0 1", "VIEWPOINT 0 0 0 0"), kRecognizeTuw, 2,
      "cloud_01\\.pcd: .*VIEWPOINT"},
-    // The comment is of no use; the camera is fitted to the points, which show it as well.
+    // The comment is unusable; the camera is fitted to the points instead.
     {"PcdWithZeroIntrinsics", replace("tuw/cloud_01.pcd", "# camera 60", "# camera 0"), kRecognizeTuw, 0, "",
      "out/detections.csv"},
     {"TumWithANanPose", replace("tum/groundtruth.txt", "2.0 0 0", "2.0 0 nan"), kChangesTum, 2, "groundtruth\\.txt: "},
@@ -462,7 +464,7 @@ const Row kRows[] = {
 
 std::ostream& operator<<(std::ostream& out, const Row& row) { return out << "resight " << row.command; }
 
-// Everything below a folder with its size.
+// All entries below a folder with their sizes.
 std::vector<std::string> list(const fs::path& folder) {
   std::vector<std::string> entries;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -476,10 +478,10 @@ std::vector<std::string> list(const fs::path& folder) {
 struct Outcome {
   int status = -1;
   std::string output;
-  std::vector<std::string> errors;  // lines on standard error, without those on progress
+  std::vector<std::string> errors;  // Lines on standard error without progress.
 };
 
-// What should be refused at once might run for hours instead: it is ended with status 124.
+// Input that should be rejected might run for hours instead; the time limit ends with status 124.
 Outcome run(const fs::path& folder, const std::string& arguments) {
   const fs::path output = folder.string() + ".stdout";
   const fs::path errors = folder.string() + ".stderr";
@@ -494,7 +496,7 @@ Outcome run(const fs::path& folder, const std::string& arguments) {
   return outcome;
 }
 
-// A folder for all rows, with the good data in it; gone at the end.
+// A folder for all rows with the valid data; removed at the end.
 class CommandLineFolder : public testing::Test {
  protected:
   static void SetUpTestSuite() {

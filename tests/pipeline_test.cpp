@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole way, on simulated scenes without sensor noise, where the truth is exact: views in, objects and changes out.
+// The whole pipeline on simulated scenes without sensor noise and with exact ground truth: views in, objects and
+// changes out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 constexpr int kThreads = 2;
 constexpr double kHalfVisible = 0.5;
 
-// Simulated once, trained once: the tests look at it from different sides.
+// Simulated and trained once, shared by all tests.
 struct World {
   ModelLibrary library;
   std::vector<SimulatedView> views;
@@ -84,7 +85,7 @@ const PresetRun& run_of(const std::string& preset) {
   return found->second;
 }
 
-// Where an object was lost, for the message of a test that fails.
+// Describes where an object was lost, for the messages of failing tests.
 std::string describe_loss(std::size_t view, const GroundTruthObject& truth, const RecognitionTrace& trace,
                           const MatchDetectionsOptions& match) {
   FindLossOptions options;
@@ -100,8 +101,9 @@ std::string describe_loss(std::size_t view, const GroundTruthObject& truth, cons
   return text.str();
 }
 
-// What a preset must reach. `default` may lose or add one object in a hundred: other last bits of floating-point results
-// can move one. The paper's system loses untextured objects and takes parts of unknown ones for them.
+// Required results of a preset. `default` may lose or add one object in a hundred, because different last bits of
+// floating-point results can affect one. The paper's system loses untextured objects and confuses parts of unknown ones
+// with them.
 struct Goal {
   std::string preset;
   double min_recall;
@@ -112,7 +114,7 @@ void PrintTo(const Goal& goal, std::ostream* out) { *out << goal.preset; }
 
 class PipelineTest : public ::testing::TestWithParam<Goal> {};
 
-// Within 5 mm and 3 degrees.
+// Within 5 mm and 3 deg.
 TEST_P(PipelineTest, HalfVisibleObjectsAreFoundExactly) {
   MatchDetectionsOptions exact;
   exact.max_center_distance_m = 0.005;
@@ -163,13 +165,13 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
                            return goal.param.preset == "default" ? std::string("best") : std::string("chd");
                          });
 
-// ViewNovelty within a view: of the third view on, a confirmed object gives no keypoints but in one of four views;
-// unless more of it must be explained than ever is.
+// From the third view on, a confirmed object yields keypoints in one of four views only, unless the required explained
+// share is never reached.
 TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
   constexpr std::size_t kViews = 3;
   RecognizerConfig config = RecognizerConfig::from_preset("default");
   config.attention.object_look_every = 0;
-  config.attention.max_unseen_share = 0;  // Each view is searched.
+  config.attention.max_unseen_share = 0;  // Every view is searched.
   config.set_num_threads(kThreads);
   SceneRecognizer everywhere(world().library, config);
   config.attention.object_look_every = 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole way on data that we did not make: real and path-traced views, scanned models. Skipped where the data sets
-// are absent. Floors are what has been reached, not goals.
+// The whole pipeline on external data: real and path-traced views, scanned models. Skipped if the data sets are
+// missing. Limits are values that were reached, not goals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,10 +37,10 @@ ModelLibrary train(const std::vector<std::string>& paths) {
   return *std::move(library);
 }
 
-// A sequence recognised from its first view to its last, and scored (5 cm, 30 deg).
+// A sequence recognised from first to last view, with its scores (5 cm, 30 deg).
 struct Recognition {
   std::vector<SceneUpdate> updates;
-  std::vector<ViewEvaluation> evaluations;  // of each view; empty without ground truth
+  std::vector<ViewEvaluation> evaluations;  // Per view; empty without ground truth.
   [[nodiscard]] RecognitionScore score() const {
     RecognitionScore sum;
     for (const ViewEvaluation& evaluation : evaluations) sum += evaluation.matching.score;
@@ -93,7 +93,7 @@ TEST(RealData, ScannedObjectsOnARenderedTable) {
   EXPECT_GE(score.recall(), 0.86);
 }
 
-// All that is annotated in the two real views, with models of things that are not there beside them.
+// All annotated objects in the two real views, with additional models of absent objects.
 TEST(RealData, NineObjectsOnATableAndTheirExchange) {
   RESIGHT_NEEDS_DATA("table-two-states");
   RESIGHT_NEEDS_DATA("ycb-meshes");
@@ -103,7 +103,7 @@ TEST(RealData, NineObjectsOnATableAndTheirExchange) {
   for (const ViewEvaluation& evaluation : run.evaluations) EXPECT_TRUE(evaluation.ghosts.empty());
 }
 
-// The bowl stands upright in its file, off the origin. The others have prints, or a handle.
+// The bowl stands upright in its file, off the origin. The others have texture or a handle.
 TEST(RealData, SymmetriesOfScannedObjects) {
   RESIGHT_NEEDS_DATA("ycb-meshes");
   const auto find = [](const std::string& name) {
@@ -118,7 +118,7 @@ TEST(RealData, SymmetriesOfScannedObjects) {
     EXPECT_TRUE(find(name).none()) << name;
 }
 
-// Share of the surface facing the camera that lies on what the view measured, of that which is not behind something.
+// Share of the camera-facing, unoccluded surface that agrees with the measured depth.
 double agreement(const ObjectModel& model, const Detection& detection, const RgbdFrame& frame) {
   const Rigid3 camera_from_object = frame.world_from_camera.inverse() * detection.world_from_object;
   int close = 0;
@@ -129,14 +129,14 @@ double agreement(const ObjectModel& model, const Detection& detection, const Rgb
     const Eigen::Vector2d pixel = frame.camera.project(p);
     if (n.dot(p) > 0 || !frame.camera.contains(pixel)) continue;
     const double z = frame.depth_m(static_cast<int>(pixel.x() + 0.5), static_cast<int>(pixel.y() + 0.5));
-    if (!(p.z() < z + 0.03)) continue;  // hidden, or no return
+    if (!(p.z() < z + 0.03)) continue;  // Occluded, or no return.
     ++all;
     close += std::abs(p.z() - z) < 0.01 ? 1 : 0;
   }
   return all == 0 ? 0.0 : static_cast<double>(close) / all;
 }
 
-// A carton of which one view without its colours is known, in another place and among other things.
+// A carton known from one view without colours, at another place among other objects.
 TEST(RealData, AMilkCartonByItsShapeAlone) {
   RESIGHT_NEEDS_DATA("pcl-milk");
   const ModelLibrary library = train({"pcl-milk"});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each stage beside what does the same work in PCL and OpenCV, in one table: CPU time (median, in turns, one thread
-// each) and accuracy on the same input. Without arguments: two views of the generated demo scene, with their truth.
+// Compares each stage with its counterparts in PCL and OpenCV, in one table: CPU time (median of alternating runs, one
+// thread each) and accuracy on the same input. Without arguments: two views of the generated demo scene, with ground
+// truth.
 //   bench_baselines [SEQUENCE BEFORE VIEW [LIBRARY]]
 #include <cstdlib>
 

@@ -11,8 +11,9 @@ namespace resight::bench {
 namespace {
 
 constexpr std::size_t kNumRuns = 7;
-constexpr std::size_t kMinRuns = 3;     // Of what takes long:
-constexpr double kEnoughTime_s = 10.0;  // CPU, after which kMinRuns are enough.
+// For slow contestants, see kEnoughTime_s.
+constexpr std::size_t kMinRuns = 3;
+constexpr double kEnoughTime_s = 10.0;  // CPU time after which kMinRuns suffice.
 
 bool has_run_enough(const std::vector<double>& times_s) {
   return times_s.size() >= kNumRuns ||

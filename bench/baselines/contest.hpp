@@ -8,19 +8,21 @@
 
 namespace resight::bench {
 
-/// One way to do a stage.
+/// One implementation of a stage.
 struct Contestant {
   std::string name;
-  std::function<double()> run;            ///< Does the work, keeps its result, and tells its CPU time in seconds.
-  std::function<std::string()> accuracy;  ///< Of the result of its last run; asked when all have run.
+  /// Does the work, keeps its result, and returns its CPU time in seconds.
+  std::function<double()> run;
+  /// Accuracy of the result of the last run; called after all runs.
+  std::function<std::string()> accuracy;
 };
 
 void print_table_head();
 
-/// Runs the contestants in turns and prints a row for each: median CPU time, its ratio to the first one's, accuracy.
+/// Runs the contestants in turn and prints a row for each: median CPU time, its ratio to that of the first, accuracy.
 void compare(const std::string& stage, const std::vector<Contestant>& contestants);
 
-/// CPU time of a call, seconds.
+/// CPU time of a call, in seconds.
 template <typename Work>
 double cpu_time_s(Work&& work) {
   const CpuClock clock;

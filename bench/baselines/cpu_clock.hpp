@@ -4,7 +4,7 @@
 
 namespace resight::bench {
 
-/// CPU time of the process, all threads, since construction: what other programs of the machine do hardly counts.
+/// CPU time of the process since construction, over all threads. Hardly affected by other programs.
 class CpuClock {
  public:
   [[nodiscard]] double elapsed_s() const { return static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }

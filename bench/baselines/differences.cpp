@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the view before has and this one has not, and the other way round.
+// Points of the previous view that are missing in this one, and vice versa.
 #include <fmt/format.h>
 
 #include "contest.hpp"
@@ -15,14 +15,15 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-constexpr float kNear_m = 0.01F;         // A changed point with a reported one so near is found.
-constexpr float kSeenThrough_m = 0.04F;  // A view that measures so much behind a point proves it gone.
+constexpr float kNear_m = 0.01F;  // A changed point with a reported one this near is found.
+// A point is removed if a view measures a depth this far behind it.
+constexpr float kSeenThrough_m = 0.04F;
 
-/// One view's points, world frame, and which of them changed.
+/// Points of one view, world frame, and which of them changed.
 struct Side {
   Points points;
   std::vector<int> pixels;
-  std::vector<std::uint8_t> is_changed;  // Empty without truth.
+  std::vector<std::uint8_t> is_changed;  // Empty without ground truth.
   Points expected;                       // Changed, and seen through by the other view.
 };
 
@@ -76,7 +77,7 @@ Points select_points(const Points& points, const std::vector<int>& indices) {
   return selected;
 }
 
-// Eq. (2) through the pixels of the view.
+// Eq. (2), through the pixels of the view.
 double subtract_by_pixels(const DifferenceContest& contest, Points& gone) {
   const PreparedView& view = contest.input.view;
   const Rigid3f camera_from_world(view.frame.world_from_camera.inverse());

@@ -13,11 +13,11 @@ struct PosedObject {
   Rigid3 camera_from_object;
 };
 
-/// How many of the true objects have one of these poses within 5 cm and 30 deg, and how many of the poses are right.
-/// Without truth: how many there are.
+/// Number of true objects with one of these poses within 5 cm and 30 deg, and number of right poses. Without ground
+/// truth: the number of poses.
 [[nodiscard]] std::string rate_proposals(const StageInput& input, const std::vector<PosedObject>& posed);
 
-/// Precision and recall of detections, one to one. Without truth: how many there are.
+/// Precision and recall of detections, one to one. Without ground truth: their number.
 [[nodiscard]] std::string rate_detections(const StageInput& input, const std::vector<PosedObject>& posed);
 
 }  // namespace resight::bench

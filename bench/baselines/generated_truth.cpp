@@ -13,7 +13,7 @@ namespace {
 
 using Role = SimulatedInstance::Role;
 
-// Its seed says nothing about the shape.
+// The seed of the room does not affect its shape.
 TriangleMesh mesh_of(const SceneScript& script, const SimulatedInstance& instance) {
   if (instance.role == Role::kRoom) return make_room(*script.room_size_m, 1);
   if (instance.role == Role::kFurniture) {

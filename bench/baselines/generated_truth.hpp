@@ -5,7 +5,7 @@
 
 namespace resight::bench {
 
-/// What the generated scene says of its view number `view`; what changed, beside the view number `other`.
+/// Ground truth of view number `view` of the generated scene; changes are relative to view number `other`.
 [[nodiscard]] ViewTruth truth_of_view(const Simulation& simulation, const SimulatedView& rendered, int view, int other);
 
 }  // namespace resight::bench

@@ -23,7 +23,7 @@ double group_ours(const StageInput& input, Posed& found) {
   });
 }
 
-/// The correspondences of one object, side by side.
+/// Correspondences of one object as separate arrays.
 struct Pairs {
   std::vector<Eigen::Vector3f> model, scene;
   std::vector<float> distances;
@@ -39,7 +39,7 @@ Pairs pairs_of(const std::vector<Correspondence>& correspondences) {
   return pairs;
 }
 
-// `group`: what a peer makes of the pairs of one object.
+// `group`: result of a peer for the correspondences of one object.
 template <typename Group>
 double group_peer(const StageInput& input, Posed& found, Group&& group) {
   double cpu_s = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Descriptors of a view against those of a library: search alone, the indices stand before.
+// Matches descriptors of a view against those of a library. Only the search is timed, not the construction of the
+// indices.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,12 +14,12 @@
 namespace resight::bench {
 namespace {
 
-constexpr std::size_t kMaxQueries = 500;  // An exact search for all of a view takes minutes.
+constexpr std::size_t kMaxQueries = 500;  // An exact search for all descriptors of a view takes minutes.
 
 struct MatchingContest {
   int dimension = 0;
   std::vector<float> indexed, queries;
-  std::vector<float> nearest_sq;  // By exact search, of each query.
+  std::vector<float> nearest_sq;  // Per query, by exact search.
   std::vector<Contestant> contestants;
 
   [[nodiscard]] std::size_t num_queries() const { return queries.size() / static_cast<std::size_t>(dimension); }
@@ -33,7 +34,7 @@ float distance_sq(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-// Whoever is as near as the nearest is right: a library holds equal descriptors.
+// A match is right if it is as near as the nearest neighbour, because a library contains equal descriptors.
 std::string recall(const MatchingContest& contest, const std::vector<int>& found) {
   std::size_t num_right = 0;
   for (std::size_t q = 0; q < found.size(); ++q) {

@@ -17,8 +17,8 @@ using pcl_peers::IntegralImageMethod;
 using pcl_peers::NeighborSearch;
 
 constexpr float kRadius_m = 0.02F;
-constexpr float kMaxDepthChange = 0.02F;  // As ours.
-constexpr float kWindow_px = 10.0F;       // The tutorial's.
+constexpr float kMaxDepthChange = 0.02F;  // Same value as ours.
+constexpr float kWindow_px = 10.0F;       // Value of the PCL tutorial.
 
 struct NormalsContest {
   const StageInput& input;
@@ -61,7 +61,7 @@ void add_integral_image(NormalsContest& contest, const std::string& name, Integr
   });
 }
 
-// Without the truth the normals within 2 cm stand for it: the result that `reference` numbers.
+// Without ground truth, the normals within 2 cm serve as reference: the result with index `reference`.
 Normals reference_normals(const NormalsContest& contest, std::size_t reference) {
   const auto truth = contest.input.truth.normals_in_camera.data();
   return truth.empty() ? contest.results[reference] : Normals(truth.begin(), truth.end());

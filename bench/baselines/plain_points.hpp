@@ -7,7 +7,7 @@
 #include "resight/geometry/rigid3.hpp"
 #include "resight/sensor/organized_cloud.hpp"
 
-/// Between our types and the plain numbers of the peers.
+/// Converts between our types and the plain arrays of the peers.
 namespace resight::bench {
 
 inline std::span<const float> to_plain(std::span<const Eigen::Vector3f> points) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses moved off the truth and back, by the surface alone: same visible model points, same scene.
+// Refines perturbed true poses by the surface alone, with the same visible model points and the same scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,16 +17,16 @@
 namespace resight::bench {
 namespace {
 
-constexpr int kNumStarts = 10;  // An object.
+constexpr int kNumStarts = 10;  // Per object.
 constexpr double kShift_m = 0.01;
 constexpr double kTurn_rad = 8 * std::numbers::pi / 180;
 constexpr double kMinVisibleShare = 0.3;
 
 struct Start {
-  std::size_t object = 0;  // Of the library.
-  Rigid3 truth;            // World from object.
+  std::size_t object = 0;  // Index into the library.
+  Rigid3 truth;            // world_from_object.
   Rigid3 start;
-  std::vector<int> visible;  // Model points, at the start.
+  std::vector<int> visible;  // Indices of the model points visible at the start pose.
 };
 
 struct RefinementContest {
@@ -41,7 +41,7 @@ Eigen::Vector3d random_direction(Rng& rng) {
   return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
 }
 
-// Turned about the middle of the object, and shifted.
+// Rotated about the centre of the object, then shifted.
 Rigid3 perturb(const Rigid3& world_from_object, const Eigen::Vector3d& center, Rng& rng) {
   const Eigen::Vector3d center_in_world = world_from_object * center;
   const Rigid3 turn = Rigid3::from_axis_angle(random_direction(rng), kTurn_rad);
@@ -108,8 +108,8 @@ double refine_peer(const RefinementContest& contest, pcl_peers::IcpKind kind, st
   return result.cpu_s;
 }
 
-// Mean distance from the points of the moved model to the nearest one of the true model: blind to what a shape leaves
-// free, as ICP is.
+// Mean distance from the points of the moved model to the nearest points of the true model. Like ICP, it ignores
+// displacements that leave the shape unchanged.
 double surface_error_m(const PreparedModel& model, const KdTree& tree, const Rigid3& true_from_refined) {
   const Rigid3f moved(true_from_refined);
   double sum_m = 0;
@@ -124,7 +124,7 @@ std::string rate(const RefinementContest& contest, const std::vector<Rigid3>& re
     const PreparedModel& model = contest.models[start.object];
     const Eigen::Vector3d center = model.center.cast<double>();
     center_mm.push_back(1e3 * (refined[i] * center - start.truth * center).norm());
-    // The whole surface: the model thinned to 5 mm would be 2 mm from itself.
+    // The whole surface, because the model downsampled to 5 mm would be 2 mm from itself.
     const KdTree tree(contest.input.library.objects[start.object].surface.points);
     surface_mm.push_back(1e3 * surface_error_m(model, tree, start.truth.inverse() * refined[i]));
   }

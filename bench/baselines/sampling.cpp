@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view thinned to 5 mm, and keypoints a centimetre apart out of that.
+// A view downsampled to 5 mm, and keypoints 1 cm apart from it.
 #include <fmt/format.h>
 
 #include "contest.hpp"

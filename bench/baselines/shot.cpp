@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHOT of the same keypoints over the same surface.
+// SHOT descriptors of the same keypoints on the same surface.
 #include "resight/features/shot.hpp"
 
 #include <fmt/format.h>
@@ -17,16 +17,17 @@ namespace resight::bench {
 namespace {
 
 constexpr int kDimension = 352;
-constexpr double kPartner_m = 0.01;  // A keypoint of the other view so near, in the world, is the same one...
-constexpr double kRight_m = 0.02;    // ...and a match so far off is right.
+// A keypoint of the other view this near, in the world frame, is the same one.
+constexpr double kPartner_m = 0.01;
+constexpr double kRight_m = 0.02;  // A match within this distance is right.
 
-/// What a view gives to be described.
+/// What is described in a view.
 struct ShotTask {
   PointCloud support, keypoints;  // Camera frame.
   Rigid3 world_from_camera;
 };
 
-// The keypoints of the view as it is, and its surface with normals from windows of this radius.
+// Keypoints of the view as it is, and its surface with normals from windows of this radius.
 ShotTask make_task(const PreparedView& view, const ShotOptions& options, int normals_radius_px) {
   const FeatureSet features = extract_shot(view, options);
   OrganizedCloud cloud = view.cloud;
@@ -39,7 +40,7 @@ ShotTask make_task(const PreparedView& view, const ShotOptions& options, int nor
   return task;
 }
 
-/// Described keypoints, world frame.
+/// Keypoints with descriptors, world frame.
 struct Described {
   std::vector<Eigen::Vector3f> points_in_world;
   std::vector<float> descriptors;
@@ -99,7 +100,7 @@ void compare_shot(const StageInput& input) {
   const ShotTask smooth_task = make_task(input.view, options, 2 * radius_px);
   const ShotTask smooth_before = make_task(input.before, options, 2 * radius_px);
   const std::size_t num_keypoints = task.keypoints.size();
-  options.min_surface_variation = 0;  // Flat ones are out already.
+  options.min_surface_variation = 0;  // Flat keypoints have been removed already.
   Described ours, smooth, peer;
   compare(fmt::format("SHOT, {:.0f} cm", 1e2 * options.support_radius_m),
           {{"resight", [&] { return (ours = describe_ours(task, options)).cpu_s; },

@@ -20,8 +20,8 @@ StageInput start_input() {
   StageInput input;
   input.config = RecognizerConfig::from_preset("default");
   input.config.set_num_threads(1);
-  input.config.prepare.normals.window_radius_px = 2;  // The stages are compared on the quickest normals; with wider
-                                                      // ones beside them.
+  // The stages are compared with the fastest normals; wider windows are measured separately.
+  input.config.prepare.normals.window_radius_px = 2;
   return input;
 }
 

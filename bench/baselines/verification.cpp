@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same hypotheses before one view.
+// Verifies the same hypotheses in one view.
 #include <fmt/format.h>
 
 #include "contest.hpp"
@@ -18,11 +18,11 @@ struct VerificationContest {
   const StageInput& input;
   PointCloud scene_in_world;
   Rigid3 camera_from_world;
-  std::vector<PreparedModel> models;  // Thinned as ours thins them.
+  std::vector<PreparedModel> models;  // Downsampled as in our verification.
   std::vector<Eigen::Vector3f> pixels;
 };
 
-// A recogniser has the view as a cloud of the world before it verifies anything.
+// Before verification, a recogniser already has the view as a cloud in the world frame.
 VerificationContest make_contest(const StageInput& input) {
   VerificationContest contest{
       .input = input, .scene_in_world = {}, .camera_from_world = {}, .models = {}, .pixels = {}};
@@ -40,7 +40,7 @@ double verify_ours(const VerificationContest& contest, VerifyResult& result) {
   const std::vector<VerificationView> views{{&contest.input.view}};
   HypothesisVerifier verifier(contest.input.library, contest.input.config.verify);
   const auto verify = [&] { result = verifier.verify(contest.input.hypotheses, contest.scene_in_world, views, {}); };
-  verify();  // Models are made once, as the peer's are.
+  verify();  // Models are prepared once, as for the peer.
   return cpu_time_s(verify);
 }
 
@@ -53,7 +53,7 @@ Posed accepted_of(const VerificationContest& contest, const VerifyResult& result
   return accepted;
 }
 
-// Of each hypothesis, camera frame.
+// Per hypothesis, camera frame.
 std::vector<std::vector<float>> posed_models(const VerificationContest& contest) {
   std::vector<std::vector<float>> models;
   for (const Hypothesis& h : contest.input.hypotheses) {
@@ -67,7 +67,7 @@ std::vector<std::vector<float>> posed_models(const VerificationContest& contest)
   return models;
 }
 
-// Its annealing is random: each run is kept.
+// The peer's annealing is random, so every run is kept.
 double verify_peer(const VerificationContest& contest, const pcl_peers::VerifyOptions& options,
                    std::vector<Posed>& accepted) {
   const OrganizedCloud& cloud = contest.input.view.cloud;
@@ -81,8 +81,8 @@ double verify_peer(const VerificationContest& contest, const pcl_peers::VerifyOp
   return mask.cpu_s;
 }
 
-// What did best on the demo scene of 24 sets: inliers within 5, 10 or 15 mm, normals of 2 or 5 cm, weights 1 or 3 of
-// outliers, 1 or 5 of clutter.
+// The best of 24 parameter sets on the demo scene: inliers within 5, 10 or 15 mm, normals of 2 or 5 cm, weights 1 or 3
+// of outliers, 1 or 5 of clutter.
 pcl_peers::VerifyOptions peer_options(const StageInput& input) {
   return {.resolution_m = static_cast<float>(input.config.verify.resolution_m),
           .inlier_distance_m = 0.015F,
@@ -92,7 +92,7 @@ pcl_peers::VerifyOptions peer_options(const StageInput& input) {
           .normal_radius_m = 0.05F};
 }
 
-// As PCL's tutorial on it has them.
+// Values of PCL's tutorial.
 pcl_peers::VerifyOptions tutorial_options() {
   return {.inlier_distance_m = 0.005F, .clutter_regularizer = 5, .regularizer = 3, .normal_radius_m = 0.05F};
 }

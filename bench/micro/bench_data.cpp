@@ -31,7 +31,7 @@ double cast(const Eigen::Vector3d& ray, const std::vector<Ball>& balls) {
   return best;
 }
 
-/// Value noise of three octaves: texture enough for a thousand keypoints.
+/// Value noise of three octaves: enough texture for a thousand keypoints.
 double shade(double x, double y) {
   double sum = 0;
   for (int octave = 0; octave < 3; ++octave) {

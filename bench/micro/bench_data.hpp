@@ -5,20 +5,20 @@
 
 #include "resight/sensor/prepared_view.hpp"
 
-/// Input of the benchmarks: made from seeds, the same on every machine.
+/// Input of the benchmarks, generated from seeds: the same on every machine.
 namespace resight::bench {
 
 /// A VGA view of a textured table with balls of 4 to 9 cm on it, with sensor noise and missing pixels.
 [[nodiscard]] RgbdFrame make_table_frame();
 
-/// Unit vectors in families (5,000 random centres with deviations): clustered as descriptors are, but without their low
-/// intrinsic dimension, which kd-trees live on. `seed` draws the members.
+/// Unit vectors in families (5,000 random centres with deviations): clustered like descriptors, but without their low
+/// intrinsic dimension, on which kd-trees rely. `seed` draws the members.
 [[nodiscard]] std::vector<float> make_descriptors(int count, int dimension, std::uint64_t seed);
 
 inline constexpr int kNumModelDescriptors = 200000;
 inline constexpr int kNumQueries = 2000;
 
-/// The indexed set and the queries of a dimension, and the nearest neighbour of each query by exact search.
+/// Indexed set and queries of one dimension, and the nearest neighbour of each query by exact search.
 struct MatchingTask {
   std::vector<float> model;
   std::vector<float> queries;
@@ -26,7 +26,7 @@ struct MatchingTask {
 };
 [[nodiscard]] const MatchingTask& matching_task(int dimension);
 
-/// Share of queries whose first match (of `k` each) is the true nearest.
+/// Share of queries whose first match (of `k` each) is the true nearest neighbour.
 template <typename Matches, typename IndexOf>
 double recall(const MatchingTask& task, const Matches& matches, IndexOf&& index_of) {
   int hits = 0;

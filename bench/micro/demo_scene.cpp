@@ -13,7 +13,7 @@
 namespace resight::bench {
 namespace {
 
-constexpr int kNumViews = 7;  // K = 5, and one more.
+constexpr int kNumViews = 7;  // K = 5 and the current view.
 
 DemoScene make_demo() {
   DemoScene demo;
@@ -35,7 +35,7 @@ DemoScene make_demo() {
   return demo;
 }
 
-/// What keeps a reference to the library: when that stands where it stays.
+/// Adds members that refer to the library, after it has reached its final address.
 void add_searches(DemoScene& demo) {
   demo.index = std::make_unique<ModelFeatureIndex>(demo.library, demo.config.match);
   demo.shapes = std::make_unique<ShapeSearch>(demo.library, demo.config.shape, demo.config.verify);

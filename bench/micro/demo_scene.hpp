@@ -12,15 +12,15 @@
 
 namespace resight::bench {
 
-/// The simulated demo scene, its models, and what each stage of preset `default` is given for its last view. Made once
-/// a run (some tens of seconds), from a seed: the same on every machine.
+/// The simulated demo scene, its models, and the input of each stage of preset `default` for its last view. Created
+/// once per run (some tens of seconds) from a seed: the same on every machine.
 struct DemoScene {
   RecognizerConfig config;
   std::vector<ProceduralObject> objects;
   ModelLibrary library;
   std::vector<PreparedView> views;
-  std::unique_ptr<DynamicScene> scene;  ///< After all views but the last.
-  FeatureSet sift;                      ///< Of the last view, as all below.
+  std::unique_ptr<DynamicScene> scene;  ///< State after all views but the last.
+  FeatureSet sift;                      ///< Of the last view, like all fields below.
   FeatureSet shot;
   std::unique_ptr<ModelFeatureIndex> index;
   std::unique_ptr<ShapeSearch> shapes;

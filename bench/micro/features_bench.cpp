@@ -16,7 +16,7 @@ const PreparedView& view() {
   return kView;
 }
 
-/// OpenCV's SIFT on one thread, with the 3-D points.
+/// OpenCV's SIFT on one thread, including 3-D points.
 void Sift(benchmark::State& state) {
   const int num_threads_before = cv::getNumThreads();
   cv::setNumThreads(1);
@@ -27,8 +27,7 @@ void Sift(benchmark::State& state) {
 }
 BENCHMARK(Sift)->Unit(benchmark::kMillisecond);
 
-/// Description alone, without sampling and without the test for planes; argument: support radius, mm. Items =
-/// keypoints.
+/// Description only, without sampling and without the plane test. Argument: support radius, mm. Items: keypoints.
 void ShotPerKeypoint(benchmark::State& state) {
   ShotOptions options{.support_radius_m = static_cast<double>(state.range(0)) / 1000, .min_surface_variation = 0};
   const FeatureSet all = extract_shot(view(), options);
@@ -44,7 +43,7 @@ void ShotPerKeypoint(benchmark::State& state) {
 }
 BENCHMARK(ShotPerKeypoint)->Arg(20)->Arg(30)->Arg(40)->Unit(benchmark::kMillisecond);
 
-/// The whole stage with the default options; argument: threads.
+/// The whole stage with default options. Argument: threads.
 void ExtractShot(benchmark::State& state) {
   std::size_t num_keypoints = 0;
   for (auto _ : state) num_keypoints = extract_shot(view(), {.num_threads = static_cast<int>(state.range(0))}).size();
@@ -52,7 +51,7 @@ void ExtractShot(benchmark::State& state) {
 }
 BENCHMARK(ExtractShot)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// 2,000 queries against 200,000; arguments: dimension, cells looked into.
+/// 2,000 queries against 200,000. Arguments: dimension, visited cells.
 void IndexSearch(benchmark::State& state) {
   const int dimension = static_cast<int>(state.range(0));
   const MatchingTask& task = matching_task(dimension);
@@ -63,7 +62,7 @@ void IndexSearch(benchmark::State& state) {
 }
 BENCHMARK(IndexSearch)->ArgsProduct({{128, 352}, {8, 16, 32, 64}})->Unit(benchmark::kMillisecond);
 
-/// 2,000 queries against the SHOT descriptors of a single object; argument: exact_below of the index (6,000 of them).
+/// 2,000 queries against the SHOT descriptors of a single object (6,000). Argument: exact_below of the index.
 void IndexSearchOfOneObject(benchmark::State& state) {
   const MatchingTask& task = matching_task(352);
   const std::span<const float> object = std::span(task.model).first(std::size_t{6000} * 352);

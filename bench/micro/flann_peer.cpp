@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The peer of the descriptor index: FLANN's randomised kd-trees, as OpenCV offers them.
+// Peer of the descriptor index: FLANN's randomised kd-trees as provided by OpenCV.
 #include <benchmark/benchmark.h>
 
 #include <opencv2/features2d.hpp>
@@ -9,7 +9,7 @@
 namespace resight::bench {
 namespace {
 
-/// 2,000 queries against 200,000, 4 trees; arguments: dimension, leaves looked into.
+/// 2,000 queries against 200,000 with 4 trees. Arguments: dimension, visited leaves.
 void FlannSearch(benchmark::State& state) {
   const int dimension = static_cast<int>(state.range(0));
   const MatchingTask& task = matching_task(dimension);

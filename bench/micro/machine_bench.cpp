@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine can do: the first two benchmarks of a run, so that its other numbers can be held against them.
+// Limits of the machine: the first two benchmarks of a run, as a reference for all other numbers.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace resight::bench {
 namespace {
 
-/// Sum of an array that no cache holds: bytes read a second by one core.
+/// Sum of an array larger than any cache: bytes per second read by one core.
 void MemoryRead(benchmark::State& state) {
   constexpr std::size_t kNumFloats = std::size_t{64} << 20U;  // 256 MB
   constexpr std::size_t kLanes = 64;
@@ -24,9 +24,10 @@ void MemoryRead(benchmark::State& state) {
 }
 BENCHMARK(MemoryRead)->Unit(benchmark::kMillisecond);
 
-/// Multiply and add in registers: floating-point operations a second of one core.
+/// Multiplications and additions in registers: floating-point operations per second of one core.
 void MultiplyAdd(benchmark::State& state) {
-  constexpr std::size_t kLanes = 80;  // Ten vectors of 8: enough to hide the latency, few enough for the registers.
+  // Ten vectors of 8: enough to hide the latency, few enough for the registers.
+  constexpr std::size_t kLanes = 80;
   constexpr int kSteps = 100000;
   std::array<float, kLanes> values{};
   float factor = 0.999F;

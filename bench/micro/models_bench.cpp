@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Training, and the library file.
+// Training and the library file.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace resight::bench {
 namespace {
 
-/// One object from its mesh, views and symmetries included. Argument: threads.
+/// One object from its mesh, including views and symmetries. Argument: threads.
 void TrainObject(benchmark::State& state) {
   const ProceduralObject& object = demo_scene().objects.front();
   TrainOptions options;
@@ -31,7 +31,7 @@ void LoadLibrary(benchmark::State& state) {
 }
 BENCHMARK(LoadLibrary)->Unit(benchmark::kMillisecond);
 
-/// The index over the descriptors of all models.
+/// Index over the descriptors of all models.
 void IndexLibrary(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   std::int64_t num_descriptors = 0;

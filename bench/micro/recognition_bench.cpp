@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From features to detections, on the last view of the demo scene. Argument, where there is one: threads.
+// From features to detections, on the last view of the demo scene. Argument, if any: threads.
 #include <benchmark/benchmark.h>
 
 #include "demo_scene.hpp"
@@ -24,7 +24,7 @@ void MatchFeatures(benchmark::State& state) {
 }
 BENCHMARK(MatchFeatures)->Unit(benchmark::kMillisecond);
 
-/// Items = correspondences.
+/// Items: correspondences.
 void GenerateHypotheses(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   const RecognizerConfig config = config_of(state);
@@ -38,7 +38,7 @@ void GenerateHypotheses(benchmark::State& state) {
 }
 BENCHMARK(GenerateHypotheses)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// Thinned view, its planes, and the pixel records that poses are tested on.
+/// Downsampled view, its planes, and the pixel records on which poses are scored.
 void SearchedViewOfView(benchmark::State& state) {
   const RecognizerConfig config = config_of(state);
   for (auto _ : state) {
@@ -48,7 +48,7 @@ void SearchedViewOfView(benchmark::State& state) {
 }
 BENCHMARK(SearchedViewOfView)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// Items = objects.
+/// Items: objects.
 void ShapeSearchOfView(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   const RecognizerConfig config = config_of(state);
@@ -68,7 +68,7 @@ void ClusterHypotheses(benchmark::State& state) {
 }
 BENCHMARK(ClusterHypotheses)->Unit(benchmark::kMillisecond);
 
-/// Against the reconstruction and six views. Items = hypotheses.
+/// Against the reconstruction and six views. Items: hypotheses.
 void VerifyHypotheses(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   const RecognizerConfig config = config_of(state);
@@ -76,7 +76,7 @@ void VerifyHypotheses(benchmark::State& state) {
   for (const DynamicScene::View& view : demo.scene->window()) views.push_back({&view.cleared});
   std::size_t num_accepted = 0;
   HypothesisVerifier verifier(demo.library, config.verify);
-  (void)verifier.verify(demo.hypotheses, demo.scene->reconstruction(), views, {});  // Models are made once.
+  (void)verifier.verify(demo.hypotheses, demo.scene->reconstruction(), views, {});  // Models are prepared once.
   for (auto _ : state) {
     const VerifyResult result = verifier.verify(demo.hypotheses, demo.scene->reconstruction(), views, {});
     num_accepted = 0;

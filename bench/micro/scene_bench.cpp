@@ -18,7 +18,7 @@ const PointCloud& previous_in_camera() {
   return kCloud;
 }
 
-/// Eq. (2) from Psi to the view by what the points project to. Items = points.
+/// Eq. (2) from Psi to the view, by projection into the image. Items: points.
 void DifferenceToView(benchmark::State& state) {
   const auto& points = previous_in_camera().points;
   for (auto _ : state)
@@ -27,7 +27,7 @@ void DifferenceToView(benchmark::State& state) {
 }
 BENCHMARK(DifferenceToView)->Unit(benchmark::kMillisecond);
 
-/// The same of any two clouds, by a grid of cells (built anew): its peer.
+/// Same for any two clouds, with a grid of cells (rebuilt each time): the peer of the projection.
 void DifferenceOfClouds(benchmark::State& state) {
   const auto& points = previous_in_camera().points;
   const PointCloud view = to_point_cloud(last_view().cloud, nullptr, false);
@@ -50,7 +50,7 @@ void DetectChanges(benchmark::State& state) {
 }
 BENCHMARK(DetectChanges)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// One view to its voxels.
+/// Reduces one view to voxels.
 void ReduceToVoxels(benchmark::State& state) {
   std::size_t num_voxels = 0;
   VoxelNumbers numbers;
@@ -59,7 +59,7 @@ void ReduceToVoxels(benchmark::State& state) {
 }
 BENCHMARK(ReduceToVoxels)->Unit(benchmark::kMillisecond);
 
-/// The views of a window to one cloud. Argument: views.
+/// Merges the views of a window into one cloud. Argument: views.
 void MergeVoxels(benchmark::State& state) {
   VoxelNumbers numbers;
   std::vector<ViewVoxels> voxels;

@@ -43,7 +43,7 @@ void NoiseModel(benchmark::State& state) {
 }
 BENCHMARK(NoiseModel)->Unit(benchmark::kMillisecond);
 
-/// All of it; argument: threads.
+/// All steps of the preparation. Argument: threads.
 void PrepareView(benchmark::State& state) {
   for (auto _ : state)
     benchmark::DoNotOptimize(prepare_view(frame(), {.num_threads = static_cast<int>(state.range(0))}));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a library costs before the first view, by the number of its objects: size of the file, time to load it and to
-// make ready what matching needs (medians of three), and memory in use then. The objects of the given library are
-// repeated under other names.
+// Cost of a library before the first view, by the number of its objects: file size, time to load it and to prepare
+// matching (medians of three), and memory in use afterwards. The objects of the given library are repeated under other
+// names.
 //   bench_library_times models.resight [objects..]     (20 50 100)
 #include <fmt/format.h>
 #include <malloc.h>
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   }
   if (counts.empty()) counts = {20, 50, 100};
   const auto file = std::filesystem::temp_directory_path() / fmt::format("bench_library_{}.resight", getpid());
-  fmt::print("| objects | file, MB | loaded in, s | made ready in, s | memory, MB |\n|---|---|---|---|---|\n");
+  fmt::print("| objects | file, MB | loaded in, s | prepared in, s | memory, MB |\n|---|---|---|---|---|\n");
   for (const int count : counts) {
     {
       ModelLibrary repeated = value_or_exit(load_library(argv[1]));
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
       const auto saved = save_library(repeated, file);
       if (!saved.ok()) exit_with(saved.error().message);
     }
-    malloc_trim(0);  // What follows counts alone.
+    malloc_trim(0);  // Only later allocations are measured.
     ModelLibrary library;
     const double load_s = median_of_three_s([&] {
       library = {};

@@ -6,7 +6,7 @@
 
 namespace resight {
 
-/// Resident memory of the process now, in MB (10^6 bytes).
+/// Current resident memory of the process in MB (10^6 bytes).
 inline double memory_in_use_mb() {
   std::ifstream file("/proc/self/statm");
   double all = 0;

@@ -10,7 +10,7 @@
 
 namespace resight {
 
-/// The first objects of the library, which must have some, and where it has too few, these again under other names.
+/// Shortens the library to its first `count` objects, or repeats its objects under other names. It must not be empty.
 inline void resize_library(ModelLibrary& library, std::size_t count) {
   const std::size_t num_given = library.objects.size();
   int max_id = 0;

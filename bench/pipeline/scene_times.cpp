@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of changes and reconstruction alone (Algorithm 1), view by view, and a checksum of all that came out of it: what
-// makes the stage faster must not change the sum. Needs no models.
+// Time of changes and reconstruction alone (Algorithm 1), view by view, and a checksum of all results. Optimisations of
+// the stage must not change the checksum. Needs no models.
 //   bench_scene_times sequence [preset] [K] [threads] [passes]
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ std::uint64_t checksum_of(const PointCloud& cloud, std::uint64_t sum) {
   return checksum_of(cloud.colors, checksum_of(cloud.normals, checksum_of(cloud.points, sum)));
 }
 
-/// A NaN is a NaN, whatever its bits.
+/// All NaN values count as equal.
 std::uint64_t checksum_of(const Image<float>& image, std::uint64_t sum) {
   std::vector<float> values(image.data().begin(), image.data().end());
   for (float& value : values) value = std::isnan(value) ? -1.0F : value;
@@ -57,7 +57,7 @@ std::vector<PreparedView> prepare_all(const std::string& folder, const PrepareVi
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();  // As the program does.
+  keep_freed_memory();  // As in the program.
   if (argc < 2) exit_with("usage: bench_scene_times SEQUENCE [preset] [K] [threads] [passes]");
   RecognizerConfig config = preset_or_exit(argc > 2 ? argv[2] : "default");
   if (argc > 3) config.num_previous_views = std::atoi(argv[3]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether memory and time of a view stay flat over a long stream: a sequence is played forwards and backwards until so
-// many views have passed, what changed in it changing back each time. Twenty rows: memory in use, and the median time
-// of the views since the last row, of those that were searched and of the quiet ones.
+// Whether memory and time per view stay constant over a long stream. A sequence is played forwards and backwards until
+// the given number of views is reached; its changes are reversed each time. Prints twenty rows: memory in use, and the
+// median time since the last row of the views that were searched and of the others.
 //   bench_stream_memory sequence models.resight [preset] [views=10000] [threads=2]
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// 0 1 2 1 0 1 ..
+// 0 1 2 1 0 1 ...
 std::size_t frame_at(std::size_t view, std::size_t num_frames) {
   const std::size_t period = std::max<std::size_t>(1, 2 * (num_frames - 1));
   const std::size_t at = view % period;
@@ -48,7 +48,7 @@ struct Row {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();  // As the program does.
+  keep_freed_memory();  // As in the program.
   if (argc < 3) exit_with("usage: bench_stream_memory SEQUENCE LIBRARY [preset] [views] [threads]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
   if (frames.empty()) exit_with("the sequence has no view");
 
   SceneRecognizer recognizer(library, config);
-  fmt::print("| views | memory, MB | quiet view, ms | searched view, ms | searched | detections a view | changes |\n");
+  fmt::print(
+      "| views | memory, MB | quiet view, ms | searched view, ms | searched | detections per view | changes |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
   Row row;
   for (std::size_t v = 0; v < num_views; ++v) {

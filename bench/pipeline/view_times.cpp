@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of a view by stage over a sequence, from image files to detections: median and 95 % quantile of wall time, mean
-// CPU time, what went through each stage, and the peak memory. Several runs of a sequence differ in time only.
+// Time per view and stage over a sequence, from image files to detections: median and 95 % quantile of wall time, mean
+// CPU time, number of items per stage, and peak memory. Several runs of a sequence differ in time only.
 //   resight simulate --preset demo --seed 3 --out scene; resight train scene/models --out models.resight
 //   bench_view_times scene models.resight [preset] [config.toml|-] [K] [threads] [max views] [objects]
-// Objects beyond those of the library are these again, under other names.
+// If more objects are requested than the library has, they are repeated under other names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ class ViewTimes {
     print_row("**view**", whole_);
     const auto n = static_cast<double>(whole_.wall_s.size());
     fmt::print(
-        "\n{:.0f} views; a view: {:.0f} correspondences, {:.0f} hypotheses, {:.0f} merged, {:.0f} clustered, {:.1f} "
+        "\n{:.0f} views; per view: {:.0f} correspondences, {:.0f} hypotheses, {:.0f} merged, {:.0f} clustered, {:.1f} "
         "accepted; peak memory {:.0f} MB\n",
         n, counts_.correspondences / n, counts_.generated / n, counts_.merged / n, counts_.clustered / n,
         counts_.accepted / n, 1e-6 * static_cast<double>(peak_memory_bytes()));
@@ -88,7 +88,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  keep_freed_memory();  // As the program does.
+  keep_freed_memory();  // As in the program.
   if (argc < 3)
     exit_with("usage: bench_view_times SEQUENCE LIBRARY [preset] [config.toml|-] [K] [threads] [max views] [objects]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near align_view() brings a view whose pose is off to its true pose, beside the views before it (at their true
-// poses). One line a view, and the medians.
+// How near align_view() brings a view with a perturbed pose to its true pose, aligned to the preceding views at their
+// true poses. Prints one line per view, and the medians.
 //   bench_align_views SEQUENCE [K] [error, mm] [error, deg]
 #include <fmt/format.h>
 

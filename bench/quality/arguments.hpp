@@ -11,7 +11,7 @@
 
 namespace resight {
 
-/// What a bench program does with an input that cannot be used: one line, status 2.
+/// Reaction of the bench programs to unusable input: one line, status 2.
 [[noreturn]] inline void exit_with(const std::string& message) {
   fmt::print(stderr, "{}\n", message);
   std::exit(2);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two configurations on paired seeds: mean difference over all sequences of all seeds, with its standard error. Each
-// pair of folders holds what `resight evaluate` made of one seed with configuration A and B.
+// pair of folders contains the results of `resight evaluate` for one seed with configurations A and B.
 //   for s in 11 12 13; do
 //     resight simulate --preset dynamic-tabletop --seed $s --format bop --out s$s
 //     resight evaluate --models m.resight --dataset s$s --presets default --out a$s
 //     resight evaluate --models m.resight --dataset s$s --presets default --config b.toml --out b$s
 //   done
 //   bench_compare_results a11 b11 a12 b12 a13 b13
-// `resight evaluate --shard I/N` cuts each of them for a job array.
+// `resight evaluate --shard I/N` divides each of them for a job array.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 using namespace resight;
 namespace fs = std::filesystem;
 
-// By preset; `seed` keeps the sequences of different seeds apart, `side` tells A from B.
+// Runs by preset; `seed` separates the sequences of different seeds, `side` separates A from B.
 void add_runs(const fs::path& folder, int seed, const char* side,
               std::map<std::string, std::vector<EvaluatedRun>>& all) {
   std::vector<fs::path> files;

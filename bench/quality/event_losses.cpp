@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which changes the history of objects misses or tells wrongly: replays it over the detections of a run, and prints
-// what the views show of each change that it did not tell, and each event that is none.
+// Which changes the object history misses or reports wrongly. Replays the history over the detections of a run, and
+// prints what the views show of each unreported change, and each wrong event.
 //   resight recognize --models models.resight --sequence validation/test/000001 --config all.toml --out run
 //   bench_event_losses validation/test/000001 models.resight run/detections.json validation/test/000001.events.json
-// all.toml: min_reported_share = 0, for the history sees what the newest view does not show, too.
+// all.toml: min_reported_share = 0, because the history also uses what the newest view does not show.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ void print(const std::string& what, int view, ObjectEventKind kind, const std::s
   fmt::print("{} view {:2} {:8} {:14} {} -> {}", what, view, to_string(kind), object, place(before), place(after));
 }
 
-/// Views from `first` to before `last` that recognise an object at a place.
+/// Views from `first` to before `last` in which an object is recognised at a place.
 std::string views_with(const std::string& object, const std::optional<Rigid3>& pose, int first, int last,
                        const std::vector<std::vector<Detection>>& detections, const ModelLibrary& library) {
   const int index = library.find(object);
@@ -69,7 +69,7 @@ std::string views_with(const std::string& object, const std::optional<Rigid3>& p
   return views;
 }
 
-/// What the history tells of a run, as it is known in the end.
+/// What the history reports of a run, including later corrections.
 struct Replay {
   std::vector<std::vector<Detection>> detections;
   std::vector<ReportedChange> reported;
@@ -109,7 +109,7 @@ void print_missed(const SeenChange& c, const Replay& replay, const ModelLibrary&
   const auto views = [&](const std::optional<Rigid3>& pose, int first) {
     return views_with(c.object, pose, first, first + kViews, replay.detections, library);
   };
-  fmt::print(" | there until {} free until {} left seen {} come seen {} | there:{} /{} here:{} /{}\n",
+  fmt::print(" | present until {} free until {} departure seen {} arrival seen {} | there:{} /{} here:{} /{}\n",
              c.sight.last_there_view, c.sight.last_free_view, c.sight.before_view, c.sight.after_view,
              views(c.world_from_object_before, c.view - kViews), views(c.world_from_object_before, c.view),
              views(c.world_from_object_after, c.view - kViews), views(c.world_from_object_after, c.view));
@@ -138,7 +138,7 @@ void print_losses(const Replay& replay, const std::vector<TrueChange>& changes,
     fmt::print(" | departure {} arrival {}\n", alone.departures.true_positives, alone.arrivals.true_positives);
   }
   const RecognitionScore score = score_events(changes, sights, replay.reported, library).events;
-  fmt::print("told {} wrong {} missed {}\n", score.true_positives, score.false_positives, score.false_negatives);
+  fmt::print("reported {} wrong {} missed {}\n", score.true_positives, score.false_positives, score.false_negatives);
 }
 
 }  // namespace

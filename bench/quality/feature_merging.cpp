@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the training views of a mesh and the merging of repeated features cost and gain: `bench_feature_merging
-// [MODELS]` (a path that `resight train` takes; default: procedural objects). Features of held-out views (between the
-// training views, another elevation, several distances, with sensor noise) are matched exactly against all objects
-// together. A match is right when its model point is of the same object and within 1 cm of the truth.
+// Costs and benefits of training views and of merging repeated features: `bench_feature_merging [MODELS]` (a path as
+// for `resight train`; default: procedural objects). Features of held-out views (between the training views, at another
+// elevation and several distances, with sensor noise) are matched exactly against all objects together. A match is
+// right if its model point belongs to the same object and is within 1 cm of the truth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Object {
   TriangleMesh mesh;
 };
 
-// Features of several objects with the object of each.
+// Features of several objects, with the object of each feature.
 struct LabelledFeatures {
   FeatureSet features;
   std::vector<int> objects;
@@ -64,7 +64,7 @@ std::vector<Object> load_objects(int argc, char** argv) {
   return objects;
 }
 
-// Turntables whose views are put together.
+// Turntables whose views are combined.
 struct Variant {
   std::string name;
   std::vector<TurntableOptions> turntables;
@@ -107,7 +107,7 @@ Both extract_training(const std::vector<Object>& objects, const Variant& variant
   return all;
 }
 
-// Truth: the points are in the object frame.
+// Ground truth: the points are in the object frame.
 Both extract_queries(const std::vector<Object>& objects, double distance_m, int num_threads) {
   const Rigid3 turned_from_object = Rigid3::from_axis_angle({0, 0, 1}, 7.5 * std::numbers::pi / 180);
   const TurntableOptions turntable{.step_deg = 90,
@@ -178,7 +178,7 @@ LabelledFeatures merge(const LabelledFeatures& all, const FeatureMerging& mergin
   return merged;
 }
 
-// Every n-th, so that no more than kMaxQueries are left.
+// Keeps every n-th feature, at most kMaxQueries.
 LabelledFeatures downsample(const LabelledFeatures& all) {
   const std::size_t step = (all.features.size() + kMaxQueries - 1) / kMaxQueries;
   LabelledFeatures some;
@@ -194,7 +194,7 @@ LabelledFeatures downsample(const LabelledFeatures& all) {
   return some;
 }
 
-using Queries = std::vector<LabelledFeatures>;  // of each distance
+using Queries = std::vector<LabelledFeatures>;  // Per distance.
 
 void print_row(const std::string& variant, const char* kind, const FeatureMerging& merging,
                const LabelledFeatures& model, const Queries& queries, int num_threads) {

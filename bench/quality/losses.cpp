@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where objects are lost: per view and missed object the stage, per wrong detection what spoke for it, and their sums.
+// Where objects are lost: the stage per view and missed object, the evidence per wrong detection, and their sums.
 //   resight simulate --preset demo --seed 3 --out scene; resight train scene/models --out models.resight
 //   bench_losses scene models.resight [preset] [config.toml] [K] [min_visible_share]
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ void print_evidence(const HypothesisEvidence& e) {
       "{:.0f} outlier "
       "{:.0f} clutter "
       "{:.0f} plane "
-      "{:.0f} alone "
+      "{:.0f} unary "
       "{:.0f}\n",
       to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_texture,
       e.texture_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   SceneRecognizer recognizer(library, config);
   std::map<LossStage, int> losses;
   std::vector<PoseDifference> differences;
-  std::vector<double> errors_in_sigmas;  // of the centre
+  std::vector<double> errors_in_sigmas;  // Of the centre.
   RecognitionScore score;
   StageTimes times;
   for (int v = 0; v < sequence->num_views(); ++v) {
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
       if (is_change(e.kind)) fmt::print("view {:2} {} {}\n", v, to_string(e.kind), library.objects[e.object].name);
   }
   for (const StageTime& t : times.stages())
-    fmt::print("time: {:26} {:.3f} s CPU a view\n", t.stage, t.cpu_s / sequence->num_views());
+    fmt::print("time: {:26} {:.3f} s CPU per view\n", t.stage, t.cpu_s / sequence->num_views());
   for (const auto& [stage, count] : losses) fmt::print("lost: {:14} {}\n", to_string(stage), count);
   std::sort(differences.begin(), differences.end(),
             [](const auto& a, const auto& b) { return a.center_distance_m < b.center_distance_m; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How right object models are that are made of recordings: both sides of generated objects on a turntable, 36 views
-// each, sensor noise, against the generated meshes. With --true-poses tracking and joining are left out: fusion alone.
-// The models in --out are in the frames of the meshes: results of both can be compared.
+// Accuracy of object models built from recordings: both sides of generated objects on a turntable, 36 views each, with
+// sensor noise, compared with the generated meshes. --true-poses skips tracking and joining and tests fusion alone. The
+// models in --out are in the frames of the meshes, so that both results can be compared.
 //   bench_model_objects [--true-poses] [--walk] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ Side record(const TriangleMesh& mesh, const Plan& plan, bool upside_down) {
   return side;
 }
 
-// Masks are found, not given: the region of the first view, as a turntable's camera stands still.
+// Masks are found, not given: the region of the first view applies to all, because a turntable's camera is static.
 Result<ObjectTrack> mask_with_true_poses(Side side) {
   ObjectTrack track;
   std::optional<ObjectRegion> region;
@@ -86,7 +86,7 @@ Result<ObjectTrack> track_both(const TriangleMesh& mesh, const Plan& plan, std::
   return std::move(tracks[0]);
 }
 
-// A model's frame is its own: how it lies on the true surface (point to plane).
+// A model has its own frame. This aligns it to the true surface (point to plane).
 Rigid3 fit_to_truth(const TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 truth_from_model) {
   const PointCloud surface = sample_visible_surface(truth, 0.0015);
   const KdTree tree(surface.points);
@@ -108,7 +108,7 @@ Rigid3 fit_to_truth(const TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 
   return truth_from_model;
 }
 
-// The model in the frame of the generated mesh.
+// Moves the model into the frame of the generated mesh.
 void move_model(const Rigid3& truth_from_model, ObjectTrack& track, ObjectModelBuild& build) {
   const auto move = [](const Rigid3& by, std::vector<Eigen::Vector3f>& points) {
     for (Eigen::Vector3f& p : points) p = (by * p.cast<double>().eval()).cast<float>();
@@ -167,7 +167,7 @@ int main(int argc, char** argv) {
       plan.names.emplace_back(argument);
     }
   }
-  fmt::print("{:12} {:>6} {:>10} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "object", "views", "closure mm", "turn deg",
+  fmt::print("{:12} {:>6} {:>10} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "object", "views", "closure mm", "rot. deg",
              "median mm", "p95 mm", "complete", "open", "seconds");
   for (const std::string& name : plan.names.empty() ? kObjects : plan.names) measure(name, plan);
   return 0;

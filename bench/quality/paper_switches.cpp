@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the presets mvr and mvr-chd would give with the values of the paper and its reference code where ours differ
-// (docs/paper-to-code.md), one by one and together. Features and hypotheses are made once.
+// Results of the presets mvr and mvr-chd with the values of the paper and its reference code where ours differ
+// (docs/paper-to-code.md), one by one and together. Features and hypotheses are computed once.
 //   resight simulate --preset demo --seed 3 --format bop --out scene; resight train scene/models --out models.resight
 //   bench_paper_switches scene models.resight
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   options.find_losses = false;
   options.hypotheses = std::make_shared<ViewHypothesisStore>();
   fmt::print(
-      "| preset | | P | R | F | TP | FP | FN | ghosts | kept by clustering | cluster, verify: CPU ms a view |\n");
+      "| preset | | P | R | F | TP | FP | FN | ghosts | kept by clustering | cluster, verify: CPU ms per view |\n");
   for (const char* preset : {"mvr-chd", "mvr"})
     for (const Switch& change : kSwitches) {
       RecognizerConfig config = RecognizerConfig::from_preset(preset);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each preset makes of a sequence whose views are spoiled: camera poses that are off, regions without return, no
-// returns on slanted surfaces, none near edges (which takes thin things away). As a table.
+// Results of each preset on a sequence with degraded views, as a table: wrong camera poses, regions without return, no
+// returns on grazing surfaces, none near edges (which removes thin objects).
 //   resight simulate --preset dynamic-tabletop --seed 1 --format bop --out validation
 //   resight train validation/models --out models.resight
 //   bench_robustness validation/test/000001 models.resight [presets] [K] [events.json] [part of a trouble's name]
@@ -27,14 +27,15 @@ using namespace resight;
 constexpr float kNoReturn = std::numeric_limits<float>::quiet_NaN();
 constexpr double kRadPerDeg = 0.0174533;
 
-/// How views are spoiled.
+/// How views are degraded.
 struct Trouble {
   std::string name;
-  double pose_error_m = 0;          ///< Of each camera pose, in a random direction...
-  double pose_error_rad = 0;        ///< ...and about a random axis.
-  double hole_share = 0;            ///< Of the image, in discs.
-  double max_slant_rad = 4;         ///< Of the normal from the viewing ray: beyond, no return.
-  double min_edge_distance_px = 0;  ///< Nearer to a depth edge: no return.
+  double pose_error_m = 0;    ///< Error of each camera position, in a random direction.
+  double pose_error_rad = 0;  ///< Error of each camera rotation, about a random axis.
+  double hole_share = 0;      ///< Share of the image without return, in discs.
+  /// Largest angle between normal and viewing ray with a return.
+  double max_slant_rad = 4;
+  double min_edge_distance_px = 0;  ///< Points nearer to a depth edge have no return.
 };
 
 const std::vector<Trouble> kTroubles = {
@@ -84,7 +85,7 @@ void drop_badly_seen(const Trouble& trouble, RgbdFrame& frame) {
   }
 }
 
-/// The views of another sequence, spoiled; each view always in the same way.
+/// Degraded views of another sequence; each view is always degraded in the same way.
 class SpoiledSequence : public Sequence {
  public:
   SpoiledSequence(const Sequence& original, Trouble trouble) : original_(original), trouble_(std::move(trouble)) {}
@@ -140,7 +141,7 @@ int main(int argc, char** argv) {
     configs.back().set_num_threads(2);
   }
   fmt::print(
-      "| trouble | preset | precision | recall | F | ghosts | fewest objects in a view | event precision | event "
+      "| trouble | preset | precision | recall | F | ghosts | fewest objects per view | event precision | event "
       "recall |\n|---|---|---|---|---|---|---|---|---|\n");
   const std::string wanted = argc > 6 ? argv[6] : "";
   for (const Trouble& trouble : kTroubles)

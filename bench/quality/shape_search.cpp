@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the shape search finds of each object in single views, without what comes after it: recall per object, and how
-// many hypotheses it takes.
+// What the shape search alone finds of each object in single views: recall per object, and the number of hypotheses.
 //   bench_shape_search SEQUENCE LIBRARY [config.toml|-] [every]
 #include "resight/shape_search/shape_search.hpp"
 
@@ -87,11 +86,11 @@ int main(int argc, char** argv) {
   }
   Tally sum;
   for (const auto& [name, t] : tallies) {
-    fmt::print("{:14} found {:3} of {:3}, first {:3}, hypotheses a view {:.1f}\n", name, t.found, t.to_find, t.first,
+    fmt::print("{:14} found {:3} of {:3}, first {:3}, hypotheses per view {:.1f}\n", name, t.found, t.to_find, t.first,
                static_cast<double>(t.hypotheses) / views);
     sum = {sum.to_find + t.to_find, sum.found + t.found, sum.first + t.first, sum.hypotheses + t.hypotheses};
   }
-  fmt::print("found {} of {} ({:.3f}), first {}; {:.1f} hypotheses, {:.3f} s a view; built in {:.2f} s\n", sum.found,
+  fmt::print("found {} of {} ({:.3f}), first {}; {:.1f} hypotheses, {:.3f} s per view; built in {:.2f} s\n", sum.found,
              sum.to_find, static_cast<double>(sum.found) / sum.to_find, sum.first,
              static_cast<double>(sum.hypotheses) / views, seconds / views, built.count());
   return 0;

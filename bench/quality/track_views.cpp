@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera poses from the views alone, against those of the sequence. One line a view, then the trajectory's error.
-// With a library (and every view) also those after objects and cameras were adjusted together, and how far objects are
-// off before (each sight by itself) and after.
+// Camera poses from the views alone, compared with those of the sequence. Prints one line per view, then the error of
+// the trajectory. With a library (and every view), also after the joint adjustment of objects and cameras, and the
+// errors of the objects before (each observation alone) and after it.
 //   bench_track_views SEQUENCE [every n-th view] [LIBRARY]
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ constexpr double kDegPerRad = 57.29578;
 
 void print_error(const char* name, std::span<const Rigid3> truth, std::span<const Rigid3> poses) {
   const TrajectoryError e = find_trajectory_error(truth, poses);
-  fmt::print("{}: {} views, ATE {:.2f} mm rms, {:.2f} mm at most; {:.3f} deg mean, {:.3f} at most\n", name, e.num_views,
+  fmt::print("{}: {} views, ATE {:.2f} mm rms, {:.2f} mm max; {:.3f} deg mean, {:.3f} deg max\n", name, e.num_views,
              1000 * e.rms_m, 1000 * e.max_m, kDegPerRad * e.mean_rad, kDegPerRad * e.max_rad);
 }
 
@@ -34,7 +34,7 @@ struct Sight {
   Rigid3 camera_from_object;
 };
 
-// Against the true object of that name nearest to it; those farther than 5 cm are no mistake of the pose.
+// Compares with the nearest true object of the same name. Objects farther than 5 cm are no errors of the pose.
 void print_object_error(const char* name, const Sequence& sequence, const ModelLibrary& library,
                         const std::vector<Sight>& sights) {
   std::vector<double> errors_m, errors_rad;
@@ -55,9 +55,9 @@ void print_object_error(const char* name, const Sequence& sequence, const ModelL
   const auto at = [](const std::vector<double>& e, double share) {
     return e[static_cast<std::size_t>(share * static_cast<double>(e.size() - 1))];
   };
-  fmt::print("{}: {} sights, centre {:.2f} mm median, {:.2f} mm at 95 %; {:.2f} deg median, {:.2f} at 95 %\n", name,
-             errors_m.size(), 1000 * at(errors_m, 0.5), 1000 * at(errors_m, 0.95), kDegPerRad * at(errors_rad, 0.5),
-             kDegPerRad * at(errors_rad, 0.95));
+  fmt::print("{}: {} observations, centre {:.2f} mm median, {:.2f} mm at 95 %; {:.2f} deg median, {:.2f} at 95 %\n",
+             name, errors_m.size(), 1000 * at(errors_m, 0.5), 1000 * at(errors_m, 0.95),
+             kDegPerRad * at(errors_rad, 0.5), kDegPerRad * at(errors_rad, 0.95));
 }
 
 void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& library, const CameraTrack& track,
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
     truth.push_back(view.frame.world_from_camera);
     const ScopedTimer timer(times, "track");
     const TrackedView t = tracker.add_view(view);
-    fmt::print("{} part {} {} matches {} overlap {:.2f} sigma {:.1f} mm {:.2f} deg\n", t.name, t.part,
+    fmt::print("{} component {} {} matches {} overlap {:.2f} sigma {:.1f} mm {:.2f} deg\n", t.name, t.part,
                t.is_keyframe ? "key" : "   ", t.num_matches, t.overlap, 1000 * t.sigma.tail<3>().maxCoeff(),
                kDegPerRad * t.sigma.head<3>().maxCoeff());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses two modules of the installed library and tells by its exit status whether they answer right.
+// Uses two modules of the installed library; the exit status tells whether their results are right.
 #include <cstdio>
 #include <vector>
 

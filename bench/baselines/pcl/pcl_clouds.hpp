@@ -8,7 +8,7 @@
 
 #include "pcl_peers.hpp"
 
-/// Between plain numbers and PCL's types.
+/// Converts between plain arrays and PCL's types.
 namespace resight::bench::pcl_peers {
 
 using XyzCloud = pcl::PointCloud<pcl::PointXYZ>;

@@ -11,7 +11,7 @@ namespace {
 
 using LabelledCloud = pcl::PointCloud<pcl::PointXYZL>;
 
-// Points labelled by their index: the difference comes back as points.
+// Points are labelled with their index, because PCL returns the difference as points.
 LabelledCloud::Ptr make_labelled_cloud(Points points) {
   LabelledCloud::Ptr cloud(new LabelledCloud);
   cloud->resize(points.size() / 3);
@@ -29,7 +29,7 @@ Timed<std::vector<int>> point_cloud_difference(Points a, Points b, float toleran
   const CpuClock clock;
   const pcl::search::Search<pcl::PointXYZL>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZL>(false));
   tree->setInputCloud(target);
-  // It compares squared distances with its threshold.
+  // PCL compares squared distances with its threshold.
   pcl::getPointCloudDifference<pcl::PointXYZL>(*source, static_cast<double>(tolerance_m) * tolerance_m, tree,
                                                difference);
   const double cpu_s = clock.elapsed_s();

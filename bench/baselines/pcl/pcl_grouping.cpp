@@ -17,7 +17,7 @@ Timed<std::vector<Pose>> group_correspondences(Points model_xyz, Points scene_xy
   const CpuClock clock;
   pcl::GeometricConsistencyGrouping<pcl::PointXYZ, pcl::PointXYZ> grouping;
   grouping.setGCSize(consistency_m);
-  grouping.setGCThreshold(min_group_size - 1);  // It asks for more than so many.
+  grouping.setGCThreshold(min_group_size - 1);  // PCL requires more than this number.
   grouping.setInputCloud(model);
   grouping.setSceneCloud(scene);
   grouping.setModelSceneCorrespondences(pairs);

@@ -2,8 +2,9 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/pcl_config.h>
 
-// As released, PCL 1.13 drops the model points whose normals ARE finite (addModel() of hv_go.hpp), that is all of them,
-// and then accepts hypotheses at random. A peer that works is the better measure: its one question is turned around.
+// PCL 1.13 as released drops the model points whose normals ARE finite (addModel() of hv_go.hpp), that is, all of them,
+// and then accepts hypotheses at random. The macro inverts its single test, because a working peer is the better
+// comparison.
 #if PCL_VERSION_COMPARE(==, 1, 13, 0)
 #define isNormalFinite(normal) !(isNormalFinite)(normal)
 #endif

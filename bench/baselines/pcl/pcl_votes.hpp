@@ -5,8 +5,8 @@
 namespace resight::bench::pcl_peers {
 
 /// pcl::Hough3DGrouping of the correspondences of one object, model_xyz[i] with scene_xyz[i]; poses scene_from_object.
-/// It votes by a local frame of each keypoint: SHOT's, over these surfaces, found before the clock runs (descriptors
-/// have them). Correspondences without both frames are left out.
+/// It votes with a local frame per keypoint: that of SHOT on the given surfaces, computed before timing starts
+/// (descriptors include it). Correspondences without both frames are skipped.
 RESIGHT_PCL_PEER Timed<std::vector<Pose>> group_by_votes(Points model_xyz, Points scene_xyz,
                                                          std::span<const float> distances, Points model_surface,
                                                          Points scene_surface, float frame_radius_m, float bin_m,
