@@ -17,7 +17,7 @@ namespace resight::app {
 namespace {
 
 std::string describe(const TrackedView& view) {
-  std::string text = fmt::format("{}: part {}, overlap {:.2f}", view.name, view.part, view.overlap);
+  std::string text = fmt::format("{}: component {}, overlap {:.2f}", view.name, view.part, view.overlap);
   if (view.num_matches >= 0) text += fmt::format(", {} matches", view.num_matches);
   return text;
 }
@@ -44,7 +44,7 @@ std::string describe_job(const Sequence& sequence, const std::filesystem::path& 
                      hash_text(names));
 }
 
-// The views that an interrupted run had tracked; how many.
+// Restores the views that an interrupted run tracked; returns their number.
 int restore(ViewTracker& tracker, const Sequence& sequence, const TrackJournal& journal, Progress& progress) {
   int view = 0;
   for (const TrackerStep& step : journal.steps()) {
@@ -58,7 +58,7 @@ int restore(ViewTracker& tracker, const Sequence& sequence, const TrackJournal& 
 
 CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& options) {
   if (options.refine && !sequence.has_poses())
-    throw InputError("the sequence holds no camera poses to refine (try auto)");
+    throw InputError("the sequence has no camera poses to refine (try --poses auto)");
   TrackViewsOptions track;
   track.num_threads = options.num_threads;
   ViewTracker tracker(track);
@@ -78,7 +78,7 @@ CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& op
   return tracked;
 }
 
-// Of some views of each part, evenly: enough to tell whether parts contradict each other.
+// Surfaces of up to eight evenly spaced views per component: enough to detect contradictions between components.
 std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraTrack& track) {
   constexpr std::size_t kViewsOfPart = 8;
   std::vector<std::vector<int>> of_part(static_cast<std::size_t>(track.num_parts));
@@ -96,9 +96,9 @@ std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraT
 void warn_of_parts(const CameraTrack& track) {
   std::string left_out;
   for (const TrackedView& view : track.views)
-    if (view.part != 0) left_out += fmt::format(" {} (part {})", view.name, view.part);
+    if (view.part != 0) left_out += fmt::format(" {} (component {})", view.name, view.part);
   if (!left_out.empty())
-    print_warning("could not be joined to the other views, and have no pose among them:" + left_out);
+    print_warning("these views could not be joined to the others and have no pose in their frame:" + left_out);
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOpti
   if (join || options.adjust_objects) observed = observe_with_progress(sequence, *options.library, options.num_threads);
   if (join) track = join_by_objects(std::move(track), observed, *options.library, read_surfaces(sequence, track));
   if (track.num_parts > 1 && track.num_parts == sequence.num_views())
-    throw std::runtime_error("no two views could be joined: nothing tells how their cameras stood to each other");
+    throw std::runtime_error("no two views could be joined: the relative poses of their cameras are unknown");
   warn_of_parts(track);
   if (!options.adjust_objects) return {std::move(track), {}};
   return adjust_jointly(std::move(track), observed, *options.library);

@@ -18,11 +18,11 @@ struct TrackSequenceOptions {
   int num_threads = 1;
 };
 
-/// Camera poses of a sequence from its views, with progress. Views that stay apart are warned of. Throws
-/// std::runtime_error when no two views could be joined.
+/// Estimates the camera poses of a sequence from its views, with progress. Warns about views that could not be joined.
+/// Throws std::runtime_error if no two views could be joined.
 [[nodiscard]] JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options);
 
-/// The views of the part with the most views, with their poses. `sequence` must outlive it.
+/// Views of the largest component, with their poses. `sequence` must outlive the result.
 [[nodiscard]] PosedSequence take_largest_part(const Sequence& sequence, const CameraTrack& track);
 
 }  // namespace resight::app

@@ -16,7 +16,7 @@ namespace {
 constexpr Rgb8 kRemovedColor{220, 30, 30};
 constexpr Rgb8 kNovelColor{30, 190, 60};
 
-// The reconstruction with its changes: red = removed, green = novel, else the scene's own colours.
+// The reconstruction with its changes: red = removed, green = novel, otherwise the colours of the scene.
 PointCloud paint(PointCloud scene, const ChangeResult& changes) {
   const auto add = [&](PointCloud cloud, Rgb8 color) {
     cloud.normals.clear();
@@ -31,7 +31,7 @@ PointCloud paint(PointCloud scene, const ChangeResult& changes) {
 
 }  // namespace
 
-// Alg. 1 without models: the changes of each view against the reconstruction of the views before it.
+// Alg. 1 without models: compares each view with the reconstruction from the views before it.
 void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);

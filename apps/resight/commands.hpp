@@ -12,12 +12,12 @@
 
 namespace resight::app {
 
-/// The input or the command line is wrong: one line for the user, exit status 2.
+/// Invalid input or command line: one line for the user, exit status 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The value, or an InputError with its message.
+/// Returns the value, or throws an InputError with its message.
 template <typename T>
 T value_or_throw(Result<T> result) {
   if (!result.ok()) throw InputError(result.error().message);
@@ -27,10 +27,10 @@ inline void value_or_throw(const Result<void>& result) {
   if (!result.ok()) throw InputError(result.error().message);
 }
 
-/// Three digits, or "-" for a share of nothing.
+/// Three decimals, or "-" for NaN.
 [[nodiscard]] std::string format_share(double share);
 
-/// One line on standard error.
+/// Prints one line to standard error.
 void print_warning(const std::string& what);
 
 struct TrainArguments {
@@ -64,18 +64,19 @@ struct ChangesArguments {
 struct TrackArguments {
   std::filesystem::path sequence;
   std::filesystem::path out;
-  std::optional<std::filesystem::path> models;  ///< To join views by common objects.
+  std::optional<std::filesystem::path> models;  ///< Joins views by common objects.
   std::optional<std::filesystem::path> posed;   ///< Folder for the sequence with its poses.
-  std::optional<std::filesystem::path> fused;   ///< Cloud of all views.
+  std::optional<std::filesystem::path> fused;   ///< Point cloud of all views.
   std::string poses = "auto";
-  std::string format = "tuw";  ///< Of the posed sequence.
+  std::string format = "tuw";  ///< Format of the posed sequence.
   int num_threads = 1;
 };
 
 struct SimulateArguments {
-  std::string preset;            ///< Either this
-  std::filesystem::path script;  ///< or this.
-  std::string object;            ///< What is recorded by the presets *-recording; empty = one of print.
+  std::string preset;            ///< Either a preset or a script must be given.
+  std::filesystem::path script;  ///< See `preset`.
+  /// Object recorded by the presets *-recording; empty = milk_carton.
+  std::string object;
   std::filesystem::path out;
   std::string format = "tuw";
   std::uint64_t seed = 1;
@@ -85,7 +86,8 @@ struct SimulateArguments {
 
 struct ModelArguments {
   std::vector<std::filesystem::path> sequences;
-  std::optional<std::filesystem::path> onto;  ///< A model made before, to which the recordings are added.
+  /// Existing model to which the recordings are added.
+  std::optional<std::filesystem::path> onto;
   std::filesystem::path out;
   int num_threads = 1;
 };
@@ -113,13 +115,13 @@ struct EvaluateArguments {
   bool without_clustering = false;  ///< Also run without clustering.
   int shard = 1;
   int num_shards = 1;
-  bool merge = false;  ///< Compute nothing.
-  bool bop = false;    ///< Also BOP's average recalls.
+  bool merge = false;  ///< Merge only, without computing.
+  bool bop = false;    ///< Also compute the BOP average recalls.
   std::uint64_t seed = 1;
   int num_threads = 1;
 };
 
-// Each runs a subcommand to its end. InputError = exit status 2, any other exception = 1.
+// Each function runs one subcommand. InputError = exit status 2, any other exception = 1.
 void run_train(const TrainArguments& arguments);
 void run_recognize(const RecognizeArguments& arguments);
 void run_changes(const ChangesArguments& arguments);

@@ -15,12 +15,12 @@
 namespace resight::app {
 namespace {
 
-constexpr double kSurfaceVoxel_m = 0.002;  // of 3D_model.pcd
+constexpr double kSurfaceVoxel_m = 0.002;  // Of 3D_model.pcd.
 constexpr double kSamplesPerSquareMetre = 4 / (kSurfaceVoxel_m * kSurfaceVoxel_m);
 
 DatasetFormat to_format(const std::string& name) { return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw; }
 
-// A TUW model is made of views: a mesh is put on a virtual turntable.
+// A TUW model consists of views, so a mesh is rendered on a virtual turntable.
 std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& models,
                                            const ConvertArguments& arguments) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out));

@@ -14,19 +14,19 @@ namespace {
 
 void print_table(const std::vector<ReportRun>& runs) {
   fmt::print("\n{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "preset", "precision", "recall", "F", "ghosts",
-             "changes", "s a view");
+             "changes", "s/view");
   for (const ReportRun& run : runs) {
     const RunSummary s = summarize(run);
     fmt::print("{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10.2f}\n", run.preset, format_share(s.score.precision()),
                format_share(s.score.recall()), format_share(s.score.f_score()), s.num_ghosts, s.num_events,
                s.median_view_wall_s);
   }
-  fmt::print("(true within 5 cm and 30 deg; ghost: an object reported at a place that it has left)\n\n");
+  fmt::print("(right: within 5 cm and 30 deg; ghost: an object reported at a place it has left)\n\n");
 }
 
 }  // namespace
 
-// Everything through the same files and commands that a user has.
+// Uses the same files and commands as a user.
 void run_demo(const DemoArguments& arguments) {
   if (std::filesystem::exists(arguments.out) && !std::filesystem::is_empty(arguments.out))
     throw InputError(fmt::format("{}: is not empty (a new or empty folder was expected)", arguments.out.string()));

@@ -20,7 +20,7 @@
 namespace resight::app {
 namespace {
 
-constexpr int kNumPictures = 5;  // Of the worst views of each configuration.
+constexpr int kNumPictures = 5;  // Of the worst views per configuration.
 
 std::string read_text(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -28,7 +28,7 @@ std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
-// The stored run of a unit, unless there is none or it is of other settings, models or version.
+// The stored run of a unit, unless it is missing or stems from other settings, models or another version.
 std::optional<EvaluatedRun> stored_run(const std::filesystem::path& file, const std::string& fingerprint) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   auto run = parse_run(read_text(file), file.string());
@@ -43,7 +43,7 @@ class Evaluation {
         plan_(make_evaluation_plan(arguments)),
         library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))) {}
 
-  // Computes what is missing of this shard; a finished run is never computed again.
+  // Computes the missing runs of this shard. Finished runs are not computed again.
   void compute() {
     std::vector<const EvaluationUnit*> mine;
     for (const EvaluationUnit& unit : plan_.units)
@@ -55,14 +55,14 @@ class Evaluation {
     Progress progress("evaluate", static_cast<int>(num_views));
     int done = 0;
     for (std::size_t i = 0; i < mine.size();) {
-      // Runs over the same views that need the same hypotheses come one after the other.
+      // Runs that share views and hypotheses are consecutive.
       const std::size_t first = i;
       while (i < mine.size() && mine[i]->group == mine[first]->group) ++i;
       compute_group(std::span(mine).subspan(first, i - first), progress, done);
     }
   }
 
-  // Writes the results if all runs are there, else names what is missing.
+  // Writes the results if all runs are present; otherwise reports the missing ones.
   void conclude() const {
     std::vector<EvaluatedRun> runs;
     std::vector<const EvaluationUnit*> missing;
@@ -138,15 +138,15 @@ class Evaluation {
     shards.erase(std::unique(shards.begin(), shards.end()), shards.end());
     std::string again;
     for (const int shard : shards) again += fmt::format(" {}/{}", shard, arguments_.num_shards);
-    const std::string what = fmt::format("{} of {} runs are missing (the first: {}); run with --shard{}",
-                                         missing.size(), plan_.units.size(), missing.front()->name, again);
+    const std::string what = fmt::format("{} of {} runs are missing (first: {}); run with --shard{}", missing.size(),
+                                         plan_.units.size(), missing.front()->name, again);
     if (arguments_.merge) throw InputError(fmt::format("{}: {}", arguments_.out.string(), what));
     fmt::print("{}\n", what);
   }
 
   void print_table(const std::vector<EvaluatedRun>& runs) const {
     fmt::print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
-               "strict F", "ghosts", "/place", "s a view");
+               "strict F", "ghosts", "/place", "s/view");
     for (const ConfigurationSummary& c : summarize_runs(runs))
       fmt::print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
                  format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),

@@ -46,10 +46,10 @@ EvaluationSequence describe(const fs::path& folder) {
   return sequence;
 }
 
-// The data set is a sequence itself, or its folder test/ (or itself) holds some.
+// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it.
 std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   const fs::path dataset = fs::absolute(given / "").parent_path().lexically_normal();
-  if (!fs::is_directory(dataset)) throw InputError(fmt::format("{}: is no folder", given.string()));
+  if (!fs::is_directory(dataset)) throw InputError(fmt::format("{}: is not a folder", given.string()));
   const fs::path root = fs::is_directory(dataset / "test") ? dataset / "test" : dataset;
   std::vector<fs::path> folders;
   for (const auto& entry : fs::directory_iterator(root))
@@ -63,7 +63,7 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   return sequences;
 }
 
-// What a stored run must agree with: a result of other settings, models or program is no result.
+// Hash of settings, models and version. Stored runs with another fingerprint are stale.
 std::string fingerprint(const RecognizerConfig& config, const std::string& models_hash) {
   std::string text = std::string(RESIGHT_VERSION) + "\n" + models_hash + "\n";
   for (const auto& [name, value] : config.to_settings()) text += name + "=" + value + "\n";

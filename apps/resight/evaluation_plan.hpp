@@ -10,7 +10,7 @@
 namespace resight::app {
 
 struct EvaluationSequence {
-  std::string name;  ///< Of its folder.
+  std::string name;  ///< Name of its folder.
   std::filesystem::path folder;
   std::filesystem::path events_file;     ///< May not exist.
   std::filesystem::path unknown_models;  ///< May not exist.
@@ -18,26 +18,27 @@ struct EvaluationSequence {
 
 /// One configuration on one sequence.
 struct EvaluationUnit {
-  std::string name;         ///< Unique; names its file.
-  std::string fingerprint;  ///< Of all that its result depends on but the views.
+  std::string name;         ///< Unique; also the name of its file.
+  std::string fingerprint;  ///< Hash of everything its result depends on except the views.
   EvaluationSequence sequence;
   RecognizerConfig config;
-  int group = 0;  ///< Units of one group share the hypotheses of each view; they follow each other.
-  int shard = 1;  ///< 1..n; a group lies in one shard.
+  int group = 0;  ///< Units of one group share the hypotheses of each view and are consecutive.
+  int shard = 1;  ///< 1..n; all units of a group are in one shard.
 };
 
 struct EvaluationPlan {
   std::string dataset_name;
-  std::filesystem::path models;  ///< Of the data set; may not exist.
+  std::filesystem::path models;  ///< Models of the data set; may not exist.
   std::vector<EvaluationUnit> units;
 };
 
-/// "0-7", "0,5" or "0-2,5": ascending, each once. InputError for anything else.
+/// Parses "0-7", "0,5" or "0-2,5" to ascending numbers without duplicates. Throws InputError for other text.
 [[nodiscard]] std::vector<int> parse_previous_views(const std::string& text);
-/// "2/8": shard and number of shards. InputError for anything else.
+/// Parses "2/8" to shard and number of shards. Throws InputError for other text.
 void parse_shard(const std::string& text, int& shard, int& num_shards);
 
-/// Lists the sequences (the data set is one, or holds them in its folder test/ or in itself) and all runs over them.
+/// Lists the sequences (the data set is one, or contains them in test/ or directly) and all runs over them. Throws
+/// InputError if there are none.
 [[nodiscard]] EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments);
 
 }  // namespace resight::app

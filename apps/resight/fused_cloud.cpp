@@ -16,14 +16,15 @@ namespace {
 
 constexpr int kMaxViews = 48;
 const Camera kPictureCamera{960, 720, 820, 820, 479.5, 359.5};
-constexpr double kStepBack = 1.35;  // of the distance of the cameras
+// Distance of the picture's camera from the target, relative to that of the views' mean position.
+constexpr double kStepBack = 1.35;
 
 struct Fused {
   PointCloud cloud;
   Rigid3 world_from_picture;
 };
 
-// A camera where those of the views were in the mean, a step back, looking at what they looked at.
+// Places a camera behind the mean position of the views' cameras, looking at the mean of their targets.
 Rigid3 place_picture(const std::vector<Rigid3>& cameras, const std::vector<double>& depths_m) {
   Eigen::Vector3d eye = Eigen::Vector3d::Zero(), target = eye, up = eye;
   for (std::size_t v = 0; v < cameras.size(); ++v) {
@@ -32,7 +33,7 @@ Rigid3 place_picture(const std::vector<Rigid3>& cameras, const std::vector<doubl
     target += share * (cameras[v] * Eigen::Vector3d(0, 0, depths_m[v]));
     up -= share * cameras[v].rotation.col(1);
   }
-  // Cameras all around: their mean is above what they look at, and not in the way.
+  // If the cameras surround the target, their mean lies above it, in line with `up`.
   if ((eye - target).cross(up).norm() < 1e-3) up = cameras[0].rotation.col(2);
   return look_at(target + kStepBack * (eye - target), target, up);
 }
@@ -72,12 +73,12 @@ Fused fuse(const Sequence& posed, int num_threads) {
 Image<Rgb8> draw(const Fused& fused, int num_threads) {
   RaycastScene scene;
   SplatMeshOptions splat;
-  splat.max_growth = 1.3;  // lone points before the cameras would hide the rest
+  splat.max_growth = 1.3;  // Larger isolated splats in front of the cameras would occlude the rest.
   splat.num_threads = num_threads;
   scene.add_instance(scene.add_mesh(make_splat_mesh(fused.cloud, splat)), Rigid3::identity());
   scene.commit();
   RenderOptions render;
-  render.lighting.ambient = 1;  // the colours hold the light that was there
+  render.lighting.ambient = 1;  // The recorded colours already contain the illumination.
   render.lighting.diffuse = 0;
   render.background = {255, 255, 255};
   render.num_threads = num_threads;

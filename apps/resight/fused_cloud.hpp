@@ -6,8 +6,8 @@
 
 namespace resight::app {
 
-/// Writes all views of a sequence with poses (of a long one, some, evenly) as one cloud (PLY, world frame, metres), and
-/// a picture of it beside it (.png), from above the cameras.
+/// Writes all views of a posed sequence (evenly sampled views of a long one) as one cloud (PLY, world frame, metres),
+/// and next to it a picture (.png) from behind the cameras.
 void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads);
 
 }  // namespace resight::app

@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace resight::app;  // NOLINT(google-build-using-namespace): this file is the program's face
+using namespace resight::app;  // NOLINT(google-build-using-namespace): this file is the program's interface
 
 constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
@@ -38,19 +38,19 @@ struct Arguments {
 const CLI::Validator kFormats = CLI::IsMember({"tuw", "bop"});
 const CLI::Validator kPresets = CLI::IsMember({"mvr", "mvr-chd", "default"});
 
-// CLI11 lets -1 and 99999999999999999999 pass as unsigned numbers.
+// CLI11 accepts -1 and 99999999999999999999 as unsigned numbers.
 const CLI::Validator kSeeds(
     [](const std::string& text) {
       std::uint64_t seed = 0;
       const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seed);
       const bool is_seed = code == std::errc() && end == text.data() + text.size();
-      return is_seed ? std::string() : text + " is no whole number from 0 to 2^64 - 1";
+      return is_seed ? std::string() : text + " is not a whole number from 0 to 2^64 - 1";
     },
     "NUMBER >= 0");
 
 void add_threads(CLI::App* command, int& num_threads) {
   num_threads = resight::num_hardware_threads();
-  command->add_option("-j,--threads", num_threads, "Number of threads; the results do not depend on it")
+  command->add_option("-j,--threads", num_threads, "Number of threads; results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
 }
@@ -59,13 +59,15 @@ template <typename Recognition>
 void add_recognition_options(CLI::App* command, Recognition& arguments) {
   command
       ->add_option("-k,--previous-views", arguments.num_previous_views,
-                   "Views before the current one that are used with it [default: 5]")
+                   "Number of previous views that are used with the current one [default: 5]")
       ->check(CLI::Range(0, 1000));
   command
-      ->add_option("--preset", arguments.preset, "mvr (static world), mvr-chd (the paper's system) or default (best)")
+      ->add_option("--preset", arguments.preset,
+                   "mvr (static world), mvr-chd (the paper's system) or default (recommended)")
       ->check(kPresets)
       ->capture_default_str();
-  command->add_option("--config", arguments.config, "TOML file that overwrites single settings (see docs/formats.md)");
+  command->add_option("--config", arguments.config,
+                      "TOML file that overrides individual settings (see docs/formats.md)");
   add_threads(command, arguments.num_threads);
 }
 
@@ -80,79 +82,89 @@ std::function<void()> add_train(CLI::App& app, TrainArguments& a) {
 
 std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   CLI::App* command =
-      app.add_subcommand("recognize", "Recognise trained objects, and what changed, in a sequence of views");
+      app.add_subcommand("recognize", "Recognise trained objects in a sequence of views and report what changed");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
   command->add_option("--sequence", a.sequence, "Sequence folder (TUW, BOP, TUM and others, detected)")->required();
   command->add_option("--out", a.out, "Folder for the results")->required();
   command
       ->add_option("--poses", a.poses,
-                   "Camera poses: given, refine (from the given ones on) or auto (from the views alone)")
+                   "Camera poses: given, refine (starting from the given poses) or auto (from the views alone)")
       ->check(CLI::IsMember({"given", "refine", "auto"}))
       ->capture_default_str();
-  command->add_option("--seed", a.seed, "Of all random choices; same seed, same bytes")
+  command->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results")
       ->check(kSeeds)
       ->capture_default_str();
   command
-      ->add_option("--deadline-ms", a.deadline_ms,
-                   "The best answer of each view within this time; the results then depend on the machine [default: 0, "
-                   "no deadline]")
+      ->add_option(
+          "--deadline-ms", a.deadline_ms,
+          "Time limit per view; a view returns its best result so far, which depends on the machine [default: 0, "
+          "no limit]")
       ->check(CLI::NonNegativeNumber);
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }
 
 std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
-  CLI::App* command =
-      app.add_subcommand("changes", "Find what was added and removed between the views, without models");
+  CLI::App* command = app.add_subcommand("changes", "Detect what was added and removed between views, without models");
   command->add_option("--sequence", a.sequence, "Sequence folder")->required();
-  command->add_option("--out", a.out, "Folder for coloured clouds (PLY) and overlays (PNG)")->required();
+  command->add_option("--out", a.out, "Folder for coloured point clouds (PLY) and overlays (PNG)")->required();
   add_recognition_options(command, a);
   return [&a] { run_changes(a); };
 }
 
 std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
-  CLI::App* command = app.add_subcommand("track", "Find or refine the camera poses of a sequence from its views");
+  CLI::App* command = app.add_subcommand("track", "Estimate or refine the camera poses of a sequence from its views");
   command->add_option("--sequence", a.sequence, "Sequence folder; needs no poses")->required();
   command->add_option("--out", a.out, "Trajectory to write (TUM: stamp tx ty tz qx qy qz qw, metres)")->required();
-  command->add_option("--poses", a.poses, "auto: from the views alone; refine: from the given poses on")
+  command->add_option("--poses", a.poses, "auto: from the views alone; refine: starting from the given poses")
       ->check(CLI::IsMember({"auto", "refine"}))
       ->capture_default_str();
-  command->add_option("--models", a.models, "Model library: views without overlap are joined by common objects");
-  command->add_option("--write-sequence", a.posed, "Folder for the sequence with these poses; must not exist");
-  command->add_option("--fused", a.fused, "Cloud of all views to write (PLY), with a picture of it beside it (PNG)");
-  command->add_option("--format", a.format, "Of --write-sequence: tuw or bop")->check(kFormats)->capture_default_str();
+  command->add_option("--models", a.models, "Model library; joins views without overlap by common objects");
+  command->add_option("--write-sequence", a.posed,
+                      "Folder for a copy of the sequence with these poses; must not exist");
+  command->add_option("--fused", a.fused,
+                      "Point cloud of all views to write (PLY), with a picture of it next to it (PNG)");
+  command->add_option("--format", a.format, "Format of --write-sequence: tuw or bop")
+      ->check(kFormats)
+      ->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a] { run_track(a); };
 }
 
 std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   CLI::App* command =
-      app.add_subcommand("simulate", "Ray-cast a scripted, changing scene into RGB-D views with ground truth");
+      app.add_subcommand("simulate", "Render a scripted, changing scene as RGB-D views with ground truth");
   CLI::Option* preset = command->add_option("--preset", a.preset,
-                                            "Built-in scene: demo, tabletop, crowded, twins, plain; or "
-                                            "dynamic-tabletop, the benchmark of 9 sequences; or turntable-recording "
-                                            "and walk-recording, both sides of one object to make a model of");
+                                            "Built-in scene: demo, tabletop, crowded, twins, plain; "
+                                            "dynamic-tabletop (benchmark of 9 sequences); turntable-recording or "
+                                            "walk-recording (both sides of one object, for 'resight model')");
   CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
   preset->excludes(script);
-  command->add_option("--object", a.object, "Generated object that is recorded (of presets *-recording) [milk_carton]");
+  command->add_option("--object", a.object,
+                      "Generated object to record, for the presets *-recording [default: milk_carton]");
   command->add_option("--out", a.out, "Data set folder to write")->required();
-  command->add_option("--format", a.format, "tuw or bop")->check(kFormats)->capture_default_str();
-  command->add_option("--seed", a.seed, "Of the scene and of the sensor noise")->check(kSeeds)->capture_default_str();
-  command->add_flag("--noise-free", a.noise_free, "Exact depth and colour instead of a sensor's");
+  command->add_option("--format", a.format, "Format of the data set: tuw or bop")
+      ->check(kFormats)
+      ->capture_default_str();
+  command->add_option("--seed", a.seed, "Seed of the scene and of the sensor noise")
+      ->check(kSeeds)
+      ->capture_default_str();
+  command->add_flag("--noise-free", a.noise_free, "Exact depth and colour instead of simulated sensor noise");
   add_threads(command, a.num_threads);
   return [&a] { run_simulate(a); };
 }
 
 std::function<void()> add_model(CLI::App& app, ModelArguments& a) {
   CLI::App* command = app.add_subcommand(
-      "model", "Make an object model of recordings: on a turntable before a still camera, or walked around");
+      "model", "Build an object model from recordings on a turntable or with a camera moved around the object");
   command
       ->add_option("--sequence", a.sequences,
-                   "Recording once around the object (TUW, BOP, TUM and others, detected); again for the object lying "
+                   "Recording once around the object (TUW, BOP, TUM and others, detected); repeat for the object lying "
                    "on another side")
       ->required();
-  command->add_option("--onto", a.onto, "Model folder made before: the recordings are added to its views");
-  command->add_option("--out", a.out, "Model folder to write (TUW), for 'resight train'; must not exist")->required();
+  command->add_option("--onto", a.onto, "Existing model folder to whose views the recordings are added");
+  command->add_option("--out", a.out, "Model folder to write (TUW), for 'resight train'; must be empty or not exist")
+      ->required();
   add_threads(command, a.num_threads);
   return [&a] { run_model(a); };
 }
@@ -161,7 +173,7 @@ std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
   CLI::App* command = app.add_subcommand("convert", "Convert a data set (sequence or models) to another format");
   command->add_option("in", a.in, "Sequence or models folder")->required();
   command->add_option("out", a.out, "Folder to write; must not exist")->required();
-  command->add_option("--to", a.format, "tuw or bop")->required()->check(kFormats);
+  command->add_option("--to", a.format, "Format to write: tuw or bop")->required()->check(kFormats);
   add_threads(command, a.num_threads);
   return [&a] { run_convert(a); };
 }
@@ -170,21 +182,23 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
   CLI::App* command = app.add_subcommand(
       "evaluate", "Score presets on a data set with ground truth: recognition over K, ghosts, changes, losses, times");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
-  command->add_option("--dataset", a.dataset, "Folder with sequences (in test/ or in itself), or one sequence")
+  command->add_option("--dataset", a.dataset, "Folder with sequences (in test/ or directly in it), or one sequence")
       ->required();
-  command->add_option("--out", a.out, "Folder for the results; runs that it holds already are not computed again")
+  command->add_option("--out", a.out, "Folder for the results; runs that it already contains are not computed again")
       ->required();
-  command->add_option("--presets", a.presets, "Names, separated by commas")->capture_default_str();
+  command->add_option("--presets", a.presets, "Presets, separated by commas")->capture_default_str();
   command
       ->add_option("-k,--previous-views", a.previous_views,
-                   "Views before the current one that are used with it: numbers and ranges, e.g. 0-2,5")
+                   "Numbers of previous views that are used with the current one: numbers and ranges, e.g. 0-2,5")
       ->capture_default_str();
-  command->add_option("--config", a.config, "TOML file that overwrites single settings of all presets");
-  command->add_flag("--without-clustering", a.without_clustering, "Also without clustering of hypotheses");
-  command->add_flag("--bop", a.bop, "Also the average recalls of the BOP benchmark (needs meshes in the data set)");
-  command->add_option("--shard", shard, "I/N: only the I-th of N parts of the work; the last to finish merges");
-  command->add_flag("--merge", a.merge, "Compute nothing; fail if a run is missing")->excludes("--shard");
-  command->add_option("--seed", a.seed, "Of all random choices; same seed, same results")
+  command->add_option("--config", a.config, "TOML file that overrides individual settings of all presets");
+  command->add_flag("--without-clustering", a.without_clustering, "Also evaluate without clustering of hypotheses");
+  command->add_flag("--bop", a.bop,
+                    "Also compute the average recalls of the BOP benchmark (needs meshes in the data set)");
+  command->add_option("--shard", shard,
+                      "I/N: compute only the I-th of N parts; the last part to finish merges the results");
+  command->add_flag("--merge", a.merge, "Only merge existing runs; fails if one is missing")->excludes("--shard");
+  command->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results")
       ->check(kSeeds)
       ->capture_default_str();
   add_threads(command, a.num_threads);
@@ -196,9 +210,11 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
 
 std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* command =
-      app.add_subcommand("demo", "The main job on a built-in scene: simulate, train, recognise, compare, report");
+      app.add_subcommand("demo", "Run everything on a built-in scene: simulate, train, recognise, compare, report");
   command->add_option("--out", a.out, "Folder for data, results and report")->capture_default_str();
-  command->add_option("--seed", a.seed, "Of the scene and of all random choices")->check(kSeeds)->capture_default_str();
+  command->add_option("--seed", a.seed, "Seed of the scene and of all random choices")
+      ->check(kSeeds)
+      ->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a] { run_demo(a); };
 }
@@ -208,7 +224,7 @@ int refuse(const std::string& message) {
   return kExitBadInput;
 }
 
-// One line on what is wrong with the command line, and where to read on.
+// One line that describes the error on the command line and refers to the help.
 std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const std::string& first) {
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   const auto named = std::ranges::find(commands, first, &CLI::App::get_name);
@@ -242,7 +258,7 @@ void resight::app::print_warning(const std::string& what) {
 int main(int argc, char** argv) {
   resight::keep_freed_memory();
   CLI::App app(
-      "resight recognises known objects in RGB-D views of a scene that changes: which object is where, and what was\n"
+      "resight recognises known objects in RGB-D views of a changing scene: which object is where, and what was\n"
       "added, moved or removed.");
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);

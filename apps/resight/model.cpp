@@ -15,7 +15,7 @@
 namespace resight::app {
 namespace {
 
-// The recording could be read, but no model comes of it: not a mistake of the command line.
+// For recordings that can be read but yield no model: not an error of the command line.
 template <typename T>
 T value_or_fail(Result<T> result) {
   if (!result.ok()) throw std::runtime_error(result.error().message);
@@ -25,7 +25,7 @@ T value_or_fail(Result<T> result) {
 std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder) {
   const std::unique_ptr<Sequence> sequence = value_or_throw(open_sequence(folder));
   if (sequence->num_views() < 2)
-    throw InputError(file_error(folder, "has one view only (a recording of several was expected)").message);
+    throw InputError(file_error(folder, "has only one view (several were expected)").message);
   std::vector<RgbdFrame> frames;
   for (int view = 0; view < sequence->num_views(); ++view) frames.push_back(value_or_throw(sequence->read_view(view)));
   return frames;
@@ -35,9 +35,10 @@ void print_track(const std::filesystem::path& folder, const ObjectTrack& track) 
   fmt::print("{}: {} views, {}", folder.string(), track.views.size(),
              track.is_camera_still ? "turntable" : "moving camera");
   if (!track.loops.empty())
-    fmt::print(", closes with {:.1f} mm (followed: {:.1f} mm)\n", 1000 * track.closure_error_m, 1000 * track.drift_m);
+    fmt::print(", loop closure error {:.1f} mm (before adjustment: {:.1f} mm)\n", 1000 * track.closure_error_m,
+               1000 * track.drift_m);
   else
-    fmt::print(", does not close\n");
+    fmt::print(", no loop closure\n");
 }
 
 ObjectTrack follow(const std::filesystem::path& folder, const TrackObjectOptions& options) {
@@ -52,13 +53,15 @@ ObjectTrack follow(const std::filesystem::path& folder, const TrackObjectOptions
   return std::move(*track);
 }
 
-// The key views of a model that was made before.
+// Key views of an existing model.
 ObjectTrack read_model_views(const std::filesystem::path& folder) {
   const std::vector<ModelLocation> found = value_or_throw(find_models({folder}));
   ModelSource source = value_or_throw(read_model(found.front()));
   if (found.size() > 1 || source.views.empty())
     throw InputError(
-        file_error(folder, "holds no single model with views (a folder of 'resight model' was expected)").message);
+        file_error(folder,
+                   "does not contain exactly one model with views (a folder written by 'resight model' was expected)")
+            .message);
   ObjectTrack track;
   track.views = std::move(source.views);
   return track;

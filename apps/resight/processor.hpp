@@ -3,7 +3,7 @@
 
 namespace resight::app {
 
-/// Whether the program was built for processors with AVX2 (and FMA). One that lacks them is refused before main().
+/// Whether the program was compiled for processors with AVX2 (and FMA). Other processors are rejected before main().
 extern const bool kNeedsAvx2;
 
 }  // namespace resight::app

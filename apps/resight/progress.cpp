@@ -16,7 +16,7 @@ Progress::~Progress() {
 }
 
 void Progress::report(int done, const std::string& detail) {
-  // ESC[K clears the rest of a longer line before.
+  // ESC[K clears the rest of a longer previous line.
   std::fprintf(stderr, is_terminal_ ? "\r%s %d/%d: %s\x1b[K" : "%s %d/%d: %s\n", what_.c_str(), done, num_items_,
                detail.c_str());
   std::fflush(stderr);

@@ -4,14 +4,14 @@
 
 namespace resight::app {
 
-/// Tells how far long work is, on standard error: a line that is overwritten on a terminal, else one line per item.
+/// Reports progress on standard error: a line that is overwritten on a terminal, otherwise one line per item.
 class Progress {
  public:
   Progress(std::string what, int num_items);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Item `done` of num_items is finished; `detail` says what came of it.
+  /// Reports that item `done` of num_items is finished; `detail` describes its result.
   void report(int done, const std::string& detail);
 
  private:

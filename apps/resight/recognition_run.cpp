@@ -14,7 +14,7 @@
 namespace resight::app {
 namespace {
 
-// The truth of all views, and from it the places that objects left; empty without ground truth.
+// Ground truth of all views and the former places derived from it; empty without ground truth.
 struct SequenceTruth {
   std::vector<TruthView> views;
   std::vector<FormerPlace> former_places;
@@ -62,12 +62,13 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
   for (int v = 0; v < sequence.num_views(); ++v) {
     RgbdFrame frame = value_or_throw(sequence.read_view(v));
     SceneUpdate update = recognizer.add_view(frame);
-    frame.world_from_camera = update.world_from_camera;  // as corrected: pictures are drawn with it
+    frame.world_from_camera = update.world_from_camera;  // Pictures are drawn with the corrected pose.
     if (v + 1 == sequence.num_views())
       for (ObjectEvent& event : recognizer.finish()) update.events.push_back(std::move(event));
     progress.report(v + 1, describe(update));
     if (!update.left_out.empty())
-      print_warning(fmt::format("{}: no time for {}", update.view_name, fmt::join(update.left_out, ", ")));
+      print_warning(
+          fmt::format("{}: skipped to meet the deadline: {}", update.view_name, fmt::join(update.left_out, ", ")));
     std::optional<ViewEvaluation> evaluation;
     if (!truth.views.empty())
       evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,

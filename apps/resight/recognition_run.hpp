@@ -10,11 +10,11 @@
 
 namespace resight::app {
 
-/// Preset, then config file, then the command line's own settings.
+/// Configuration from the preset, overridden by the config file, then by the command line.
 [[nodiscard]] RecognizerConfig make_config(const std::string& preset, const std::optional<std::filesystem::path>& file,
                                            std::optional<int> num_previous_views, int num_threads);
 
-/// Recognises every view of a sequence, with progress; scored where the sequence has ground truth.
+/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
 [[nodiscard]] ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequence,
                                            const RecognizerConfig& config, int num_threads);
 

@@ -20,7 +20,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   config.set_seed(arguments.seed);
   if (arguments.deadline_ms) config.deadline_ms = *arguments.deadline_ms;
   const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
-  if (library.objects.empty()) throw InputError(fmt::format("{}: holds no models", arguments.models.string()));
+  if (library.objects.empty()) throw InputError(fmt::format("{}: contains no models", arguments.models.string()));
   for (const ObjectModel& object : library.objects)
     if (object.sift.size() + object.shot.size() == 0)
       print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
@@ -45,7 +45,7 @@ void run_recognize(const RecognizeArguments& arguments) {
                               std::span(&run, 1), library));
   value_or_throw(folder.commit());
   const RunSummary summary = summarize(run);
-  fmt::print("{} views, {} detections, {} changes, {:.2f} s a view (median)\n", summary.num_views,
+  fmt::print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views,
              summary.num_detections, summary.num_events, summary.median_view_wall_s);
   if (summary.num_judged_views > 0)
     fmt::print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),

@@ -32,7 +32,7 @@ void simulate_scene(const SimulateArguments& arguments) {
   script.sensor.noise_free = script.sensor.noise_free || arguments.noise_free;
   Simulation simulation =
       value_or_throw(Simulation::create(std::move(script), arguments.seed, {.num_threads = arguments.num_threads}));
-  // Models come first, then the views.
+  // Models are written first, then the views.
   const int num_models = static_cast<int>(simulation.library().size());
   {
     Progress progress("simulate", num_models + simulation.num_views());
@@ -89,7 +89,7 @@ void run_simulate(const SimulateArguments& arguments) {
   if (arguments.preset.empty() && arguments.script.empty())
     throw InputError("simulate: neither a scene script nor --preset was given");
   if (!arguments.object.empty() && !is_recording(arguments.preset))
-    throw InputError("simulate: --object goes with --preset turntable-recording or walk-recording");
+    throw InputError("simulate: --object requires --preset turntable-recording or walk-recording");
   if (is_recording(arguments.preset)) return simulate_recordings(arguments);
   if (arguments.preset == kBenchmark) return simulate_benchmark(arguments);
   simulate_scene(arguments);

@@ -23,7 +23,7 @@ std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int part) {
   return poses;
 }
 
-// poses.txt, poses_part1.txt, ..
+// poses.txt, poses_part1.txt, ...
 std::filesystem::path file_of_part(const std::filesystem::path& out, int part) {
   if (part == 0) return out;
   return out.parent_path() / fmt::format("{}_part{}{}", out.stem().string(), part, out.extension().string());
@@ -35,7 +35,7 @@ void write_parts(const TrackArguments& arguments, const CameraTrack& track) {
     std::string comment = fmt::format("world_from_camera of {} of {} views of {}", poses.size(), track.views.size(),
                                       arguments.sequence.string());
     if (track.num_parts > 1)
-      comment += fmt::format("; part {} of {}, each in a frame of its own", part, track.num_parts);
+      comment += fmt::format("; component {} of {}, each in its own frame", part, track.num_parts);
     value_or_throw(write_tum_trajectory(file_of_part(arguments.out, part), poses, comment));
   }
 }
@@ -43,9 +43,9 @@ void write_parts(const TrackArguments& arguments, const CameraTrack& track) {
 // poses_objects.txt
 void write_objects(const TrackArguments& arguments, const CameraTrack& track, std::span<const StaticObject> objects,
                    const ModelLibrary& library) {
-  std::string text = fmt::format("# objects that stand still in views of {}, adjusted together with the cameras\n",
-                                 arguments.sequence.string());
-  text += "# part tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object of the part)\n";
+  std::string text =
+      fmt::format("# static objects in {}, adjusted jointly with the cameras\n", arguments.sequence.string());
+  text += "# part tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object, frame of the part)\n";
   for (const StaticObject& object : objects)
     text += fmt::format("{} {} {} {} {} {}\n", object.part, format_tum_pose(object.world_from_object),
                         object.views.size(), track.views[static_cast<std::size_t>(object.views.front())].name,
@@ -54,7 +54,7 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
   const std::filesystem::path file =
       arguments.out.parent_path() / (arguments.out.stem().string() + "_objects" + arguments.out.extension().string());
   value_or_throw(write_file(file, text));
-  fmt::print("{} objects that stand still: {}\n", objects.size(), file.string());
+  fmt::print("{} static objects: {}\n", objects.size(), file.string());
 }
 
 void print_error(const Sequence& recorded, const CameraTrack& track) {
@@ -65,7 +65,7 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
     found.push_back(track.views[v].world_from_camera);
   }
   const TrajectoryError error = find_trajectory_error(given, found);
-  fmt::print("against the given poses: ATE {:.2f} mm rms, {:.2f} mm at most; {:.3f} deg mean, {:.3f} at most\n",
+  fmt::print("compared with given poses: ATE {:.2f} mm rms, {:.2f} mm max; {:.3f} deg mean, {:.3f} deg max\n",
              1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
 }
 
@@ -75,7 +75,7 @@ void run_track(const TrackArguments& arguments) {
   value_or_throw(check_writable(arguments.out));
   if (arguments.fused) {
     if (arguments.fused->extension() != ".ply")
-      throw InputError(file_error(*arguments.fused, "is no name of a cloud (.ply was expected)").message);
+      throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
     value_or_throw(check_writable(*arguments.fused));
   }
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
@@ -97,7 +97,7 @@ void run_track(const TrackArguments& arguments) {
   if (sequence->has_poses()) print_error(*sequence, track);
   if (arguments.fused) {
     write_fused_cloud(posed, *arguments.fused, arguments.num_threads);
-    fmt::print("cloud of its views: {}\n", arguments.fused->string());
+    fmt::print("point cloud: {}\n", arguments.fused->string());
   }
   if (!arguments.posed) return;
   const DatasetFormat format = arguments.format == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
