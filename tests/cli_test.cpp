@@ -534,9 +534,9 @@ TEST_P(CommandLine, TellsWhatIsWrong) {
         << "expected: /" << row.line << "/";
   }
   if (row.makes == nullptr) {
-    EXPECT_EQ(list(folder_), before) << "left behind";
+    EXPECT_EQ(list(folder_), before) << "files are left";
   } else {
-    EXPECT_TRUE(fs::exists(folder_ / row.makes)) << "is not there: " << row.makes;
+    EXPECT_TRUE(fs::exists(folder_ / row.makes)) << "is missing: " << row.makes;
   }
   if (!HasFailure()) return;
   std::string told;

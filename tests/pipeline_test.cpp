@@ -95,8 +95,8 @@ std::string describe_loss(std::size_t view, const GroundTruthObject& truth, cons
   text << "view " << view << " " << truth.object << ": " << to_string(loss.stage);
   if (loss.best) text << ", best " << 1e3 * loss.best->center_distance_m << " mm " << loss.best->rotation_rad << " rad";
   if (loss.evidence)
-    text << ", " << to_string(loss.evidence->verdict) << ", explained " << loss.evidence->explained_share << ", alone "
-         << loss.evidence->unary_cost;
+    text << ", " << to_string(loss.evidence->verdict) << ", explained " << loss.evidence->explained_share
+         << ", unary cost " << loss.evidence->unary_cost;
   text << "\n";
   return text.str();
 }
@@ -189,7 +189,7 @@ TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
     if (v + 1 < kViews) {
       EXPECT_EQ(all.shot.size(), less.shot.size()) << v;
     } else {
-      EXPECT_LT(2 * less.sift.size(), all.sift.size()) << "most of the print is on known objects";
+      EXPECT_LT(2 * less.sift.size(), all.sift.size()) << "most of the texture is on known objects";
       EXPECT_LT(less.shot.size(), all.shot.size());
     }
   }

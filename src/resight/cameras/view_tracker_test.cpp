@@ -136,7 +136,7 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
   const std::vector<Rigid3> refined = poses_of(tracker.finish());
   EXPECT_GT(find_trajectory_error(truth, given).rms_m, 0.007);
   EXPECT_LT(find_trajectory_error(truth, refined).rms_m, 0.003);
-  EXPECT_LT(test::shift_m(refined[0], truth[0]), 1e-9) << "the first view holds the world";
+  EXPECT_LT(test::shift_m(refined[0], truth[0]), 1e-9) << "the first view defines the world frame";
 }
 
 TEST(ViewTracker, SameForAnyNumberOfThreads) {

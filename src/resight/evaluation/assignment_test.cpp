@@ -45,7 +45,7 @@ Quality quality_of(const std::vector<int>& column_of_row, const std::vector<doub
   for (std::size_t row = 0; row < column_of_row.size(); ++row) {
     const int column = column_of_row[row];
     if (column < 0) continue;
-    EXPECT_FALSE(taken[static_cast<std::size_t>(column)]) << "column " << column << " given twice";
+    EXPECT_FALSE(taken[static_cast<std::size_t>(column)]) << "column " << column << " assigned twice";
     taken[static_cast<std::size_t>(column)] = 1;
     const double value = cost[row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
     EXPECT_FALSE(std::isnan(value)) << "forbidden pair";

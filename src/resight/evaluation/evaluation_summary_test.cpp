@@ -80,7 +80,7 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_EQ(c.num_sequences, 2);
   EXPECT_EQ(c.num_views, 3);
   EXPECT_EQ(c.score, (RecognitionScore{2, 2, 9}));
-  EXPECT_NEAR(c.reliability.calibration_error(), (0.5 + 0.25) / 2, 1e-12) << "right at .5, and a ghost at .25";
+  EXPECT_NEAR(c.reliability.calibration_error(), (0.5 + 0.25) / 2, 1e-12) << "right at 0.5, and a ghost at 0.25";
   EXPECT_DOUBLE_EQ(c.score.recall(), 2.0 / 11);
   EXPECT_EQ(c.num_ghosts, 3);
   EXPECT_DOUBLE_EQ(c.ghosts_per_change(), 0.75);

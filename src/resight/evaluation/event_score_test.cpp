@@ -67,7 +67,7 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
   const EventScore s = score({kMove}, {never_seen_before}, {as_addition});
   EXPECT_EQ(s.events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(s.delays, (std::vector<int>{0})) << "the view of the place left tells nothing";
+  EXPECT_EQ(s.delays, (std::vector<int>{0})) << "the view of the former place does not count";
 }
 
 TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
@@ -77,7 +77,7 @@ TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   const ChangeVisibility came_unseen{-1, 5, -1, -1};
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", at(0), {}}}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never seen before";
+  EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never observed before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
   const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
   EXPECT_EQ(score({addition}, {{-1, 5, -1, 3}}, {}).events, (RecognitionScore{0, 0, 1}));

@@ -21,9 +21,10 @@ struct ReportedChange {
 /// A true change, and what the views show of it.
 struct SeenChange : TrueChange {
   ChangeVisibility sight;
+  /// Whether the views show the object at its former place, and later the place without it.
   [[nodiscard]] bool shows_departure() const;
-  /// An object that arrives at a place not observed before may have been there all along, unless its departure from
-  /// elsewhere was observed.
+  /// Whether the views show the arrival. An object at a place that was not observed before may have been there all
+  /// along, unless its departure from elsewhere was observed.
   [[nodiscard]] bool shows_arrival() const;
   [[nodiscard]] bool counts() const { return shows_departure() || shows_arrival(); }
   /// One side of a move, as the removal or addition it would be alone. Other changes are returned unchanged.

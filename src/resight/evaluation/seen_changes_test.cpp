@@ -40,7 +40,7 @@ TEST_F(SeenChangesTest, WhichOfTwoThatLeftCameNobodyCanSee) {
   EXPECT_EQ(score({{5, Kind::kMoved, "mug", kA, kB}, {5, Kind::kRemoved, "mug", kC, {}}}), (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(score({{5, Kind::kMoved, "mug", kC, kB}, {5, Kind::kRemoved, "mug", kA, {}}}), (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(score({{5, Kind::kMoved, "mug", kC, kB}}), (RecognitionScore{1, 0, 1}));
-  EXPECT_EQ(score({{5, Kind::kMoved, "mug", kC, kD}}), (RecognitionScore{0, 1, 2})) << "nothing came there";
+  EXPECT_EQ(score({{5, Kind::kMoved, "mug", kC, kD}}), (RecognitionScore{0, 1, 2})) << "nothing arrived there";
 }
 
 TEST_F(SeenChangesTest, TwoThatChangePlacesWithOthers) {
@@ -49,24 +49,24 @@ TEST_F(SeenChangesTest, TwoThatChangePlacesWithOthers) {
   EXPECT_EQ(score({{5, Kind::kMoved, "mug", kA, kD}, {5, Kind::kMoved, "mug", kC, kB}}), (RecognitionScore{2, 0, 0}));
   changes_[1].object = "cup";
   EXPECT_EQ(score({{5, Kind::kMoved, "mug", kA, kD}, {5, Kind::kMoved, "cup", kC, kB}}), (RecognitionScore{0, 2, 2}))
-      << "of two kinds everybody sees it";
+      << "objects of two kinds are distinguishable";
 }
 
 TEST_F(SeenChangesTest, RemovedAndAddedIsAMoveUnlessAViewShowsBothPlacesFree) {
   add(5, Kind::kRemoved, kA, std::nullopt);
   add(8, Kind::kAdded, std::nullopt, kB);
   const std::vector<ReportedChange> as_move = {{9, Kind::kMoved, "mug", kA, kB}};
-  EXPECT_EQ(score(as_move), (RecognitionScore{0, 1, 2})) << "free are kA from view 5 on, kB until view 7";
+  EXPECT_EQ(score(as_move), (RecognitionScore{0, 1, 2})) << "kA is free from view 5 on, kB until view 7";
   sights_[0].before_view = 9;  // The former place is observed later.
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({{9, Kind::kRemoved, "mug", kA, {}}, {9, Kind::kAdded, "mug", {}, kB}}), (RecognitionScore{2, 0, 0}))
-      << "as it was";
-  EXPECT_EQ(score({{7, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{0, 1, 2})) << "before it came";
+      << "as it happened";
+  EXPECT_EQ(score({{7, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{0, 1, 2})) << "before it arrived";
   sights_[0].before_view = 8;
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0}));
   sights_[1].last_free_view = 4;
   sights_[0].before_view = 5;
-  EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0})) << "the new place was not looked at after view 4";
+  EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0})) << "the new place was not observed after view 4";
 }
 
 TEST_F(SeenChangesTest, WhatIsThereBeforeTheOtherLeavesIsAnother) {
@@ -90,7 +90,7 @@ TEST_F(SeenChangesTest, WhatFitsAsItIsStays) {
   add(5, Kind::kMoved, kA, kB);
   add(5, Kind::kMoved, kC, kD);
   const std::vector<ReportedChange> reports = {{5, Kind::kMoved, "mug", kA, kB}, {6, Kind::kMoved, "mug", kA, kD}};
-  EXPECT_EQ(score(reports), (RecognitionScore{1, 1, 1})) << "kA is taken";
+  EXPECT_EQ(score(reports), (RecognitionScore{1, 1, 1})) << "kA is occupied";
 }
 
 TEST_F(SeenChangesTest, WithoutAReportTheChangesAreAsTheyWere) {

@@ -9,8 +9,8 @@
 namespace resight {
 namespace {
 
-// Sensor noise numbers voxels beside a surface in every view, and a moving camera leaves voxels behind. Numbering
-// restarts above this growth, which bounds the memory.
+// Sensor noise adds voxels beside surfaces in every view, and a moving camera leaves voxels behind. Numbering restarts
+// when the number of blocks exceeds this growth, which bounds the memory.
 constexpr std::size_t kMaxBlockGrowth = 2;
 constexpr std::size_t kFewBlocks = 1 << 15;
 

@@ -68,8 +68,8 @@ TEST_F(Alignment, PrintFixesWhatShapeLeavesOpen) {
   AlignViewOptions depth_only;
   depth_only.brightness_sigma = 0;
   const AlignedView slid = align_view(b, one, start, depth_only);
-  EXPECT_GT(shift_m(slid.world_from_camera, down_b), 0.01) << "a plane does not tell";
-  EXPECT_LT(shift_m(slid.world_from_camera, start), 0.004) << "what is not known stays";
+  EXPECT_GT(shift_m(slid.world_from_camera, down_b), 0.01) << "a plane does not constrain the shift";
+  EXPECT_LT(shift_m(slid.world_from_camera, start), 0.004) << "unconstrained directions stay";
 }
 
 TEST_F(Alignment, BrighterLightIsNoError) {
@@ -90,7 +90,7 @@ TEST_F(Alignment, APlainFloorIsOpenAlongItself) {
   const AlignmentView b = make_alignment_view(prepared(bare, down, 0.0015, 2));
   const std::vector<AlignmentTarget> one{{&a, down}};
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(align_view(b, one, down).information);
-  EXPECT_LT(solver.eigenvalues()[2], 1) << "two shifts and a turn";
+  EXPECT_LT(solver.eigenvalues()[2], 1) << "two shifts and one rotation";
   EXPECT_GT(solver.eigenvalues()[3], 1e4);
 }
 

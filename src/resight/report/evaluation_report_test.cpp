@@ -77,7 +77,7 @@ TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
   EXPECT_NE(text.find("| 40 | 10 | 25.0 % |"), std::string::npos);  // Clustering keeps 10 of 40.
   EXPECT_NE(text.find("no keypoints"), std::string::npos);
   EXPECT_NE(text.find("| `mvr` | 5 | 0.500 | - | - | 0.500 / 0.000 (2) | - |"), std::string::npos)
-      << "two ghosts of score .5";
+      << "two ghosts of score 0.5";
   EXPECT_NE(text.find("| `mvr-chd` - `mvr` | 5 | 1 | +0.000 ± - |"), std::string::npos);
 }
 

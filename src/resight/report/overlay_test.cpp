@@ -69,7 +69,7 @@ TEST(ProjectOutline, LiesOnTheBorderOfTheObject) {
         report::project_outline(frame.camera, at(0, 0, depth_m), library.objects[2].surface, library.surface_voxel_m);
     const double radius_m = 0.08;
     const double circle_px = frame.camera.fx * radius_m / std::sqrt(depth_m * depth_m - radius_m * radius_m);
-    ASSERT_EQ(outline.size(), 1U) << "one part, without holes";
+    ASSERT_EQ(outline.size(), 1U) << "one component, without holes";
     double sum_px = 0;
     for (const cv::Point& point : outline[0]) {
       const double distance_px = std::hypot(point.x - frame.camera.cx, point.y - frame.camera.cy);

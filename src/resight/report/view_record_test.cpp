@@ -93,7 +93,7 @@ TEST(Summarize, SumsOverViews) {
   const RunSummary summary = summarize(run);
   EXPECT_EQ(summary.num_views, 2);
   EXPECT_EQ(summary.num_detections, 3);
-  EXPECT_EQ(summary.num_events, 3) << "moved, removed, and removed after the last view; not the two first finds";
+  EXPECT_EQ(summary.num_events, 3) << "moved, removed, and removed after the last view; not the two found objects";
   EXPECT_EQ(summary.num_judged_views, 1);
   EXPECT_EQ(summary.score, (RecognitionScore{3, 1, 2}));
   EXPECT_EQ(summary.strict_score, (RecognitionScore{1, 3, 4}));
