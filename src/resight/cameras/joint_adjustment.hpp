@@ -25,6 +25,7 @@ struct StaticObject {
   std::vector<int> views;    ///< Views that observed it at this pose.
 };
 
+/// Adjusted track and the objects that were adjusted with it.
 struct JointAdjustment {
   CameraTrack track;
   std::vector<StaticObject> objects;

@@ -26,6 +26,7 @@ class ViewFeatures {
   DescriptorIndex index_;
 };
 
+/// Relative pose of two cameras and the matches that support it.
 struct ViewMatch {
   Rigid3 a_from_b;
   int num_inliers = 0;

@@ -22,6 +22,7 @@ struct PoseGraphOptions {
   void check() const;
 };
 
+/// Adjusted poses and the residual of each edge.
 struct PoseGraph {
   std::vector<Rigid3> world_from_node;
   /// Squared Mahalanobis distance of each edge after the adjustment.

@@ -34,6 +34,7 @@ struct TrackViewsOptions {
   void check() const;
 };
 
+/// Estimated pose of one view.
 struct TrackedView {
   std::string name;
   /// In the frame of its component: that of the component's first view, or the given world frame.
@@ -54,6 +55,7 @@ struct TrackerStep {
   std::vector<PoseEdge> edges;  ///< From earlier views to this one.
 };
 
+/// Poses of all views of a sequence, by connected component.
 struct CameraTrack {
   std::vector<TrackedView> views;
   std::vector<PoseEdge> edges;  ///< Edges between views that fit the final poses.

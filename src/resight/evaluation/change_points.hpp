@@ -25,6 +25,7 @@ struct ChangePointScore {
   friend bool operator==(const ChangePointScore&, const ChangePointScore&) = default;
 };
 
+/// Scores of the removed and of the novel points.
 struct ChangePointScores {
   ChangePointScore removed;
   ChangePointScore novel;

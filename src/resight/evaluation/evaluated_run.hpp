@@ -28,9 +28,13 @@ struct EvaluatedTruth {
   std::string lost_at;  ///< Stage at which a missed object was lost (LossStage); empty = found, or not analysed.
 };
 
+/// Verdict of the ground truth on a detection. kIgnored: matched to an object that is too occluded to count, or outside
+/// the image.
 enum class DetectionVerdict : std::uint8_t { kCorrect, kFalsePositive, kGhost, kIgnored };
+/// Name of the verdict, as in the stored runs.
 [[nodiscard]] std::string_view to_string(DetectionVerdict verdict);
 
+/// A detection in one view, with its verdict.
 struct EvaluatedDetection {
   std::string object;
   Rigid3 camera_from_object;
@@ -38,6 +42,7 @@ struct EvaluatedDetection {
   DetectionVerdict verdict = DetectionVerdict::kFalsePositive;
 };
 
+/// Scores, detections, counts and times of one view.
 struct EvaluatedView {
   std::string name;
   std::vector<EvaluatedTruth> truth;

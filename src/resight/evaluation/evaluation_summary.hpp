@@ -18,6 +18,7 @@ struct FoundCount {
   std::map<std::string, int> lost_at;  ///< Missed objects per stage.
 };
 
+/// Median and 95 % quantile of errors.
 struct ErrorQuantiles {
   int count = 0;
   double median = 0;  ///< NaN without values.

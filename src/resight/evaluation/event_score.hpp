@@ -8,6 +8,7 @@
 
 namespace resight {
 
+/// Scores of reported events, and of their two sides separately.
 struct EventScore {
   RecognitionScore events;  ///< Right if object, kind and both placements are right.
   /// Former place of "moved" and "removed" events.

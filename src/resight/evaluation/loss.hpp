@@ -22,6 +22,7 @@ enum class LossStage : std::uint8_t {
   kRefinedAway,  ///< A correct hypothesis that the refinement moved beyond the limits.
   kRejected,     ///< A correct hypothesis that the verification rejected.
 };
+/// Name of the stage, as in the reports.
 [[nodiscard]] const char* to_string(LossStage stage);
 
 /// Analysis of one object that was not found.

@@ -26,6 +26,7 @@ struct ClusterHypothesesOptions {
   void check() const;
 };
 
+/// Merged hypotheses and their members.
 struct ClusterResult {
   /// One per cluster, with the id of its seed and its newest origin view; correspondences pooled without duplicates.
   std::vector<Hypothesis> hypotheses;

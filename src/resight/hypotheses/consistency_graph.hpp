@@ -48,6 +48,7 @@ struct ConsistencyOptions {
 [[nodiscard]] BitGraph build_consistency_graph(std::span<const Correspondence> correspondences,
                                                const ConsistencyOptions& options);
 
+/// Degeneracy order and core numbers of a graph.
 struct Degeneracy {
   /// Vertices in the order of removal: smallest remaining degree first (ties: smallest index).
   std::vector<int> order;

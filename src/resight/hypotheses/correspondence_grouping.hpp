@@ -24,6 +24,7 @@ struct GroupCorrespondencesOptions {
   void check() const;
 };
 
+/// Correspondences that agree with one pose of an object.
 struct CorrespondenceGroup {
   std::vector<int> members;  ///< Inliers of the pose: ascending indices of the input.
   Rigid3 scene_from_object;

@@ -12,6 +12,7 @@ struct FindCliquesOptions {
   void check() const;
 };
 
+/// Cliques found, and whether they are all.
 struct FindCliquesResult {
   /// Each ascending; sorted by size (largest first), then lexicographically; no duplicates.
   std::vector<std::vector<int>> cliques;

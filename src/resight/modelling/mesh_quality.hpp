@@ -11,6 +11,7 @@ struct MeshHoles {
   double area_sq_m = 0;          ///< Area of all holes, each closed by a triangle fan about its middle.
   double open_share = 0;         ///< Share of the hole area in the sum of hole and surface area.
 };
+/// Finds and measures the holes of a mesh. Chains of open edges that meet at a vertex may be split there.
 [[nodiscard]] MeshHoles measure_holes(const TriangleMesh& mesh);
 
 /// Area of all faces, m^2.

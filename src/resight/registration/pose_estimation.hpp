@@ -24,6 +24,7 @@ struct EstimatePoseOptions {
   void check() const;
 };
 
+/// A pose and the correspondences that agree with it.
 struct PoseEstimate {
   Rigid3 scene_from_model;
   std::vector<int> inliers;  ///< Ascending indices of the correspondences.

@@ -30,6 +30,7 @@ struct AlignmentTarget {
   Rigid3 world_from_camera;
 };
 
+/// A camera pose relative to the targets, and its quality at the finest level.
 struct AlignedView {
   Rigid3 world_from_camera;
   /// Inverse covariance of a small motion of the camera in its own frame (rotation about x, y, z in rad, then

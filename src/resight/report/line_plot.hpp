@@ -13,6 +13,7 @@ struct PlotSeries {
   std::vector<double> y;  ///< Same length as x.
 };
 
+/// A plot with one or more series.
 struct LinePlot {
   std::string title;
   std::string x_label;

@@ -23,6 +23,7 @@ enum class DetectionMark : std::uint8_t {
   /// Matches ground truth that is too occluded to count, or lies outside the image: thin outline.
   kIgnored,
 };
+/// Text of a mark, as in detections.json and the report.
 [[nodiscard]] std::string to_string(DetectionMark mark);
 
 struct DrawOverlayOptions {

@@ -82,6 +82,7 @@ struct RunSummary {
   double mean_view_wall_s = 0;    ///< NaN without views.
   double median_view_wall_s = 0;  ///< NaN without views.
 };
+/// Summarises a run.
 [[nodiscard]] RunSummary summarize(const ReportRun& run);
 
 }  // namespace resight

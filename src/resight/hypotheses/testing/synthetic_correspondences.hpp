@@ -23,6 +23,7 @@ inline Rigid3 random_pose(Rng& rng, double max_offset_m = 0.3) {
   return pose;
 }
 
+/// A point and its normal, in the same frame.
 struct SurfacePoint {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
@@ -60,12 +61,14 @@ struct ProblemOptions {
   std::uint64_t seed = 1;
 };
 
+/// Correspondences of one object with known instances.
 struct Problem {
   std::vector<Correspondence> correspondences;  ///< Shuffled.
   std::vector<int> instance;                    ///< Instance of each correspondence; -1 = outlier.
   std::vector<Rigid3> scene_from_object;
 };
 
+/// Generates a problem: instances with noisy inliers, then outliers, in random order.
 class ProblemMaker {
  public:
   explicit ProblemMaker(const ProblemOptions& options)

@@ -18,6 +18,7 @@ struct AlignShapesOptions {
   int num_threads = 1;                ///< Same bits for any value >= 1.
 };
 
+/// A possible alignment of two surfaces.
 struct ShapeFit {
   Rigid3 fixed_from_moving;
   double agreement = 0;  ///< Share of both surfaces' points that agree with the other surface.

@@ -24,6 +24,7 @@ enum class LineStyle { kSolid, kDashed, kDotted };
 [[nodiscard]] Outline project_outline(const Camera& camera, const Rigid3& camera_from_object, const PointCloud& surface,
                                       double voxel_m);
 [[nodiscard]] cv::Rect bounding_box(const Outline& outline);
+/// Draws an outline; dashes and dots follow its pixels.
 void draw_outline(cv::Mat& canvas, const Outline& outline, Rgb8 color, LineStyle style, int thickness_px);
 
 /// Blends `color` into the pixels with non-zero `mask`.

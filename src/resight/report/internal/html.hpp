@@ -15,6 +15,7 @@ namespace resight::report {
 
 /// Escapes text for use between tags and in quoted attributes.
 [[nodiscard]] std::string escape(std::string_view text);
+/// Base64 encoding (RFC 4648), with padding.
 [[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
 /// Number with `digits` decimals; a dash for NaN.
 [[nodiscard]] std::string number(double value, int digits);
@@ -22,7 +23,9 @@ namespace resight::report {
 [[nodiscard]] std::string percent(double share);
 /// Seconds, or milliseconds below one second; a dash for NaN.
 [[nodiscard]] std::string duration(double seconds);
+/// Colour as #rrggbb.
 [[nodiscard]] std::string css_color(Rgb8 color);
+/// Escaped name of an object. Throws std::invalid_argument if the object is not in the library.
 [[nodiscard]] std::string object_name(int object, const ModelLibrary& library);
 /// A patch in the object's outline colour, followed by its name.
 [[nodiscard]] std::string object_tag(int object, const ModelLibrary& library);
