@@ -27,7 +27,8 @@ using Eigen::Vector3d;
 constexpr int kAttempts = 400;
 constexpr double kMinMoveM = 0.10;
 constexpr double kNearMoveM = 0.30;
-constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};  // Unknown, and like known ones.
+// Unknown objects that resemble known ones.
+constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};
 
 struct SequencePlan {
   TabletopTheme theme;
@@ -43,7 +44,7 @@ constexpr std::array<SequencePlan, 9> kPlan{{{TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kMeeting, 22}}};
 
-// What a thing covers, upright and laid down, for every model once: drawing a model takes its time.
+// Footprints of all models, upright and laid down. Computed once, because drawing a model is slow.
 class Catalogue {
  public:
   Catalogue() {
@@ -61,7 +62,7 @@ class Catalogue {
   std::map<std::string, std::array<Footprint, 2>> footprints_;
 };
 
-// Where a thing stands, in the surface's frame.
+// Position of an object in the frame of the surface.
 struct Spot {
   int surface = 0;
   Footprint covered;
@@ -72,8 +73,8 @@ struct Thing {
   std::string model;
   bool known = true;
   bool lying = false;
-  std::optional<Spot> spot;       // Absent = not there.
-  std::optional<Spot> last_spot;  // Where it stood before it was taken away.
+  std::optional<Spot> spot;       // Absent if the object is not in the scene.
+  std::optional<Spot> last_spot;  // The spot before the removal.
 };
 
 class SequenceBuilder {
@@ -110,7 +111,7 @@ class SequenceBuilder {
     std::vector<std::string> unknown = distractor_names();
     unknown.insert(unknown.end(), kLookAlikes.begin(), kLookAlikes.end());
     rng_.shuffle(unknown);
-    known.insert(known.begin(), {known[0], known[2]});  // these two kinds stand there twice
+    known.insert(known.begin(), {known[0], known[2]});  // two objects of each of these kinds
     for (int i = 0; i < options_.num_known; ++i) add_thing(known, i, true);
     for (int i = 0; i < options_.num_unknown; ++i) add_thing(unknown, i, false);
     num_starting_ = options_.num_known + options_.num_unknown;
@@ -134,7 +135,7 @@ class SequenceBuilder {
            });
   }
 
-  // Somewhere on a surface; near `wanted` if that is given.
+  // Draws a spot on a surface, close to `wanted` if that is given.
   Spot draw_spot(const Thing& thing, const std::optional<Spot>& wanted, double max_offset_m) {
     Spot spot;
     spot.covered = catalogue_.footprint(thing.model, thing.lying);
@@ -163,7 +164,7 @@ class SequenceBuilder {
     return static_cast<int>(stage_.surfaces.size()) - 1;
   }
 
-  // A thing that stands there already, to be put next to.
+  // Draws an object in the scene to put another one beside.
   std::optional<Spot> draw_neighbor(const Thing& thing, double& max_offset_m) {
     std::vector<const Thing*> present;
     for (const Thing& other : things_)
@@ -175,9 +176,9 @@ class SequenceBuilder {
   }
 
   struct SpotWish {
-    std::optional<Spot> near;  ///< Within max_offset_m of it.
+    std::optional<Spot> near;  ///< Within max_offset_m of this spot.
     double max_offset_m = 0;
-    std::optional<Spot> away_from;  ///< At least kMinMoveM.
+    std::optional<Spot> away_from;  ///< At least kMinMoveM from this spot.
   };
 
   std::optional<Spot> find_spot(const Thing& thing, const SpotWish& wish) {
@@ -201,7 +202,7 @@ class SequenceBuilder {
     p.level = surface.level;
     p.yaw_rad = spot.covered.yaw_rad;
     p.roll_rad = thing.lying ? std::numbers::pi / 2 : 0;
-    // The footprint's centre is not the origin.
+    // The centre of the footprint is not the origin of the object.
     const Vector2d own_center = catalogue_.footprint(thing.model, thing.lying).center;
     const Vector2d origin = spot.covered.center - Eigen::Rotation2Dd(p.yaw_rad) * own_center;
     p.x_m = origin.x();
@@ -209,7 +210,7 @@ class SequenceBuilder {
     return p;
   }
 
-  // All known objects are listed, so that every sequence has the same library.
+  // Lists all known objects, so that every sequence has the same library.
   void list_objects() {
     for (const Thing& thing : things_)
       script_.objects.push_back({thing.key,
@@ -242,7 +243,7 @@ class SequenceBuilder {
     }
   }
 
-  // A thing that is there (or not), and whose last change lies before `view`.
+  // Draws an object that is present (or absent) and was last changed before `view`.
   Thing* draw_thing(int view, bool present) {
     const bool known = rng_.uniform() >= options_.unknown_share;
     std::vector<Thing*> candidates;
@@ -282,7 +283,7 @@ class SequenceBuilder {
     maybe_replace(view, old);
   }
 
-  // Sometimes another thing is put where one has just left.
+  // Sometimes puts another object at the spot that one has just left.
   void maybe_replace(int view, const Spot& old) {
     if (rng_.uniform() >= 0.25) return;
     Thing* other = draw_thing(view, false);
@@ -300,7 +301,7 @@ class SequenceBuilder {
 
   // ---- camera ----
 
-  // To and fro around the scene, nearer and farther, looking left and right of its middle.
+  // Moves the camera to and fro around the scene with varying distance, looking left and right of its middle.
   void move_camera() {
     const int num_views = kPlan[static_cast<std::size_t>(index_)].num_views;
     const double middle_rad = -std::numbers::pi / 2 + rng_.uniform(-0.15, 0.15);

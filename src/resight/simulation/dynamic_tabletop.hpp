@@ -8,15 +8,15 @@
 
 namespace resight {
 
-/// Grows with each change of the generator or of its defaults: results of different versions do not compare.
+/// Increases with each change of the generator or its defaults. Results of different versions are not comparable.
 inline constexpr int kDynamicTabletopVersion = 2;
-/// To tune on, and to report on. Any other seed is as good for whoever doubts.
+/// Seeds for tuning and for reporting. Any other seed is equally valid for verification.
 inline constexpr std::uint64_t kDynamicTabletopValidationSeed = 1;
 inline constexpr std::uint64_t kDynamicTabletopTestSeed = 2;
 
 /// How hard the benchmark is. The defaults ARE the benchmark: docs/benchmark.md tells how they were found.
 struct DynamicTabletopOptions {
-  int num_known = 12;         ///< Known things at the start of a sequence, as far as there is room.
+  int num_known = 12;           ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;          ///< Further known things, which may come in later.
   int num_unknown = 5;          ///< Things that are in no library.
   int num_changes = 32;         ///< Of a sequence, at most (what finds no room does not happen).
@@ -31,17 +31,17 @@ struct DynamicTabletopOptions {
   void check() const;        ///< Throws std::invalid_argument: field, value, rule.
 };
 
-/// The standard benchmark: 9 sequences, 203 views in all, as the dynamic TUW data set of the paper. Desks, a meeting
-/// table, a table with a low cabinet beside it, and a shelf, with known objects close together, two kinds twice in a
-/// scene, twins that differ in their print only, unknown things (among them look-alikes of known ones), and changes:
-/// things are moved, taken away, brought, put back, and put where another one stood, often while the camera looks
-/// elsewhere. The camera sweeps to and fro, so places are seen again.
+/// Makes the standard benchmark: 9 sequences with 203 views in all, like the dynamic TUW data set of the paper. Scenes
+/// are desks, a meeting table, a table with a low cabinet beside it, and a shelf. Known objects stand close together:
+/// some kinds occur twice in a scene, and twins differ only in their texture. Unknown objects include look-alikes of
+/// known ones. Objects are moved, removed, added, put back, and put in the former place of another object, often
+/// outside the image. The camera sweeps to and fro, so that places are observed again.
 ///
-/// All sequences have one library (dynamic_tabletop_library()). The same scripts for the same seed and options.
+/// All sequences share one library (dynamic_tabletop_library()). Equal seeds and options give equal scripts.
 [[nodiscard]] std::vector<SceneScript> make_dynamic_tabletop(std::uint64_t seed,
                                                              const DynamicTabletopOptions& options = {});
 
-/// Names of the known objects; all procedural objects but three, which stand in the scenes as unknown look-alikes.
+/// Names of the known objects: all procedural objects except three, which are unknown look-alikes in the scenes.
 [[nodiscard]] std::vector<std::string> dynamic_tabletop_library();
 
 }  // namespace resight

@@ -30,7 +30,7 @@ TEST(DynamicTabletop, HasTheSizeOfThePapersDataSet) {
   EXPECT_GE(dynamic_tabletop_library().size(), 16U);
 }
 
-// Whatever the seed: several kinds twice in a scene, twins, unknown things, and every kind of change.
+// For each seed, scenes contain several kinds twice, twins, unknown objects, and every kind of change.
 TEST(DynamicTabletop, HoldsWhatMakesItHard) {
   for (const std::uint64_t seed : {kDynamicTabletopValidationSeed, kDynamicTabletopTestSeed, std::uint64_t{77}}) {
     int doubles = 0, twins = 0, look_alikes = 0;
@@ -70,7 +70,8 @@ TEST(DynamicTabletop, SameSeedSameScenesOtherSeedOthers) {
   }
 }
 
-// The rectangle an instance covers in the world (things stand upright or lie on a side, so z stays up or goes level).
+// The rectangle that an instance covers in the world. Objects stand upright or lie on a side, so z stays vertical or
+// becomes horizontal.
 Footprint covered_in_world(const TriangleMesh& mesh, const Rigid3& world_from_mesh) {
   const bool lying = std::abs(world_from_mesh.rotation(2, 2)) < 0.5;
   const double yaw = std::atan2(world_from_mesh.rotation(1, 0), world_from_mesh.rotation(0, 0));
@@ -106,7 +107,7 @@ TEST(DynamicTabletop, ThingsDoNotRunIntoEachOther) {
   EXPECT_GE(num_compared, 200);
 }
 
-// Changes outside of the image are what an observer learns late: there must be some, but not only such.
+// An observer learns of changes outside the image with delay. There must be some such changes, but also others.
 TEST(DynamicTabletop, SomeChangesHappenOutOfView) {
   int in_view = 0, out_of_view = 0;
   for (const SceneScript& script : make_dynamic_tabletop(kDynamicTabletopValidationSeed)) {

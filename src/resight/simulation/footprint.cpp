@@ -10,7 +10,7 @@
 namespace resight {
 namespace {
 
-// Half the length of the rectangle's shadow on a line in the given direction.
+// Half the extent of the rectangle along the given direction.
 double half_extent(const Footprint& f, const Eigen::Vector2d& direction) {
   const Eigen::Vector2d x_axis(std::cos(f.yaw_rad), std::sin(f.yaw_rad));
   const Eigen::Vector2d y_axis(-x_axis.y(), x_axis.x());

@@ -27,13 +27,13 @@ TEST(Footprint, OfALyingBoxIsItsSide) {
 TEST(Footprint, OverlapKnowsTurnedRectangles) {
   const Footprint a{{0, 0}, {0.2, 0.05}, 0};
   EXPECT_TRUE(overlaps(a, {{0.3, 0}, {0.2, 0.05}, 0}, 0));
-  EXPECT_FALSE(overlaps(a, {{0.3, 0}, {0.2, 0.05}, kQuarter}, 0));  // stands across: ends at 0.25
+  EXPECT_FALSE(overlaps(a, {{0.3, 0}, {0.2, 0.05}, kQuarter}, 0));  // perpendicular: ends at 0.25
   EXPECT_TRUE(overlaps(a, {{0.3, 0}, {0.2, 0.05}, kQuarter}, 0.06));
   EXPECT_FALSE(overlaps(a, {{0, 0.2}, {0.1, 0.1}, 0}, 0));
-  // A square on its corner reaches sqrt(2) as far along the axes, and no farther.
+  // A square rotated by 45 deg extends sqrt(2) times as far along the axes, and no farther.
   EXPECT_TRUE(overlaps(a, {{0, 0.18}, {0.1, 0.1}, kQuarter / 2}, 0));
   EXPECT_FALSE(overlaps(a, {{0, 0.20}, {0.1, 0.1}, kQuarter / 2}, 0));
-  EXPECT_TRUE(overlaps({{0, 0}, {0.5, 0.5}, 0}, {{0, 0}, {0.01, 0.01}, 1}, 0));  // one within the other
+  EXPECT_TRUE(overlaps({{0, 0}, {0.5, 0.5}, 0}, {{0, 0}, {0.01, 0.01}, 1}, 0));  // one contains the other
 }
 
 TEST(Footprint, LiesWithinCountsTheTurnedExtent) {

@@ -22,7 +22,7 @@ struct SurfacePoint {
   Vector3d normal;
 };
 
-// A grid of (columns x rows) cells over (s, t) in [0, 1]^2, s to the right and t down as seen from outside.
+// A grid of (columns x rows) cells over (s, t) in [0, 1]^2. Seen from outside, s points right and t points down.
 TriangleMesh make_patch(int columns, int rows, const PixelRect& region,
                         const std::function<SurfacePoint(double, double)>& surface) {
   TriangleMesh mesh;
@@ -55,7 +55,7 @@ void drop_degenerate_faces(TriangleMesh& mesh) {
 }
 
 struct BoxFace {
-  Vector3d right, down;  // Unit, as seen from outside.
+  Vector3d right, down;  // Unit vectors as seen from outside.
   PixelRect region;
 };
 
@@ -123,7 +123,7 @@ TriangleMesh make_rounded_box_part(const Vector3d& size, double radius, const Bo
   const Vector3d center(0, 0, size.z() / 2);
   const Vector3d core = (size / 2).array() - radius;
   require(core.minCoeff() >= 0, "make_rounded_box_part: the radius is too large");
-  // Half of the cells lie in the rounded borders, which are narrow.
+  // Half of the cells lie in the narrow rounded borders.
   const auto spread = [](double s) { return 0.5 - 0.5 * std::cos(std::numbers::pi * s); };
   for (const BoxFace& face : box_faces(regions)) {
     const Vector3d normal = face.down.cross(face.right);
@@ -145,7 +145,7 @@ TriangleMesh make_lathe_part(std::span<const Vector2d> profile, const PixelRect&
   const int rows = static_cast<int>(profile.size()) - 1;
   TriangleMesh mesh = make_patch(segments, rows, region, [&](double s, double t) {
     const auto i = static_cast<std::size_t>(std::lround(t * rows));
-    // From the back (+y) to the left (-x), so that the region's middle faces the front (-y).
+    // From the back (+y) to the left (-x), so that the middle of the region faces the front (-y).
     const double angle = std::numbers::pi / 2 + 2 * std::numbers::pi * s;
     const Vector3d outward(std::cos(angle), std::sin(angle), 0);
     const Vector2d tangent = profile[std::min(i + 1, profile.size() - 1)] - profile[i == 0 ? 0 : i - 1];
@@ -196,7 +196,7 @@ TriangleMesh make_tube_part(std::span<const Vector3d> path, double radius, const
   const auto tangent = [&](std::size_t i) {
     return Vector3d(path[std::min(i + 1, path.size() - 1)] - path[i == 0 ? 0 : i - 1]).normalized();
   };
-  std::vector<Vector3d> sides(path.size());  // carried along the path without twist
+  std::vector<Vector3d> sides(path.size());  // transported along the path without twist
   sides[0] = tangent(0).unitOrthogonal();
   for (std::size_t i = 1; i < path.size(); ++i)
     sides[i] = (sides[i - 1] - sides[i - 1].dot(tangent(i)) * tangent(i)).normalized();
@@ -247,7 +247,7 @@ TriangleMesh make_prism_part(std::span<const Vector2d> polygon, double height, c
     mesh.append(make_patch(8, 12, part, [&](double s, double t) {
       return SurfacePoint{lift(a + s * (b - a), (1 - t) * height), normal};
     }));
-    for (const bool is_top : {true, false}) {  // a fan about the centre: the polygon is star-shaped about it
+    for (const bool is_top : {true, false}) {  // a fan about the centre, as the polygon is star-shaped about it
       const PixelRect& region = is_top ? top : bottom;
       TriangleMesh fan = make_patch(4, 4, region, [&](double s, double t) {
         const Vector2d rim = a + (is_top ? s : 1 - s) * (b - a);

@@ -13,17 +13,17 @@ namespace resight {
 
 inline constexpr double kMmPerM = 1000;
 
-/// Collects the printed regions of a texture: shelves from left to right, with a border of repeated pixels around each
-/// region so that a filtered look-up does not see its neighbours.
+/// Collects the regions of a texture in rows from left to right. A border of repeated pixels separates each region from
+/// its neighbours in a filtered look-up.
 class TextureAtlas {
  public:
   TextureAtlas(int width_px, double px_per_mm);
   /// Reserves a region of the given size (mm on the surface). Paint it before finish().
   [[nodiscard]] PixelRect allocate(double width_mm, double height_mm);
-  /// A small region of one colour.
+  /// Reserves a small region of one colour.
   [[nodiscard]] PixelRect solid(Rgb8 color);
   [[nodiscard]] TextureCanvas canvas(const PixelRect& region) { return {image_, region, px_per_mm_}; }
-  /// Crops the image, repeats the borders, and turns the mesh's texture coordinates from pixels into shares.
+  /// Crops the image, repeats the borders, and converts the texture coordinates of the mesh from pixels to shares.
   void finish(TriangleMesh& mesh);
 
  private:
@@ -36,26 +36,27 @@ class TextureAtlas {
 };
 
 // Each part has vertices, normals and texture coordinates in pixels of the atlas (see TextureAtlas::finish()). Lengths
-// in metres. Regions are seen upright from outside.
+// are in metres. Regions appear upright from outside.
 
-/// A box standing on z = 0, centred in x and y. Regions: front (-y), right (+x), back (+y), left (-x), top, bottom; the
-/// top is upright for one who looks at the front. `cells` = squares along each edge.
+/// A box on z = 0, centred in x and y. Regions: front (-y), right (+x), back (+y), left (-x), top, bottom. The top
+/// appears upright to a viewer of the front. `cells` is the number of squares along each edge.
 struct BoxRegions {
   PixelRect front, right, back, left, top, bottom;
 };
 [[nodiscard]] TriangleMesh make_box_part(const Eigen::Vector3d& size, const BoxRegions& regions, int cells = 14);
 
-/// A box with rounded edges, all of one region (which is stretched over each side).
+/// A box with rounded edges. Each region is stretched over its side.
 [[nodiscard]] TriangleMesh make_rounded_box_part(const Eigen::Vector3d& size, double radius, const BoxRegions& regions,
                                                  int cells = 20);
 
-/// The surface that the profile (radius, z), from top to bottom as seen from outside, sweeps about +z. Smooth along the
-/// profile: use one part per smooth piece. The region is wrapped around once, its left border at the back (+y).
+/// The surface of revolution of a profile (radius, z) about +z, from top to bottom as seen from outside. It is smooth
+/// along the profile, so use one part per smooth piece. The region is wrapped around once, with its left border at the
+/// back (+y).
 [[nodiscard]] TriangleMesh make_lathe_part(std::span<const Eigen::Vector2d> profile, const PixelRect& region,
                                            int segments = 64);
 
-/// A flat disc (or ring, with an inner radius) at height z that faces up or down; the region's inscribed ellipse is
-/// mapped onto it.
+/// A flat disc (or ring, with an inner radius) at height z that faces up or down. It shows the ellipse inscribed in the
+/// region.
 [[nodiscard]] TriangleMesh make_disc_part(double radius, double z, bool faces_up, const PixelRect& region,
                                           double inner_radius = 0.0, int segments = 64);
 
@@ -63,7 +64,7 @@ struct BoxRegions {
 [[nodiscard]] TriangleMesh make_ellipsoid_part(const Eigen::Vector3d& radii, const PixelRect& region,
                                                int segments = 32);
 
-/// A tube of the given radius along a path (open ends are closed by flat caps).
+/// A tube of the given radius along a path. Flat caps close its ends.
 [[nodiscard]] TriangleMesh make_tube_part(std::span<const Eigen::Vector3d> path, double radius, const PixelRect& region,
                                           int segments = 16);
 
@@ -72,11 +73,11 @@ struct BoxRegions {
 [[nodiscard]] TriangleMesh make_prism_part(std::span<const Eigen::Vector2d> polygon, double height,
                                            const PixelRect& side, const PixelRect& top, const PixelRect& bottom);
 
-/// The part moved; and the part scaled along the axes (factors > 0).
+/// Moves a part; scales a part along the axes (factors > 0).
 [[nodiscard]] TriangleMesh moved(TriangleMesh part, const Rigid3& target_from_part);
 [[nodiscard]] TriangleMesh scaled(TriangleMesh part, const Eigen::Vector3d& factors);
 
-/// Replaces the texture by one colour at all vertices.
+/// Replaces the texture by a uniform vertex colour.
 void make_plain(TriangleMesh& mesh, Rgb8 color);
 
 /// Moves the mesh so that its bounding box stands on z = 0, centred in x and y.

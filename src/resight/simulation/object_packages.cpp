@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Regions of the six sides of a box, in the order in which they are painted.
+// Allocates regions of the six sides of a box, in the order in which they are painted.
 BoxRegions allocate_box(TextureAtlas& atlas, const Vector3d& size_m) {
   const Vector3d mm = size_m * kMmPerM;
   BoxRegions r;
@@ -26,7 +26,7 @@ BoxRegions allocate_box(TextureAtlas& atlas, const Vector3d& size_m) {
   return r;
 }
 
-// Pixels per millimetre so that the unfolded box fills an atlas about 1000 px wide.
+// Pixels per millimetre such that the unfolded box fills an atlas of about 1000 px width.
 double box_scale(const Vector3d& size_m) {
   const double strip_mm = 2 * (size_m.x() + size_m.y()) * kMmPerM;
   return std::min(4.0, (1024.0 - 5 * 16) / strip_mm);
@@ -47,7 +47,7 @@ ProceduralObject make_package(const std::string& name, const Vector3d& size_m, c
   return object;
 }
 
-// A flat package lying on its back: the front is on top.
+// A flat package on its back, with the front on top.
 ProceduralObject make_lying_package(const std::string& name, const Vector3d& size_m, const TextureStyle& style) {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
@@ -70,7 +70,7 @@ void print_pages(TextureCanvas canvas, Rng rng) {
   }
 }
 
-// A book lying on its back cover, spine to the left (-x).
+// A book on its back cover, with the spine to the left (-x).
 ProceduralObject make_book(const std::string& name, const Vector3d& size_m, const TextureStyle& style) {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
@@ -104,7 +104,7 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
   print_back(atlas.canvas(r.bottom), style, 6);
   ProceduralObject object{name, make_box_part(box_size, r), {}, "textured"};
 
-  // The roof is a prism along x: its cross-section (y, z) is a triangle, so a prism along z is laid on its side.
+  // The roof is a prism along x with a triangular cross-section (y, z), so a prism along z is laid on its side.
   const double roof_length = std::hypot(width_m / 2, roof_height_m);
   const PixelRect roof = atlas.allocate((width_m + 2 * roof_length) * kMmPerM, width_m * kMmPerM);
   TextureCanvas roof_canvas = atlas.canvas(roof);

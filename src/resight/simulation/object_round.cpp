@@ -17,14 +17,14 @@ constexpr Rgb8 kSteel{188, 190, 195};
 
 using Profile = std::vector<Vector2d>;
 
-// A profile between two points with equal steps, so that triangles stay compact.
+// A straight profile between two points with equal steps, which keeps triangles compact.
 Profile straight(Vector2d from, Vector2d to, int steps) {
   Profile profile;
   for (int i = 0; i <= steps; ++i) profile.push_back(from + (to - from) * (static_cast<double>(i) / steps));
   return profile;
 }
 
-// A soft S between two points: horizontal tangents in radius at both ends.
+// A smooth S curve between two points; the radius has zero slope at both ends.
 Profile shoulder(Vector2d from, Vector2d to, int steps) {
   Profile profile;
   for (int i = 0; i <= steps; ++i) {
@@ -46,7 +46,7 @@ void add_print_ring(TextureCanvas canvas, const TextureStyle& style, std::uint64
   canvas.text_in_box(0.6 * r, 0.85 * r, 0.8 * r, 0.3 * r, std::to_string(1000 + rng.below(9000)), {60, 60, 66});
 }
 
-// A tin: label around, steel rims and lids.
+// A tin with a label around it, steel rims and lids.
 ProceduralObject make_can(const std::string& name, double radius_m, double height_m, const TextureStyle& style,
                           const std::string& kind = "textured") {
   constexpr double kRim = 0.004;
@@ -112,7 +112,7 @@ struct CupShape {
   double bottom_radius_m, top_radius_m, height_m, wall_m;
 };
 
-// Outside, rim, inside, bottom of a cup or bowl. `outside` is wrapped around it.
+// Outside, rim, inside and bottom of a cup or bowl. `outside` is wrapped around it.
 TriangleMesh make_cup_part(const CupShape& s, const PixelRect& outside, const PixelRect& inside) {
   TriangleMesh mesh = make_lathe_part(shoulder({s.top_radius_m, s.height_m}, {s.bottom_radius_m, 0}, 16), outside);
   mesh.append(make_disc_part(s.bottom_radius_m, 0, false, inside));
@@ -162,7 +162,7 @@ ProceduralObject make_bowl() {
   return object;
 }
 
-// An upright rotation body that is also the same upside down.
+// Symmetries of an upright body of revolution that is the same upside down.
 ObjectSymmetries cylinder_symmetries(double height_m) {
   ObjectSymmetries symmetries;
   symmetries.continuous.push_back({});

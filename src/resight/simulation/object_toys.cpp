@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 BoxRegions same_regions(const PixelRect& r) { return {r, r, r, r, r, r}; }
 
-// A body of boxes, wheels, stickers on all sides. The car drives to +x.
+// A body of boxes with wheels and stickers on all sides. The car drives to +x.
 ProceduralObject make_toy_car() {
   const TextureStyle style{"TURBO", "7", 48, 3131};
   TextureAtlas atlas(1024, 3.0);
@@ -81,7 +81,7 @@ ProceduralObject make_duck() {
   const PixelRect head = atlas.allocate(160, 80);
   TextureCanvas head_canvas = atlas.canvas(head);
   head_canvas.fill(hsv_color(52, 0.8, 0.97));
-  for (const double x : {92.0, 148.0}) {  // eyes, left and right of the beak (which points to +x, 3/4 around)
+  for (const double x : {92.0, 148.0}) {  // eyes left and right of the beak (which points to +x, 3/4 around)
     head_canvas.disc(x, 30, 8, {250, 250, 250});
     head_canvas.disc(x, 31, 4.5, {20, 20, 25});
   }
@@ -203,7 +203,7 @@ ProceduralObject make_sponge() {
   return object;
 }
 
-// The three half turns of a block standing on z = 0.
+// The three half turns of a block on z = 0.
 ObjectSymmetries block_symmetries(double height_m) {
   ObjectSymmetries symmetries;
   const Rigid3 up = Rigid3::from_translation({0, 0, height_m / 2});

@@ -17,7 +17,7 @@ struct DemoPlace {
   double x_m, y_m, yaw_deg;
 };
 
-// The desk from the left to the right. Spots leave room for the seeded shifts.
+// The desk from left to right. The gaps leave room for the shifts by the seed.
 constexpr std::array<DemoPlace, 10> kDemoKnown{{{"cereal_red", -0.42, 0.16, 25},
                                                 {"novel", -0.45, -0.16, 35},
                                                 {"soup_tomato", -0.22, 0.06, 10},

@@ -9,10 +9,10 @@
 
 namespace resight {
 
-/// The scene of `resight demo`: a desk in a room with ten known objects (one plain, one symmetric) and three unknown
-/// ones, monitor and keyboard; 12 views over 120 deg at 0.9 to 1.3 m; five changes in between: two objects are moved,
-/// one is removed, one is added and later removed. `seed` shifts and turns the objects a little; it says nothing about
-/// the sensor.
+/// Makes the scene of `resight demo`: a desk in a room with ten known objects (one untextured, one symmetric), three
+/// unknown ones, a monitor and a keyboard. 12 views cover 120 deg at 0.9 to 1.3 m. There are five changes: two objects
+/// are moved, one is removed, and one is added and later removed. `seed` shifts and rotates the objects slightly; it
+/// does not affect the sensor.
 [[nodiscard]] SceneScript make_demo_scene(std::uint64_t seed = 1);
 
 struct RandomTabletopOptions {
@@ -29,13 +29,14 @@ struct RandomTabletopOptions {
   void check() const;
 };
 
-/// A table in a room with objects at random places that do not overlap, and changes. The same script for the same seed
-/// and options. Fewer objects than asked for stand there if the table is full (see SceneScript.objects).
+/// Makes a table in a room with objects at random places that do not overlap, and changes. Equal seeds and options give
+/// equal scripts. If the table is full, it has fewer objects than requested (see SceneScript.objects).
 [[nodiscard]] SceneScript make_random_tabletop(std::uint64_t seed, const RandomTabletopOptions& options = {});
 
-/// "demo", "tabletop", "crowded" (closely packed, much occlusion), "twins" (alike objects side by side), "plain"
-/// (objects without print). An error for an unknown name, which lists the known ones.
+/// Names of the preset scenes: "demo", "tabletop", "crowded" (closely packed, much occlusion), "twins" (similar objects
+/// side by side), "plain" (untextured objects).
 [[nodiscard]] const std::vector<std::string>& preset_scene_names();
+/// Makes a preset scene. The error for an unknown name lists the known names.
 [[nodiscard]] Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed = 1);
 
 }  // namespace resight

@@ -10,22 +10,22 @@
 
 namespace resight {
 
-/// A household object drawn by a program: metres, origin at the bottom centre, +z up, front to -y.
+/// A household object drawn by a program. Metres; origin at the bottom centre, +z up, front at -y.
 struct ProceduralObject {
   std::string name;
   TriangleMesh mesh;
   ObjectSymmetries symmetries;
-  std::string kind;  ///< "textured", "plain" (no print) or "twin" (as another one but for its print).
+  std::string kind;  ///< "textured", "plain" (untextured) or "twin" (differs from another object only in its texture).
 };
 
-/// Names of all objects, in a fixed order: boxes, cans, bottles, crockery, books, toys and others. Twins
-/// (cereal_red / cereal_blue, soup_tomato / soup_pea) have the same shape; plain ones have no texture, and symmetries.
+/// Names of all objects in a fixed order: boxes, cans, bottles, crockery, books, toys and others. Twins (cereal_red /
+/// cereal_blue, soup_tomato / soup_pea) have the same shape. Objects of kind "plain" have no texture, but symmetries.
 [[nodiscard]] const std::vector<std::string>& procedural_object_names();
 
-/// Draws one object: the same bytes each time. An error for an unknown name, which lists the known ones.
+/// Draws one object with the same bytes each time. The error for an unknown name lists the known names.
 [[nodiscard]] Result<ProceduralObject> make_procedural_object(std::string_view name);
 
-/// All objects, in the order of their names.
+/// Draws all objects in the order of their names.
 [[nodiscard]] std::vector<ProceduralObject> procedural_objects(int num_threads = 1);
 
 }  // namespace resight

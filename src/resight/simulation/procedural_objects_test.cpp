@@ -55,7 +55,7 @@ TEST(ProceduralObjects, AreManyRealisticAndStandOnTheirOrigin) {
     const float size = (b.high - b.low).maxCoeff();
     EXPECT_GT(size, 0.05F);
     EXPECT_LE(size, 0.31F);
-    EXPECT_LT((b.low + b.high).head<2>().norm(), 0.05F);  // handles stick out on one side
+    EXPECT_LT((b.low + b.high).head<2>().norm(), 0.05F);  // handles extend to one side
     EXPECT_GE(o.mesh.faces.size(), 1400U);
     EXPECT_LE(o.mesh.faces.size(), 20000U);
     EXPECT_EQ(o.mesh.normals.size(), o.mesh.vertices.size());
@@ -95,7 +95,7 @@ TEST(ProceduralObjects, TwinsDifferOnlyInPrint) {
   }
 }
 
-// Rays from all around meet front faces first: closed where it can be seen, and wound outwards.
+// Rays from all around hit front faces first: the visible surface is closed and its faces are wound outwards.
 void expect_outward(const TriangleMesh& mesh) {
   RaycastScene scene;
   scene.add_instance(scene.add_mesh(mesh), Rigid3::identity());
@@ -155,7 +155,7 @@ TEST(ProceduralObjects, SymmetriesMapThemOntoThemselves) {
     Rng rng(12);
     int compared = 0;
     for (const Rigid3& motion : enumerate_symmetries(o.symmetries, 1.0)) {
-      // The same ray before and after the motion runs the same way.
+      // Equal rays before and after the motion have equal lengths.
       for (int i = 0; i < 60; ++i) {
         const Eigen::Vector3d origin = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
         const Eigen::Vector3d target =
@@ -164,7 +164,7 @@ TEST(ProceduralObjects, SymmetriesMapThemOntoThemselves) {
         const RayHit one = scene.cast({origin.cast<float>(), direction.cast<float>()});
         const RayHit other = scene.cast({(motion * origin).cast<float>(), (motion.rotation * direction).cast<float>()});
         if (!one.has_hit() || !other.has_hit()) continue;
-        // A ray through the bowl's rim may just miss it on the other side: polygons of 64 sides.
+        // on the other side, a ray through the rim of the bowl may miss it, because polygons have 64 sides
         compared += std::abs(one.distance - other.distance) < 1e-3F;
         EXPECT_LT(std::abs(one.distance - other.distance), 0.1F);
       }
@@ -175,7 +175,7 @@ TEST(ProceduralObjects, SymmetriesMapThemOntoThemselves) {
 }
 
 TEST(ProceduralObjects, ThoseCalledAsymmetricAreNot) {
-  // A half turn about z changes the mug's shape (handle) and the cereal's print.
+  // A half turn about z changes the shape of the mug (handle) and the texture of the cereal box.
   const auto mug = make_procedural_object("plain_mug");
   EXPECT_TRUE(mug->symmetries.none());
   const KdTree tree(mug->mesh.vertices);

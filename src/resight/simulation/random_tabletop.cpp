@@ -15,11 +15,11 @@ namespace {
 
 constexpr int kPlaceAttempts = 300;
 constexpr double kMinMove_m = 0.12;
-const Eigen::Vector2d kHalfArea(0.56, 0.33);  // Of the table top, where the cameras look.
+const Eigen::Vector2d kHalfArea(0.56, 0.33);  // Part of the table top that the cameras observe.
 
-// A laid-down or upright thing seen from above: the circle around its bounding box's centre.
+// The circle around the centre of the bounding box of an object seen from above, laid down or upright.
 struct Disc {
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();  // From the origin of the thing, before its yaw.
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  // From the origin of the object, before its yaw.
   double radius_m = 0;
 };
 
@@ -39,7 +39,7 @@ struct TabletopObject {
   double roll_rad = 0;
   Disc disc;
   bool present = false;
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // Of the disc's centre, table frame.
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  // Centre of the disc, table frame.
 };
 
 class TabletopBuilder {
@@ -49,8 +49,8 @@ class TabletopBuilder {
   SceneScript build() {
     build_room();
     const int num_added = count_additions();
-    choose_things(options_.models.empty() ? procedural_object_names() : options_.models,
-                  options_.num_known + num_added, true);
+    choose_things(options_.models.empty() ? procedural_object_names() : options_.models, options_.num_known + num_added,
+                  true);
     choose_things(distractor_names(), options_.num_distractors, false);
     place_at_start(num_added);
     for (int i = 0; i < options_.num_changes; ++i) {
@@ -76,9 +76,8 @@ class TabletopBuilder {
     script_.lighting.lamp_in_world_m.y() = rng_.uniform(-1.5, 1.5);
   }
 
-  [[nodiscard]] int count_additions() const {
-    return (options_.num_changes + 0) / 3;
-  }  // every third change: index 2, 5, ..
+  // Every third change is an addition: index 2, 5, ...
+  [[nodiscard]] int count_additions() const { return (options_.num_changes + 0) / 3; }
 
   void choose_things(std::vector<std::string> names, int count, bool known) {
     rng_.shuffle(names);
@@ -94,7 +93,7 @@ class TabletopBuilder {
     }
   }
 
-  // The last `num_added` known things wait for their entrance.
+  // The last `num_added` known objects are added later.
   void place_at_start(int num_added) {
     std::vector<TabletopObject> kept;
     int index = 0;
@@ -132,7 +131,7 @@ class TabletopBuilder {
     script_.changes.push_back({view, kind == 0 ? ChangeKind::kMoved : ChangeKind::kAdded, thing.key, *place});
   }
 
-  // A free place for the thing, which is updated; nullopt if none is found.
+  // Finds a free place and updates the object; nullopt if there is none.
   std::optional<Placement> find_place(TabletopObject& thing, bool away_from_old) {
     for (int attempt = 0; attempt < kPlaceAttempts; ++attempt) {
       const double r = thing.disc.radius_m;

@@ -24,10 +24,10 @@ using Eigen::Vector3d;
 
 constexpr double kTableHeightM = 0.74;
 constexpr double kMinCameraDistance_m = 0.6;
-constexpr double kDiscMarginM = 0.035;  // of the turntable around the object
+constexpr double kDiscMarginM = 0.035;  // margin of the turntable around the object
 constexpr double kMinDiscRadiusM = 0.10;
 
-// The object as it was put down: standing on z = 0, its bounding box `off_axis_m` from the z axis.
+// The placed object: it stands on z = 0 with its bounding box `off_axis_m` from the z axis.
 struct PutDown {
   Rigid3 stand_from_object;
   double height_m = 0;
@@ -54,7 +54,7 @@ PutDown put_down(const TriangleMesh& mesh, const RecordingOptions& options, Rng&
   return result;
 }
 
-// A grey disc standing on z = 0, a little worn: its print is next to nothing.
+// A grey, slightly worn disc on z = 0, with almost no texture.
 TriangleMesh make_turntable_disc(double radius_m, double height_m, std::uint64_t seed) {
   TextureAtlas atlas(1024, std::min(2.0, 450 / (radius_m * 1000)));
   const PixelRect top = atlas.allocate(2000 * radius_m, 2000 * radius_m);
@@ -77,7 +77,7 @@ Rigid3 on_table(double x_m, double y_m, double yaw_deg) {
          Rigid3::from_axis_angle(Vector3d::UnitZ(), radians(yaw_deg));
 }
 
-// All that does not move. Things that stand up are kept behind the turntable, so that nothing hides the object.
+// Adds all static things. Upright ones stand behind the turntable, so that nothing hides the object.
 void furnish(RaycastScene& scene, const RecordingOptions& options, double disc_radius_m) {
   const std::uint64_t seed = Rng::stream(options.seed, 100).next();
   add(scene, make_room({5.0, 5.0, 2.6}, seed), Rigid3::identity());
@@ -93,10 +93,10 @@ void furnish(RaycastScene& scene, const RecordingOptions& options, double disc_r
 
 struct Stage {
   RaycastScene scene;
-  int disc = -1;  // Instance; -1 = there is none.
+  int disc = -1;  // instance; -1 if there is none
   int object = -1;
   PutDown put;
-  double ground_m = kTableHeightM;  // What the object stands on.
+  double ground_m = kTableHeightM;  // height of the ground below the object
   double distance_m = 0;
 };
 
@@ -118,7 +118,7 @@ Stage build_stage(const TriangleMesh& mesh, const RecordingOptions& options) {
   return stage;
 }
 
-// Where the camera is after a turn by `angle_rad` of the walk (0 on a turntable). Nobody walks in a perfect circle.
+// Camera pose after a walk by `angle_rad` (0 on a turntable). The walk is not a perfect circle.
 Rigid3 place_camera(const Stage& stage, const RecordingOptions& options, double angle_rad) {
   const bool walks = options.kind == RecordingKind::kWalk;
   const double wave = walks ? std::sin(3 * angle_rad) : 0;
@@ -162,7 +162,7 @@ RecordedView record_view(Stage& stage, const RecordingOptions& options, int inde
   return view;
 }
 
-// The share of the object's pixels is not worth a second rendering: nothing hides it.
+// The visible share needs no second rendering, because nothing hides the object.
 Result<void> write_side(const ProceduralObject& object, const std::filesystem::path& directory, DatasetFormat format,
                         const RecordingOptions& options) {
   auto writer = create_sequence(directory, format);

@@ -14,10 +14,10 @@
 
 namespace resight {
 
-/// How an object is recorded to make a model of it.
+/// How an object is recorded for modelling.
 enum class RecordingKind : std::uint8_t {
-  kTurntable,  ///< It turns on a disc before a camera that stands still, and so does all behind it.
-  kWalk,       ///< It stands still, and the camera is carried around it.
+  kTurntable,  ///< The object turns on a disc in front of a static camera and background.
+  kWalk,       ///< The object is static, and the camera is carried around it.
 };
 
 struct RecordingOptions {
@@ -34,22 +34,22 @@ struct RecordingOptions {
   void check() const;
 };
 
-/// A view of a recording and the truth about it.
+/// A view of a recording with its ground truth.
 struct RecordedView {
-  RgbdFrame frame;  ///< Its pose is the identity: nobody has told the sensor where it is.
+  RgbdFrame frame;  ///< Its pose is the identity, because the sensor does not know its pose.
   Rigid3 camera_from_object;
-  Image<std::uint8_t> mask;  ///< Non-zero = the object is what the pixel's centre sees.
+  Image<std::uint8_t> mask;  ///< Non-zero where the centre of the pixel shows the object.
 };
 
-/// Records an object (metres, +z up) on a table in a room with printed walls and things on the table: what does not
-/// turn with the object has more print than the object. The turntable itself has next to none.
+/// Records an object (metres, +z up) on a table, in a room with textured walls and other objects on the table. Things
+/// that do not turn with the object have more texture than the object, and the turntable has almost none.
 [[nodiscard]] std::vector<RecordedView> simulate_recording(const TriangleMesh& mesh,
                                                            const RecordingOptions& options = {});
 
-/// Records both sides of an object (the second with `upside_down`, put down anew) as two sequences and writes
-/// `directory`/side_1/ and side_2/, each with camera_from_object as the ground truth of its format, and
-/// truth/<name>.ply, the mesh in the object frame. The folder must not exist or be empty; it appears when it is
-/// complete. `progress` is called after each side.
+/// Records both sides of an object (the second with `upside_down`, placed anew) as two sequences. Writes
+/// `directory`/side_1/ and side_2/, each with camera_from_object as ground truth in its format, and truth/<name>.ply,
+/// the mesh in the object frame. The folder must be missing or empty, and appears when it is complete. `progress` is
+/// called after each side.
 [[nodiscard]] Result<void> write_recordings(const ProceduralObject& object, const std::filesystem::path& directory,
                                             DatasetFormat format, RecordingOptions options = {},
                                             const std::function<void(const std::string&)>& progress = {});

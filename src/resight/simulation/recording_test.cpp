@@ -63,7 +63,7 @@ TEST(Recording, TruthPutsThePixelsOfTheObjectOnItsSurface) {
       int checked = 0;
       EXPECT_LT(off_surface(view, tree, checked), 0.004);
       EXPECT_GT(checked, 300);
-      // Seen from above the middle, whichever side is up.
+      // The camera is above the middle, independent of the side that is up.
       const Eigen::Vector3d eye = view.camera_from_object.inverse().translation;
       EXPECT_EQ(eye.z() > 0.1, !upside_down);
     }
@@ -75,7 +75,7 @@ TEST(Recording, OnATurntableOnlyTheObjectAndItsDiscMove) {
   RecordingOptions options = few_views();
   options.sensor.noise_free = true;
   const std::vector<RecordedView> turned = simulate_recording(mesh, options);
-  // A disc that turns looks the same to a depth camera, but for the corners of its rim.
+  // For a depth camera, a rotating disc is static except for the corners of its rim.
   EXPECT_LT(changed_pixels(turned[0], turned[1]), 40U);
   EXPECT_NE(turned[0].frame.color, turned[1].frame.color);
   options.num_threads = 1;

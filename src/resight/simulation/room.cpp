@@ -201,7 +201,7 @@ TriangleMesh make_room(const Vector3d& size_m, std::uint64_t seed) {
   r.bottom = wood_region(atlas, size_m.x(), size_m.y(), Rng::stream(seed, 2), tones, 180);
   r.top = atlas.solid({235, 235, 232});
   TriangleMesh room = make_box_part(size_m, r, 6);
-  // Seen from inside: turn the faces round.
+  // Flips the faces, because a room is seen from inside.
   for (auto& f : room.faces) std::swap(f[1], f[2]);
   for (auto& n : room.normals) n = -n;
   atlas.finish(room);

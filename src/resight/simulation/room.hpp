@@ -11,26 +11,26 @@
 
 namespace resight {
 
-/// A piece of furniture: metres, origin at the bottom centre, +z up, front to -y. Things stand on its levels.
+/// A piece of furniture. Metres; origin at the bottom centre, +z up, front at -y. Its levels support objects.
 struct Furniture {
   TriangleMesh mesh;
-  std::vector<double> level_heights_m;  ///< From the lowest to the highest; empty = nothing stands on it.
+  std::vector<double> level_heights_m;  ///< From the lowest to the highest; empty if it supports nothing.
 };
 
-/// Kinds: table, shelf (four boards), cabinet, monitor, keyboard, papers. `seed` varies colours and prints.
+/// Kinds: table, shelf (four boards), cabinet, monitor, keyboard, papers.
 [[nodiscard]] const std::vector<std::string>& furniture_kinds();
 
-/// Draws a piece of furniture of the given outer size. An error for an unknown kind, which lists the known ones; throws
-/// std::invalid_argument for a size that is not positive.
+/// Draws a piece of furniture of the given outer size. `seed` varies colours and textures. The error for an unknown
+/// kind lists the known kinds. Throws std::invalid_argument for a size that is not positive.
 [[nodiscard]] Result<Furniture> make_furniture(std::string_view kind, const Eigen::Vector3d& size_m,
                                                std::uint64_t seed);
 
-/// Floor at z = 0, ceiling and four walls with pictures, centred in x and y.
+/// Draws a floor at z = 0, a ceiling and four walls with pictures, centred in x and y.
 [[nodiscard]] TriangleMesh make_room(const Eigen::Vector3d& size_m, std::uint64_t seed);
 
-/// Names of things that belong to no library: vase, lamp, plant, speaker, globe, pyramid, basket, thermos.
+/// Names of objects that belong to no library: vase, lamp, plant, speaker, globe, pyramid, basket, thermos.
 [[nodiscard]] const std::vector<std::string>& distractor_names();
-/// Draws one of them, of kind "distractor". An error for an unknown name.
+/// Draws one of them, with kind "distractor". Fails for an unknown name.
 [[nodiscard]] Result<ProceduralObject> make_distractor(std::string_view name);
 
 }  // namespace resight

@@ -24,7 +24,7 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
-// Walks through the script in the order of time and keeps track of what is there.
+// Follows the script in order of time and tracks the objects that are present.
 class ScriptChecker {
  public:
   explicit ScriptChecker(const SceneScript& script) : script_(script) {}
@@ -144,7 +144,7 @@ class ScriptChecker {
 
   const SceneScript& script_;
   std::set<std::string> keys_, present_, furniture_, objects_;
-  std::map<std::string, std::string> support_of_;  // Of the objects that are there.
+  std::map<std::string, std::string> support_of_;  // of the objects that are present
 };
 
 }  // namespace

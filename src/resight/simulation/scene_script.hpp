@@ -12,16 +12,16 @@
 
 namespace resight {
 
-/// Where a thing stands: on a support (furniture or another object), or at a full pose.
+/// Placement of an object: on a support (furniture or another object), or at a full pose.
 struct Placement {
-  std::string support;  ///< Key of what it stands on; empty = the floor. Its lowest point touches the support.
-  int level = -1;       ///< Board of a piece of furniture, from below; -1 = the highest.
-  double x_m = 0;       ///< Of its origin from the support's centre, along the support's own axes.
+  std::string support;  ///< Key of the support; empty = the floor. The lowest point of the object touches the support.
+  int level = -1;       ///< Board of a piece of furniture, counted from below; -1 = the highest.
+  double x_m = 0;  ///< Position of the origin relative to the centre of the support, along the axes of the support.
   double y_m = 0;
   double yaw_rad = 0;                       ///< About +z, relative to the support; applied last.
-  double pitch_rad = 0;                     ///< About y, applied second: tilts.
-  double roll_rad = 0;                      ///< About x, applied first: lays down.
-  std::optional<Rigid3> world_from_object;  ///< If set, all of the above is ignored.
+  double pitch_rad = 0;                     ///< About y, applied second: tilts the object.
+  double roll_rad = 0;                      ///< About x, applied first: lays the object down.
+  std::optional<Rigid3> world_from_object;  ///< If set, all other fields are ignored.
 };
 
 struct FurnitureScript {
@@ -33,43 +33,44 @@ struct FurnitureScript {
 
 struct ObjectScript {
   std::string key;             ///< Unique; names the instance in changes.
-  std::string model;           ///< Of procedural_object_names() or distractor_names(), or any name if `mesh` is set.
-  std::filesystem::path mesh;  ///< Mesh file (metres, +z up) in place of a procedural object.
-  bool known = true;           ///< In the library. Distractors never are.
-  std::optional<Placement> start;  ///< Absent = not there until added.
+  std::string model;           ///< From procedural_object_names() or distractor_names(), or any name if `mesh` is set.
+  std::filesystem::path mesh;  ///< Mesh file (metres, +z up) instead of a procedural object.
+  bool known = true;           ///< Whether the object is in the library. Distractors never are.
+  std::optional<Placement> start;  ///< Absent if the object is added later.
 };
 
 enum class ChangeKind { kAdded, kMoved, kRemoved };
 [[nodiscard]] std::string_view to_string(ChangeKind kind);
 
-/// Takes effect before the given view is seen.
+/// A change that takes effect before the given view.
 struct ChangeScript {
   int view = 0;
   ChangeKind kind = ChangeKind::kMoved;
   std::string object;   ///< Key.
-  Placement placement;  ///< The new place; without meaning for kRemoved.
+  Placement placement;  ///< The new place; unused for kRemoved.
 };
 
-/// A scene, the way of the camera through it, and what happens meanwhile.
+/// A scene, the path of the camera, and the changes.
 struct SceneScript {
   std::string name = "scene";
-  std::optional<Eigen::Vector3d> room_size_m = Eigen::Vector3d(5.0, 5.0, 2.6);  ///< nullopt = no room.
+  std::optional<Eigen::Vector3d> room_size_m = Eigen::Vector3d(5.0, 5.0, 2.6);  ///< nullopt = no room
   std::vector<FurnitureScript> furniture;
   std::vector<ObjectScript> objects;
   std::vector<ChangeScript> changes;
   Camera camera = make_kinect_camera();
-  std::vector<Rigid3> world_from_camera;  ///< One a view.
+  std::vector<Rigid3> world_from_camera;  ///< One per view.
   SensorOptions sensor;
   Lighting lighting;
 };
 
-/// Cameras on an arc around `center_m`, all looking at it. Angles from +x towards +y; -90 deg is in front of the
-/// furniture.
+/// Cameras on an arc around `center_m`, all looking at it. Angles increase from +x towards +y; -90 deg is in front of
+/// the furniture.
 struct OrbitScript {
   Eigen::Vector3d center_m = Eigen::Vector3d(0, 0, 0.8);
-  double radius_m = 1.0;                    ///< Horizontal distance at the first view.
-  double height_m = 0.6;                    ///< Above the centre at the first view.
-  std::optional<double> end_radius_m = {};  ///< At the last view; in between they change evenly. Absent = the same.
+  double radius_m = 1.0;  ///< Horizontal distance at the first view.
+  double height_m = 0.6;  ///< Above the centre, at the first view.
+  /// At the last view, with linear interpolation in between. Absent = constant.
+  std::optional<double> end_radius_m = {};
   std::optional<double> end_height_m = {};
   double start_rad = -2.6179938779914944;  ///< -150 deg.
   double end_rad = -0.5235987755982988;    ///< -30 deg.
@@ -77,8 +78,8 @@ struct OrbitScript {
 };
 [[nodiscard]] std::vector<Rigid3> make_orbit(const OrbitScript& orbit);
 
-/// Keys are unique, supports and objects exist when they are used, changes make sense (a removed object was there,
-/// ...), there is a view. The error names the entry and the rule.
+/// Checks that keys are unique, supports and objects exist when they are used, changes are possible (a removed object
+/// was present, ...), and there is a view. The error names the entry and the rule.
 [[nodiscard]] Result<void> check_script(const SceneScript& script);
 
 /// Reads a scene from TOML (examples/scenes/ documents the keys). Errors name file, key and rule; unknown keys are

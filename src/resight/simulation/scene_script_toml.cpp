@@ -23,7 +23,7 @@ void read_vector(TomlFields& fields, const std::string& key, Eigen::Vector3d& ta
   if (const auto v = fields.read_numbers<3>(key)) target = Eigen::Vector3d((*v)[0], (*v)[1], (*v)[2]);
 }
 
-// A 4x4 matrix, row by row.
+// Reads a 4x4 matrix in row-major order.
 std::optional<Rigid3> read_pose(TomlFields& fields, const std::string& key) {
   const auto m = fields.read_numbers<16>(key);
   if (!m) return std::nullopt;
@@ -68,7 +68,7 @@ ObjectScript read_object(TomlFields& fields, const std::filesystem::path& folder
   if (mesh.empty()) {
     fields.require_key("model");
   } else {
-    o.mesh = folder / mesh;  // an absolute path stays as it is
+    o.mesh = folder / mesh;  // an absolute path stays unchanged
     if (o.model.empty()) o.model = o.mesh.stem().string();
   }
   o.key = o.model;
@@ -191,7 +191,7 @@ void read_scene(TomlFields& root, const std::filesystem::path& folder, SceneScri
   root.finish();
 }
 
-// Option checks throw, for callers; in a file the same mistake is the world's.
+// Option checks throw for mistakes of callers. In a file, the same mistake becomes an error.
 std::optional<Error> check_options(const SceneScript& script) {
   try {
     script.sensor.check();

@@ -123,7 +123,7 @@ class StateBuilder {
     return {};
   }
 
-  // The pose at which a thing of this mesh stands as the placement says.
+  // The pose that results from the placement of an object with this mesh.
   Result<Rigid3> resolve(const Placement& p, const TriangleMesh& mesh, const std::string& key) const {
     if (p.world_from_object) return *p.world_from_object;
     double top = 0;

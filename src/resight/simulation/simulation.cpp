@@ -16,21 +16,21 @@ namespace {
 
 using Role = SimulatedInstance::Role;
 
-// One of the two patterns that V4R's tools understand, and the one that sorts right beyond 100 views.
+// One of the two patterns that the tools of V4R understand. It also sorts correctly beyond 100 views.
 std::string view_name(int view) {
   char name[32];
   std::snprintf(name, sizeof name, "%05d", view);
   return name;
 }
 
-// Pixels of an object rendered alone: within the image, and within a canvas of three by three images around it.
+// Pixels of an object rendered alone, within the image and within a canvas of 3 x 3 images around it.
 struct Silhouette {
   std::size_t in_image = 0;
   std::size_t in_canvas = 0;
 };
 
 struct PixelBox {
-  int u0, v0, u1, v1;  // Inclusive.
+  int u0, v0, u1, v1;  // inclusive
 };
 
 PixelBox silhouette_box(const TriangleMesh& mesh, const Camera& camera, const Rigid3& camera_from_object) {
@@ -76,7 +76,7 @@ struct Simulation::Impl {
   std::uint64_t seed = 0;
   SimulationOptions options;
   RaycastScene scene;
-  std::vector<RaycastScene> alone;  // Each known object by itself, for its silhouette.
+  std::vector<RaycastScene> alone;  // each known object alone, for its silhouette
 
   void build_scenes() {
     std::map<const TriangleMesh*, int> mesh_ids;
@@ -118,7 +118,7 @@ struct Simulation::Impl {
     for (std::size_t i = 0; i < count; ++i) {
       if (silhouettes[i].in_image == 0) continue;
       const SimulatedInstance& instance = state.instances[i];
-      // A ray through a shared edge may go to either side: the share is clamped.
+      // A ray through a shared edge may hit either side, so the share is clamped.
       const double share =
           std::min(1.0, static_cast<double>(visible[i]) / static_cast<double>(silhouettes[i].in_canvas));
       result.ground_truth.push_back({instance.model, instance.object + 1, numbers[instance.model]++,

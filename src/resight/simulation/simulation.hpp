@@ -10,7 +10,7 @@
 
 namespace resight {
 
-/// What has happened before a view was seen.
+/// A change that occurred before a view.
 struct ScriptedEvent {
   int view = 0;
   ChangeKind kind = ChangeKind::kMoved;
@@ -21,19 +21,19 @@ struct ScriptedEvent {
   std::optional<Rigid3> world_from_object_after;   ///< Absent for kRemoved.
 };
 
-/// One view of the run, as a sensor delivers it, and the truth about it.
+/// One view of the simulation as a sensor delivers it, with its ground truth.
 struct SimulatedView {
   RgbdFrame frame;
-  /// The known objects whose silhouette touches the image, hidden or not, in the order of the script. visible_share is
-  /// BOP's visib_fract: visible pixels over the pixels of the object rendered alone, those beyond the image border
-  /// included.
+  /// The known objects whose silhouettes touch the image, hidden or not, in the order of the script. visible_share is
+  /// visib_fract of BOP: visible pixels divided by the pixels of the object rendered alone, including those outside the
+  /// image.
   std::vector<GroundTruthObject> ground_truth;
-  std::vector<int> ground_truth_instances;  ///< Index into Simulation::instances() of each.
-  Image<int> labels;  ///< Index into Simulation::instances() of what each pixel's centre sees; -1 = nothing.
-  std::vector<ScriptedEvent> events;  ///< Those that happened just before this view.
+  std::vector<int> ground_truth_instances;  ///< Index into Simulation::instances() of each object.
+  Image<int> labels;  ///< Index into Simulation::instances() of the thing at the centre of each pixel; -1 = nothing.
+  std::vector<ScriptedEvent> events;  ///< Events between the previous view and this one.
 };
 
-/// A thing of the scene: known object, distractor or furniture.
+/// A part of the scene: known object, distractor, furniture or room.
 struct SimulatedInstance {
   enum class Role { kRoom, kFurniture, kDistractor, kKnown };
   std::string key;
@@ -48,11 +48,11 @@ struct SimulationOptions {
   void check() const;
 };
 
-/// A scripted scene that can be looked at view by view. Views may be rendered in any order, each any number of times:
-/// the same bytes for the same script and seed, whatever the number of threads. One call at a time.
+/// A scripted scene that is rendered view by view. Views can be rendered in any order and repeatedly. The same script
+/// and seed give the same bytes for any number of threads. Calls must not overlap.
 class Simulation {
  public:
-  /// Builds all meshes. The error names what of the script is wrong, or the mesh file that cannot be read.
+  /// Builds all meshes. The error names the mistake in the script, or the mesh file that cannot be read.
   [[nodiscard]] static Result<Simulation> create(SceneScript script, std::uint64_t seed,
                                                  const SimulationOptions& options = {});
   ~Simulation();
@@ -62,15 +62,16 @@ class Simulation {
   [[nodiscard]] const SceneScript& script() const;
   [[nodiscard]] int num_views() const;
   [[nodiscard]] const std::vector<SimulatedInstance>& instances() const;
-  /// The known objects of the script, each once, in order of name; bop_id = index + 1.
+  /// The known objects of the script, one entry per model, in order of name; bop_id = index + 1.
   [[nodiscard]] const std::vector<ProceduralObject>& library() const;
   /// All events, in order.
   [[nodiscard]] const std::vector<ScriptedEvent>& events() const;
-  /// Where an instance is during a view; absent = it is not there.
+  /// Pose of an instance during a view; absent if it is not in the scene.
   [[nodiscard]] const std::optional<Rigid3>& world_from_instance(int instance, int view) const;
-  /// Number that grows each time the instance is put anywhere: one chain of `.changes` per instance and placement.
+  /// A number that increases with each placement of the instance. `.changes` has one chain per instance and placement.
   [[nodiscard]] int placement_number(int instance, int view) const;
 
+  /// Renders a view. Throws std::invalid_argument if it does not exist.
   [[nodiscard]] SimulatedView render_view(int view);
 
  private:

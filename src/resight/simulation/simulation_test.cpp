@@ -29,7 +29,7 @@ Simulation create(SceneScript script, std::uint64_t seed = 1, int num_threads = 
   return std::move(*simulation);
 }
 
-// Two equal boxes one behind the other, seen from the front without perspective to speak of.
+// Two equal boxes, one behind the other, seen from the front almost without perspective.
 SceneScript half_hidden() {
   SceneScript script;
   script.room_size_m.reset();
@@ -45,11 +45,11 @@ TEST(Simulation, HalfHiddenBoxIsHalfVisible) {
   Simulation simulation = create(half_hidden());
   const SimulatedView view = simulation.render_view(0);
   ASSERT_EQ(view.ground_truth.size(), 2U);
-  // The front box covers x from 0 to 0.15 (at 0.2 m less distance) of the back one's -0.075..0.075.
+  // The front box covers x from 0 to 0.15 (at a distance smaller by 0.2 m) of -0.075..0.075 of the back box.
   EXPECT_NEAR(view.ground_truth[0].visible_share, 0.5, 0.02);
   EXPECT_DOUBLE_EQ(view.ground_truth[1].visible_share, 1.0);
   EXPECT_EQ(view.ground_truth[0].instance, 0);
-  EXPECT_EQ(view.ground_truth[1].instance, 1);  // two of one name
+  EXPECT_EQ(view.ground_truth[1].instance, 1);  // two objects of one model
   const Rigid3 expected =
       simulation.script().world_from_camera[0].inverse() * Rigid3::from_translation({0.075, -0.2, 0});
   EXPECT_LT((view.ground_truth[1].camera_from_object.translation - expected.translation).norm(), 1e-12);
@@ -61,7 +61,7 @@ TEST(Simulation, ObjectCutByTheBorderIsPartlyVisibleAndOneOutsideIsAbsent) {
   Simulation simulation = create(script);
   const SimulatedView view = simulation.render_view(0);
   ASSERT_EQ(view.ground_truth.size(), 1U);
-  // At 9.945 m the image's border (200 px right of the centre) lies at x = 0.2486 m; the box's front spans
+  // At 9.945 m, the image border (200 px right of the centre) is at x = 0.2486 m. The front of the box extends over
   // 0.175..0.325.
   EXPECT_NEAR(view.ground_truth[0].visible_share, (0.2486 - 0.175) / 0.15, 0.02);
 }
@@ -118,7 +118,7 @@ TEST(Simulation, ThingsTouchTheirSupport) {
   }
 }
 
-// Footprints (convex hulls of the vertices, seen from above) that overlap have no separating line along any of 90
+// Overlapping footprints (convex hulls of the vertices seen from above) have no separating line along any of 90
 // directions.
 bool footprints_overlap(const TriangleMesh& a, const Rigid3& pose_a, const TriangleMesh& b, const Rigid3& pose_b) {
   const auto range = [](const TriangleMesh& mesh, const Rigid3& pose, const Eigen::Vector2d& axis) {
@@ -198,8 +198,8 @@ TEST(Presets, DemoIsWhatItPromises) {
     for (const auto& g : views.back().ground_truth) occluded += g.visible_share < 0.9;
   }
   EXPECT_GT(occluded, 5);
-  // The place that an object has left is seen afterwards: the rays through its old centre go on to what lies behind,
-  // and most of its old silhouette is not covered by something nearer.
+  // The former place of an object becomes visible: rays through its old centre reach the background, and nearer things
+  // do not cover most of its old silhouette.
   for (const ScriptedEvent& e : simulation.events()) {
     if (!e.world_from_object_before) continue;
     int seen_through = 0;

@@ -46,7 +46,7 @@ PointCloud sample_visible_surface(const TriangleMesh& mesh, double spacing_m) {
   const std::vector<Eigen::Vector3f> directions = sphere_directions();
   Rng rng(1);
   PointCloud cloud;
-  double owed = 0;  // Samples that small faces were too small for.
+  double owed = 0;  // samples carried over from faces smaller than one sample
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     const auto& f = mesh.faces[face];
     const Eigen::Vector3f a = mesh.vertices[f[0]], b = mesh.vertices[f[1]], c = mesh.vertices[f[2]];

@@ -5,8 +5,8 @@
 
 namespace resight {
 
-/// Points on those parts of a mesh that can be seen from outside, one per cube of side `spacing_m`, with outward
-/// normals and colours: a complete model as scanners deliver it. Deterministic.
+/// Samples the parts of a mesh that are visible from outside, one point per cube of side `spacing_m`, with outward
+/// normals and colours. The result resembles a complete scanned model. Deterministic.
 [[nodiscard]] PointCloud sample_visible_surface(const TriangleMesh& mesh, double spacing_m = 0.002);
 
 }  // namespace resight

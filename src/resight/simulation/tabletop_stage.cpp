@@ -48,7 +48,7 @@ class Furnisher {
     script_.furniture.push_back({key, kind, size_m, p});
   }
 
-  // On the first surface, which then has no room there.
+  // Adds an obstacle on the first surface, whose area is no longer free.
   void add_obstacle(const std::string& kind, const Vector3d& size_m, const Vector2d& at_m, double yaw_rad) {
     add_furniture(kind, kind, size_m, stage_.surfaces[0].support, at_m, yaw_rad);
     stage_.surfaces[0].obstacles.push_back({at_m, 0.5 * size_m.head<2>(), yaw_rad});
@@ -57,7 +57,7 @@ class Furnisher {
   void add_papers(int count) {
     for (int i = 0; i < count; ++i) {
       const Vector2d at(rng_.uniform(-0.5, 0.5), rng_.uniform(-0.25, 0.1));
-      // So thin that things may stand on it.
+      // Papers are so thin that objects may stand on them.
       add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, stage_.surfaces[0].support, at,
                     rng_.uniform(-std::numbers::pi, std::numbers::pi));
     }

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Polylines on a 4 x 6 grid (x right, y down), as pairs of digits; '|' lifts the pen.
+// Polylines on a 4 x 6 grid (x right, y down) as pairs of digits; '|' lifts the pen.
 constexpr std::array<std::string_view, 26> kLetters = {"06 20 46|14 34",
                                                        "00 06 36 45 44 33 03|00 30 41 42 33",
                                                        "41 30 10 01 05 16 36 45",
@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 10> kDigits = {
     "01 10 30 41 42 33 13|33 44 45 36 16 05", "36 30 04 44",    "40 00 03 33 44 45 36 16 05",
     "41 30 10 01 05 16 36 45 44 33 03",       "00 40 16",       "13 02 01 10 30 41 42 33 13 04 05 16 36 45 44 33",
     "43 13 02 01 10 30 41 45 36 16 05"};
-constexpr double kAdvance = 5.6 / 6.0;  // Pen step from letter to letter, in heights.
+constexpr double kAdvance = 5.6 / 6.0;  // advance per letter, relative to the height
 
 std::string_view glyph(char c) {
   if (c >= 'A' && c <= 'Z') return kLetters[c - 'A'];
@@ -77,7 +77,7 @@ double segment_distance(const Vector2d& p, const Vector2d& a, const Vector2d& b)
   return (p - a - t * ab).norm();
 }
 
-// Negative inside.
+// Signed distance; negative inside.
 double polygon_distance(const Vector2d& p, std::span<const Vector2d> corners) {
   double nearest = std::numeric_limits<double>::infinity();
   bool inside = false;
@@ -174,7 +174,7 @@ void TextureCanvas::ellipse(double x, double y, double radius_x, double radius_y
   paint(x - reach, y - reach, x + reach, y + reach, color, [&](const Vector2d& p) {
     const Vector2d d = p - Vector2d(x, y);
     const Vector2d q((c * d.x() + s * d.y()) / radius_x, (-s * d.x() + c * d.y()) / radius_y);
-    return (q.norm() - 1) * std::min(radius_x, radius_y);  // exact on the outline, where it matters
+    return (q.norm() - 1) * std::min(radius_x, radius_y);  // exact on the outline
   });
 }
 

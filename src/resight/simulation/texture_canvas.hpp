@@ -16,8 +16,8 @@ struct PixelRect {
   int height = 0;
 };
 
-/// Draws anti-aliased shapes into a rectangle of an image. Coordinates are millimetres on the printed surface, origin
-/// at the rectangle's top left, y down. Nothing is drawn outside of the rectangle.
+/// Draws anti-aliased shapes into a rectangle of an image. Coordinates are millimetres on the surface, with the origin
+/// at the top left of the rectangle and y down. Nothing is drawn outside the rectangle.
 class TextureCanvas {
  public:
   /// `image` must outlive the canvas.
@@ -25,27 +25,28 @@ class TextureCanvas {
 
   [[nodiscard]] double width() const { return rect_.width / scale_; }    ///< mm
   [[nodiscard]] double height() const { return rect_.height / scale_; }  ///< mm
-  /// A canvas for a part of this one, mm.
+  /// A canvas for a part of this one, in mm.
   [[nodiscard]] TextureCanvas part(double x, double y, double width, double height) const;
 
   void fill(Rgb8 color);
-  /// From `top` to `bottom`.
+  /// Fills the canvas with a vertical gradient from `top` to `bottom`.
   void gradient(Rgb8 top, Rgb8 bottom);
   void rect(double x, double y, double width, double height, Rgb8 color);
   void rounded_rect(double x, double y, double width, double height, double radius, Rgb8 color);
   void disc(double x, double y, double radius, Rgb8 color);
   void ring(double x, double y, double radius, double thickness, Rgb8 color);
   void ellipse(double x, double y, double radius_x, double radius_y, double angle_rad, Rgb8 color);
-  /// A line with round ends.
+  /// Draws a line with round ends.
   void line(double x0, double y0, double x1, double y1, double thickness, Rgb8 color);
-  /// Convex or star-shaped about its centroid or not: any simple polygon.
+  /// Fills any simple polygon.
   void polygon(std::span<const Eigen::Vector2d> corners, Rgb8 color);
   void star(double x, double y, double outer_radius, double inner_radius, int points, double angle_rad, Rgb8 color);
-  /// Parallel stripes over the whole canvas, of `period` mm, half of it coloured.
+  /// Draws parallel stripes over the whole canvas with a period in mm. Half of each period is coloured.
   void stripes(double period, double angle_rad, Rgb8 color);
-  /// Capital letters, digits and .-+!%& in a stroke font; others are blanks. Top left at (x, y); `height` mm high.
+  /// Draws capital letters, digits and .-+!%& in a stroke font; other characters are blanks. The top left is at (x, y),
+  /// and the text is `height` mm high.
   void text(double x, double y, double height, double stroke, std::string_view text, Rgb8 color);
-  /// As large as fits into the box, centred.
+  /// Draws a text as large as fits into the box, centred.
   void text_in_box(double x, double y, double width, double height, std::string_view text, Rgb8 color,
                    double stroke_share = 0.16);
 
@@ -57,10 +58,10 @@ class TextureCanvas {
   double scale_;
 };
 
-/// Width of text() in shares of its height.
+/// Width of text() relative to its height.
 [[nodiscard]] double text_width(std::string_view text);
 
-/// Colour of hue (degrees), saturation and value (0..1).
+/// Converts hue (degrees), saturation and value (0..1) to a colour.
 [[nodiscard]] Rgb8 hsv_color(double hue_deg, double saturation, double value);
 
 }  // namespace resight

@@ -16,9 +16,9 @@ constexpr Rgb8 kBlack{25, 25, 28};
 
 double random_angle(Rng& rng) { return rng.uniform(0, 2 * std::numbers::pi); }
 
-// Colour of a random shape: near the given hue or far from it, dark or bright, so that neighbours differ.
+// Colour of a random shape, near the given hue or far from it, dark or bright, so that adjacent shapes differ.
 Rgb8 random_color(Rng& rng, double hue_deg) {
-  // One draw a statement: the order in which arguments are evaluated differs between compilers.
+  // One draw per statement, because compilers differ in the evaluation order of arguments.
   const double hue = hue_deg + (rng.uniform() < 0.5 ? rng.uniform(-40, 40) : rng.uniform(100, 260));
   const double saturation = rng.uniform(0.35, 0.95);
   const double value = rng.uniform() < 0.4 ? rng.uniform(0.2, 0.5) : rng.uniform(0.7, 1.0);
@@ -155,7 +155,7 @@ void print_wood(TextureCanvas canvas, Rng rng, Rgb8 light, Rgb8 dark, double pla
     };
     plank.fill(mix(tone));
     const int lines = static_cast<int>(plank_mm / 4);
-    for (int i = 0; i < lines; ++i) {  // year lines: long gentle waves
+    for (int i = 0; i < lines; ++i) {  // growth rings: long gentle waves
       const double y0 = rng.uniform(0, plank.height());
       const double wave = rng.uniform(0, 3);
       const double length = rng.uniform(100, 400);

@@ -7,7 +7,7 @@
 
 namespace resight {
 
-/// What is printed on an object: colours, words, and a seed for all that is drawn at random.
+/// Style of an object's texture: colours, words, and a seed for random elements.
 struct TextureStyle {
   std::string brand;    ///< Large letters.
   std::string product;  ///< Smaller letters.
@@ -18,30 +18,30 @@ struct TextureStyle {
   [[nodiscard]] Rgb8 dark() const { return hsv_color(hue_deg + 15, 0.8, 0.3); }
   [[nodiscard]] Rgb8 light() const { return hsv_color(hue_deg + 30, 0.15, 0.97); }
   [[nodiscard]] Rgb8 accent() const { return hsv_color(hue_deg + 165, 0.8, 0.9); }
-  /// An independent stream for each part of the print.
+  /// An independent random stream for each part of the texture.
   [[nodiscard]] Rng stream(std::uint64_t part) const { return Rng::stream(seed, part); }
 };
 
-/// Faces of a package, each filling its canvas. `part` tells faces of the same kind apart.
+/// Draw faces of a package, each filling its canvas. `part` distinguishes faces of the same kind.
 void print_front(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 void print_back(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 void print_side(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 void print_lid(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
-/// A label that goes around: front, table of contents, picture, bar code.
+/// Draws a label that surrounds an object: front, table of contents, picture, bar code.
 void print_label(TextureCanvas canvas, const TextureStyle& style, std::uint64_t part);
 
-/// Elements.
+/// Draw elements of textures.
 void print_blobs(TextureCanvas canvas, Rng rng, double hue_deg, int count, double min_radius_mm, double max_radius_mm);
 void print_emblem(TextureCanvas canvas, Rng rng, double x, double y, double radius_mm, double hue_deg);
 void print_paragraph(TextureCanvas canvas, Rng rng, double x, double y, double width, double height, double letter_mm,
                      Rgb8 color);
 void print_barcode(TextureCanvas canvas, Rng rng, double x, double y, double width, double height);
-/// Specks and soft spots of brightness all over the canvas (paper, cloth, plaster).
+/// Draws specks and soft variations of brightness over the whole canvas (paper, cloth, plaster).
 void print_grain(TextureCanvas canvas, Rng rng, Rgb8 color, int count, double min_radius_mm, double max_radius_mm);
-/// Planks with year lines.
+/// Draws planks with growth rings.
 void print_wood(TextureCanvas canvas, Rng rng, Rgb8 light, Rgb8 dark, double plank_mm);
 
-/// A word that can be read and means nothing.
+/// A pronounceable word without meaning.
 [[nodiscard]] std::string make_word(Rng& rng, int syllables);
 
 }  // namespace resight

@@ -87,7 +87,7 @@ Result<void> write_models(const std::vector<ProceduralObject>& library, const fs
                                        : write_bop_meshes(library, dataset, options);
 }
 
-// The things of the scripts that are drawn by a program and are in no library.
+// The procedural objects of the scripts that are in no library.
 std::vector<ProceduralObject> unknown_objects(std::span<const SceneScript> scripts) {
   std::set<std::string> names;
   for (const SceneScript& script : scripts)
@@ -130,7 +130,7 @@ std::vector<ChangeChain> ChangeChainCollector::chains() const {
 
 namespace {
 
-// test/<scene>/ and test/<scene>.changes.
+// Writes test/<scene>/ and test/<scene>.changes.
 Result<void> write_scene(Simulation& simulation, const fs::path& dataset, const std::string& scene,
                          DatasetFormat format, const WriteSimulationOptions& options) {
   auto writer = create_sequence(dataset / "test" / scene, format);

@@ -14,8 +14,8 @@
 
 namespace resight {
 
-/// Gathers the `.changes` chains of a run: one chain per instance and placement, over the views in which it is
-/// annotated.
+/// Collects the `.changes` chains of a simulation: one chain per instance and placement, over the views that annotate
+/// it.
 class ChangeChainCollector {
  public:
   /// Views must be added in order.
@@ -40,20 +40,20 @@ struct WriteSimulationOptions {
   std::function<void(const std::string&)> progress;
 };
 
-/// Renders all views of a simulation and writes a data set into `directory`, which must not exist yet or be empty; it
+/// Renders all views of a simulation and writes a data set to `directory`, which must be missing or empty. The folder
 /// appears when it is complete.
 ///
 /// TUW: models/<name>/ (training views of a turntable, 3D_model.pcd), test/<scene>/ (views and ground truth). BOP:
-/// models/obj_%06d.ply with models_info.json, test/%06d/. Both: test/<scene>.changes (chains of placements, TUW),
-/// events.json (all changes with poses, 4x4 row by row, metres, world frame).
+/// models/obj_%06d.ply with models_info.json, test/%06d/. Both: test/<scene>.changes (chains of placements, as in TUW)
+/// and events.json (all changes with poses as 4x4 matrices in row-major order, metres, world frame).
 [[nodiscard]] Result<void> write_simulation(Simulation& simulation, const std::filesystem::path& directory,
                                             DatasetFormat format, const WriteSimulationOptions& options = {});
 
-/// The same for several scenes, which must have one library (the same known objects), as one data set: test/000001,
-/// test/000002, .. (BOP) or test/<name of the scene> (TUW), the changes of each in test/<scene>.changes and
-/// test/<scene>.events.json. The meshes of the things that are in no library go to unknown/models/ (BOP, whatever
-/// `format` is), for whoever scores the changes that they take part in. Scene i gets the i-th random stream of `seed`.
-/// `progress` is called after each model and view.
+/// Same for several scenes with one library (the same known objects) as one data set. The scenes are test/000001,
+/// test/000002, ... (BOP) or test/<name of the scene> (TUW); their changes are test/<scene>.changes and
+/// test/<scene>.events.json. Meshes of objects that are in no library are written to unknown/models/ (always in BOP
+/// format), for evaluations of their changes. Scene i uses the i-th random stream of `seed`. `progress` is called after
+/// each model and view.
 [[nodiscard]] Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64_t seed,
                                              const std::filesystem::path& directory, DatasetFormat format,
                                              const SimulationOptions& simulation,

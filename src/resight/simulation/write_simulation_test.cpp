@@ -80,7 +80,7 @@ TEST_P(WriteSimulation, CanBeReadBack) {
     for (std::size_t k = 0; k < frame->depth_m.size(); ++k) {
       ASSERT_EQ(std::isnan(frame->depth_m[k]), std::isnan(expected.frame.depth_m[k]));
       if (std::isnan(frame->depth_m[k])) continue;
-      ASSERT_NEAR(frame->depth_m[k], expected.frame.depth_m[k], 6e-4);  // BOP: whole millimetres
+      ASSERT_NEAR(frame->depth_m[k], expected.frame.depth_m[k], 6e-4);  // BOP rounds to 0.1 mm
     }
     const auto truth = (*sequence)->read_ground_truth(i);
     ASSERT_TRUE(truth.ok()) << truth.error().message;
@@ -115,12 +115,12 @@ TEST_P(WriteSimulation, ChainsAndEventsTellTheChanges) {
   const std::string scene = GetParam() == DatasetFormat::kTuw ? "tiny" : "000001";
   const auto chains = read_changes(directory_ / "test" / (scene + ".changes"));
   ASSERT_TRUE(chains.ok()) << chains.error().message;
-  // Mug before and after its move, one can through all views, one can in the first only.
+  // Chains: the mug before and after its move, one can through all views, one can in the first view only.
   ASSERT_EQ(chains->size(), 4U);
   std::vector<std::size_t> lengths;
   for (const ChangeChain& c : *chains) lengths.push_back(c.entries.size());
   EXPECT_EQ(lengths, (std::vector<std::size_t>{2, 2, 1, 4}));
-  // The remaining can is number 1 beside the other one, and number 0 once it is alone.
+  // The remaining can is number 1 beside the other one, and number 0 when it is alone.
   EXPECT_EQ((*chains)[3].entries[0].instance, 1);
   EXPECT_EQ((*chains)[3].entries[1].instance, 0);
 

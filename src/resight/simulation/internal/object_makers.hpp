@@ -8,15 +8,15 @@
 
 namespace resight {
 
-/// An object that can be drawn.
+/// An object with the function that draws it.
 struct ObjectMaker {
   std::string name;
   std::function<ProceduralObject()> make;
 };
 
-// The makers by family; procedural_object_names() lists them in this order.
+// Makers by family. procedural_object_names() lists them in this order.
 [[nodiscard]] std::vector<ObjectMaker> package_makers();  ///< Boxes, cartons, books.
 [[nodiscard]] std::vector<ObjectMaker> round_makers();    ///< Cans, bottles, crockery.
-[[nodiscard]] std::vector<ObjectMaker> toy_makers();      ///< Toys and plain things.
+[[nodiscard]] std::vector<ObjectMaker> toy_makers();      ///< Toys and untextured objects.
 
 }  // namespace resight

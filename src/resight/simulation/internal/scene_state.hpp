@@ -10,18 +10,19 @@
 
 namespace resight {
 
-/// A script turned into meshes and poses: everything about a run that needs no rendering.
+/// Meshes and poses of a script: all of a simulation that needs no rendering.
 struct SceneState {
   SceneScript script;
   std::vector<SimulatedInstance> instances;  ///< Room, furniture, then objects, in the order of the script.
-  std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< Of each instance; shared between equal models.
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< Mesh of each instance; shared between equal models.
   std::vector<ProceduralObject> library;
   std::vector<ScriptedEvent> events;
-  std::vector<std::vector<std::optional<Rigid3>>>
-      poses;                                 ///< [view][instance], world_from_instance; absent = not there.
+  /// [view][instance], world_from_instance; absent if the instance is not in the scene.
+  std::vector<std::vector<std::optional<Rigid3>>> poses;
   std::vector<std::vector<int>> placements;  ///< [view][instance]: number of the placement, from 0.
 };
 
+/// Builds the state. Fails if the script is invalid or a mesh cannot be read.
 [[nodiscard]] Result<SceneState> build_scene_state(SceneScript script, std::uint64_t seed);
 
 }  // namespace resight

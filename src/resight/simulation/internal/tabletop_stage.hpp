@@ -13,23 +13,23 @@ namespace resight {
 
 enum class TabletopTheme : std::uint8_t { kDesk, kMeeting, kCorner, kShelf };
 
-/// A level of a piece of furniture that things stand on.
+/// A level of a piece of furniture that supports objects.
 struct TabletopSurface {
   std::string support;
   int level = -1;
-  Eigen::Vector2d half_area;  ///< Metres, in the surface's frame.
+  Eigen::Vector2d half_area;  ///< In metres, in the frame of the surface.
   std::vector<Footprint> obstacles;
 };
 
-/// The furnished room of a sequence, before things are put into it.
+/// The furnished room of a sequence without objects.
 struct TabletopStage {
   std::vector<TabletopSurface> surfaces;
-  Eigen::Vector3d look_at_point_m = Eigen::Vector3d::Zero();  ///< What the camera circles, world frame.
-  Eigen::Vector2d pan_m = Eigen::Vector2d::Zero();            ///< How far it looks beside that.
-  double half_arc_rad = 0;                                    ///< How far it goes around it, to either side.
+  Eigen::Vector3d look_at_point_m = Eigen::Vector3d::Zero();  ///< Centre of the camera path, world frame.
+  Eigen::Vector2d pan_m = Eigen::Vector2d::Zero();  ///< Largest offset of the viewing target from that centre.
+  double half_arc_rad = 0;                          ///< Largest angle of the camera path to either side.
 };
 
-/// Draws room, lamp and furniture into the script.
+/// Adds room, lamp and furniture to the script.
 [[nodiscard]] TabletopStage furnish_tabletop(TabletopTheme theme, Rng& rng, SceneScript& script);
 
 }  // namespace resight

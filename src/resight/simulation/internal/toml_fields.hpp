@@ -13,11 +13,11 @@
 
 namespace resight {
 
-/// Reads the fields of one TOML table. The first mistake is kept, with the place and the rule; later reads then leave
-/// their targets alone. Keys that nobody asked for are a mistake too (finish()).
+/// Reads the fields of one TOML table. Keeps the first mistake with its place and rule; later reads then leave their
+/// targets unchanged. Unread keys are also mistakes (finish()).
 class TomlFields {
  public:
-  /// `where` names the table in messages ("object[2]"); `error` receives the first mistake.
+  /// `where` names the table in messages ("object[2]"). `error` receives the first mistake.
   TomlFields(const toml::table& table, std::string where, std::optional<Error>& error)
       : table_(table), where_(std::move(where)), error_(error) {}
 
@@ -31,18 +31,18 @@ class TomlFields {
   void read(const std::string& key, bool& target);
   void read(const std::string& key, std::string& target);
   void read(const std::string& key, std::optional<double>& target);
-  /// Exactly N numbers.
+  /// Reads exactly N numbers.
   template <std::size_t N>
   [[nodiscard]] std::optional<std::array<double, N>> read_numbers(const std::string& key);
   void require_key(const std::string& key) {
     if (!has(key)) fail(key, "is missing");
   }
 
-  /// Calls body(fields) for the sub-table, if there is one.
+  /// Calls body(fields) for the sub-table if it exists.
   void table(const std::string& key, const std::function<void(TomlFields&)>& body);
-  /// Calls body(fields) for each table of the array [[key]], if there is one.
+  /// Calls body(fields) for each table of the array [[key]] if it exists.
   void tables(const std::string& key, const std::function<void(TomlFields&)>& body);
-  /// To be called after all reads.
+  /// Must be called after all reads.
   void finish();
 
  private:
