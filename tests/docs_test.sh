@@ -28,7 +28,7 @@ for document in README.md CONTRIBUTING.md docs/*.md; do
   while read -r link; do
     checked=$((checked + 1))
     [[ -e $(dirname "$document")/$link ]] || missing "$document links to a file that is not there: $link"
-  done < <(tr '\n' ' ' <"$document" | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
+  done < <(awk '/^```/ { code = !code; next } !code' "$document" | tr '\n' ' ' | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
 done
 
 while read -r line; do

@@ -10,9 +10,10 @@
 
 #include "resight/evaluation/loss.hpp"
 #include "resight/evaluation/match_detections.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/results.hpp"
 #include "resight/report/view_record.hpp"
+#include "resight/sensor/testing/memory_sequence.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/simulation.hpp"
 #include "resight/training/training.hpp"
@@ -61,15 +62,18 @@ std::vector<SceneUpdate> recognize(const std::string& preset, int num_previous_v
   config.num_previous_views = num_previous_views;
   config.set_num_threads(num_threads);
   SceneRecognizer recognizer(world().library, config);
+  std::vector<RgbdFrame> frames;
+  for (std::size_t v = 0; v < num_views; ++v) frames.push_back(world().views[v].frame);
   std::vector<SceneUpdate> updates;
-  for (std::size_t v = 0; v < num_views; ++v) {
-    RecognitionTrace* trace = traces != nullptr ? &traces->emplace_back() : nullptr;
-    updates.push_back(recognizer.add_view(world().views[v].frame, trace));
-  }
-  for (ObjectEvent& event : recognizer.finish()) updates.back().events.push_back(std::move(event));
-  std::vector<std::vector<ObjectEvent>*> events;
-  for (SceneUpdate& update : updates) events.push_back(&update.events);
-  drop_superseded(events);
+  RecognitionTrace trace;
+  const auto on_view = [&](const RgbdFrame&, SceneUpdate& update) {
+    updates.push_back(std::move(update));
+    if (traces != nullptr) traces->push_back(trace);
+  };
+  auto events = recognize_sequence(recognizer, test::MemorySequence(std::move(frames)), on_view,
+                                   traces != nullptr ? &trace : nullptr)
+                    .value();
+  for (std::size_t v = 0; v < num_views; ++v) updates[v].events = std::move(events[v]);
   return updates;
 }
 

@@ -9,7 +9,7 @@
 
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/view_record.hpp"
 #include "resight/training/train_library.hpp"
 
@@ -56,14 +56,14 @@ Recognition recognize(const ModelLibrary& library, const std::string& dataset, c
   SceneRecognizer recognizer(library, config);
   std::vector<TruthView> truth;
   Recognition run;
-  for (int v = 0; v < (*sequence)->num_views(); ++v) {
-    const RgbdFrame frame = (*sequence)->read_view(v).value();
-    run.updates.push_back(recognizer.add_view(frame));
-    if (!(*sequence)->has_ground_truth()) continue;
-    truth.push_back({frame.world_from_camera, (*sequence)->read_ground_truth(v).value()});
+  const auto events = recognize_sequence(recognizer, **sequence, [&](const RgbdFrame& frame, SceneUpdate& update) {
+    run.updates.push_back(std::move(update));
+    if (!(*sequence)->has_ground_truth()) return;
+    truth.push_back({frame.world_from_camera, (*sequence)->read_ground_truth(run.updates.back().view).value()});
     run.evaluations.push_back(evaluate_view(run.updates.back(), truth.back().objects,
                                             find_former_places(truth, library), frame.camera, library));
-  }
+  });
+  if (!events.ok()) throw std::runtime_error(events.error().message);
   return run;
 }
 

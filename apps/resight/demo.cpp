@@ -47,7 +47,7 @@ void run_demo(const DemoArguments& arguments) {
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
     RecognizerConfig config = make_config(preset, std::nullopt, std::nullopt, arguments.num_threads);
     config.set_seed(arguments.seed);
-    runs.push_back(recognize_sequence(library, *sequence, config, arguments.num_threads));
+    runs.push_back(run_recognition(library, *sequence, config, arguments.num_threads));
     runs.back().sequence = data.string();
     value_or_throw(write_results(arguments.out / preset, runs.back(), library));
   }

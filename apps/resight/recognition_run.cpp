@@ -8,8 +8,7 @@
 #include "progress.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/evaluation/ghosts.hpp"
-#include "resight/recognition/object_event.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight::app {
 namespace {
@@ -24,8 +23,7 @@ SequenceTruth read_truth(const Sequence& sequence, const ModelLibrary& library) 
   SequenceTruth truth;
   if (!sequence.has_ground_truth()) return truth;
   for (int v = 0; v < sequence.num_views(); ++v)
-    truth.views.push_back(
-        {value_or_throw(sequence.read_view(v)).world_from_camera, value_or_throw(sequence.read_ground_truth(v))});
+    truth.views.push_back({value_or_throw(sequence.read_pose(v)), value_or_throw(sequence.read_ground_truth(v))});
   truth.former_places = find_former_places(truth.views, library);
   return truth;
 }
@@ -48,8 +46,8 @@ RecognizerConfig make_config(const std::string& preset, const std::optional<std:
   return config;
 }
 
-ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                             int num_threads) {
+ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
+                          int num_threads) {
   const SequenceTruth truth = read_truth(sequence, library);
   ReportRun run;
   run.preset = config.preset;
@@ -59,12 +57,8 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
 
   SceneRecognizer recognizer(library, config);
   Progress progress(config.preset, sequence.num_views());
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    RgbdFrame frame = value_or_throw(sequence.read_view(v));
-    SceneUpdate update = recognizer.add_view(frame);
-    frame.world_from_camera = update.world_from_camera;  // Pictures are drawn with the corrected pose.
-    if (v + 1 == sequence.num_views())
-      for (ObjectEvent& event : recognizer.finish()) update.events.push_back(std::move(event));
+  auto events = recognize_sequence(recognizer, sequence, [&](const RgbdFrame& frame, SceneUpdate& update) {
+    const int v = update.view;
     progress.report(v + 1, describe(update));
     if (!update.left_out.empty())
       print_warning(
@@ -76,10 +70,9 @@ ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequen
     run.views.push_back(make_view_record(frame, library, std::move(update), std::move(evaluation)));
     run.views.back().scene_id = sequence.scene_id();
     run.views.back().image_id = sequence.image_id(v);
-  }
-  std::vector<std::vector<ObjectEvent>*> events;
-  for (ViewRecord& view : run.views) events.push_back(&view.update.events);
-  drop_superseded(events);
+  });
+  std::vector<std::vector<ObjectEvent>> final_events = value_or_throw(std::move(events));
+  for (std::size_t v = 0; v < run.views.size(); ++v) run.views[v].update.events = std::move(final_events[v]);
   run.peak_memory_bytes = peak_memory_bytes();
   return run;
 }

@@ -3,10 +3,10 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "resight/io/sequence.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/report/view_record.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight::app {
 
@@ -15,7 +15,7 @@ namespace resight::app {
                                            std::optional<int> num_previous_views, int num_threads);
 
 /// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
-[[nodiscard]] ReportRun recognize_sequence(const ModelLibrary& library, const Sequence& sequence,
-                                           const RecognizerConfig& config, int num_threads);
+[[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
+                                        const RecognizerConfig& config, int num_threads);
 
 }  // namespace resight::app

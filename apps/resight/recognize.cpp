@@ -38,7 +38,7 @@ void run_recognize(const RecognizeArguments& arguments) {
     tracked.emplace(take_largest_part(*recorded, track_sequence(*recorded, options).track));
   }
   const Sequence& sequence = tracked ? *tracked : *recorded;
-  ReportRun run = recognize_sequence(library, sequence, config, arguments.num_threads);
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads);
   run.sequence = arguments.sequence.string();
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),

@@ -61,7 +61,7 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
   std::vector<Rigid3> given, found;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
     if (track.views[v].part != 0) continue;
-    given.push_back(value_or_throw(recorded.read_view(static_cast<int>(v))).world_from_camera);
+    given.push_back(value_or_throw(recorded.read_pose(static_cast<int>(v))));
     found.push_back(track.views[v].world_from_camera);
   }
   const TrajectoryError error = find_trajectory_error(given, found);

@@ -91,9 +91,7 @@ Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& lib
     replay.detections.push_back(std::move(detections));
   }
   events.push_back(history.finish());
-  std::vector<std::vector<ObjectEvent>*> all;
-  for (auto& of_view : events) all.push_back(&of_view);
-  drop_superseded(all);
+  drop_superseded(events);
   for (const auto& of_view : events)
     for (const ObjectEvent& e : of_view)
       if (is_change(e.kind))

@@ -13,7 +13,7 @@
 #include "resight/evaluation/loss.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/view_record.hpp"
 
 namespace {
@@ -83,11 +83,10 @@ int main(int argc, char** argv) {
   std::vector<double> errors_in_sigmas;  // Of the centre.
   RecognitionScore score;
   StageTimes times;
-  for (int v = 0; v < sequence->num_views(); ++v) {
-    const RgbdFrame frame = value_or_exit(sequence->read_view(v));
+  RecognitionTrace trace;
+  const auto print_view = [&](const RgbdFrame& frame, const SceneUpdate& update) {
+    const int v = update.view;
     const auto truth = value_or_exit(sequence->read_ground_truth(v));
-    RecognitionTrace trace;
-    const SceneUpdate update = recognizer.add_view(frame, &trace);
     const auto matched = match_detections(truth, to_detected_objects(update, library), library, options.match);
     score += matched.score;
     times.add(update.times);
@@ -113,7 +112,8 @@ int main(int argc, char** argv) {
     }
     for (const ObjectEvent& e : update.events)
       if (is_change(e.kind)) fmt::print("view {:2} {} {}\n", v, to_string(e.kind), library.objects[e.object].name);
-  }
+  };
+  (void)value_or_exit(recognize_sequence(recognizer, *sequence, print_view, &trace));
   for (const StageTime& t : times.stages())
     fmt::print("time: {:26} {:.3f} s CPU per view\n", t.stage, t.cpu_s / sequence->num_views());
   for (const auto& [stage, count] : losses) fmt::print("lost: {:14} {}\n", to_string(stage), count);

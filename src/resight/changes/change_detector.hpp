@@ -65,25 +65,4 @@ struct ChangeResult {
                                           const DetectChangesOptions& options = {},
                                           std::span<const PreparedView* const> earlier_views = {});
 
-/// Which removal is later than which view. A removal clears only views taken BEFORE it, so that an object put back at
-/// its old place survives.
-class RemovalHistory {
- public:
-  /// `view_index` in ascending order; the attributes of `removed_in_world` must be those of the clouds before it.
-  void add(int view_index, PointCloud removed_in_world);
-  /// Union of what was removed in views later than `view_index`.
-  [[nodiscard]] PointCloud removed_after(int view_index) const;
-  /// What the view `view_index` itself found removed; empty if nothing.
-  [[nodiscard]] const PointCloud& removed_at(int view_index) const;
-  /// Forgets what no view from `first_kept_view` on can still need.
-  void forget_before(int first_kept_view);
-
- private:
-  struct Entry {
-    int view_index;
-    PointCloud removed_in_world;
-  };
-  std::vector<Entry> entries_;
-};
-
 }  // namespace resight

@@ -93,11 +93,11 @@ Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelL
   SequenceTruth truth;
   if (sequence.has_ground_truth()) {
     for (int v = 0; v < sequence.num_views(); ++v) {
-      const auto frame = sequence.read_view(v);
-      if (!frame) return frame.error();
+      const auto pose = sequence.read_pose(v);
+      if (!pose) return pose.error();
       auto objects = sequence.read_ground_truth(v);
       if (!objects) return objects.error();
-      truth.views.push_back({frame->world_from_camera, std::move(*objects)});
+      truth.views.push_back({*pose, std::move(*objects)});
     }
     truth.former_places = find_former_places(truth.views, library);
   }

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/evaluation/evaluate_sequence.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/evaluation/loss.hpp"
 #include "resight/evaluation/score_view.hpp"
-#include "resight/recognition/object_event.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight {
 namespace {
@@ -30,7 +28,6 @@ class SequenceEvaluator {
       : truth_(truth),
         library_(library),
         options_(options),
-        recognizer_(library, config, options.hypotheses),
         has_changes_(config.detect_changes && truth.changes.has_value()) {
     run_.preset = config.preset;
     run_.num_previous_views = config.num_previous_views;
@@ -42,10 +39,8 @@ class SequenceEvaluator {
     sights_.emplace(library, truth, options.match);
   }
 
-  void add_view(const RgbdFrame& frame) {
-    const int number = static_cast<int>(run_.views.size());
-    RecognitionTrace trace;
-    const SceneUpdate update = recognizer_.add_view(frame, options_.find_losses ? &trace : nullptr);
+  void add_view(const RgbdFrame& frame, const SceneUpdate& update, const RecognitionTrace& trace) {
+    const int number = update.view;
     const TruthView& truth = truth_.views[static_cast<std::size_t>(number)];
     EvaluatedView view = score_view(number, truth, detected_objects(update, library_), truth_.former_places,
                                     frame.camera, library_, options_.match);
@@ -55,17 +50,14 @@ class SequenceEvaluator {
     if (options_.find_losses) find_losses(truth, trace, view);
     if (points_) view.points = points_->add_view(frame, update.changes.removed_in_world, update.changes.novel_in_world);
     if (sights_) sights_->add_view(frame);
-    keep_changes(update.events);
     run_.views.push_back(std::move(view));
     if (options_.progress) options_.progress(number, run_.views.back());
   }
 
-  EvaluatedRun finish() {
-    keep_changes(recognizer_.finish());
-    std::vector<ObjectEvent>* const all[] = {&changes_};
-    drop_superseded(all);
+  EvaluatedRun finish(const std::vector<std::vector<ObjectEvent>>& events) {
     if (sights_)
-      run_.events = score_events(*truth_.changes, sights_->sights(), reported_changes(), library_, options_.match);
+      run_.events =
+          score_events(*truth_.changes, sights_->sights(), reported_changes(events), library_, options_.match);
     return std::move(run_);
   }
 
@@ -82,27 +74,23 @@ class SequenceEvaluator {
     }
   }
 
-  void keep_changes(const std::vector<ObjectEvent>& events) {
-    std::ranges::copy_if(events, std::back_inserter(changes_),
-                         [](const ObjectEvent& e) { return is_change(e.kind) || e.supersedes; });
-  }
-
-  [[nodiscard]] std::vector<ReportedChange> reported_changes() const {
+  [[nodiscard]] std::vector<ReportedChange> reported_changes(
+      const std::vector<std::vector<ObjectEvent>>& events) const {
     std::vector<ReportedChange> changes;
-    for (const ObjectEvent& e : changes_)
-      changes.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
-                         e.world_from_object_before, e.world_from_object_after});
+    for (const std::vector<ObjectEvent>& of_view : events)
+      for (const ObjectEvent& e : of_view)
+        if (is_change(e.kind))
+          changes.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
+                             e.world_from_object_before, e.world_from_object_after});
     return changes;
   }
 
   const SequenceTruth& truth_;
   const ModelLibrary& library_;
   const EvaluateSequenceOptions& options_;
-  SceneRecognizer recognizer_;
   bool has_changes_;
   std::optional<ChangePointScorer> points_;
   std::optional<ChangeVisibilityFinder> sights_;
-  std::vector<ObjectEvent> changes_;
   EvaluatedRun run_;
 };
 
@@ -114,12 +102,14 @@ Result<EvaluatedRun> evaluate_sequence(const Sequence& sequence, const SequenceT
   require(static_cast<int>(truth.views.size()) == sequence.num_views(),
           "evaluate_sequence: the truth must have as many views as the sequence");
   SequenceEvaluator evaluator(truth, library, config, options);
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const auto frame = sequence.read_view(v);
-    if (!frame) return frame.error();
-    evaluator.add_view(*frame);
-  }
-  return evaluator.finish();
+  SceneRecognizer recognizer(library, config, options.hypotheses);
+  RecognitionTrace trace;
+  const auto events = recognize_sequence(
+      recognizer, sequence,
+      [&](const RgbdFrame& frame, const SceneUpdate& update) { evaluator.add_view(frame, update, trace); },
+      options.find_losses ? &trace : nullptr);
+  if (!events) return events.error();
+  return evaluator.finish(*events);
 }
 
 }  // namespace resight

@@ -40,6 +40,8 @@ class ListedSequence final : public Sequence {
     return table_.views.at(view).ground_truth;
   }
 
+  [[nodiscard]] Result<Rigid3> read_pose(int view) const override { return table_.views.at(view).world_from_camera; }
+
   [[nodiscard]] Result<RgbdFrame> read_view(int view) const override {
     const ListedView& listed = table_.views.at(view);
     auto color = read_color(listed.color);

@@ -28,14 +28,15 @@ bool is_change(ObjectEventKind kind) {
   return kind == ObjectEventKind::kAdded || kind == ObjectEventKind::kMoved || kind == ObjectEventKind::kRemoved;
 }
 
-void drop_superseded(std::span<std::vector<ObjectEvent>* const> events_of_views) {
+void drop_superseded(std::span<std::vector<ObjectEvent>> events_of_views) {
   using Key = std::tuple<ObjectEventKind, int, int>;
-  std::set<Key> replaced;
-  for (const std::vector<ObjectEvent>* events : events_of_views)
-    for (const ObjectEvent& event : *events)
-      if (event.supersedes) replaced.insert({event.supersedes->kind, event.supersedes->track, event.supersedes->view});
-  for (std::vector<ObjectEvent>* events : events_of_views)
-    std::erase_if(*events, [&](const ObjectEvent& e) { return replaced.contains(Key{e.kind, e.track, e.view}); });
+  std::set<Key> superseded;
+  for (const std::vector<ObjectEvent>& events : events_of_views)
+    for (const ObjectEvent& event : events)
+      if (event.supersedes)
+        superseded.insert({event.supersedes->kind, event.supersedes->track, event.supersedes->view});
+  for (std::vector<ObjectEvent>& events : events_of_views)
+    std::erase_if(events, [&](const ObjectEvent& e) { return superseded.contains(Key{e.kind, e.track, e.view}); });
 }
 
 }  // namespace resight

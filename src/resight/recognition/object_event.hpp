@@ -42,8 +42,7 @@ struct ObjectEvent {
   std::optional<ReplacedEvent> supersedes{};       ///< kMoved, kAdded and kStillThere only.
 };
 
-/// Leaves of a run, given as the events of each of its views, what is known in the end: drops each event that another
-/// one replaces.
-void drop_superseded(std::span<std::vector<ObjectEvent>* const> events_of_views);
+/// Drops each event that a later one supersedes, given the events of each view of a run.
+void drop_superseded(std::span<std::vector<ObjectEvent>> events_of_views);
 
 }  // namespace resight

@@ -14,23 +14,22 @@ ObjectEvent event(ObjectEventKind kind, int track, int view) {
   return e;
 }
 
-TEST(DropReplaced, DropsWhatALaterViewTellsBetter) {
-  std::vector<ObjectEvent> first{event(ObjectEventKind::kRemoved, 1, 4), event(ObjectEventKind::kRemoved, 2, 4)};
-  std::vector<ObjectEvent> second{event(ObjectEventKind::kAdded, 1, 4), event(ObjectEventKind::kMoved, 1, 7)};
-  second.back().supersedes = {ObjectEventKind::kRemoved, 1, 4};
-  std::vector<ObjectEvent>* const all[] = {&first, &second};
+TEST(DropSuperseded, DropsTheEventThatALaterViewCorrects) {
+  std::vector<std::vector<ObjectEvent>> all{
+      {event(ObjectEventKind::kRemoved, 1, 4), event(ObjectEventKind::kRemoved, 2, 4)},
+      {event(ObjectEventKind::kAdded, 1, 4), event(ObjectEventKind::kMoved, 1, 7)}};
+  all[1].back().supersedes = {ObjectEventKind::kRemoved, 1, 4};
   drop_superseded(all);
-  ASSERT_EQ(first.size(), 1U);
-  EXPECT_EQ(first[0].track, 2);
-  EXPECT_EQ(second.size(), 2U) << "another kind, and the move itself";
+  ASSERT_EQ(all[0].size(), 1U);
+  EXPECT_EQ(all[0][0].track, 2);
+  EXPECT_EQ(all[1].size(), 2U) << "another kind, and the move itself";
 }
 
-TEST(DropReplaced, TakesARunWithoutEvents) {
-  std::vector<ObjectEvent> none;
-  std::vector<ObjectEvent>* const all[] = {&none};
+TEST(DropSuperseded, AcceptsARunWithoutEvents) {
+  std::vector<std::vector<ObjectEvent>> all(1);
   drop_superseded(all);
   drop_superseded({});
-  EXPECT_TRUE(none.empty());
+  EXPECT_TRUE(all[0].empty());
 }
 
 }  // namespace

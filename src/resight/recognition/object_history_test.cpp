@@ -384,9 +384,7 @@ TEST_F(ObjectHistoryTest, AnArrivalThatWasCorrectedIsReplacedAsItWasToldLast) {
     all.push_back(view({{0, turned}}, see_plates({left_, right_})));  // added: the old place looks taken
     if (!at_once) all.push_back(view({{0, right_}}, see_plates({left_, right_})));
     all.push_back(view({{0, right_}}, see_plates({right_})));  // moved there
-    std::vector<std::vector<ObjectEvent>*> views;
-    for (auto& events : all) views.push_back(&events);
-    drop_superseded(views);
+    drop_superseded(all);
     std::vector<ObjectEventKind> changes;
     for (const auto& events : all)
       for (const ObjectEvent& e : events)

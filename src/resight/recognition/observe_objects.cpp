@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/observe_objects.hpp"
 
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight {
 
@@ -12,15 +12,13 @@ Result<std::vector<ObservedObject>> observe_objects(const Sequence& sequence, co
   config.set_num_threads(num_threads);
   SceneRecognizer recognizer(library, config);
   std::vector<ObservedObject> observed;
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const Result<RgbdFrame> frame = sequence.read_view(v);
-    if (!frame) return frame.error();
-    const SceneUpdate update = recognizer.add_view(*frame);
+  const auto done = recognize_sequence(recognizer, sequence, [&](const RgbdFrame&, const SceneUpdate& update) {
     const Rigid3 camera_from_world = update.world_from_camera.inverse();
     for (const Detection& d : update.detections)
-      observed.push_back({v, d.object, camera_from_world * d.world_from_object});
-    if (progress) progress(v, update);
-  }
+      observed.push_back({update.view, d.object, camera_from_world * d.world_from_object});
+    if (progress) progress(update.view, update);
+  });
+  if (!done) return done.error();
   return observed;
 }
 

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
-#include "resight/io/sequence.hpp"
 #include "resight/models/observed_object.hpp"
 #include "resight/recognition/scene_update.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

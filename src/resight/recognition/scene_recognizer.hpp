@@ -16,7 +16,7 @@ namespace resight {
 /// The whole way from views to objects and changes: the one class that knows all stages.
 ///
 ///     SceneRecognizer recognizer(library, RecognizerConfig::from_preset("default"));
-///     for (frame : sequence) SceneUpdate update = recognizer.add_view(frame);
+///     recognize_sequence(recognizer, sequence, on_view);  // or add_view() for each frame, then finish()
 ///
 /// Keeps the last K views; its memory does not grow with the length of the sequence. Not thread-safe; it uses threads
 /// itself.

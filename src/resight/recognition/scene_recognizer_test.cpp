@@ -7,41 +7,16 @@
 #include <limits>
 #include <set>
 
-#include "resight/verification/testing/verify_fixture.hpp"
+#include "resight/recognition/box_scene_test_util.hpp"
 
 namespace resight {
 namespace {
 
 using namespace analytic;
-
-// A box on a table, of which only the first view has a hypothesis.
-struct OneLook {
-  World world = one_box();
-  ModelLibrary library = analytic::make_library();
-  std::vector<Rigid3> cameras = circle_of_cameras(4, 0.8, 0.6, 0.6);
-  std::shared_ptr<ViewHypothesisStore> store = std::make_shared<ViewHypothesisStore>();
-  RecognizerConfig config = RecognizerConfig::from_preset("default");
-
-  OneLook() {
-    for (int view = 0; view < 4; ++view) store->add(view, {});
-    ViewHypotheses first;
-    first.world_from_camera = cameras[0];
-    first.hypotheses = {make_hypothesis(kBox, world.solids[0].world_from_object)};
-    first.hypotheses[0].origin_view = 0;
-    first.hypotheses[0].origin_views = {0};
-    store->add(0, std::move(first));
-  }
-
-  std::vector<SceneUpdate> run() const {
-    SceneRecognizer recognizer(library, config, store);
-    std::vector<SceneUpdate> updates;
-    for (const Rigid3& camera : cameras) updates.push_back(recognizer.add_view(render(world, camera).frame));
-    return updates;
-  }
-};
+using test::BoxScene;
 
 TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
-  OneLook c;
+  BoxScene c;
   c.config.num_previous_views = 1;
   for (const SceneUpdate& update : c.run()) {
     ASSERT_EQ(update.detections.size(), 1U) << update.view;
@@ -55,7 +30,7 @@ TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
 }
 
 TEST(SceneRecognizer, APoseThatIsOffIsMended) {
-  OneLook c;
+  BoxScene c;
   const Rigid3 truth = c.cameras[1];
   RgbdFrame second = render(c.world, truth).frame;
   second.world_from_camera =
@@ -72,7 +47,7 @@ TEST(SceneRecognizer, APoseThatIsOffIsMended) {
 }
 
 TEST(SceneRecognizer, SingleViewsAreSingle) {
-  OneLook c;
+  BoxScene c;
   c.config.num_previous_views = 0;
   const std::vector<SceneUpdate> updates = c.run();
   EXPECT_EQ(updates[0].detections.size(), 1U);
@@ -80,7 +55,7 @@ TEST(SceneRecognizer, SingleViewsAreSingle) {
 }
 
 TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
-  OneLook c;
+  BoxScene c;
   SceneRecognizer recognizer(c.library, c.config, c.store);
   EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[0]).frame).detections.size(), 1U);
   EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[1]).frame).detections.size(), 1U);
@@ -93,7 +68,7 @@ TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
 }
 
 TEST(SceneRecognizer, WhatANeighborTakesWithItIsJudgedByTheNewestView) {
-  OneLook c;
+  BoxScene c;
   c.config.remember_objects = false;
   c.config.min_carried_share = 0;  // Within the sleeve little of the box is seen.
   const World with_box = c.world;
@@ -113,7 +88,7 @@ TEST(SceneRecognizer, WhatANeighborTakesWithItIsJudgedByTheNewestView) {
 }
 
 TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
-  OneLook c;
+  BoxScene c;
   const Eigen::Vector3d eye = c.cameras[0].translation;
   c.cameras[1] = look_at(eye, eye + Eigen::Vector3d(eye.x(), eye.y(), -0.6));  // The other way.
   const std::vector<SceneUpdate> updates = c.run();
@@ -127,7 +102,7 @@ TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
 }
 
 TEST(SceneRecognizer, WhatTheSensorIsBlindToIsSeenByItsPrint) {
-  const OneLook c;
+  const BoxScene c;
   for (const bool has_colors : {true, false}) {
     SceneRecognizer recognizer(c.library, c.config, c.store);
     EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[0]).frame).detections.size(), 1U);
@@ -142,7 +117,7 @@ TEST(SceneRecognizer, WhatTheSensorIsBlindToIsSeenByItsPrint) {
 }
 
 TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
-  OneLook c;
+  BoxScene c;
   ViewHypotheses first;
   first.world_from_camera = c.cameras[0];
   const Rigid3& right = c.world.solids[0].world_from_object;
@@ -165,7 +140,7 @@ TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
 }
 
 TEST(SceneRecognizer, WhatThereIsNoTimeForHasItsTurnAtTheNextView) {
-  OneLook c;
+  BoxScene c;
   ViewHypotheses first = *c.store->find(0);
   const Hypothesis right = first.hypotheses[0];
   first.hypotheses.clear();
@@ -191,7 +166,7 @@ TEST(SceneRecognizer, WhatThereIsNoTimeForHasItsTurnAtTheNextView) {
 }
 
 TEST(SceneRecognizer, ALateViewIsNotSearched) {
-  OneLook c;
+  BoxScene c;
   double now_s = 0;
   c.config.deadline_ms = 500;
   SceneRecognizer late(c.library, c.config, nullptr, [&] { return now_s += 1; });
@@ -204,7 +179,7 @@ TEST(SceneRecognizer, ALateViewIsNotSearched) {
 }
 
 TEST(SceneRecognizer, TheShapeSearchIsNotBegunTooLate) {
-  OneLook c;
+  BoxScene c;
   c.config.deadline_ms = 500;
   int num_calls = 0;
   // Asked when the view comes, before the search, and before the shape search.
@@ -215,7 +190,7 @@ TEST(SceneRecognizer, TheShapeSearchIsNotBegunTooLate) {
 }
 
 TEST(SceneRecognizer, HypothesesHaveIdsOfTheirOwn) {
-  OneLook c;
+  BoxScene c;
   SceneRecognizer recognizer(c.library, c.config);
   std::set<std::uint64_t> ids;
   for (std::size_t view = 0; view < c.cameras.size(); ++view) {

@@ -9,6 +9,7 @@
 #include "resight/changes/analytic_scene_test_util.hpp"
 #include "resight/changes/change_detector.hpp"
 #include "resight/reconstruction/integration.hpp"
+#include "resight/reconstruction/removal_history_test_util.hpp"
 
 namespace resight {
 namespace {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
+#include "resight/reconstruction/removal_history_test_util.hpp"
 
 namespace resight {
 namespace {

@@ -55,7 +55,6 @@ Timeline make_timeline(const ReportRun& run) {
   for (const ViewRecord& view : run.views) {
     for (const ObjectEvent& event : view.update.events) timeline.add(event);
   }
-  for (const ObjectEvent& event : run.final_events) timeline.add(event);
   return timeline;
 }
 

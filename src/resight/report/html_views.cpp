@@ -133,12 +133,6 @@ std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& l
     for (const auto& [run, view] : columns) html += view_column(*run, *view, library, runs.size() > 1);
     html += "</div></article>\n";
   }
-  for (const ReportRun& run : runs) {
-    const std::string late = events_list(run.final_events, library);
-    if (late.empty()) continue;
-    html += "<article><h3>Reported after the last view <span class=\"soft\">" + escape(run.preset) + "</span></h3>\n" +
-            late + "</article>\n";
-  }
   return html;
 }
 

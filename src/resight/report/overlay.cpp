@@ -59,10 +59,11 @@ void cross_out(cv::Mat& canvas, const cv::Rect& box, Rgb8 color, int thickness_p
   cv::line(canvas, {box.x, box.y + box.height}, {box.x + box.width, box.y}, ink, thickness_px, cv::LINE_AA);
 }
 
-void tint_changes(Image<Rgb8>& picture, const RgbdFrame& frame, const ChangeResult& changes, double opacity) {
+void tint_changes(Image<Rgb8>& picture, const Camera& camera, const Rigid3& world_from_camera,
+                  const ChangeResult& changes, double opacity) {
   if (changes.novel_mask.size() == picture.size()) report::tint(picture, changes.novel_mask, kNovelColor, opacity);
   const Image<std::uint8_t> removed =
-      report::project_points(frame.camera, frame.world_from_camera.inverse(), changes.removed_in_world);
+      report::project_points(camera, world_from_camera.inverse(), changes.removed_in_world);
   report::tint(picture, removed, kRemovedColor, opacity);
 }
 
@@ -74,9 +75,13 @@ void require_valid(const RgbdFrame& frame) {
 /// Draws one frame. Later drawings cover earlier ones, so labels come last.
 class OverlayPainter {
  public:
-  OverlayPainter(Image<Rgb8>& picture, const RgbdFrame& frame, const ModelLibrary& library,
-                 const DrawOverlayOptions& options)
-      : canvas_(report::as_mat(picture)), frame_(frame), library_(library), options_(options) {}
+  OverlayPainter(Image<Rgb8>& picture, const Camera& camera, const Rigid3& world_from_camera,
+                 const ModelLibrary& library, const DrawOverlayOptions& options)
+      : canvas_(report::as_mat(picture)),
+        camera_(camera),
+        camera_from_world_(world_from_camera.inverse()),
+        library_(library),
+        options_(options) {}
 
   void add_missed(const GroundTruthObject& truth) {
     const int object = library_.find(truth.object);
@@ -88,8 +93,7 @@ class OverlayPainter {
 
   void add_detection(const Detection& detection, DetectionMark mark) {
     const Rgb8 color = object_color(detection.object);
-    const Outline outline =
-        outline_of(detection.object, frame_.world_from_camera.inverse() * detection.world_from_object);
+    const Outline outline = outline_of(detection.object, camera_from_world_ * detection.world_from_object);
     if (outline.empty()) return;
     const OutlineLook look = look_of(mark);
     const int width = line_width_px(options_.outline_px, look.thickness);
@@ -117,11 +121,12 @@ class OverlayPainter {
     return library_.objects[static_cast<std::size_t>(object)];
   }
   [[nodiscard]] Outline outline_of(int object, const Rigid3& camera_from_object) const {
-    return report::project_outline(frame_.camera, camera_from_object, model(object).surface, library_.surface_voxel_m);
+    return report::project_outline(camera_, camera_from_object, model(object).surface, library_.surface_voxel_m);
   }
 
   cv::Mat canvas_;
-  const RgbdFrame& frame_;
+  const Camera& camera_;
+  Rigid3 camera_from_world_;
   const ModelLibrary& library_;
   const DrawOverlayOptions& options_;
   std::vector<Label> labels_;
@@ -179,8 +184,9 @@ Image<Rgb8> draw_overlay(const RgbdFrame& frame, const ModelLibrary& library, co
             "draw_overlay: the object of a detection is not in the library");
   }
   Image<Rgb8> picture = frame.color;
-  if (options.show_changes) tint_changes(picture, frame, update.changes, options.change_opacity);
-  OverlayPainter painter(picture, frame, library, options);
+  if (options.show_changes)
+    tint_changes(picture, frame.camera, update.world_from_camera, update.changes, options.change_opacity);
+  OverlayPainter painter(picture, frame.camera, update.world_from_camera, library, options);
   for (const GroundTruthObject& truth : missed) painter.add_missed(truth);
   if (options.show_detections) {
     for (std::size_t i = 0; i < update.detections.size(); ++i) {
@@ -199,7 +205,7 @@ Image<Rgb8> draw_changes(const RgbdFrame& frame, const ChangeResult& changes, co
     const auto grey = static_cast<std::uint8_t>(std::lround(0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b));
     pixel = {grey, grey, grey};
   }
-  tint_changes(picture, frame, changes, options.change_opacity);
+  tint_changes(picture, frame.camera, frame.world_from_camera, changes, options.change_opacity);
   return picture;
 }
 

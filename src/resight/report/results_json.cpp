@@ -141,7 +141,6 @@ std::string format_changes_json(const ReportRun& run, const ModelLibrary& librar
                      {"changed_share", view.update.changes.changed_share},
                      {"pose_suspect", view.update.changes.pose_suspect}});
   }
-  for (const ObjectEvent& event : run.final_events) events.push_back(event_json(event, library));
   Json json = header(run);
   json["events"] = events;
   json["views"] = views;

@@ -116,7 +116,6 @@ RunSummary summarize(const ReportRun& run) {
     summary.strict_score += view.evaluation->strict_score;
     summary.num_ghosts += static_cast<int>(view.evaluation->ghosts.size());
   }
-  summary.num_events += count_changes(run.final_events);
   summary.mean_view_wall_s =
       summary.num_views == 0 ? std::numeric_limits<double>::quiet_NaN() : total_wall_s / summary.num_views;
   summary.median_view_wall_s = median(view_wall_s);

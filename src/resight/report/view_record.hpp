@@ -41,8 +41,6 @@ struct ReportRun {
   std::string version;                                        ///< Version of resight.
   std::vector<std::pair<std::string, std::string>> settings;  ///< From RecognizerConfig::to_settings().
   std::vector<ViewRecord> views;
-  /// From SceneRecognizer::finish(): events that were waiting for a further view.
-  std::vector<ObjectEvent> final_events;
   std::size_t peak_memory_bytes = 0;  ///< 0 = unknown.
   int num_threads = 0;                ///< 0 = unknown.
 };

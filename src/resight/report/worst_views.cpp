@@ -100,6 +100,7 @@ std::string worst_view_picture(const WorstView& view) {
 Image<Rgb8> draw_evaluated_view(const RgbdFrame& frame, const ModelLibrary& library,
                                 std::span<const GroundTruthObject> truth, const EvaluatedView& view) {
   SceneUpdate update;
+  update.world_from_camera = frame.world_from_camera;
   std::vector<DetectionMark> marks;
   for (const EvaluatedDetection& d : view.detections) {
     Detection& detection = update.detections.emplace_back();

@@ -3,6 +3,12 @@
 
 namespace resight {
 
+Result<Rigid3> Sequence::read_pose(int view) const {
+  const Result<RgbdFrame> frame = read_view(view);
+  if (!frame) return frame.error();
+  return frame->world_from_camera;
+}
+
 Result<std::vector<GroundTruthObject>> Sequence::read_ground_truth(int) const {
   return std::vector<GroundTruthObject>{};
 }

@@ -29,6 +29,8 @@ class Sequence {
   [[nodiscard]] virtual int image_id(int view) const { return view; }
   /// Reads a view and checks it by check_frame().
   [[nodiscard]] virtual Result<RgbdFrame> read_view(int view) const = 0;
+  /// World from camera: the pose of read_view(), without reading its images where the format allows it.
+  [[nodiscard]] virtual Result<Rigid3> read_pose(int view) const;
   /// False if the data contain no camera poses; world_from_camera is then the identity.
   [[nodiscard]] virtual bool has_poses() const { return true; }
   [[nodiscard]] virtual bool has_ground_truth() const { return false; }

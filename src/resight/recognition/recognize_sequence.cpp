@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/recognize_sequence.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace resight {
+
+Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer& recognizer, const Sequence& sequence,
+                                                                 const OnView& on_view, RecognitionTrace* trace) {
+  std::vector<std::vector<ObjectEvent>> events;
+  const int num_views = sequence.num_views();
+  for (int v = 0; v < num_views; ++v) {
+    const Result<RgbdFrame> frame = sequence.read_view(v);
+    if (!frame) return frame.error();
+    if (trace != nullptr) *trace = {};
+    SceneUpdate update = recognizer.add_view(*frame, trace);
+    if (v + 1 == num_views) std::ranges::move(recognizer.finish(), std::back_inserter(update.events));
+    events.push_back(update.events);
+    if (on_view) on_view(*frame, update);
+  }
+  drop_superseded(events);
+  return events;
+}
+
+}  // namespace resight

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/recognize_sequence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "resight/recognition/box_scene_test_util.hpp"
+#include "resight/sensor/testing/memory_sequence.hpp"
+
+namespace resight {
+namespace {
+
+using test::BoxScene;
+using test::MemorySequence;
+
+// The box is gone in the third and last view: its removal still waits for a further view.
+std::vector<RgbdFrame> frames_of(const BoxScene& scene) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 2; ++v) frames.push_back(render(scene.world, scene.cameras[static_cast<std::size_t>(v)]).frame);
+  frames.push_back(render(analytic::World{}, scene.cameras[2]).frame);
+  return frames;
+}
+
+TEST(RecognizeSequence, TheLastViewReportsTheEventsThatWereWaiting) {
+  const BoxScene scene;
+  const std::vector<RgbdFrame> frames = frames_of(scene);
+  SceneRecognizer by_hand(scene.library, scene.config, scene.store);
+  std::vector<std::vector<ObjectEvent>> expected;
+  for (const RgbdFrame& frame : frames) expected.push_back(by_hand.add_view(frame).events);
+  const std::vector<ObjectEvent> waiting = by_hand.finish();
+  ASSERT_EQ(waiting.size(), 1U);
+  EXPECT_EQ(waiting[0].kind, ObjectEventKind::kRemoved);
+
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  std::vector<SceneUpdate> updates;
+  const auto events =
+      recognize_sequence(recognizer, MemorySequence(frames), [&](const RgbdFrame& frame, SceneUpdate& update) {
+        EXPECT_EQ(frame.world_from_camera.translation, scene.cameras[updates.size()].translation);
+        updates.push_back(std::move(update));
+      });
+  ASSERT_TRUE(events.ok());
+  ASSERT_EQ(events->size(), frames.size());
+  ASSERT_EQ(updates.size(), frames.size());
+  for (std::size_t v = 0; v < frames.size(); ++v) {
+    const std::size_t num_waiting = v + 1 == frames.size() ? 1U : 0U;
+    EXPECT_EQ((*events)[v].size(), expected[v].size() + num_waiting) << v;
+    EXPECT_EQ(updates[v].events.size(), (*events)[v].size()) << v << ": no event was superseded";
+  }
+  EXPECT_EQ(events->back().back().kind, ObjectEventKind::kRemoved);
+  EXPECT_TRUE(recognizer.finish().empty()) << "finished already";
+}
+
+TEST(RecognizeSequence, TheTraceIsThatOfEachView) {
+  const BoxScene scene;
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  RecognitionTrace trace;
+  trace.correspondences.resize(7);
+  std::vector<std::size_t> num_merged;
+  ASSERT_TRUE(recognize_sequence(
+                  recognizer, MemorySequence(frames_of(scene)),
+                  [&](const RgbdFrame&, SceneUpdate& update) {
+                    EXPECT_EQ(trace.merged.size(), static_cast<std::size_t>(update.counts.merged)) << update.view;
+                    EXPECT_TRUE(trace.correspondences.empty()) << update.view;
+                    num_merged.push_back(trace.merged.size());
+                  },
+                  &trace)
+                  .ok());
+  EXPECT_EQ(num_merged.size(), 3U);
+}
+
+TEST(RecognizeSequence, StopsAtAViewThatCannotBeRead) {
+  const BoxScene scene;
+  std::vector<RgbdFrame> frames = frames_of(scene);
+  frames[1] = {};
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  int num_views = 0;
+  const auto events =
+      recognize_sequence(recognizer, MemorySequence(frames), [&](const RgbdFrame&, SceneUpdate&) { ++num_views; });
+  ASSERT_FALSE(events.ok());
+  EXPECT_EQ(events.error().message, "view 1 cannot be read");
+  EXPECT_EQ(num_views, 1);
+}
+
+TEST(RecognizeSequence, WithoutViewsThereAreNoEvents) {
+  const BoxScene scene;
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  EXPECT_TRUE(recognize_sequence(recognizer, MemorySequence({})).value().empty());
+}
+
+}  // namespace
+}  // namespace resight
