@@ -34,11 +34,14 @@ enum class ExistingFolder {
 /// exists, inside it. Files appear under the final name only with commit(); without it, nothing remains.
 class PendingDirectory {
  public:
+  /// Creates the hidden folder, and the parent folders of `final_path`. Fails if these cannot be written, or if
+  /// `final_path` is a file, or (with kRefuse) a folder that is not empty.
   [[nodiscard]] static Result<PendingDirectory> create(const std::filesystem::path& final_path,
                                                        ExistingFolder existing = ExistingFolder::kRefuse);
   PendingDirectory(PendingDirectory&& other) noexcept;
   PendingDirectory& operator=(PendingDirectory&& other) noexcept;
   ~PendingDirectory();
+  /// The hidden folder, to be filled.
   [[nodiscard]] const std::filesystem::path& path() const { return pending_; }
   [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
   /// Moves the files to final_path(). May be called once.

@@ -10,6 +10,7 @@ namespace resight {
 /// `seed`.
 inline constexpr std::uint64_t kHashSeed = 0xCBF29CE484222325ULL;
 [[nodiscard]] std::uint64_t hash_bytes(std::span<const std::uint8_t> bytes, std::uint64_t seed = kHashSeed);
+/// Same for the bytes of a text.
 [[nodiscard]] std::uint64_t hash_text(std::string_view text, std::uint64_t seed = kHashSeed);
 
 /// A 64-bit checksum for large files that reads 8 bytes per step (several GB/s). It always detects damage within one

@@ -19,6 +19,7 @@ class StageTimes {
   void add(std::string_view stage, double wall_s, double cpu_s);
   void add(const StageTimes& other);
   [[nodiscard]] const std::vector<StageTime>& stages() const { return stages_; }
+  /// Sum over all stages.
   [[nodiscard]] double total_wall_s() const;
 
  private:

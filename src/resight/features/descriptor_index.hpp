@@ -41,6 +41,7 @@ class DescriptorIndex {
   /// matches; missing ones have index -1. Throws std::invalid_argument for a query that is not finite or an incomplete
   /// row.
   [[nodiscard]] std::vector<DescriptorMatch> search(std::span<const float> queries, int k) const;
+  /// Number of indexed descriptors.
   [[nodiscard]] std::size_t size() const;
 
  private:

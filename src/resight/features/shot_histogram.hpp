@@ -8,6 +8,7 @@
 
 namespace resight {
 
+/// Bins of the cosine per volume, and the length of the descriptor.
 inline constexpr int kShotCosineBins = 11;
 inline constexpr int kShotDimension = 32 * kShotCosineBins;
 

@@ -13,10 +13,12 @@ namespace resight {
   return ((static_cast<std::uint64_t>(ix) & kMask) << 42U) | ((static_cast<std::uint64_t>(iy) & kMask) << 21U) |
          (static_cast<std::uint64_t>(iz) & kMask);
 }
+/// Index of the cube of side 1 / inverse_size that contains a point.
 [[nodiscard]] inline Eigen::Vector3i voxel_index(const Eigen::Vector3f& p, float inverse_size) {
   return {static_cast<int>(std::floor(p.x() * inverse_size)), static_cast<int>(std::floor(p.y() * inverse_size)),
           static_cast<int>(std::floor(p.z() * inverse_size))};
 }
+/// Key of the cube of side 1 / inverse_size that contains a point.
 [[nodiscard]] inline std::uint64_t voxel_key(const Eigen::Vector3f& p, float inverse_size) {
   const Eigen::Vector3i i = voxel_index(p, inverse_size);
   return voxel_key(i.x(), i.y(), i.z());

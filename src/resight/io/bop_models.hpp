@@ -11,9 +11,10 @@ namespace resight {
 
 /// Writes models to a BOP data set one by one. Meshes (or surface clouds, if there is no mesh) become
 /// models/obj_%06d.ply in millimetres, with models_info.json (diameter, box, symmetries, and our key "name"). Training
-/// views become train/%06d. Both folders appear with finish(); neither may exist before.
+/// views become train/%06d. Both folders appear with finish(); existing ones must be empty.
 class BopModelsWriter {
  public:
+  /// Fails if `dataset`/models exists and is not empty, or cannot be written.
   [[nodiscard]] static Result<std::unique_ptr<BopModelsWriter>> create(const std::filesystem::path& dataset);
   ~BopModelsWriter();
   BopModelsWriter(const BopModelsWriter&) = delete;

@@ -16,6 +16,7 @@ struct ReadMeshOptions {
   void check() const;
 };
 
+/// A mesh with the warnings of its file.
 struct MeshFile {
   TriangleMesh mesh;                  ///< In metres, with normals (computed if the file has none).
   std::vector<std::string> warnings;  ///< References that could not be read, such as a missing texture.

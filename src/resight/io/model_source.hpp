@@ -37,6 +37,7 @@ struct ModelLocation {
 /// models folder or data set, a folder of meshes or clouds (one per file or per sub-folder), or such a file. The error
 /// says what was expected.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_models(const std::vector<std::filesystem::path>& paths);
+/// Reads one model. The error names the file. Throws std::invalid_argument for an unknown `format`.
 [[nodiscard]] Result<ModelSource> read_model(const ModelLocation& location);
 
 }  // namespace resight

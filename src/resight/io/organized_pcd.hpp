@@ -14,6 +14,7 @@ inline constexpr int kMinPointsForCamera = 100;
 /// Largest root mean square deviation of the points from the pixel grid of a pinhole camera.
 inline constexpr double kMaxCameraResidual_px = 1.0;
 
+/// A fitted camera with the quality of the fit.
 struct CameraFit {
   Camera camera;
   double residual_px = 0;  ///< Root mean square over the points and both axes.

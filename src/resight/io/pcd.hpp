@@ -29,11 +29,13 @@ struct PcdCloud {
   [[nodiscard]] bool is_organized() const { return height > 1; }
 };
 
+/// WIDTH and HEIGHT of a PCD header.
 struct PcdSize {
   int width = 0;
   int height = 0;
 };
 
+/// DATA of a PCD header.
 enum class PcdEncoding { kAscii, kBinary, kBinaryCompressed };
 
 /// Reads ascii, binary and binary_compressed PCD with fields in any order and of any SIZE, TYPE and COUNT. Requires x y

@@ -25,6 +25,7 @@ inline constexpr double kPoseTolerance = 1e-2;
 /// Parses sixteen numbers in row-major order (twelve: without the last row), separated by any white space. Skips one
 /// word in front of them (a label in old files).
 [[nodiscard]] Result<Rigid3> parse_pose(std::string_view text, std::string_view what);
+/// Reads a file of that form.
 [[nodiscard]] Result<Rigid3> read_pose(const std::filesystem::path& file);
 
 /// Sixteen numbers in row-major order on one line, with all digits (read back bit for bit).

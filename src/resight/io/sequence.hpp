@@ -23,7 +23,9 @@ class SequenceWriter {
                                                 const std::vector<GroundTruthObject>& ground_truth) = 0;
   [[nodiscard]] virtual Result<void> finish() = 0;
 };
+/// Formats that can be written (docs/formats.md).
 enum class DatasetFormat { kTuw, kBop };
+/// Starts a sequence in `directory`. Fails if the folder exists and is not empty, or cannot be written.
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_sequence(const std::filesystem::path& directory,
                                                                       DatasetFormat format);
 

@@ -9,6 +9,7 @@
 
 namespace resight {
 
+/// A camera pose with its time or view.
 struct TrajectoryPose {
   std::string stamp;  ///< Time in seconds or number of the view, as text.
   Rigid3 world_from_camera;

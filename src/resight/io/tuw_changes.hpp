@@ -26,6 +26,7 @@ struct ChangeChain {
 /// Reads a `.changes` file with one chain per line. Accepts any blanks, empty lines, any number of digits, and names
 /// with or without ".txt". Requires one object per chain, ascending views, and no annotation in two chains.
 [[nodiscard]] Result<std::vector<ChangeChain>> read_changes(const std::filesystem::path& file);
+/// Same from memory. `name` is used in error messages.
 [[nodiscard]] Result<std::vector<ChangeChain>> parse_changes(std::string_view text, std::string_view name);
 
 /// Writes the chains by object, first view and first instance, with single blanks and a final newline, as the tools of

@@ -4,7 +4,7 @@
 
 namespace resight {
 
-/// Two poses of an object that are one place of it.
+/// Largest differences of two poses of an object that count as the same place.
 struct SamePlaceOptions {
   double max_distance_m = 0.03;   ///< Between its centres.
   double max_rotation_rad = 0.2;  ///< Up to its symmetries.

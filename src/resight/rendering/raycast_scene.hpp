@@ -44,6 +44,8 @@ class RaycastScene {
   int add_mesh(TriangleMesh mesh) { return add_mesh(std::make_shared<const TriangleMesh>(std::move(mesh))); }
   /// Adds an instance of a mesh. Returns its number, counted from 0.
   int add_instance(int mesh, const Rigid3& world_from_mesh);
+  /// Both take effect with the next commit(). Throw std::invalid_argument for an unknown instance or a pose that is not
+  /// rigid.
   void set_pose(int instance, const Rigid3& world_from_mesh);
   void set_visible(int instance, bool visible);
   /// Applies all changes. Must be called before casting.

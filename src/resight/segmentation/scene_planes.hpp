@@ -46,6 +46,7 @@ struct ScenePlane {
   std::vector<Range> columns;  ///< Per cell in u: covered cells in v.
 };
 
+/// The planes of a cloud, and the plane of each of its points.
 struct ScenePlanes {
   std::vector<ScenePlane> planes;
   std::vector<int> plane_of_point;  ///< -1 if the point is in no plane.

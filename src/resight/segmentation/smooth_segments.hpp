@@ -15,6 +15,7 @@ struct SmoothSegmentsOptions {
   void check() const;
 };
 
+/// The segment of each point of a cloud.
 struct SmoothSegments {
   std::vector<int> segment;  ///< Per point; -1 if the point is in no segment.
   int num_segments = 0;

@@ -14,7 +14,7 @@ inline constexpr int kDynamicTabletopVersion = 2;
 inline constexpr std::uint64_t kDynamicTabletopValidationSeed = 1;
 inline constexpr std::uint64_t kDynamicTabletopTestSeed = 2;
 
-/// How hard the benchmark is. The defaults ARE the benchmark: docs/benchmark.md tells how they were found.
+/// Difficulty of the benchmark. The defaults define the benchmark; docs/benchmark.md explains their choice.
 struct DynamicTabletopOptions {
   int num_known = 12;           ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;          ///< Further known things, which may come in later.

@@ -24,6 +24,7 @@ struct Placement {
   std::optional<Rigid3> world_from_object;  ///< If set, all other fields are ignored.
 };
 
+/// A piece of furniture of a scene.
 struct FurnitureScript {
   std::string key;
   std::string kind;  ///< See furniture_kinds().
@@ -31,6 +32,7 @@ struct FurnitureScript {
   Placement placement;
 };
 
+/// An object of a scene, known or not.
 struct ObjectScript {
   std::string key;             ///< Unique; names the instance in changes.
   std::string model;           ///< From procedural_object_names() or distractor_names(), or any name if `mesh` is set.
@@ -39,6 +41,7 @@ struct ObjectScript {
   std::optional<Placement> start;  ///< Absent if the object is added later.
 };
 
+/// Kind of a change of an object.
 enum class ChangeKind { kAdded, kMoved, kRemoved };
 [[nodiscard]] std::string_view to_string(ChangeKind kind);
 
@@ -76,6 +79,7 @@ struct OrbitScript {
   double end_rad = -0.5235987755982988;    ///< -30 deg.
   int num_views = 12;
 };
+/// Poses (world_from_camera) of an orbit. Throws std::invalid_argument unless num_views > 0.
 [[nodiscard]] std::vector<Rigid3> make_orbit(const OrbitScript& orbit);
 
 /// Checks that keys are unique, supports and objects exist when they are used, changes are possible (a removed object

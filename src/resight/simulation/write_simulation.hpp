@@ -20,6 +20,7 @@ class ChangeChainCollector {
  public:
   /// Views must be added in order.
   void add(const Simulation& simulation, int view, const SimulatedView& rendered);
+  /// The chains of all views added so far.
   [[nodiscard]] std::vector<ChangeChain> chains() const;
 
  private:

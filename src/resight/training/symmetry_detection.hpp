@@ -5,7 +5,7 @@
 
 namespace resight {
 
-/// When a motion counts as a symmetry. All values are ours.
+/// Criteria for a motion to count as a symmetry. All values are ours.
 struct SymmetryOptions {
   double min_agreement = 0.97;        ///< Share of the surface that must come to lie on the surface, in like colour.
   double min_close_agreement = 0.85;  ///< Share of it whose colour differs by half of the limits at most: faint prints.

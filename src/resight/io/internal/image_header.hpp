@@ -5,6 +5,7 @@
 
 namespace resight::io {
 
+/// Size and integrity of an encoded image.
 struct ImageHeader {
   int width = 0;
   int height = 0;

@@ -18,6 +18,7 @@ namespace resight::io {
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& json, std::string_view key);
 /// An array of finite numbers, with nested arrays flattened; none for other values.
 [[nodiscard]] std::optional<std::vector<double>> as_numbers(const nlohmann::json& json);
+/// A finite number, a whole number that fits into an int, or a text; none for other values.
 [[nodiscard]] std::optional<double> as_number(const nlohmann::json& json);
 [[nodiscard]] std::optional<int> as_integer(const nlohmann::json& json);
 [[nodiscard]] std::optional<std::string> as_text(const nlohmann::json& json);
@@ -25,6 +26,7 @@ namespace resight::io {
 /// Parses a rotation (9 numbers) and a translation in mm (3 numbers), as in BOP. `what` starts the error message.
 [[nodiscard]] Result<Rigid3> rigid_from_bop(const nlohmann::json& rotation, const nlohmann::json& translation_mm,
                                             std::string_view what);
+/// Converts to the numbers that rigid_from_bop() parses.
 [[nodiscard]] nlohmann::json rotation_to_json(const Eigen::Matrix3d& rotation);
 [[nodiscard]] nlohmann::json translation_to_json_mm(const Eigen::Vector3d& translation_m);
 

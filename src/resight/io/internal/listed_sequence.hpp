@@ -10,6 +10,7 @@
 
 namespace resight::io {
 
+/// Encoding of depth images.
 enum class DepthStorage {
   kPng,         ///< 16-bit PNG.
   kRotatedPng,  ///< 16-bit PNG, each value rotated right by 3 bits.
@@ -33,6 +34,7 @@ struct ListedView {
   std::vector<GroundTruthObject> ground_truth;
 };
 
+/// All views of a sequence with its common properties.
 struct SequenceTable {
   std::string format;
   int scene_id = 0;

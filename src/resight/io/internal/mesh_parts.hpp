@@ -23,6 +23,7 @@ struct MeshPart {
 /// Clears the colours if they are all the same.
 void drop_plain_colors(std::vector<Rgb8>& colors);
 
+/// The parts of a mesh file, with a line for each reference that could not be read.
 struct ImportedParts {
   std::vector<MeshPart> parts;
   std::vector<std::string> warnings;

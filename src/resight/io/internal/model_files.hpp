@@ -24,6 +24,7 @@ struct ModelExtras {
 
 /// Finds the models of a BOP models folder, data set or training split. Empty if `directory` is none of these.
 [[nodiscard]] Result<std::vector<ModelLocation>> find_bop_models(const std::filesystem::path& directory);
+/// Reads a model that find_bop_models() has listed.
 [[nodiscard]] Result<ModelSource> read_bop_model(const ModelLocation& location);
 
 /// Reads a cloud (PCD, or PLY without faces). An organised cloud is one view of an object. An unorganised cloud is also

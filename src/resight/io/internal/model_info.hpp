@@ -10,6 +10,7 @@ namespace resight::io {
 
 /// Parses the keys symmetries_discrete and symmetries_continuous of an entry of models_info.json (mm in the file).
 [[nodiscard]] Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::string_view what);
+/// Adds these keys to an entry.
 void add_symmetries(nlohmann::json& json, const ObjectSymmetries& symmetries);
 
 }  // namespace resight::io

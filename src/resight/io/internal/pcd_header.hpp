@@ -22,6 +22,7 @@ struct PcdField {
   [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(size) * static_cast<std::size_t>(count); }
 };
 
+/// A parsed PCD header. Offsets are in bytes.
 struct PcdHeader {
   std::vector<PcdField> fields;
   int width = 0;

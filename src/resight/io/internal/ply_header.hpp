@@ -9,9 +9,12 @@
 
 namespace resight::io {
 
+/// Encoding of the body.
 enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
+/// Type of a value.
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
+/// A property of an element: a scalar or a list.
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::kFloat32;  ///< Type of the value, or of each value of a list.
@@ -19,6 +22,7 @@ struct PlyProperty {
   PlyType count_type = PlyType::kUint8;  ///< Type of the length of a list.
 };
 
+/// An element (vertex, face, ...) with its number of items.
 struct PlyElement {
   std::string name;
   std::size_t count = 0;
@@ -27,6 +31,7 @@ struct PlyElement {
   [[nodiscard]] int find(std::string_view property) const;
 };
 
+/// A parsed PLY header.
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
@@ -34,6 +39,7 @@ struct PlyHeader {
   std::size_t body_offset = 0;
 };
 
+/// Number of bytes of a value.
 [[nodiscard]] std::size_t size_of(PlyType type);
 
 /// Parses the header and checks it against the file size: no element may claim more items than the remaining bytes can

@@ -11,6 +11,7 @@
 
 namespace resight {
 
+/// Furniture of a sequence of the benchmark.
 enum class TabletopTheme : std::uint8_t { kDesk, kMeeting, kCorner, kShelf };
 
 /// A level of a piece of furniture that supports objects.

@@ -22,10 +22,12 @@ class TomlFields {
       : table_(table), where_(std::move(where)), error_(error) {}
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+  /// Records a mistake of this table unless there is an earlier one.
   void fail(const std::string& key, const std::string& what) {
     if (!error_) error_ = Error{(where_.empty() ? "" : where_ + ".") + key + ": " + what};
   }
 
+  /// Read a value of the type of the target; a missing key leaves the target unchanged.
   void read(const std::string& key, double& target);
   void read(const std::string& key, int& target);
   void read(const std::string& key, bool& target);
