@@ -20,7 +20,7 @@ class Deadline {
   /// Seconds until the deadline; negative if it has passed, infinite if there is none.
   [[nodiscard]] double left_s() const { return clock_ ? due_s_ - clock_() : std::numeric_limits<double>::infinity(); }
   [[nodiscard]] bool has_passed() const { return left_s() <= 0; }
-  /// The deadline moved forward by `seconds`.
+  /// The same deadline, due `seconds` earlier.
   [[nodiscard]] Deadline earlier_by(double seconds) const {
     Deadline earlier = *this;
     earlier.due_s_ -= seconds;

@@ -42,7 +42,7 @@ class FilesTest : public ::testing::Test {
 TEST_F(FilesTest, AFileIsWrittenWholeWithItsFolder) {
   ASSERT_TRUE(write_file(folder_ / "a/b.txt", {"one ", "two"}).ok());
   EXPECT_EQ(read(folder_ / "a/b.txt"), "one two");
-  ASSERT_TRUE(write_file(folder_ / "a/b.txt", "three").ok()) << "an older file is replaced";
+  ASSERT_TRUE(write_file(folder_ / "a/b.txt", "three").ok()) << "must replace an older file";
   EXPECT_EQ(read(folder_ / "a/b.txt"), "three");
   EXPECT_THAT(entries(), ElementsAre("a", "a/b.txt"));
 }
@@ -61,7 +61,7 @@ TEST_F(FilesTest, WritablePlacesAreKnownBeforehand) {
   EXPECT_TRUE(check_writable(folder_ / "new/er/est").ok());
   EXPECT_TRUE(check_writable(folder_ / "file").ok());
   EXPECT_THAT(check_writable(folder_ / "file/below").error().message, HasSubstr("file is not a folder"));
-  EXPECT_THAT(entries(), ElementsAre("file")) << "asking changes nothing";
+  EXPECT_THAT(entries(), ElementsAre("file")) << "the check must not change anything";
   if (::geteuid() == 0) return;  // root may write anywhere
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_THAT(check_writable(folder_ / "new").error().message, HasSubstr("no permission"));
@@ -82,7 +82,7 @@ TEST_F(FilesTest, APendingDirectoryAppearsOnlyWhenComplete) {
     write(pending->path() / "a.txt", "a");
     EXPECT_FALSE(fs::exists(folder_ / "new/er/out"));
   }
-  EXPECT_THAT(entries(), ElementsAre()) << "given up: nothing remains";
+  EXPECT_THAT(entries(), ElementsAre()) << "a discarded folder must leave nothing";
   auto pending = PendingDirectory::create(folder_ / "out/");
   ASSERT_TRUE(pending.ok());
   write(pending->path() / "a.txt", "a");

@@ -67,7 +67,7 @@ TEST(BopScene, SeveralScenesAreAmbiguous) {
   io::TestDirectory directory;
   write_scene(directory / "test/000001", 1, true);
   write_scene(directory / "train/000005", 1, true);
-  EXPECT_TRUE(open_sequence(directory.path()).ok()) << "training scenes do not count beside test scenes";
+  EXPECT_TRUE(open_sequence(directory.path()).ok()) << "must ignore training scenes beside test scenes";
   write_scene(directory / "test/000002", 1, true);
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("holds 2 sequences"));
   EXPECT_THAT(open_sequence(directory / "test").error().message, HasSubstr("holds 2 sequences"));
@@ -133,7 +133,7 @@ TEST(BopScene, WriterTakesIdsOfTheModels) {
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   EXPECT_EQ((*sequence)->image_id(0), 5);
-  EXPECT_EQ((*sequence)->image_id(1), 6) << "a number that does not ascend is counted on";
+  EXPECT_EQ((*sequence)->image_id(1), 6) << "a number that does not ascend must be replaced by the next one";
   const auto read = (*sequence)->read_ground_truth(0);
   ASSERT_EQ(read->size(), 3U);
   EXPECT_EQ((*read)[0].bop_id, 4);
@@ -174,7 +174,7 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
   EXPECT_TRUE(zebra->symmetries_known);
   const auto ant = read_model((*found)[0]);
   ASSERT_TRUE(ant.ok()) << ant.error().message;
-  EXPECT_TRUE(ant->symmetries_known && ant->symmetries.none()) << "declared as having none";
+  EXPECT_TRUE(ant->symmetries_known && ant->symmetries.none()) << "declared without symmetries";
   ASSERT_EQ(zebra->symmetries.discrete.size(), 1U);
   EXPECT_LT(io::pose_difference(zebra->symmetries.discrete[0], models[0].symmetries.discrete[0]), 1e-12);
   ASSERT_EQ(zebra->symmetries.continuous.size(), 1U);

@@ -60,7 +60,7 @@ struct Outcome {
 /// Feeds mutations of `seed_file` to `read`, which returns a Result.
 template <typename Read>
 Outcome fuzz(const std::string& seed_file, std::uint64_t seed, const Read& read, int num_mutations = kMutations) {
-  EXPECT_TRUE(read(seed_file).ok()) << "the undamaged file must be fine";
+  EXPECT_TRUE(read(seed_file).ok()) << "the undamaged file must be readable";
   Outcome outcome;
   for (int i = 0; i < num_mutations; ++i) {
     Rng rng = Rng::stream(seed, static_cast<std::uint64_t>(i));

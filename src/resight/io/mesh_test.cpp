@@ -50,7 +50,7 @@ TEST(Mesh, MissingTextureIsAWarning) {
   const auto read = read_mesh(directory / "square.obj");
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_FALSE(read->mesh.has_texture());
-  EXPECT_TRUE(read->mesh.colors.empty()) << "the plain colour of the material would be taken for the object's";
+  EXPECT_TRUE(read->mesh.colors.empty()) << "the uniform colour of the material must not become that of the object";
   ASSERT_EQ(read->warnings.size(), 1U);
   EXPECT_THAT(read->warnings[0], HasSubstr("square.png"));
 }

@@ -42,7 +42,8 @@ TEST(FindModels, EveryKindOfFolder) {
   ASSERT_TRUE(write_ply(directory / "meshes/apple_2/textured.ply", mesh()).ok());
   ASSERT_TRUE(write_ply(directory / "meshes/apple_10/anything.ply", mesh()).ok());
   EXPECT_THAT(names_of(find_models({directory / "meshes"})), ElementsAre("apple_2:mesh", "apple_10:mesh", "box:mesh"));
-  EXPECT_EQ(find_models({directory / "meshes"})->back().path.extension(), ".obj") << "of one stem the richest format";
+  EXPECT_EQ(find_models({directory / "meshes"})->back().path.extension(), ".obj")
+      << "must prefer the richest format of a stem";
   EXPECT_THAT(names_of(find_models({directory / "meshes/box.ply", directory / "tuw/mug"})),
               ElementsAre("box:mesh", "mug:tuw"));
   EXPECT_THAT(find_models({directory / "meshes", directory / "meshes/box.ply"}).error().message,

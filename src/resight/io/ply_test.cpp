@@ -98,7 +98,7 @@ TEST(Ply, CornerTextureCoordinatesSplitVertices) {
       "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0 0 0.5 0.5 0 1\n",
       "t");
   ASSERT_TRUE(read.ok()) << read.error().message;
-  EXPECT_EQ(read->mesh.vertices.size(), 5U) << "vertex 2 has two places in the texture, vertex 0 has one";
+  EXPECT_EQ(read->mesh.vertices.size(), 5U) << "vertex 2 has two texture coordinates, vertex 0 has one";
   EXPECT_EQ(read->mesh.uvs.size(), 5U);
   EXPECT_EQ(read->mesh.vertices[read->mesh.faces[1][1]], Eigen::Vector3f(1, 1, 0));
 }

@@ -60,7 +60,7 @@ TEST(Tum, AssociatesAndInterpolates) {
   EXPECT_LT((frame->world_from_camera.translation - Eigen::Vector3d(0.5, 1, 2)).norm(), 1e-9);
   EXPECT_NEAR(rotation_angle_rad(Eigen::Matrix3d::Identity(), frame->world_from_camera.rotation), 0.1, 1e-9);
   EXPECT_EQ((*sequence)->read_view(1)->world_from_camera.translation, Eigen::Vector3d(5, 5, 5))
-      << "the nearest at the end";
+      << "must use the nearest pose at the end";
 }
 
 TEST(Tum, Intrinsics) {

@@ -35,7 +35,7 @@ TEST(TuwSequence, PoseFilesInTheSequenceFolder) {
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   ASSERT_EQ((*sequence)->num_views(), 2);
-  EXPECT_EQ((*sequence)->view_name(0), "cloud_9") << "order of numbers, not of letters";
+  EXPECT_EQ((*sequence)->view_name(0), "cloud_9") << "must sort by numbers, not by letters";
   EXPECT_TRUE((*sequence)->has_ground_truth());
   const auto first = (*sequence)->read_ground_truth(0);
   ASSERT_TRUE(first.ok()) << first.error().message;

@@ -143,7 +143,7 @@ TEST_P(WriteSimulation, NeverWritesOverData) {
   ASSERT_FALSE(written.ok());
   EXPECT_NE(written.error().message.find(directory_.string()), std::string::npos);
   EXPECT_TRUE(fs::exists(directory_ / "precious.txt"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "nothing else";
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "must leave nothing else";
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, WriteSimulation, testing::Values(DatasetFormat::kTuw, DatasetFormat::kBop),

@@ -35,10 +35,11 @@ TEST(RotationGroup, KnownGroupsHaveTheirSize) {
   EXPECT_EQ(size_of({turn({0, 0, 1}, 5)}), 5U);
   EXPECT_EQ(size_of({turn({1, 0, 0}, 2), turn({0, 1, 0}, 2)}), 4U);
   EXPECT_EQ(size_of({turn({0, 0, 1}, 6), turn({0, 1, 0}, 2)}), 12U);
-  EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 2)}), 12U);               // tetrahedron
-  EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 4)}), 24U);               // cube
-  EXPECT_EQ(size_of({turn({0, 1, golden}, 5), turn({1, 1, 1}, 3)}), 60U);          // icosahedron
-  EXPECT_EQ(size_of({turn({0, 0, 1}, 5), turn({0, 1, 0}, 3)}), 0U) << "no group";  // dense in the set of all rotations
+  EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 2)}), 12U);       // tetrahedron
+  EXPECT_EQ(size_of({turn({1, 1, 1}, 3), turn({0, 0, 1}, 4)}), 24U);       // cube
+  EXPECT_EQ(size_of({turn({0, 1, golden}, 5), turn({1, 1, 1}, 3)}), 60U);  // icosahedron
+  EXPECT_EQ(size_of({turn({0, 0, 1}, 5), turn({0, 1, 0}, 3)}), 0U)
+      << "must not be a group";  // dense in the set of all rotations
 }
 
 TEST(RotationGroup, ErrorsOfAFewDegreesAreAveragedAway) {

@@ -203,7 +203,7 @@ TEST(TrainObjectFromMesh, WithoutAnyColourOnlyItsShapeCounts) {
   object.mesh.colors.assign(object.mesh.vertices.size(), Rgb8{200, 30, 20});
   const Result<ObjectModel> red = train_object("thing", object.mesh, make_quick_options());
   ASSERT_TRUE(red.ok()) << red.error().message;
-  EXPECT_TRUE(red->surface.has_colors()) << "whoever gave the mesh a colour meant it";
+  EXPECT_TRUE(red->surface.has_colors()) << "a uniform mesh colour is intentional";
   EXPECT_EQ(red->shot.points, bare->shot.points);
   ModelLibrary library;
   library.objects = {*bare, *red};
