@@ -1,48 +1,36 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs all checks of the continuous integration from a clean clone: packages, format, build with warnings as errors,
-# tests, each public header alone, a project that uses the installation, and the tests of four modules under the
-# sanitizers.
-#   scripts/test.sh             everything except the sanitizers
-#   scripts/test.sh --sanitize  everything
-#   scripts/test.sh --fast      without public headers, installation and sanitizers
+# All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
+# clang-tidy, every public header alone, installation and a project that uses it, all module tests under AddressSanitizer
+# and UndefinedBehaviourSanitizer, and the whole program under ThreadSanitizer.
+#   scripts/test.sh         everything
+#   scripts/test.sh --fast  format, build and tests, for the inner loop
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
-sanitize=0
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
-    --sanitize) sanitize=1 ;;
-    *) echo "test.sh: unknown option '$option' (expected --fast or --sanitize)" >&2; exit 2 ;;
+    *) echo "test.sh: unknown option '$option' (expected --fast)" >&2; exit 2 ;;
   esac
 done
 scripts/setup.sh --tests
 source scripts/common.sh
 
-# Modules that read untrusted bytes or do index arithmetic. All modules would take too long under the sanitizers.
-sanitized_modules=(core geometry io changes)
-sanitized_targets=(resight_{core,geometry,io,changes}_test)
-
 check_format() {
   find src apps examples tests bench \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
 }
-run_tests() { ctest --test-dir build/ci -j2 --output-on-failure --no-tests=error; }
+run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
 count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_tests
   awk '/tests passed,/ { total = $NF; failed = $4 } /\*\*\*Skipped/ { ++skipped }
        END { printf "%d tests passed, %d failed, %d skipped\n", total - failed - skipped, failed, skipped }' \
     "$log_dir/tests.log"
 }
-build_sanitized() {
-  cmake --preset asan-ubsan -DRESIGHT_BUILD_APPS=OFF -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/asan-ubsan -j "$num_jobs" --target "${sanitized_targets[@]}"
-}
-run_sanitized() {
-  local module
-  for module in "${sanitized_modules[@]}"; do
-    UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 "build/asan-ubsan/src/resight/$module/resight_${module}_test" \
-      --gtest_brief=1 || return 1
-  done
+
+# Checks the joined translation units of the release build: each header is parsed once per dozen sources.
+run_clang_tidy() {
+  grep -o '"file": "[^"]*' build/ci/compile_commands.json | cut -d'"' -f4 | grep -E '/Unity/|/apps/|/examples/' |
+    xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/ci
 }
 build_consumer() {
   rm -rf build/install build/consumer
@@ -51,17 +39,35 @@ build_consumer() {
       -DCMAKE_PREFIX_PATH="$PWD/build/install" &&
     cmake --build build/consumer && build/consumer/consumer
 }
+build_asan() {
+  cmake --preset asan-ubsan -DRESIGHT_BUILD_APPS=OFF -DRESIGHT_BUILD_EXAMPLES=OFF &&
+    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_unit_tests
+}
+run_asan() {
+  export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  find build/asan-ubsan/src/resight -name 'resight_*_test' -type f -executable |
+    xargs -P "$num_jobs" -I{} {} --gtest_brief=1
+}
+build_tsan() {
+  cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
+    cmake --build build/tsan -j "$num_jobs" --target resight_app resight_core_test
+}
+run_tsan() {
+  export TSAN_OPTIONS=halt_on_error=1
+  build/tsan/src/resight/core/resight_core_test --gtest_brief=1 && tests/threads_test.sh build/tsan/apps/resight/resight
+}
 
 step "format" check_format
 step "configure" cmake --preset ci -DCMAKE_VERIFY_INTERFACE_HEADER_SETS=ON
 step "build, warnings are errors" cmake --build build/ci -j "$num_jobs"
 step "tests" run_tests || { count_tests; exit 1; }
 if ((!fast)); then
+  step "clang-tidy" run_clang_tidy
   step "each public header compiles alone" cmake --build build/ci -j "$num_jobs" --target all_verify_interface_header_sets
   step "install, and a project that uses it" build_consumer
-fi
-if ((sanitize)); then
-  step "build with ASan and UBSan" build_sanitized
-  step "tests with ASan and UBSan" run_sanitized
+  step "build with ASan and UBSan" build_asan
+  step "module tests with ASan and UBSan" run_asan
+  step "build with TSan" build_tsan
+  step "program with TSan" run_tsan
 fi
 count_tests

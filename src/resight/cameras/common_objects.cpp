@@ -160,8 +160,9 @@ class PartJoiner {
 };
 
 std::span<const ObjectPlace> places_of(const std::vector<ObjectPlace>& places, int part) {
-  const auto range = std::ranges::equal_range(places, part, {}, &ObjectPlace::part);
-  return {range.begin(), range.end()};
+  const auto begin = std::ranges::lower_bound(places, part, {}, &ObjectPlace::part);
+  const auto end = std::ranges::upper_bound(places, part, {}, &ObjectPlace::part);
+  return {begin, end};
 }
 
 std::optional<Candidate> find_best_join(const CameraTrack& track, const std::vector<ObjectPlace>& places,

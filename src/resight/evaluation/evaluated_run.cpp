@@ -20,8 +20,8 @@ constexpr std::array<std::pair<DetectionVerdict, std::string_view>, 4> kVerdicts
      {DetectionVerdict::kIgnored, "ignored"}}};
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-double number_from(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+double number_from(const Json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
 Json score_json(const RecognitionScore& s) { return {s.true_positives, s.false_positives, s.false_negatives}; }

@@ -22,9 +22,10 @@ void ignore_out_of_image(MatchDetectionsResult& result, std::span<const Detected
     const ObjectModel& model = library.objects[static_cast<std::size_t>(library.find(detection.object))];
     return share_in_image(model, detection.camera_from_object, camera) < min_visible_share;
   };
-  const auto inside = std::ranges::stable_partition(result.false_positives, is_outside);
-  result.ignored_detections.insert(result.ignored_detections.end(), result.false_positives.begin(), inside.begin());
-  result.false_positives.erase(result.false_positives.begin(), inside.begin());
+  const auto begin = result.false_positives.begin();
+  const auto inside = std::stable_partition(begin, result.false_positives.end(), is_outside);
+  result.ignored_detections.insert(result.ignored_detections.end(), begin, inside);
+  result.false_positives.erase(begin, inside);
   std::ranges::sort(result.ignored_detections);
   result.score.false_positives = static_cast<int>(result.false_positives.size());
 }

@@ -9,11 +9,11 @@ namespace resight {
 namespace {
 
 void drop_farther_points(double max_depth_m, OrganizedCloud& cloud) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
   const auto limit_m = static_cast<float>(max_depth_m);
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
     if (!(cloud.z[i] > limit_m)) continue;
-    for (Image<float>* image : {&cloud.x, &cloud.y, &cloud.z, &cloud.nx, &cloud.ny, &cloud.nz}) (*image)[i] = kNan;
+    for (Image<float>* image : {&cloud.x, &cloud.y, &cloud.z, &cloud.nx, &cloud.ny, &cloud.nz}) (*image)[i] = kInvalid;
   }
 }
 

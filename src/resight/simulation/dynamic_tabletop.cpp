@@ -107,7 +107,8 @@ class SequenceBuilder {
     std::vector<std::string> known = dynamic_tabletop_library();
     rng_.shuffle(known);
     if (index_ % 2 == 0)  // twins side by side
-      std::ranges::stable_partition(known, [](const std::string& name) { return name.starts_with("soup"); });
+      std::stable_partition(known.begin(), known.end(),
+                            [](const std::string& name) { return name.starts_with("soup"); });
     std::vector<std::string> unknown = distractor_names();
     unknown.insert(unknown.end(), kLookAlikes.begin(), kLookAlikes.end());
     rng_.shuffle(unknown);

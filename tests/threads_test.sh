@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Runs each command that uses threads on a small scene, with two threads. Under ThreadSanitizer, a data race ends a command
+# with an error. Usage: threads_test.sh PATH_OF_RESIGHT
+set -uo pipefail
+resight=$(realpath "$1")
+source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
+cd "$work" || exit 1
+
+run() { # run COMMAND ARGUMENT...
+  "$resight" "$@" --threads 2 >log 2>&1 || fail "resight $1 failed: $(tail -n 40 log)"
+}
+
+{
+  write_scene 3 -110 -80 true
+  cat <<'CHANGE'
+[[change]]
+view = 1
+kind = "remove"
+object = "tea_box"
+CHANGE
+} >scene.toml
+run simulate scene.toml --out data --format bop
+run train data/models --out models.resight
+for preset in mvr-chd default; do
+  run recognize --models models.resight --sequence data/test/000001 --preset $preset --out $preset
+  grep -q cereal_blue $preset/detections.json || fail "$preset did not recognise the cereal box"
+done
+run changes --sequence data/test/000001 --out changes
+run track --sequence data/test/000001 --models models.resight --out poses.txt
+
+((failures == 0)) && echo "threads: all as expected"
+exit $((failures > 0))
