@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   RecognitionScore score;
   StageTimes times;
   RecognitionTrace trace;
-  const auto print_view = [&](const RgbdFrame& frame, const SceneUpdate& update) {
+  const auto print_view = [&](const RgbdFrame& /*frame*/, const SceneUpdate& update) {
     const int v = update.view;
     const auto truth = value_or_exit(sequence->read_ground_truth(v));
     const auto matched = match_detections(truth, to_detected_objects(update, library), library, options.match);
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
       print_evidence(evidence_of(update.detections[m.detection], trace));
     }
     for (const int t : matched.false_negatives) {
-      const Loss loss = find_loss(truth[t], frame.world_from_camera, trace, library, options);
+      const Loss loss = find_loss(truth[t], update.world_from_camera, trace, library, options);
       ++losses[loss.stage];
       print_loss(v, truth[t], loss, trace, library);
     }

@@ -47,7 +47,7 @@ class SequenceEvaluator {
     view.name = frame.name;
     view.counts = update.counts;
     view.times = update.times;
-    if (options_.find_losses) find_losses(truth, trace, view);
+    if (options_.find_losses) find_losses(truth, update.world_from_camera, trace, view);
     if (points_) view.points = points_->add_view(frame, update.changes.removed_in_world, update.changes.novel_in_world);
     if (sights_) sights_->add_view(frame);
     run_.views.push_back(std::move(view));
@@ -62,7 +62,9 @@ class SequenceEvaluator {
   }
 
  private:
-  void find_losses(const TruthView& truth, const RecognitionTrace& trace, EvaluatedView& view) const {
+  // The hypotheses live in the world of the corrected camera poses.
+  void find_losses(const TruthView& truth, const Rigid3& world_from_camera, const RecognitionTrace& trace,
+                   EvaluatedView& view) const {
     std::size_t entry = 0;  // Index into view.truth, which skips objects that are not in the library.
     FindLossOptions loss_options;
     loss_options.match = options_.match;
@@ -70,7 +72,7 @@ class SequenceEvaluator {
       if (library_.find(object.object) < 0) continue;
       EvaluatedTruth& t = view.truth[entry++];
       if (t.counts && !t.found)
-        t.lost_at = to_string(find_loss(object, truth.world_from_camera, trace, library_, loss_options).stage);
+        t.lost_at = to_string(find_loss(object, world_from_camera, trace, library_, loss_options).stage);
     }
   }
 
