@@ -11,7 +11,7 @@ set(RESIGHT_LAYERS
     sensor segmentation
     io rendering features evidence
     registration models changes simulation
-    hypotheses reconstruction training cameras
+    hypotheses history reconstruction training cameras
     verification shape_search modelling
     recognition
     evaluation

@@ -14,9 +14,10 @@
 
 #include "arguments.hpp"
 #include "resight/evaluation/event_score.hpp"
+#include "resight/history/object_history.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/recognition/object_history.hpp"
+#include "resight/recognition/scene_update.hpp"
 
 namespace {
 
@@ -87,7 +88,9 @@ Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& lib
     frame.world_from_camera = pose_of(view.at("world_from_camera"));
     std::vector<Detection> detections;
     for (const Json& detection : view.at("detections")) detections.push_back(detection_of(detection, library));
-    events.push_back(history.update(v, detections, frame, true));
+    std::vector<ObjectObservation> observed;
+    for (const Detection& detection : detections) observed.push_back(detection.observation());
+    events.push_back(history.update(v, observed, frame, true).events);
     replay.detections.push_back(std::move(detections));
   }
   events.push_back(history.finish());

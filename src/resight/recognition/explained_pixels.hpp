@@ -4,7 +4,9 @@
 #include <span>
 
 #include "resight/core/image.hpp"
-#include "resight/recognition/object_history.hpp"
+#include "resight/evidence/object_presence.hpp"
+#include "resight/history/tracked_object.hpp"
+#include "resight/models/object_model.hpp"
 
 namespace resight {
 

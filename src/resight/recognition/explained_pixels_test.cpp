@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "resight/recognition/square_world_test_util.hpp"
+#include "resight/models/testing/square_world.hpp"
 
 namespace resight {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "resight/recognition/square_world_test_util.hpp"
+#include "resight/models/testing/square_world.hpp"
 
 namespace resight {
 namespace {

@@ -197,7 +197,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.same_rotation_rad", &c.history.same_rotation_rad},
                                   {"history.confirm_removal_views", &c.history.confirm_removal_views},
                                   {"history.correct_views", &c.history.correct_views},
-                                  {"history.min_told_score", &c.history.min_told_score},
+                                  {"history.min_told_score", &c.history.confirm_score},
                                   {"history.min_new_share", &c.history.min_new_share},
                                   {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
                                   {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
@@ -409,7 +409,7 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.01;
     config.history.min_new_share = 0.01;
-    config.history.min_told_score = 0.7;
+    config.history.confirm_score = 0.7;
     config.score = {.offset = -4.24,
                     .gain_weight = 5.14,
                     .correspondence_weight = 0.71,

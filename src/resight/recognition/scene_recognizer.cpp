@@ -13,9 +13,9 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/deadline.hpp"
+#include "resight/history/object_history.hpp"
 #include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/explained_pixels.hpp"
-#include "resight/recognition/object_history.hpp"
 #include "resight/recognition/presence_mask.hpp"
 #include "resight/recognition/track_correspondences.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
@@ -136,7 +136,11 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   verify(merge_and_cluster(update, trace), update, trace);
 
   const ScopedTimer timer(update.times, "history");
-  update.events = history.update(update.view, update.detections, scene.window().back().raw, config.detect_changes);
+  std::vector<ObjectObservation> observed;
+  for (const Detection& detection : update.detections) observed.push_back(detection.observation());
+  HistoryUpdate known = history.update(update.view, observed, scene.window().back().raw, config.detect_changes);
+  for (std::size_t d = 0; d < observed.size(); ++d) update.detections[d].track = known.tracks[d];
+  update.events = std::move(known.events);
   if (config.leaves_out_explained()) remember_search(update);
   std::erase_if(update.detections,
                 [&](const Detection& d) { return d.views.back().confirmed_share() < config.min_reported_share; });

@@ -7,7 +7,8 @@
 #include "resight/changes/change_detector.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/geometry/rigid3.hpp"
-#include "resight/recognition/object_event.hpp"
+#include "resight/history/object_event.hpp"
+#include "resight/history/object_observation.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
 
 namespace resight {
@@ -35,6 +36,10 @@ struct Detection {
   double fit = 0;            ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
+  /// What the object history needs of it.
+  [[nodiscard]] ObjectObservation observation() const {
+    return {object, world_from_object, score, views.empty() ? 1 : views.back().confirmed_share()};
+  }
 };
 
 /// Numbers of hypotheses on their way through a view.

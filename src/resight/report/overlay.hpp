@@ -40,10 +40,9 @@ struct DrawOverlayOptions {
 
 /// Draws detections and changes into the colour image of a view: outline and name of each detected object, removed
 /// points in red, novel pixels in green. The outline is that of the whole projected surface, including occluded parts,
-/// so that the pose can be judged. Points behind the camera are skipped. Drawn with the camera pose of `update`, as
-/// corrected. `marks`: one per detection, or empty
-/// (kUnjudged). `missed`: ground truth that was not found, with white dotted outlines. Throws std::invalid_argument if
-/// the frame is invalid or a detection's object is not in the library.
+/// so that the pose can be judged. Points behind the camera are skipped. The camera pose is the corrected one of
+/// `update`. `marks`: one per detection, or empty (kUnjudged). `missed`: ground truth that was not found, with white
+/// dotted outlines. Throws std::invalid_argument if the frame is invalid or a detection's object is not in the library.
 [[nodiscard]] Image<Rgb8> draw_overlay(const RgbdFrame& frame, const ModelLibrary& library, const SceneUpdate& update,
                                        std::span<const DetectionMark> marks = {},
                                        std::span<const GroundTruthObject> missed = {},

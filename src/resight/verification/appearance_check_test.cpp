@@ -5,8 +5,8 @@
 
 #include <utility>
 
+#include "resight/models/testing/square_world.hpp"
 #include "resight/recognition/recognizer_config.hpp"
-#include "resight/recognition/square_world_test_util.hpp"
 
 namespace resight {
 namespace {

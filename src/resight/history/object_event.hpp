@@ -11,19 +11,19 @@
 namespace resight {
 
 enum class ObjectEventKind : std::uint8_t {
-  kFound,       ///< Recognised for the first time; nothing tells since when it has been there.
+  kFound,       ///< Recognised for the first time; it is unknown since when it has been there.
   kAdded,       ///< Recognised where an earlier view saw free space, or another object.
-  kMoved,       ///< Recognised at a new place, its old place seen free (or out of sight).
-  kRemoved,     ///< Its place seen free, or another object in it, and not recognised elsewhere.
-  kStillThere,  ///< Recognised where it was.
-  kNotSeen,     ///< Not recognised, and nothing says that it has left.
+  kMoved,       ///< Recognised at a new place; its old place is seen free (or out of sight).
+  kRemoved,     ///< Its place is seen free or occupied by another object, and it is not recognised elsewhere.
+  kStillThere,  ///< Recognised at its previous place.
+  kNotSeen,     ///< Not recognised, without evidence that it has left.
 };
 [[nodiscard]] std::string to_string(ObjectEventKind kind);
-/// Added, moved or removed: a change of the scene, unlike the other kinds.
+/// True for kAdded, kMoved and kRemoved: the scene has changed.
 [[nodiscard]] bool is_change(ObjectEventKind kind);
 
-/// An event told before that turned out to be part of another (what was removed here turns up there, and has moved), or
-/// to be a little otherwise (the pose of what came).
+/// An event that a later one supersedes: the object removed here is found elsewhere, so it has moved, or the pose of an
+/// arrival is corrected.
 struct ReplacedEvent {
   ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved, kAdded or kMoved.
   int track = -1;

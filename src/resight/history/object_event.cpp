@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/object_event.hpp"
+#include "resight/history/object_event.hpp"
 
 #include <set>
 #include <tuple>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "resight/recognition/object_history_test_util.hpp"
+#include "resight/history/object_history_test_util.hpp"
 
 namespace resight {
 namespace {
@@ -17,7 +17,7 @@ using K = ObjectEventKind;
 class TentativeTrackHistoryTest : public ObjectHistoryTest {
  protected:
   TentativeTrackHistoryTest() {
-    options_.min_told_score = 0.7;
+    options_.confirm_score = 0.7;
     history_ = std::make_unique<ObjectHistory>(library_, options_);
   }
   std::vector<ObjectEvent> tentative_view(const std::vector<std::pair<int, Rigid3>>& detected, const RgbdFrame& frame) {
@@ -32,11 +32,11 @@ class TentativeTrackHistoryTest : public ObjectHistoryTest {
 TEST_F(TentativeTrackHistoryTest, NothingIsToldBeforeAViewIsSure) {
   view({}, see_plates({}));
   EXPECT_TRUE(tentative_view({{0, left_}}, see_plates({left_})).empty());
-  const int track = detections_[0].track;
+  const int track = tracks_[0];
   EXPECT_GE(track, 0);
   ASSERT_EQ(history_->tracked_objects().size(), 1U) << "it is looked for in the next view";
   EXPECT_TRUE(tentative_view({{0, left_}}, see_plates({left_})).empty());
-  EXPECT_EQ(detections_[0].track, track);
+  EXPECT_EQ(tracks_[0], track);
   const auto events = view({{0, left_}}, see_plates({left_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kAdded}));
   EXPECT_EQ(events[0].track, track);
@@ -74,7 +74,7 @@ TEST_F(TentativeTrackHistoryTest, AMoveWaitsForASureSightOfTheNewPlace) {
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   ASSERT_TRUE(events[0].supersedes);
   EXPECT_EQ(events[0].supersedes->kind, K::kRemoved);
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
   EXPECT_EQ(history_->tracked_objects().size(), 1U);
 }
 
@@ -130,18 +130,18 @@ TEST_F(TentativeTrackHistoryTest, WithoutChangeDetectionItIsForgottenInTime) {
 
 TEST_F(TentativeTrackHistoryTest, WhatHardlyOverlapsIsAnother) {
   tentative_view({{0, left_}}, see_plates({left_}));
-  const int track = detections_[0].track;
+  const int track = tracks_[0];
   tentative_view({{0, plate_at(-0.25, 0, 1)}}, see_nothing());
-  EXPECT_EQ(detections_[0].track, track);
+  EXPECT_EQ(tracks_[0], track);
   tentative_view({{0, plate_at(-0.12, 0, 1)}}, see_nothing());  // Its centre is nearer than half a diameter.
-  EXPECT_NE(detections_[0].track, track);
+  EXPECT_NE(tracks_[0], track);
   EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 
 TEST_F(TentativeTrackHistoryTest, TwoOfAViewAreTwo) {
   const Rigid3 beside = plate_at(-0.28, 0, 1);
   tentative_view({{0, left_}, {0, beside}}, see_plates({left_}));
-  EXPECT_NE(detections_[0].track, detections_[1].track);
+  EXPECT_NE(tracks_[0], tracks_[1]);
   EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 

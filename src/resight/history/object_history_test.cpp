@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "resight/recognition/object_history_test_util.hpp"
+#include "resight/history/object_history_test_util.hpp"
 
 namespace resight {
 namespace {
@@ -34,7 +34,7 @@ TEST_F(ObjectHistoryTest, KnowsWhatWasNotSeenToLeave) {
 TEST_F(ObjectHistoryTest, FoundThenStillThere) {
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kFound}));
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kStillThere}));
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
 }
 
 TEST_F(ObjectHistoryTest, MissedButPresentIsNotSeenAndNeverRemoved) {
@@ -51,7 +51,7 @@ TEST_F(ObjectHistoryTest, MovedIsOneEventWithBothPlaces) {
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
   EXPECT_DOUBLE_EQ(events[0].world_from_object_after->translation.x(), 0.3);
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
   EXPECT_TRUE(history_->finish().empty());
 }
 
@@ -91,7 +91,7 @@ TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
   view({{0, left_}}, see_plates({left_}));
   // Something else stands at the old place: it is neither free nor out of sight.
   ASSERT_EQ(kinds(view({{0, right_}}, see_plates({left_, right_}))), (std::vector{K::kNotSeen, K::kAdded}));
-  const int added = detections_[0].track;
+  const int added = tracks_[0];
   const auto events = view({{0, right_}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_EQ(events[0].track, 0);
@@ -101,7 +101,7 @@ TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
   EXPECT_EQ(events[0].supersedes->kind, K::kAdded);
   EXPECT_EQ(events[0].supersedes->track, added);
   EXPECT_EQ(events[0].supersedes->view, 1);
-  EXPECT_EQ(detections_[0].track, 0) << "the older track goes on";
+  EXPECT_EQ(tracks_[0], 0) << "the older track goes on";
   EXPECT_EQ(history_->tracked_objects().size(), 1U);
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
   EXPECT_TRUE(history_->finish().empty());
@@ -123,7 +123,7 @@ TEST_F(ObjectHistoryTest, WhatThisViewRecognisesInItsPlaceIsNotTheNewOne) {
   RgbdFrame left_is_hidden = see_plates({right_});
   hide_left_half(left_is_hidden);
   EXPECT_EQ(kinds(view({{0, left_}, {0, right_}}, left_is_hidden)), (std::vector{K::kStillThere, K::kAdded}));
-  EXPECT_NE(detections_[0].track, detections_[1].track);
+  EXPECT_NE(tracks_[0], tracks_[1]);
 }
 
 TEST_F(ObjectHistoryTest, AShiftThatTheViewDoesNotConfirmIsNoMove) {
@@ -131,11 +131,9 @@ TEST_F(ObjectHistoryTest, AShiftThatTheViewDoesNotConfirmIsNoMove) {
   options.min_new_share = 0.02;
   history_ = std::make_unique<ObjectHistory>(library_, options);
   view({{0, left_}}, see_plates({left_}));
-  detections_[0].world_from_object = plate_at(-0.24, 0, 1);
-  detections_[0].views.push_back({1, true, 0.5F, 0.01F});
-  // A third of the old place is free, the rest as it was.
-  EXPECT_EQ(kinds(history_->update(view_++, detections_, see_plates({plate_at(-0.24, 0, 1)}), true)),
-            (std::vector{K::kStillThere}));
+  // A third of the old place is free, the rest is unchanged.
+  const Rigid3 shifted = plate_at(-0.24, 0, 1);
+  EXPECT_EQ(kinds(observe({{0, shifted, score_, 0.005}}, see_plates({shifted}))), (std::vector{K::kStillThere}));
   EXPECT_TRUE(history_->finish().empty());
 }
 
@@ -207,7 +205,7 @@ TEST_F(ObjectHistoryTest, PutBackAfterRemovalIsAddedUnderItsTrack) {
   view({}, see_plates({}));
   view({}, see_plates({}));
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}))), (std::vector{K::kAdded}));
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
 }
 
 TEST_F(ObjectHistoryTest, ASmallShiftIsAMoveAndNotASecondObject) {
@@ -222,7 +220,7 @@ TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
   const Rigid3 turned = left_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.52);
   view({{0, left_}}, see_plates({left_}));
   EXPECT_EQ(kinds(view({{0, turned}}, see_plates({left_}))), (std::vector{K::kStillThere}));
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
   ASSERT_EQ(history_->tracked_objects().size(), 1U);
   EXPECT_EQ(history_->tracked_objects()[0].world_from_object.rotation, turned.rotation);
   // Nothing is known without change detection: what is reported elsewhere has moved.
@@ -235,7 +233,7 @@ TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
   hide_left_half(only_right);
   const auto events = view({{0, right_}}, only_right);
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
-  EXPECT_EQ(detections_[0].track, 0);
+  EXPECT_EQ(tracks_[0], 0);
   EXPECT_LE(events[0].confidence, 0.5);
   EXPECT_TRUE(view({{0, right_}}, see_plates({right_})).front().kind == K::kStillThere);
   EXPECT_TRUE(history_->finish().empty());  // Its old place is known to be left: no removal follows.
@@ -245,17 +243,10 @@ TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
   ObjectHistoryOptions options;
   options.min_new_share = 0.02;
   history_ = std::make_unique<ObjectHistory>(library_, options);
-  detections_.resize(2);
-  detections_[0].object = 0;
-  detections_[0].world_from_object = left_;
-  detections_[0].views.push_back({0, true, 0.5F, 0.01F});  // Seen, but not confirmed.
-  detections_[1].object = 1;
-  detections_[1].world_from_object = right_;
-  detections_[1].views.push_back({0, true, 0.03F, 1.0F});
-  const auto events = history_->update(0, detections_, see_plates({right_}), true);
+  const auto events = observe({{0, left_, 0, 0.005}, {1, right_, 0, 0.03}}, see_plates({right_}));
   ASSERT_EQ(kinds(events), (std::vector{K::kFound}));
   EXPECT_EQ(events[0].object, 1);
-  EXPECT_EQ(detections_[0].track, -1);
+  EXPECT_EQ(tracks_[0], -1);
 }
 
 TEST_F(ObjectHistoryTest, OfTwoOfAKindTheOneOutOfSightHasMoved) {
@@ -285,23 +276,13 @@ TEST_F(ObjectHistoryTest, AnOldPlaceThatTheViewDoesNotConfirmIsLeft) {
   ObjectHistoryOptions options;
   options.min_new_share = 0.02;
   history_ = std::make_unique<ObjectHistory>(library_, options);
-  const auto seen_at = [](const Rigid3& pose, int in_view, float explained) {
-    Detection detection;
-    detection.object = 0;
-    detection.world_from_object = pose;
-    detection.score = 0.9;
-    detection.views.push_back({in_view, true, 0.5F, explained});
-    return detection;
-  };
-  std::vector<Detection> first = {seen_at(left_, 0, 1)};
-  ASSERT_EQ(kinds(history_->update(0, first, see_plates({left_}), true)), (std::vector{K::kFound}));
+  ASSERT_EQ(kinds(observe({{0, left_, 0.9, 0.5}}, see_plates({left_}))), (std::vector{K::kFound}));
   const RgbdFrame half_free = see_plates({right_, plate_at(-0.36, 0, 1)});  // Half of the old place is free.
-  std::vector<Detection> second = {seen_at(left_, 1, 0.01F), seen_at(right_, 1, 1)};
-  const auto events = history_->update(1, second, half_free, true);
+  const auto events = observe({{0, left_, 0.9, 0.005}, {0, right_, 0.9, 0.5}}, half_free);
   ASSERT_EQ(kinds(events), (std::vector{K::kMoved}));
   EXPECT_DOUBLE_EQ(events[0].world_from_object_before->translation.x(), -0.3);
-  EXPECT_EQ(second[0].track, -1) << "one object, one place";
-  EXPECT_EQ(second[1].track, 0);
+  EXPECT_EQ(tracks_[0], -1) << "one object, one place";
+  EXPECT_EQ(tracks_[1], 0);
 }
 
 TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneStoodHasTakenItsPlace) {
@@ -427,8 +408,8 @@ TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   EXPECT_EQ(kinds(view({{0, right_}, {0, left_}}, see_plates({left_, right_}))),
             (std::vector{K::kStillThere, K::kStillThere}));
-  EXPECT_NE(detections_[0].track, detections_[1].track);
-  EXPECT_EQ(detections_[1].track, 0);
+  EXPECT_NE(tracks_[0], tracks_[1]);
+  EXPECT_EQ(tracks_[1], 0);
 }
 
 TEST_F(ObjectHistoryTest, AStaticWorldKnowsNoRemoval) {

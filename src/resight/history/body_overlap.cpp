@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/body_overlap.hpp"
+#include "resight/history/body_overlap.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 namespace resight {
 namespace {
 
-// Of the way from the centre to a point of the surface.
+// Sampled on the way from the centre (0) to each point of the surface (1).
 constexpr std::array kDepths = {0.3F, 0.6F, 0.9F};
 constexpr std::size_t kMaxSurfacePoints = 300;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/body_overlap.hpp"
+#include "resight/history/body_overlap.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/depth_history.hpp"
+#include "resight/history/depth_history.hpp"
 
 #include <gtest/gtest.h>
 
-#include "resight/recognition/square_world_test_util.hpp"
+#include "resight/models/testing/square_world.hpp"
 
 namespace resight {
 namespace {

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "resight/recognition/object_history.hpp"
-#include "resight/recognition/square_world_test_util.hpp"
+#include "resight/history/object_history.hpp"
+#include "resight/models/testing/square_world.hpp"
 
 namespace resight::test {
 
-/// Two kinds of plates, and a history that is told view by view what is recognised and seen.
+/// Two kinds of plates, and a history that is given, view by view, what is recognised and seen.
 class ObjectHistoryTest : public ::testing::Test {
  protected:
   ObjectHistoryTest() {
@@ -19,18 +19,18 @@ class ObjectHistoryTest : public ::testing::Test {
     history_ = std::make_unique<ObjectHistory>(library_);
   }
 
-  // One view: what the recogniser reports, and what the camera sees.
+  // One view: what is recognised, and what the camera sees.
   std::vector<ObjectEvent> view(const std::vector<std::pair<int, Rigid3>>& detected, const RgbdFrame& frame,
                                 bool use_evidence = true) {
-    detections_.clear();
-    for (const auto& [object, pose] : detected) {
-      Detection detection;
-      detection.object = object;
-      detection.world_from_object = pose;
-      detection.score = score_;
-      detections_.push_back(detection);
-    }
-    return history_->update(view_++, detections_, frame, use_evidence);
+    std::vector<ObjectObservation> observed;
+    for (const auto& [object, pose] : detected) observed.push_back({object, pose, score_});
+    return observe(observed, frame, use_evidence);
+  }
+  std::vector<ObjectEvent> observe(const std::vector<ObjectObservation>& observed, const RgbdFrame& frame,
+                                   bool use_evidence = true) {
+    HistoryUpdate update = history_->update(view_++, observed, frame, use_evidence);
+    tracks_ = update.tracks;
+    return update.events;
   }
   static void hide_left_half(RgbdFrame& frame) { hide_columns(frame, 0, frame.depth_m.width() / 2); }
   static void hide_right_half(RgbdFrame& frame) {
@@ -44,7 +44,7 @@ class ObjectHistoryTest : public ::testing::Test {
 
   ModelLibrary library_;
   std::unique_ptr<ObjectHistory> history_;
-  std::vector<Detection> detections_;
+  std::vector<int> tracks_;  // Per observation of the last view.
   double score_ = 0.9;
   int view_ = 0;
   const Rigid3 left_ = plate_at(-0.3, 0, 1);

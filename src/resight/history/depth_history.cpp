@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/depth_history.hpp"
+#include "resight/history/depth_history.hpp"
 
 #include <utility>
 
@@ -8,28 +8,28 @@
 namespace resight {
 namespace {
 
-// Pixel (u, v) of the thinned view is pixel (u, v) * step of the whole one: no mean over an edge.
+// Pixel (u, v) of the result is pixel (u, v) * step of the view: no mean over a depth edge.
 RgbdFrame downsample(const RgbdFrame& frame, int step_px) {
   const Camera& whole = frame.camera;
-  RgbdFrame thin;
-  thin.world_from_camera = frame.world_from_camera;
-  thin.camera = {(whole.width + step_px - 1) / step_px,
-                 (whole.height + step_px - 1) / step_px,
-                 whole.fx / step_px,
-                 whole.fy / step_px,
-                 whole.cx / step_px,
-                 whole.cy / step_px};
-  thin.depth_m = Image<float>(thin.camera.width, thin.camera.height);
-  for (int v = 0; v < thin.camera.height; ++v)
-    for (int u = 0; u < thin.camera.width; ++u) thin.depth_m(u, v) = frame.depth_m(u * step_px, v * step_px);
-  return thin;
+  RgbdFrame small;
+  small.world_from_camera = frame.world_from_camera;
+  small.camera = {(whole.width + step_px - 1) / step_px,
+                  (whole.height + step_px - 1) / step_px,
+                  whole.fx / step_px,
+                  whole.fy / step_px,
+                  whole.cx / step_px,
+                  whole.cy / step_px};
+  small.depth_m = Image<float>(small.camera.width, small.camera.height);
+  for (int v = 0; v < small.camera.height; ++v)
+    for (int u = 0; u < small.camera.width; ++u) small.depth_m(u, v) = frame.depth_m(u * step_px, v * step_px);
+  return small;
 }
 
 }  // namespace
 
 void DepthHistoryOptions::check() const {
-  check_not_negative("DepthMemoryOptions.max_views", max_views);
-  check_in_range("DepthMemoryOptions.step_px", step_px, 1, 64);
+  check_not_negative("DepthHistoryOptions.max_views", max_views);
+  check_in_range("DepthHistoryOptions.step_px", step_px, 1, 64);
 }
 
 DepthHistory::DepthHistory(DepthHistoryOptions options) : options_(options) { options_.check(); }
