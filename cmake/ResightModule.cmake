@@ -160,12 +160,21 @@ function(resight_add_module name)
     target_link_libraries(${target} ${scope} resight_${dep})
   endforeach()
   set_property(GLOBAL APPEND PROPERTY RESIGHT_MODULES ${target})
+  set_property(GLOBAL APPEND PROPERTY RESIGHT_MODULE_EDGES "${name} -> {${ARG_DEPS}}")
 
   if(RESIGHT_BUILD_TESTS AND tests)
     list(TRANSFORM ARG_TEST_DEPS PREPEND resight_)
     resight_add_test(${target}_test SOURCES ${tests}
                      LIBS ${target} ${ARG_TEST_DEPS} ${ARG_PRIVATE_LIBS} ${ARG_TEST_LIBS})
   endif()
+endfunction()
+
+# Writes modules.dot into the build folder: each module and its declared dependencies, for scripts/draw_modules.sh.
+function(resight_write_module_graph)
+  get_property(edges GLOBAL PROPERTY RESIGHT_MODULE_EDGES)
+  string(REPLACE ";" " " edges "${edges}")
+  string(REPLACE "} " "}\n" edges "${edges}")
+  file(CONFIGURE OUTPUT modules.dot CONTENT "digraph modules {\n@edges@\n}\n" @ONLY)
 endfunction()
 
 # resight_add_test(NAME SOURCES file... LIBS lib... [LABELS label...]): a GoogleTest executable with one ctest entry per

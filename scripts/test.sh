@@ -63,6 +63,7 @@ step "build, warnings are errors" cmake --build build/ci -j "$num_jobs"
 step "tests" run_tests || { count_tests; exit 1; }
 if ((!fast)); then
   step "clang-tidy" run_clang_tidy
+  step "picture of the modules" scripts/draw_modules.sh --check
   step "each public header compiles alone" cmake --build build/ci -j "$num_jobs" --target all_verify_interface_header_sets
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan

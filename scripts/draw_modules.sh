@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Draws docs/images/modules.svg from the declared dependencies of the modules. Dependencies that others imply are left out.
+# Needs Debian's package graphviz. Usage: draw_modules.sh [--check]: only compare the edges with those of the picture
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+picture=docs/images/modules.svg
+[[ ${1:-} == --check ]] && picture=$(mktemp)
+build=$(mktemp -d)
+trap 'rm -rf "$build"' EXIT
+cmake -S . -B "$build" -G Ninja -DRESIGHT_BUILD_TESTS=OFF >/dev/null
+{
+  echo 'digraph modules { rankdir=TB; bgcolor=white; ranksep=0.35; nodesep=0.25'
+  echo 'node [shape=box style="rounded,filled" fillcolor="#eef3fa" color="#4a6fa5" fontname="Helvetica" fontsize=12 height=0.3]'
+  echo 'edge [color="#7f8c9b" arrowsize=0.6]'
+  tail -n +2 "$build/modules.dot"
+} | tred | dot -Tsvg -o "$picture"
+if [[ ${1:-} == --check ]]; then
+  edges() { grep -o '<title>[^<]*&#45;&gt;[^<]*' "$1" | sort; }
+  cmp -s <(edges docs/images/modules.svg) <(edges "$picture") || { echo "docs/images/modules.svg is not up to date: run scripts/draw_modules.sh"; exit 1; }
+fi
