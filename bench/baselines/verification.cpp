@@ -86,7 +86,7 @@ double verify_peer(const VerificationContest& contest, const pcl_peers::VerifyOp
 pcl_peers::VerifyOptions peer_options(const StageInput& input) {
   return {.resolution_m = static_cast<float>(input.config.verify.resolution_m),
           .inlier_distance_m = 0.015F,
-          .clutter_radius_m = static_cast<float>(input.config.verify.clutter_radius_m),
+          .clutter_radius_m = static_cast<float>(input.config.verify.clutter.radius_m),
           .clutter_regularizer = 5,
           .regularizer = 3,
           .normal_radius_m = 0.05F};

@@ -6,6 +6,7 @@
 #include "../quality/arguments.hpp"
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
+#include "resight/recognition/view_hypothesis_generator.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/simulation.hpp"
 #include "resight/training/training.hpp"
@@ -38,7 +39,7 @@ DemoScene make_demo() {
 /// Adds members that refer to the library, after it has reached its final address.
 void add_searches(DemoScene& demo) {
   demo.index = std::make_unique<ModelFeatureIndex>(demo.library, demo.config.match);
-  demo.shapes = std::make_unique<ShapeSearch>(demo.library, demo.config.shape, demo.config.verify);
+  demo.shapes = std::make_unique<ShapeSearch>(demo.library, demo.config.shape, match_criteria(demo.config.verify));
   demo.correspondences = demo.index->match(demo.sift, demo.shot);
   demo.hypotheses = generate_hypotheses(demo.correspondences, demo.views.back().frame.world_from_camera,
                                         static_cast<int>(demo.views.size()) - 1, 0, demo.config.generate);

@@ -4,6 +4,7 @@
 
 #include "demo_scene.hpp"
 #include "resight/hypotheses/clustering.hpp"
+#include "resight/recognition/view_hypothesis_generator.hpp"
 #include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight::bench {
@@ -52,7 +53,7 @@ BENCHMARK(SearchedViewOfView)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->Me
 void ShapeSearchOfView(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
   const RecognizerConfig config = config_of(state);
-  const ShapeSearch shapes(demo.library, config.shape, config.verify);
+  const ShapeSearch shapes(demo.library, config.shape, match_criteria(config.verify));
   const SearchView searched(demo.views.back(), config.shape);
   std::size_t num_found = 0;
   for (auto _ : state) num_found = shapes.search(searched, demo.correspondences, demo.hypotheses).size();

@@ -25,10 +25,12 @@ struct Switch {
   std::function<void(RecognizerConfig&)> set;
 };
 
-void set_duplicity(RecognizerConfig& c) { c.verify.duplicity_rule = DuplicityRule::kAllWeights; }
-void set_seen_through(RecognizerConfig& c) { c.verify.max_seen_through_share = 1; }
-void set_planes(RecognizerConfig& c) { c.verify.planes.max_distance_m = 0.02; }
-void set_shares(RecognizerConfig& c) { c.verify.min_visible_share = c.verify.min_explained_share = 0; }
+void set_duplicity(RecognizerConfig& c) { c.verify.selection.duplicity_rule = DuplicityRule::kAllWeights; }
+void set_seen_through(RecognizerConfig& c) { c.verify.visibility.free_space = MajorityFreeSpace{.max_share = 1}; }
+void set_planes(RecognizerConfig& c) { c.verify.planes->max_distance_m = 0.02; }
+void set_shares(RecognizerConfig& c) {
+  c.verify.acceptance.min_visible_share = c.verify.acceptance.min_explained_share = 0;
+}
 void set_novel(RecognizerConfig& c) { c.changes.novel_needs_free_space = false; }
 
 const Switch kSwitches[] = {
@@ -39,7 +41,8 @@ const Switch kSwitches[] = {
     {"shares: no limits", set_shares},
     {"these four", [](RecognizerConfig& c) { set_duplicity(c), set_seen_through(c), set_planes(c), set_shares(c); }},
     {"novel by Eq. 3 alone", set_novel},
-    {"colour sigmas 0.6", [](RecognizerConfig& c) { c.verify.color_sigma_l = c.verify.color_sigma_ab = 0.6; }},
+    {"colour sigmas 0.6",
+     [](RecognizerConfig& c) { c.verify.appearance.sigma_l = c.verify.appearance.sigma_ab = 0.6; }},
     {"no clustering", [](RecognizerConfig& c) { c.cluster_hypotheses = false; }},
 };
 

@@ -14,6 +14,7 @@
 #include "resight/evaluation/match_detections.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
+#include "resight/recognition/view_hypothesis_generator.hpp"
 
 namespace {
 
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
   const int every = argc > 4 ? std::atoi(argv[4]) : 1;
   config.set_num_threads(2);
   const auto start = std::chrono::steady_clock::now();
-  const ShapeSearch search(library, config.shape, config.verify);
+  const ShapeSearch search(library, config.shape, match_criteria(config.verify));
   const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
   std::map<std::string, Tally> tallies;
   double seconds = 0;

@@ -167,8 +167,7 @@ PhotometricFit fit_photometry(std::span<const Eigen::Vector3f> model_linear,
   return fit;
 }
 
-Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::span<const float> votes,
-                                  const PhotometricLimits& limits) {
+Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::span<const float> votes) {
   Eigen::Array3f balance = Eigen::Array3f::Zero();
   for (int c = 0; c < 3; ++c) {
     std::vector<std::pair<float, double>> values{{0.0F, kVotesForNone}};
@@ -176,14 +175,13 @@ Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::spa
       if (fits[i].num_pairs > 0) values.emplace_back(fits[i].chroma()[c], votes[i] * trust_in_chroma(fits[i]));
     balance[c] = weighted_median(std::move(values));
   }
-  const float most = static_cast<float>(limits.max_log_white_balance);
+  const float most = static_cast<float>(kMaxLogWhiteBalance);
   return balance.max(-most).min(most);
 }
 
-PhotometricFit limit_chromaticity(PhotometricFit fit, const Eigen::Array3f& white_balance,
-                                  const PhotometricLimits& limits) {
+PhotometricFit limit_chromaticity(PhotometricFit fit, const Eigen::Array3f& white_balance) {
   if (fit.num_pairs == 0) return fit;
-  const float most = static_cast<float>(limits.max_log_chroma);
+  const float most = static_cast<float>(kMaxLogChroma);
   fit.log_gain = fit.log_gain.mean() + white_balance + (fit.chroma() - white_balance).max(-most).min(most);
   return fit;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "resight/core/image.hpp"
+#include "resight/core/options.hpp"
 
 namespace resight {
 
@@ -33,16 +34,27 @@ struct PhotometricFit {
 
 /// Limits of a photometric fit. They prevent a black object from matching a white one, or a green one a grey one.
 struct PhotometricLimits {
-  double max_log_exposure = 0.9;  ///< Largest brightening: mean log gain of the channels (0.9: 2.5 times as bright).
-  /// Largest darkening: negative mean log gain of the channels, for objects in shadow.
+  double max_log_exposure = 0.9;
   double max_log_darkening = 0.9;
-  /// Largest log gain of a channel relative to the mean of all channels, for the whole scene.
-  double max_log_white_balance = 0.6;
-  /// Largest log gain of a channel of one object relative to the white balance of the scene.
-  double max_log_chroma = 0.15;
-  double max_log_shading = 0.5;  ///< Largest length of `shading`.
-  double max_offset = 0.08;      ///< Largest offset; 1 is the white of the image.
+  double max_log_shading = 0.5;
+  double max_offset = 0.08;
 };
+
+inline void declare(OptionVisitor& v, PhotometricLimits& o) {
+  v.field("max_log_exposure", o.max_log_exposure, at_least(0),
+          "Largest brightening: log of the mean gain of the channels. 0.9: 2.5 times brighter; 0: none.");
+  v.field("max_log_darkening", o.max_log_darkening, at_least(0), "Largest darkening (log), for objects in shadow.");
+  v.field("max_log_shading", o.max_log_shading, at_least(0),
+          "Largest change of the log brightness with the surface normal (light from one side). 0: none.",
+          "Basri and Jacobs 2003");
+  v.field("max_offset", o.max_offset, at_least(0),
+          "Largest offset added to all channels by gloss or glare, as a share of white (linear light).");
+}
+
+/// Largest log gain of a channel relative to the mean of all channels, for the whole scene: 2700 K lamps to daylight.
+inline constexpr double kMaxLogWhiteBalance = 0.6;
+/// Largest log gain of a channel of one object relative to the white balance of the scene: more is another colour.
+inline constexpr double kMaxLogChroma = 0.15;
 
 /// Fits a photometric model by robust, iteratively reweighted least squares to pairs of a model colour and the scene
 /// colour at the same place, both in linear light. Applies the limits except those on white balance and chroma; see
@@ -53,14 +65,12 @@ struct PhotometricLimits {
                                             std::span<const Eigen::Vector3f> normals, const PhotometricLimits& limits);
 
 /// White balance that the fits of a scene agree on, as log gains: per channel the median of chroma(), weighted by
-/// `votes` (one per fit, not negative), within max_log_white_balance. Votes of objects that are dark in any channel
+/// `votes` (one per fit, not negative), within kMaxLogWhiteBalance. Votes of objects that are dark in any channel
 /// count less: a yellow object says little about blue light. A few additional votes are cast for no change, so that one
 /// weak hypothesis alone cannot determine the result.
-[[nodiscard]] Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::span<const float> votes,
-                                                const PhotometricLimits& limits);
+[[nodiscard]] Eigen::Array3f find_white_balance(std::span<const PhotometricFit> fits, std::span<const float> votes);
 
-/// Limits the chroma of a fit to within max_log_chroma of the white balance of the scene.
-[[nodiscard]] PhotometricFit limit_chromaticity(PhotometricFit fit, const Eigen::Array3f& white_balance,
-                                                const PhotometricLimits& limits);
+/// Limits the chroma of a fit to within kMaxLogChroma of the white balance of the scene.
+[[nodiscard]] PhotometricFit limit_chromaticity(PhotometricFit fit, const Eigen::Array3f& white_balance);
 
 }  // namespace resight

@@ -63,27 +63,24 @@ TEST(LimitChroma, AGreenCanIsNoGreyOne) {
   const std::vector<Eigen::Vector3f> green(100, {0.1F, 0.5F, 0.1F});
   const std::vector<Eigen::Vector3f> grey(100, {0.25F, 0.25F, 0.25F});
   const PhotometricLimits limits;
-  const PhotometricFit fit =
-      limit_chromaticity(fit_photometry(green, grey, {}, limits), Eigen::Array3f::Zero(), limits);
-  EXPECT_LE(fit.chroma().abs().maxCoeff(), 2 * limits.max_log_chroma);
+  const PhotometricFit fit = limit_chromaticity(fit_photometry(green, grey, {}, limits), Eigen::Array3f::Zero());
+  EXPECT_LE(fit.chroma().abs().maxCoeff(), 2 * kMaxLogChroma);
   const Eigen::Vector3f seen = fit(green[0], Eigen::Vector3f::Zero());
   EXPECT_GT(seen.y(), 1.5F * seen.x());
 }
 
 TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
-  const PhotometricLimits limits;
   const PhotometricFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
   const PhotometricFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
   const PhotometricFit none;
   const std::vector<PhotometricFit> fits{blue, wrong, none, blue, wrong, wrong};
   const std::vector<float> votes{900, 300, 1e6F, 900, 300, 300};
-  EXPECT_TRUE(find_white_balance(fits, votes, limits).isApprox(blue.chroma()));
+  EXPECT_TRUE(find_white_balance(fits, votes).isApprox(blue.chroma()));
   const std::vector<float> weak{3, 3, 3, 3, 3, 3};
-  EXPECT_TRUE((find_white_balance(fits, weak, limits) == 0).all());
-  EXPECT_TRUE(find_white_balance(std::vector{blue}, std::vector{50.0F}, limits).isApprox(blue.chroma()));
-  EXPECT_NEAR(find_white_balance(std::vector{wrong}, std::vector{1e4F}, limits).abs().maxCoeff(),
-              limits.max_log_white_balance, 1e-6);
-  EXPECT_TRUE((find_white_balance({}, {}, limits) == 0).all());
+  EXPECT_TRUE((find_white_balance(fits, weak) == 0).all());
+  EXPECT_TRUE(find_white_balance(std::vector{blue}, std::vector{50.0F}).isApprox(blue.chroma()));
+  EXPECT_NEAR(find_white_balance(std::vector{wrong}, std::vector{1e4F}).abs().maxCoeff(), kMaxLogWhiteBalance, 1e-6);
+  EXPECT_TRUE((find_white_balance({}, {}) == 0).all());
 }
 
 TEST(FindWhiteBalance, AYellowObjectDoesNotTellHowBlueTheLightIs) {
@@ -96,7 +93,7 @@ TEST(FindWhiteBalance, AYellowObjectDoesNotTellHowBlueTheLightIs) {
   EXPECT_GT(fits[0].chroma().abs().maxCoeff(), 0.3F);
   EXPECT_FLOAT_EQ(fits[1].dimmest_light, 0.4F);
   const std::vector<float> votes{9000, 900};
-  EXPECT_LT(find_white_balance(fits, votes, limits).abs().maxCoeff(), 0.01F);
+  EXPECT_LT(find_white_balance(fits, votes).abs().maxCoeff(), 0.01F);
 }
 
 TEST(FitPhotometry, OneNormalLeavesTheShadingOpen) {

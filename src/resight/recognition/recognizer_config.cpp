@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <variant>
 
@@ -17,15 +19,13 @@ namespace {
 // against it. Thread counts are left out: results do not depend on them.
 struct Field {
   const char* name;  // "section.key", or "key" at the top
-  std::variant<double*, int*, bool*, std::uint64_t*, RotationTest*, OcclusionTest*, DuplicityRule*> value;
+  std::variant<double*, int*, bool*, std::uint64_t*, RotationTest*, OcclusionTest*> value;
 };
 
 constexpr std::pair<const char*, RotationTest> kRotationTests[] = {{"geodesic", RotationTest::kGeodesic},
                                                                    {"absolute_euler", RotationTest::kAbsoluteEuler}};
 constexpr std::pair<const char*, OcclusionTest> kOcclusionTests[] = {{"spherical_bins", OcclusionTest::kSphericalBins},
                                                                      {"depth_image", OcclusionTest::kDepthImage}};
-constexpr std::pair<const char*, DuplicityRule> kDuplicityRules[] = {{"beyond_best", DuplicityRule::kBeyondBest},
-                                                                     {"all_weights", DuplicityRule::kAllWeights}};
 
 void add_feature_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
@@ -141,10 +141,8 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"shape.refine_distance_m", &s.refine_distance_m},
                                   {"shape.tolerance_m", &s.tolerance_m},
                                   {"shape.min_explained_share", &s.min_explained_share},
-                                  {"shape.min_pattern_similarity", &s.min_pattern_similarity},
                                   {"shape.max_matches", &s.max_matches},
                                   {"shape.match_distance_m", &s.match_distance_m},
-                                  {"shape.turn_step_rad", &s.turn_step_rad},
                                   {"shape.max_turns", &s.max_turns},
                                   {"shape.min_visible_share", &s.min_visible_share},
                                   {"shape.max_hypotheses", &s.max_hypotheses},
@@ -209,76 +207,6 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                               });
 }
 
-void add_verification_fields(RecognizerConfig& c, std::vector<Field>& fields) {
-  VerifyOptions& v = c.verify;
-  fields.insert(fields.end(), {
-                                  {"verify.resolution_m", &v.resolution_m},
-                                  {"verify.inlier_distance_m", &v.inlier_distance_m},
-                                  {"verify.occlusion_margin_m", &v.occlusion_margin_m},
-                                  {"verify.outlier_weight", &v.outlier_weight},
-                                  {"verify.duplicity_weight", &v.duplicity_weight},
-                                  {"verify.duplicity_rule", &v.duplicity_rule},
-                                  {"verify.clutter_radius_m", &v.clutter_radius_m},
-                                  {"verify.clutter_weight", &v.clutter_weight},
-                                  {"verify.near_clutter_weight", &v.near_clutter_weight},
-                                  {"verify.occupancy_weight", &v.occupancy_weight},
-                                  {"verify.occupancy_voxel_m", &v.occupancy_voxel_m},
-                                  {"verify.hypothesis_penalty", &v.hypothesis_penalty},
-                                  {"verify.use_color", &v.use_color},
-                                  {"verify.color_sigma_l", &v.color_sigma_l},
-                                  {"verify.color_sigma_ab", &v.color_sigma_ab},
-                                  {"verify.light_max_log_exposure", &v.light.max_log_exposure},
-                                  {"verify.light_max_log_darkening", &v.light.max_log_darkening},
-                                  {"verify.light_max_log_white_balance", &v.light.max_log_white_balance},
-                                  {"verify.light_max_log_chroma", &v.light.max_log_chroma},
-                                  {"verify.light_max_veil", &v.light.max_offset},
-                                  {"verify.light_max_log_shading", &v.light.max_log_shading},
-                                  {"verify.refine_max_iterations", &v.refine.max_iterations},
-                                  {"verify.refine_max_distance_m", &v.refine.max_distance_m},
-                                  {"verify.refine_max_normal_angle_rad", &v.refine.max_normal_angle_rad},
-                                  {"verify.refine_max_step_m", &v.refine.max_step_m},
-                                  {"verify.refine_correspondence_weight", &v.refine.correspondence_weight},
-                                  {"verify.turn_step_rad", &v.turn_step_rad},
-                                  {"verify.merge_distance_m", &v.merge_distance_m},
-                                  {"verify.merge_rotation_rad", &v.merge_rotation_rad},
-                                  {"verify.use_planes", &v.use_planes},
-                                  {"verify.min_plane_points", &v.planes.min_points},
-                                  {"verify.plane_spacing_m", &c.verify.plane_spacing_m},
-                                  {"verify.plane_distance_m", &v.planes.max_distance_m},
-                                  {"verify.plane_angle_rad", &v.planes.max_angle_rad},
-                                  {"verify.plane_weight", &v.plane_weight},
-                                  {"verify.smooth_angle_rad", &v.segments.max_angle_rad},
-                                  {"verify.smooth_distance_m", &v.segments.max_distance_m},
-                                  {"verify.min_smooth_points", &v.segments.min_points},
-                                  {"verify.max_smooth_curvature", &v.segments.max_curvature},
-                                  {"verify.min_facing", &v.min_facing},
-                                  {"verify.steep_angle_rad", &v.steep_angle_rad},
-                                  {"verify.steep_weight", &v.steep_weight},
-                                  {"verify.min_inlier_weight", &v.min_inlier_weight},
-                                  {"verify.max_inlier_angle_rad", &v.max_inlier_angle_rad},
-                                  {"verify.newest_view_decides", &v.newest_view_decides},
-                                  {"verify.continuation_offset_m", &v.continuation_offset_m},
-                                  {"verify.continuation_contrast", &v.continuation_contrast},
-                                  {"verify.clutter_sigmas", &v.clutter_sigmas},
-                                  {"verify.max_seen_through_share", &v.max_seen_through_share},
-                                  {"verify.max_absent_share", &v.max_absent_share},
-                                  {"verify.max_moves", &v.max_moves},
-                                  {"verify.max_exact_hypotheses", &v.max_exact_hypotheses},
-                                  {"verify.min_shared_points", &v.min_shared_points},
-                                  {"verify.min_visible_points", &v.min_visible_points},
-                                  {"verify.min_visible_share", &v.min_visible_share},
-                                  {"verify.min_explained_share", &v.min_explained_share},
-                                  {"verify.min_pattern_similarity", &v.min_pattern_similarity},
-                                  {"verify.min_newest_similarity", &v.min_newest_similarity},
-                                  {"verify.plain_max_shared_contrast", &v.plain.max_shared_contrast},
-                                  {"verify.plain_min_explained_share", &v.plain.min_explained_share},
-                                  {"verify.min_shared_print", &v.min_shared_print},
-                                  {"verify.plain_min_gain", &v.plain.min_gain},
-                                  {"verify.must_pay_alone", &v.must_pay_alone},
-                                  {"verify.seed", &v.seed},
-                              });
-}
-
 std::vector<Field> list_fields(RecognizerConfig& c) {
   std::vector<Field> fields{{"num_previous_views", &c.num_previous_views},
                             {"detect_changes", &c.detect_changes},
@@ -295,7 +223,6 @@ std::vector<Field> list_fields(RecognizerConfig& c) {
   add_hypothesis_fields(c, fields);
   add_shape_fields(c, fields);
   add_change_fields(c, fields);
-  add_verification_fields(c, fields);
   return fields;
 }
 
@@ -313,7 +240,6 @@ struct ToText {
   std::string operator()(const std::uint64_t* v) const { return fmt::format("{}", *v); }
   std::string operator()(const RotationTest* v) const { return name_of(*v, kRotationTests); }
   std::string operator()(const OcclusionTest* v) const { return name_of(*v, kOcclusionTests); }
-  std::string operator()(const DuplicityRule* v) const { return name_of(*v, kDuplicityRules); }
 };
 
 // Takes a TOML value over into a field; returns what was expected if it does not fit.
@@ -343,7 +269,6 @@ struct Assign {
   }
   std::string operator()(RotationTest* v) const { return choose(v, kRotationTests); }
   std::string operator()(OcclusionTest* v) const { return choose(v, kOcclusionTests); }
-  std::string operator()(DuplicityRule* v) const { return choose(v, kDuplicityRules); }
 
   template <typename Enum, std::size_t N>
   std::string choose(Enum* v, const std::pair<const char*, Enum> (&names)[N]) const {
@@ -359,6 +284,41 @@ struct Assign {
     return expected;
   }
 };
+
+OptionValue value_of(const toml::node& node) {
+  if (const auto flag = node.value_exact<bool>()) return *flag;
+  if (const auto whole = node.value_exact<std::int64_t>()) return *whole;
+  if (const auto number = node.value_exact<double>()) return *number;
+  return node.value_or(std::string());
+}
+
+// Options of the verification. Choices first: they decide which other options there are.
+std::string assign_verify(VerifyOptions& verify, const std::map<std::string, const toml::node*>& nodes) {
+  for (const bool choices : {true, false})
+    for (const auto& [name, node] : nodes) {
+      std::vector<Option> options = list_options(verify);
+      const auto found = std::ranges::find(options, name, &Option::key);
+      if (found == options.end())
+        return fmt::format("unknown key verify.{} (did you mean verify.{}?)", name, nearest_key(options, name));
+      if (std::holds_alternative<OptionChoice>(found->pointer) != choices) continue;
+      if (!found->condition.empty())
+        return fmt::format("verify.{} has no effect unless verify.{}", name, found->condition);
+      const std::string expected = assign_option(*found, value_of(*node));
+      if (!expected.empty()) return fmt::format("verify.{} must be {}", name, expected);
+    }
+  return "";
+}
+
+void collect_nodes(const toml::table& table, const std::string& prefix,
+                   std::map<std::string, const toml::node*>& nodes) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* entries = node.as_table())
+      collect_nodes(*entries, name + ".", nodes);
+    else
+      nodes[name] = &node;
+  }
+}
 
 std::string assign(std::vector<Field>& fields, const std::string& name, const toml::node& node) {
   for (Field& field : fields) {
@@ -386,27 +346,26 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   }
   if (name == "default") {
     config.changes.occlusion_test = OcclusionTest::kDepthImage;
-    config.verify.inlier_distance_m = 0.01;      // Poses are refined.
-    config.verify.color_sigma_l = 0.45;          // What lies in a shadow is darker than the light fit has it...
-    config.verify.color_sigma_ab = 0.17;         // ...but not of another hue.
-    config.verify.min_explained_share = 0.5;     // Half of an object may lie in a hard shadow...
-    config.verify.min_pattern_similarity = 0.5;  // ...but its print stays its own...
-    config.verify.min_newest_similarity = 0.4;   // ...whatever stood there before.
-    config.verify.min_visible_share = 0.05;
-    config.verify.clutter_weight = 6;
-    config.verify.continuation_offset_m = 0.005;
-    config.verify.continuation_contrast = 2;
-    config.verify.turn_step_rad = 0.1745;  // 10 deg.
-    config.shape.turn_step_rad = 0.1745;
+    VerifyOptions& verify = config.verify;
+    verify.support.max_distance_m = 0.01;  // Poses are refined.
+    verify.visibility.free_space = NewestViewFreeSpace{};
+    verify.visibility.arrival_share = 0.6;
+    verify.appearance.sigma_l = 0.45;                 // An object in shadow is darker than the fit has it,
+    verify.appearance.sigma_ab = 0.17;                // but not of another chromaticity.
+    verify.appearance.light.max_log_darkening = 1.2;  // Objects in a shelf
+    verify.appearance.light.max_log_shading = 1.2;    // are lit from one side.
+    verify.refine.symmetry_step_rad = 0.1745;         // 10 deg.
+    verify.clutter.weight = 6;
+    verify.clutter.rule = ContinuationClutter{.max_offset_m = 0.005, .texture_contrast = 2, .noise_sigmas = 3};
+    verify.planes->spacing_m = 0.01;
+    verify.acceptance = {.min_visible_share = 0.05,
+                         .min_explained_share = 0.5,     // Half of an object may lie in a hard shadow,
+                         .min_pattern_similarity = 0.5,  // but its texture stays its own,
+                         .min_newest_similarity = 0.4,   // whatever stood there before.
+                         .min_shared_texture = 0.08,
+                         .untextured = UntexturedOptions{},
+                         .require_unary_gain = true};
     config.prepare.normals.window_radius_px = 4;  // On things at a metre 6 deg off; 20 with 2.
-    config.verify.newest_view_decides = true;
-    config.verify.max_absent_share = 0.6;
-    config.verify.clutter_sigmas = 3;
-    config.verify.plain.max_shared_contrast = 1;
-    config.verify.min_shared_print = 0.08;
-    config.verify.plane_spacing_m = 0.01;
-    config.verify.light.max_log_darkening = 1.2;  // What stands in a shelf...
-    config.verify.light.max_log_shading = 1.2;    // ...is lit from one side.
     config.min_reported_share = 0.01;
     config.history.min_new_share = 0.01;
     config.history.confirm_score = 0.7;
@@ -424,7 +383,6 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.shape.max_seeds = 600;
     config.skip_planes = true;
     config.shape.enabled = true;
-    config.verify.must_pay_alone = true;
     config.match.shot_neighbors = 3;
     config.match.shot_index.num_components = 64;
     config.match.shot_index.num_probes = 8;
@@ -476,6 +434,7 @@ std::vector<std::pair<std::string, std::string>> RecognizerConfig::to_settings()
   RecognizerConfig copy = *this;
   std::vector<std::pair<std::string, std::string>> settings{{"preset", preset}};
   for (const Field& field : list_fields(copy)) settings.emplace_back(field.name, std::visit(ToText{}, field.value));
+  for (const auto& [key, value] : settings_of(list_options(copy.verify))) settings.emplace_back("verify." + key, value);
   return settings;
 }
 
@@ -496,7 +455,11 @@ Result<RecognizerConfig> read_config(const std::filesystem::path& path, Recogniz
   for (const auto& [key, node] : table) {
     const std::string section(key.str());
     std::string problem;
-    if (const toml::table* entries = node.as_table()) {
+    if (const toml::table* entries = node.as_table(); entries != nullptr && section == "verify") {
+      std::map<std::string, const toml::node*> nodes;
+      collect_nodes(*entries, "", nodes);
+      if (problem = assign_verify(config.verify, nodes); !problem.empty()) return fail(problem);
+    } else if (entries != nullptr) {
       for (const auto& [name, value] : *entries) {
         problem = assign(fields, fmt::format("{}.{}", section, std::string_view(name.str())), value);
         if (!problem.empty()) return fail(problem);

@@ -110,15 +110,13 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
       {"changes", num_fields<DetectChangesOptions>() - kThreads - 1},  // the voxels are those of integrate
       {"removal", num_fields<RemovalSupportOptions>()},
       {"integrate", num_fields<IntegrateOptions>() - kThreads},
-      {"verify", num_fields<VerifyOptions>() - 5 - kThreads + num_fields<PhotometricLimits>() +
-                     num_fields<RefinePoseOptions>() + num_fields<UntexturedOptions>() +
-                     num_fields<FindPlanesOptions>() - kThreads + num_fields<SmoothSegmentsOptions>() - kThreads},
       {"score", num_fields<DetectionScoreOptions>()},
       {"history",
        num_fields<ObjectHistoryOptions>() - 2 + num_fields<PresenceOptions>() + num_fields<DepthHistoryOptions>()}};
   std::map<std::string, int> found;
   for (const auto& [name, value] : RecognizerConfig{}.to_settings())
-    ++found[name.substr(0, name.find('.') == std::string::npos ? 0 : name.find('.'))];
+    if (!name.starts_with("verify."))  // Declared beside its fields.
+      ++found[name.substr(0, name.find('.') == std::string::npos ? 0 : name.find('.'))];
   EXPECT_EQ(found, expected);
 }
 
@@ -126,7 +124,8 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
 TEST(RecognizerConfig, EachSettingChangesItselfAlone) {
   const RecognizerConfig config;
   const auto settings = config.to_settings();
-  for (std::size_t i = 1; i < settings.size(); ++i) {  // [0] is the preset's name
+  for (std::size_t i = 1; i < settings.size(); ++i) {        // [0] is the preset's name
+    if (settings[i].first.starts_with("verify.")) continue;  // Declared beside its fields.
     std::vector<std::string> changed;
     for (const std::string& other : other_values(settings[i].second)) {
       const auto read = read_config(write_text(to_toml({settings[i].first, other})), config);

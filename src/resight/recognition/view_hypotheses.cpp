@@ -42,8 +42,10 @@ std::string generation_settings(const RecognizerConfig& config) {
                                                             "score.",
                                                             "history.",
                                                             "presence."};
-  // Shapes are checked with the colours of the verification.
-  constexpr std::array<std::string_view, 3> kColors{"verify.color_", "verify.light_", "verify.min_inlier_weight"};
+  // Shapes are checked as the verification does (MatchCriteria).
+  constexpr std::array<std::string_view, 4> kColors{"verify.appearance.", "verify.support.min_weight",
+                                                    "verify.acceptance.min_pattern_similarity",
+                                                    "verify.refine.symmetry_step_rad"};
   const auto starts_with_one_of = [](const std::string& name, const auto& sections) {
     return std::ranges::any_of(sections, [&](std::string_view s) { return name.starts_with(s); });
   };

@@ -19,7 +19,7 @@ TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
   later.remember_objects = true;
   later.cluster.max_translation_m *= 2;
   later.changes.tolerance_m *= 2;
-  later.verify.outlier_weight *= 2;
+  later.verify.selection.outlier_weight *= 2;
   later.history.same_place_m *= 2;
   later.integrate.voxel_m *= 2;
   EXPECT_EQ(generation_settings(later), text);
@@ -42,7 +42,7 @@ TEST(GenerationSettings, AreAllSettingsWhereWhatIsKnownIsNotSearchedFor) {
   other.num_previous_views = base.num_previous_views + 1;
   EXPECT_NE(generation_settings(other), generation_settings(base));
   other = base;
-  other.verify.outlier_weight *= 2;
+  other.verify.selection.outlier_weight *= 2;
   EXPECT_NE(generation_settings(other), generation_settings(base));
   base.attention.object_look_every = other.attention.object_look_every = 0;
   EXPECT_EQ(generation_settings(other), generation_settings(base));

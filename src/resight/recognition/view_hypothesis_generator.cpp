@@ -12,10 +12,17 @@ const ModelLibrary kNoModels;
 
 }  // namespace
 
+MatchCriteria match_criteria(const VerifyOptions& verify) {
+  return {.appearance = verify.appearance,
+          .min_weight = verify.support.min_weight,
+          .min_pattern_similarity = verify.acceptance.min_pattern_similarity.value_or(-1),
+          .symmetry_step_rad = verify.refine.symmetry_step_rad};
+}
+
 ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config)
     : config_(config),
       index_(library, config.match),
-      shapes_(config.shape.enabled ? library : kNoModels, config.shape, config.verify) {
+      shapes_(config.shape.enabled ? library : kNoModels, config.shape, match_criteria(config.verify)) {
   for (const ObjectModel& model : library.objects)
     largest_diameter_m_ = std::max(largest_diameter_m_, model.diameter_m);
 }

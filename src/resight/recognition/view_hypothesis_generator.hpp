@@ -13,6 +13,9 @@
 
 namespace resight {
 
+/// What the shape search shares with the verification.
+[[nodiscard]] MatchCriteria match_criteria(const VerifyOptions& verify);
+
 /// Makes the hypotheses of single views: from groups of correspondences (paper Sec. III-A), and from shape if
 /// RecognizerConfig::shape is enabled. Library and config must outlive it.
 class ViewHypothesisGenerator {

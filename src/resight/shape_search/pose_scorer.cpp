@@ -305,11 +305,11 @@ PhotometricFit PoseScorer::fit_photometry(const SampledModel& model, const Rigid
 }
 
 // Counts as explained only what is of like colour, too.
-void PoseScorer::compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const {
-  const PhotometricFit light =
-      resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals, options.light);
-  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
-  const auto max_exponent = static_cast<float>(-std::log(options.min_inlier_weight));
+void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const {
+  const PhotometricFit light = resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals,
+                                                       criteria.appearance.light);
+  const ColorTolerance tolerance(criteria.appearance.sigma_l, criteria.appearance.sigma_ab);
+  const auto max_exponent = static_cast<float>(-std::log(criteria.min_weight));
   std::vector<LabColor> seen;
   std::vector<LabColor> expected;
   seen.reserve(confirmed.samples.size());
@@ -320,11 +320,12 @@ void PoseScorer::compare_colors(const Confirmed& confirmed, const VerifyOptions&
     seen.push_back(lab_[confirmed.pixels[k]]);
     if (tolerance.exponent(expected[k], seen[k]) < max_exponent) ++fit.num_explained;
   }
-  fit.pattern_similarity = pattern_similarity(expected, seen, options.color_sigma_l / options.color_sigma_ab);
+  fit.pattern_similarity =
+      pattern_similarity(expected, seen, criteria.appearance.sigma_l / criteria.appearance.sigma_ab);
 }
 
 double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed,
-                                    const VerifyOptions& options) const {
+                                    const MatchCriteria& criteria) const {
   const float z = view_.cloud.z[confirmed.pixels.front()];
   const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
   Silhouette silhouette(confirmed.outline, cell_px);
@@ -332,7 +333,7 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
     const auto pixel = static_cast<int>(confirmed.pixels[k]);
     silhouette.set_known(Eigen::Vector2f(pixel % lab_.width(), pixel / lab_.width()), pixel);
   }
-  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
+  const ColorTolerance tolerance(criteria.appearance.sigma_l, criteria.appearance.sigma_ab);
   const auto continues = [&](std::size_t from, std::size_t to) {
     if (!view_.cloud.has_normal(from) || !view_.cloud.has_normal(to)) return false;
     const Eigen::Vector3f normal = view_.cloud.normal(from);
@@ -367,15 +368,15 @@ bool PoseScorer::fits_in_shape(const SampledModel& model, const Rigid3& camera_f
 }
 
 PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                               const VerifyOptions& colors, const PoseFit& least) const {
+                               const MatchCriteria& criteria, const PoseFit& least) const {
   const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
   PoseFit fit = shape_fit(confirmed);
   if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
   const double num_visible = fit.num_explained + confirmed.wrong;
-  if (!confirmed.model_light.empty()) compare_colors(confirmed, colors, fit);
+  if (!confirmed.model_light.empty()) compare_colors(confirmed, criteria, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;
-  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, colors));
+  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, criteria));
   return fit;
 }
 

@@ -12,7 +12,7 @@
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/segmentation/scene_planes.hpp"
 #include "resight/sensor/prepared_view.hpp"
-#include "resight/verification/verify_options.hpp"
+#include "resight/shape_search/match_criteria.hpp"
 
 namespace resight {
 
@@ -115,7 +115,7 @@ class PoseScorer {
   /// The last test: all samples, their colours in the light that fits them best (photometric_fit.hpp). What cannot
   /// reach `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
   [[nodiscard]] PoseFit score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                                   const VerifyOptions& colors, const PoseFit& least = kAnyFit) const;
+                                   const MatchCriteria& criteria, const PoseFit& least = kAnyFit) const;
 
  private:
   // The samples of a pose that depth and normal confirm, and how many they do not.
@@ -147,9 +147,9 @@ class PoseScorer {
   void confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
                       float tolerance, Confirmed& confirmed) const;
   [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
-  void compare_colors(const Confirmed& confirmed, const VerifyOptions& options, PoseFit& fit) const;
+  void compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed,
-                                        const VerifyOptions& options) const;
+                                        const MatchCriteria& criteria) const;
   [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
 
   // What the first test asks of a pixel, in one place.

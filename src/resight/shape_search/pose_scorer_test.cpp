@@ -108,7 +108,7 @@ TEST(PoseScorer, RefinesARoughPose) {
 
 TEST(PoseScorer, JudgesDepthAndColour) {
   const BoxOnTable c;
-  VerifyOptions colors;
+  const MatchCriteria colors;
   const PoseFit right = c.probe.score_fine(c.samples, c.truth, 0.008, colors);
   EXPECT_GT(right.explained_share, 0.85);
   EXPECT_GT(right.visible_share, 0.95);

@@ -51,13 +51,13 @@ PointCloud without_explained(const PointCloud& points, const Camera& camera, con
 }  // namespace
 
 struct ShapeSearch::Impl {
-  Impl(const ModelLibrary& models, const ShapeSearchOptions& settings, const VerifyOptions& color_settings)
-      : library(models), options((settings.check(), settings)), colors(color_settings) {
+  Impl(const ModelLibrary& models, const ShapeSearchOptions& settings, const MatchCriteria& match_criteria)
+      : library(models), options((settings.check(), settings)), criteria(match_criteria) {
     objects.resize(library.objects.size());
     symmetry_motions.resize(library.objects.size());
-    if (options.turn_step_rad > 0)
+    if (criteria.symmetry_step_rad)
       for (std::size_t o = 0; o < objects.size(); ++o)
-        symmetry_motions[o] = shape_symmetry_motions(library.objects[o], options.turn_step_rad);
+        symmetry_motions[o] = shape_symmetry_motions(library.objects[o], *criteria.symmetry_step_rad);
     parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
       objects[o] = make_sampled_model(library.objects[o], options.max_model_samples);
     });
@@ -81,8 +81,8 @@ struct ShapeSearch::Impl {
       if (votes[h] > 0)
         lights[h] = probe.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
                                          camera_from_world * from_features[h].world_from_object,
-                                         options.refine_distance_m, colors.light);
-    const Eigen::Array3f white_balance = find_white_balance(lights, votes, colors.light);
+                                         options.refine_distance_m, criteria.appearance.light);
+    const Eigen::Array3f white_balance = find_white_balance(lights, votes);
     std::vector<SampledModel> balanced = objects;
     for (SampledModel& model : balanced) set_white_balance(model, white_balance);
     return balanced;
@@ -187,7 +187,7 @@ struct ShapeSearch::Impl {
       const PoseFit least = least_fit(model);
       if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
       for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
-        const PoseFit fit = probe.score_fine(model, pose, options.tolerance_m, colors, least);
+        const PoseFit fit = probe.score_fine(model, pose, options.tolerance_m, criteria, least);
         if (!fit.reaches(least)) continue;
         const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
         judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
@@ -198,7 +198,7 @@ struct ShapeSearch::Impl {
 
   [[nodiscard]] PoseFit least_fit(const SampledModel& model) const {
     const double num_explained = kMinExplainedShareOfSamples * static_cast<double>(model.points.size());
-    return {options.min_explained_share, options.min_visible_share, options.min_pattern_similarity,
+    return {options.min_explained_share, options.min_visible_share, criteria.min_pattern_similarity,
             static_cast<int>(std::ceil(num_explained))};
   }
 
@@ -233,7 +233,7 @@ struct ShapeSearch::Impl {
 
   const ModelLibrary& library;
   ShapeSearchOptions options;
-  VerifyOptions colors;
+  MatchCriteria criteria;
   std::vector<SampledModel> objects;
   std::vector<std::vector<Rigid3>> symmetry_motions;  // shape_symmetry_motions() of each.
   PointPairTable table;
@@ -254,9 +254,7 @@ void ShapeSearchOptions::check() const {
   check_positive("ShapeSearchOptions.refine_distance_m", refine_distance_m);
   check_positive("ShapeSearchOptions.tolerance_m", tolerance_m);
   check_in_range("ShapeSearchOptions.min_explained_share", min_explained_share, 0, 1);
-  check_in_range("ShapeSearchOptions.min_pattern_similarity", min_pattern_similarity, -1, 1);
   check_in_range("ShapeSearchOptions.min_visible_share", min_visible_share, 0, 1);
-  check_in_range("ShapeSearchOptions.turn_step_rad", turn_step_rad, 0, std::numbers::pi);
   check_positive("ShapeSearchOptions.max_turns", max_turns);
   check_not_negative("ShapeSearchOptions.max_hypotheses", max_hypotheses);
   check_in_range("ShapeSearchOptions.min_feature_share", min_feature_share, 0, 1);
@@ -275,8 +273,8 @@ SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& optio
   samples.points = std::move(searched);
 }
 
-ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors)
-    : impl_(std::make_unique<Impl>(library, options, colors)) {}
+ShapeSearch::ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const MatchCriteria& criteria)
+    : impl_(std::make_unique<Impl>(library, options, criteria)) {}
 ShapeSearch::~ShapeSearch() = default;
 ShapeSearch::ShapeSearch(ShapeSearch&&) noexcept = default;
 ShapeSearch& ShapeSearch::operator=(ShapeSearch&&) noexcept = default;
@@ -297,7 +295,7 @@ std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<cons
     if (model.points.empty()) return;
     const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
                                           options.refine_iterations, options.refine_distance_m);
-    fits[h] = view.probe.score_fine(model, pose, options.tolerance_m, impl_->colors);
+    fits[h] = view.probe.score_fine(model, pose, options.tolerance_m, impl_->criteria);
   });
   return fits;
 }
@@ -308,7 +306,7 @@ ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, c
   const Rigid3 refined =
       view.probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
   return {view.probe.count(model, Rigid3f(camera_from_object), options.coarse),
-          view.probe.score_fine(model, refined, options.tolerance_m, impl_->colors)};
+          view.probe.score_fine(model, refined, options.tolerance_m, impl_->criteria)};
 }
 
 }  // namespace resight

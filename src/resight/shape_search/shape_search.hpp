@@ -8,9 +8,9 @@
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/shape_search/match_criteria.hpp"
 #include "resight/shape_search/pose_scorer.hpp"
 #include "resight/shape_search/scene_samples.hpp"
-#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 
@@ -31,19 +31,14 @@ struct ShapeSearchOptions {
   int refine_iterations = 6;        ///< Of projective ICP.
   double refine_distance_m = 0.02;  ///< Pairs of it that are farther apart do not count.
   double tolerance_m = 0.005;       ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
-  double min_explained_share = 0.6;     ///< Of the samples that are not hidden.
-  double min_pattern_similarity = 0.5;  ///< As VerifyOptions::min_pattern_similarity.
-  double min_visible_share = 0.2;       ///< Of the samples that face the camera: neither hidden nor outside.
-  double turn_step_rad = 0;  ///< If positive, what is round in shape but not in print (a can; more than 12 turns) is
-                             ///< sought by its shape alone, and then turned about its axis in such steps to where its
-                             ///< print fits best. One pose a place is kept: to be used with
-                             ///< VerifyOptions::turn_step_rad.
-  int max_turns = 8;         ///< Of them so many are judged: those with most samples of the right hue.
-  int max_hypotheses = 3;    ///< Per object.
-  double min_feature_share = 0.4;   ///< Hypotheses from features that explain less of themselves in their own view
-                                    ///< are chance; 0 keeps all.
-  double same_place_m = 0.015;      ///< Poses nearer than this (at the object's centre)...
-  double same_rotation_rad = 0.21;  ///< ...and this (over its symmetries) are one.
+  double min_explained_share = 0.6;  ///< Of the samples that are not hidden.
+  double min_visible_share = 0.2;    ///< Of the samples that face the camera: neither hidden nor outside.
+  int max_turns = 8;                 ///< Of them so many are judged: those with most samples of the right hue.
+  int max_hypotheses = 3;            ///< Per object.
+  double min_feature_share = 0.4;    ///< Hypotheses from features that explain less of themselves in their own view
+                                     ///< are chance; 0 keeps all.
+  double same_place_m = 0.015;       ///< Poses nearer than this (at the object's centre)...
+  double same_rotation_rad = 0.21;   ///< ...and this (over its symmetries) are one.
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;
@@ -75,9 +70,8 @@ struct ShapeCandidate {
 /// such pairs, nothing is counted: one good pair is enough. Faces of one plane alone are no shape: they fix no pose.
 class ShapeSearch {
  public:
-  /// Colours are compared with the sigmas and the light limits of `colors`. The library must outlive it. Objects
-  /// without normals are not searched.
-  ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const VerifyOptions& colors = {});
+  /// The library must outlive it. Objects without normals are not searched.
+  ShapeSearch(const ModelLibrary& library, const ShapeSearchOptions& options, const MatchCriteria& criteria = {});
   ~ShapeSearch();
   ShapeSearch(ShapeSearch&&) noexcept;
   ShapeSearch& operator=(ShapeSearch&&) noexcept;

@@ -80,19 +80,19 @@ TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
   ModelLibrary library{.objects = {make_model("can", can)}};
   library.objects[0].shape_symmetries.continuous.push_back({.axis = Eigen::Vector3d::UnitZ()});
   const PreparedView view = prepare_view(render({.solids = {can}}, circle_of_cameras(3)[1]).frame);
-  const auto finds = [&](double turn_step_rad) {
+  const auto finds = [&](std::optional<double> symmetry_step_rad) {
     ShapeSearchOptions options;
-    options.turn_step_rad = turn_step_rad;
     options.max_seeds = 3;  // So few pairs of points hit the turn by chance only.
     options.max_entries = 4;
-    const auto found = ShapeSearch(library, options).search(SearchView(view, options));
+    const auto found =
+        ShapeSearch(library, options, {.symmetry_step_rad = symmetry_step_rad}).search(SearchView(view, options));
     if (found.empty()) return false;
     const Rigid3 pose = view.frame.world_from_camera * found[0].camera_from_object;
     return (pose.translation - can.world_from_object.translation).norm() < 0.006 &&
            rotation_angle_rad(pose.rotation, can.world_from_object.rotation) < 0.2;
   };
   EXPECT_TRUE(finds(0.1745));
-  EXPECT_FALSE(finds(0));
+  EXPECT_FALSE(finds(std::nullopt));
 }
 
 TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
@@ -100,11 +100,11 @@ TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
   c.library.objects[0].shape_symmetries.continuous.push_back(
       {.axis = Eigen::Vector3d::UnitZ()});  // So that it is turned.
   ShapeSearchOptions options;
-  options.turn_step_rad = 0.1745;
+  const MatchCriteria criteria{.symmetry_step_rad = 0.1745};
   options.max_seeds = 300;
-  const auto serial = ShapeSearch(c.library, options).search(c.searched);
+  const auto serial = ShapeSearch(c.library, options, criteria).search(c.searched);
   options.num_threads = 4;
-  const auto parallel = ShapeSearch(c.library, options).search(c.searched);
+  const auto parallel = ShapeSearch(c.library, options, criteria).search(c.searched);
   ASSERT_FALSE(serial.empty());
   ASSERT_EQ(serial.size(), parallel.size());
   for (std::size_t i = 0; i < serial.size(); ++i) {

@@ -9,35 +9,45 @@
 namespace resight {
 namespace {
 
+// Contrast of texture from which a model is textured, in the unit of PatternMatch::shared_texture.
 constexpr double kTextureContrast = 1;
 
-// 1 for what shares no contrast with the scene, 0 from max_shared_contrast on.
-double plainness(const HypothesisEvidence& evidence, const UntexturedOptions& plain) {
-  if (plain.max_shared_contrast <= 0) return 0;
-  return std::clamp(1 - evidence.shared_texture / plain.max_shared_contrast, 0.0, 1.0);
+// 1 for a hypothesis that shares no texture with the scene, 0 from max_shared_contrast on.
+double untextured_degree(const HypothesisEvidence& evidence, const UntexturedOptions& untextured) {
+  return std::clamp(1 - evidence.shared_texture / untextured.max_shared_contrast, 0.0, 1.0);
+}
+
+double min_explained_share(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  if (!options.untextured) return options.min_explained_share;
+  return std::lerp(options.min_explained_share,
+                   std::max(options.min_explained_share, options.untextured->min_explained_share),
+                   untextured_degree(evidence, *options.untextured));
+}
+
+bool looks_different(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  if (evidence.texture_contrast >= kTextureContrast &&
+      evidence.shared_texture < options.min_shared_texture * evidence.texture_contrast)
+    return true;
+  return (options.min_pattern_similarity && evidence.pattern_similarity < *options.min_pattern_similarity) ||
+         (options.min_newest_similarity && evidence.newest_similarity < *options.min_newest_similarity);
 }
 
 }  // namespace
 
-Verdict judge_evidence(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  const double plain = plainness(evidence, options.plain);
-  const double min_explained = std::lerp(
-      options.min_explained_share, std::max(options.min_explained_share, options.plain.min_explained_share), plain);
-  if (evidence.num_visible < options.min_visible_points || evidence.visible_share < options.min_visible_share)
+Verdict judge_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  if (evidence.num_visible < kMinVisiblePoints || evidence.visible_share < options.min_visible_share)
     return Verdict::kTooFewVisible;
-  if (evidence.num_explained == 0 || evidence.explained_share < min_explained) return Verdict::kNoSupport;
-  const bool lacks_texture = evidence.texture_contrast >= kTextureContrast &&
-                             evidence.shared_texture < options.min_shared_print * evidence.texture_contrast;
-  const bool is_other = lacks_texture || evidence.pattern_similarity < options.min_pattern_similarity ||
-                        evidence.newest_similarity < options.min_newest_similarity;
-  return is_other ? Verdict::kDifferentAppearance : Verdict::kCost;
+  if (evidence.num_explained == 0 || evidence.explained_share < min_explained_share(evidence, options))
+    return Verdict::kNoSupport;
+  return looks_different(evidence, options) ? Verdict::kDifferentAppearance : Verdict::kCost;
 }
 
-bool has_unary_gain(const HypothesisEvidence& evidence, const VerifyOptions& options) {
+bool has_unary_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   if (evidence.verdict != Verdict::kCost) return false;
-  if (!options.must_pay_alone) return true;
-  const double min_gain = plainness(evidence, options.plain) * options.plain.min_gain * evidence.explained_scene;
-  return unary_cost(evidence, options) < -min_gain;
+  if (!options.require_unary_gain) return true;
+  const double min_gain =
+      options.untextured ? untextured_degree(evidence, *options.untextured) * options.untextured->min_gain : 0;
+  return unary_cost(evidence) < -(min_gain * evidence.explained_scene);
 }
 
 }  // namespace resight

@@ -20,14 +20,14 @@ HypothesisEvidence good_evidence() {
   return e;
 }
 
-VerifyOptions options() {
-  VerifyOptions o;
+AcceptanceOptions options() {
+  AcceptanceOptions o;
   o.min_explained_share = 0.6;
   o.min_pattern_similarity = 0.5;
   o.min_newest_similarity = 0.4;
-  o.must_pay_alone = true;
-  o.min_shared_print = 0.1;
-  o.plain = {.max_shared_contrast = 1, .min_explained_share = 0.8, .min_gain = 0.2};
+  o.require_unary_gain = true;
+  o.min_shared_texture = 0.1;
+  o.untextured = UntexturedOptions{.max_shared_contrast = 1, .min_explained_share = 0.8, .min_gain = 0.2};
   return o;
 }
 
@@ -68,7 +68,7 @@ TEST(Acceptance, APrintThatTheSceneDoesNotShareIsAnother) {
 
 TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
   HypothesisEvidence e = good_evidence();
-  const auto pays = [&](double clutter, double shared_texture, const VerifyOptions& o) {
+  const auto pays = [&](double clutter, double shared_texture, const AcceptanceOptions& o) {
     e.clutter_cost = clutter;
     e.shared_texture = shared_texture;
     return has_unary_gain(e, o);
@@ -78,16 +78,16 @@ TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
   EXPECT_FALSE(pays(355, 0, options()));
   EXPECT_TRUE(pays(445, 1, options()));
   EXPECT_FALSE(pays(455, 1, options()));
-  VerifyOptions any = options();
-  any.must_pay_alone = false;
+  AcceptanceOptions any = options();
+  any.require_unary_gain = false;
   EXPECT_TRUE(pays(455, 0, any));
   e.verdict = Verdict::kNoSupport;
   EXPECT_FALSE(pays(0, 3, any));
 }
 
 TEST(Acceptance, WithoutPlainOptionsNothingMoreIsAsked) {
-  VerifyOptions o = options();
-  o.plain.max_shared_contrast = 0;
+  AcceptanceOptions o = options();
+  o.untextured.reset();
   HypothesisEvidence e = good_evidence();
   e.shared_texture = 0;
   e.explained_share = 0.61;

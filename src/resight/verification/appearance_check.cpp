@@ -43,8 +43,8 @@ SeenPrint look_without_depth(const PointCloud& surface, const Rigid3f& camera_fr
 // Of the model as this light shows it and the view, the points whose colours agree.
 std::size_t count_explained(std::span<const LabColor> expected, std::span<const LabColor> seen,
                             const VerifyOptions& options) {
-  const ColorTolerance tolerance(options.color_sigma_l, options.color_sigma_ab);
-  const auto max_exponent = static_cast<float>(-std::log(options.min_inlier_weight));
+  const ColorTolerance tolerance(options.appearance.sigma_l, options.appearance.sigma_ab);
+  const auto max_exponent = static_cast<float>(-std::log(options.support.min_weight));
   std::size_t count = 0;
   for (std::size_t i = 0; i < seen.size(); ++i)
     count += tolerance.exponent(expected[i], seen[i]) <= max_exponent ? 1 : 0;
@@ -55,26 +55,30 @@ std::size_t count_explained(std::span<const LabColor> expected, std::span<const 
 
 double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_object, const RgbdFrame& frame,
                              const VerifyOptions& options) {
-  if (!options.use_color || frame.color.empty() || !model.surface.has_colors() || !model.surface.has_normals())
+  if (!options.appearance.use_color || frame.color.empty() || !model.surface.has_colors() ||
+      !model.surface.has_normals())
     return 0;
   const SeenPrint view =
       look_without_depth(model.surface, Rigid3f(frame.world_from_camera.inverse() * world_from_object), frame);
   const std::size_t num_points = view.model_light.size();
   if (num_points < kMinPoints) return 0;
-  const Eigen::Array3f white = Eigen::Array3f::Zero();
-  const PhotometricFit light = limit_chromaticity(
-      fit_photometry(view.model_light, view.seen_light, view.normals, options.light), white, options.light);
+  const PhotometricFit light =
+      limit_chromaticity(fit_photometry(view.model_light, view.seen_light, view.normals, options.appearance.light),
+                         Eigen::Array3f::Zero());
   std::vector<LabColor> expected;
   for (std::size_t i = 0; i < num_points; ++i) expected.push_back(to_lab(light(view.model_light[i], view.normals[i])));
   const std::vector<LabColor> seen = to_lab(view.seen_light);
   const std::size_t num_explained = count_explained(expected, seen, options);
-  if (static_cast<double>(num_explained) < options.min_explained_share * static_cast<double>(num_points)) return 0;
-  const double chroma_weight = options.color_sigma_l / options.color_sigma_ab;
+  if (static_cast<double>(num_explained) < options.acceptance.min_explained_share * static_cast<double>(num_points))
+    return 0;
+  const double chroma_weight = options.appearance.sigma_l / options.appearance.sigma_ab;
   const std::vector<LabColor> print = to_lab(view.model_light);
   const PatternMatch match = match_patterns(expected, seen, chroma_weight);
   const double shared_texture =  // What is plain has none for being round.
       std::min(match.shared_texture, match_patterns(print, print, chroma_weight).shared_texture);
-  if (match.similarity < options.min_pattern_similarity || shared_texture < options.plain.max_shared_contrast) return 0;
+  const AcceptanceOptions& acceptance = options.acceptance;
+  if (acceptance.min_pattern_similarity && match.similarity < *acceptance.min_pattern_similarity) return 0;
+  if (acceptance.untextured && shared_texture < acceptance.untextured->max_shared_contrast) return 0;
   return static_cast<double>(num_explained) / static_cast<double>(model.surface.size());
 }
 

@@ -106,7 +106,7 @@ TEST_F(ColorConfirmation, ShadingIsNoPrint) {
 }
 
 TEST_F(ColorConfirmation, ColorsThatAreSwitchedOffConfirmNothing) {
-  options_.use_color = false;
+  options_.appearance.use_color = false;
   EXPECT_EQ(share(near_, see_print_without_depth(near_)), 0);
 }
 

@@ -17,6 +17,7 @@
 namespace resight {
 namespace {
 
+constexpr double kPlaneWeight = 0.8;  // How well a plane explains its points (V4R: 0.8, half of it with colour).
 constexpr float kMinWeight = 0.05F;
 constexpr float kWellExplained = 0.5F;
 constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
@@ -39,14 +40,14 @@ struct CueComputer::Impl {
       : model_(model),
         scene_(scene),
         options_(options),
-        colors_(options.color_sigma_l, options.color_sigma_ab),
+        colors_(options.appearance.sigma_l, options.appearance.sigma_ab),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
         use_color_(!model.linear_light.empty() && !scene.linear_light.empty()),
         look_(model, refined(world_from_object, correspondences, views, allowed), scene, views, allowed, options) {
     turn(views, allowed);
     cues_.evidence.world_from_object = look_.world_from_object;
     count_agreeing(correspondences);
-    if (use_color_ && options.min_newest_similarity > -1)
+    if (use_color_ && options.acceptance.min_newest_similarity)
       newest_view_appearance_.emplace(model_, look_, views, options_);
   }
 
@@ -62,13 +63,13 @@ struct CueComputer::Impl {
   // has none there either.
   void turn(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
     if (model_.symmetry_motions.size() < 2 || !look_.local || !use_color_) return;
-    if (look_.supported_share() < options_.min_explained_share) return;
+    if (look_.supported_share() < options_.acceptance.min_explained_share) return;
     const Rigid3f object_from_world(look_.world_from_object.inverse());
     std::vector<ExplainedPoint> explained;
     for (const PointMatch& m : look_.nearest)
       explained.push_back({object_from_world * look_.local->point(static_cast<std::size_t>(m.local)),
                            look_.local_lab[static_cast<std::size_t>(m.local)]});
-    const Rigid3 turn = resolve_symmetry(model_, explained, options_.color_sigma_l / options_.color_sigma_ab);
+    const Rigid3 turn = resolve_symmetry(model_, explained, options_.appearance.sigma_l / options_.appearance.sigma_ab);
     if (turn.rotation.isIdentity()) return;
     SceneAssociation turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
     if (turned.color_fit() > look_.color_fit()) look_ = std::move(turned);
@@ -77,14 +78,14 @@ struct CueComputer::Impl {
   void count_agreeing(std::span<const Correspondence> correspondences) {
     const Rigid3f motion(cues_.evidence.world_from_object);
     for (const Correspondence& c : correspondences)
-      if ((motion * c.model_point - c.scene_point).norm() <= static_cast<float>(options_.inlier_distance_m))
+      if ((motion * c.model_point - c.scene_point).norm() <= static_cast<float>(options_.support.max_distance_m))
         ++cues_.evidence.num_correspondences;
   }
 
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
     cues_.state.assign(look_.points.size(), ModelPointState::kNotVisible);
     if (look_.local) {
-      adapt_colors(limit_chromaticity(look_.light, white_balance, options_.light));
+      adapt_colors(limit_chromaticity(look_.light, white_balance));
       compare_patterns();
       if (newest_view_appearance_)
         cues_.evidence.newest_similarity = newest_view_appearance_->similarity(white_balance);
@@ -92,7 +93,7 @@ struct CueComputer::Impl {
       classify_model_points();
     }
     fill_evidence(look_.visibility.sight.size());
-    cues_.evidence.verdict = judge_evidence(cues_.evidence, options_);
+    cues_.evidence.verdict = judge_evidence(cues_.evidence, options_.acceptance);
     if (cues_.evidence.verdict == Verdict::kCost) add_costs(*look_.local);
     return std::move(cues_);
   }
@@ -122,7 +123,7 @@ struct CueComputer::Impl {
       model_colors.push_back(lab_[m.visible]);
       scene_colors.push_back(look_.local_lab[m.local]);
     }
-    const double chroma_weight = options_.color_sigma_l / options_.color_sigma_ab;
+    const double chroma_weight = options_.appearance.sigma_l / options_.appearance.sigma_ab;
     const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
     cues_.evidence.pattern_similarity = match.similarity;
     cues_.evidence.texture_contrast = match_patterns(print, print, chroma_weight).shared_texture;
@@ -135,9 +136,9 @@ struct CueComputer::Impl {
   }
 
   void weigh_matches(const LocalScene& local) {
-    const float t = static_cast<float>(options_.inlier_distance_m);
+    const float t = static_cast<float>(options_.support.max_distance_m);
     const float wide = t + static_cast<float>(options_.resolution_m);
-    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
+    const float min_dot = static_cast<float>(std::cos(kMaxInlierAngle_rad));
     scene_weight_.assign(local.size(), 0);
     beside_model_.assign(local.size(), 1);
     fit_exponent_.assign(look_.visibility.visible.size(), std::numeric_limits<float>::infinity());
@@ -157,13 +158,13 @@ struct CueComputer::Impl {
 
   // What lies in front of the model or behind its face by no more than the noise of the views is no rest of a surface.
   void excuse_noise(const LocalScene& local) {
-    const float clutter_sigmas = static_cast<float>(options_.clutter_sigmas);
-    const float reach_m = std::min(clutter_sigmas * look_.depth_noise_m, static_cast<float>(options_.clutter_radius_m));
-    if (!use_normals_ || options_.continuation_offset_m <= 0 ||
-        reach_m <= static_cast<float>(options_.inlier_distance_m))
-      return;
+    const auto* rule = std::get_if<ContinuationClutter>(&options_.clutter.rule);
+    if (!use_normals_ || rule == nullptr) return;
+    const float reach_m = std::min(static_cast<float>(rule->noise_sigmas) * look_.depth_noise_m,
+                                   static_cast<float>(options_.clutter.radius_m));
+    if (reach_m <= static_cast<float>(options_.support.max_distance_m)) return;
     const float beside_sq = static_cast<float>(options_.resolution_m * options_.resolution_m);
-    const float min_dot = static_cast<float>(std::cos(options_.max_inlier_angle_rad));
+    const float min_dot = static_cast<float>(std::cos(kMaxInlierAngle_rad));
     for (const int i : look_.visibility.visible)
       local.visit_within(look_.points[i], reach_m, [&](std::size_t q, float distance_sq) {
         const float along = look_.normals[i].dot(local.point(q) - look_.points[i]);
@@ -174,21 +175,21 @@ struct CueComputer::Impl {
   }
 
   void classify_model_points() {
-    const float steep_cosine = static_cast<float>(std::cos(options_.steep_angle_rad));
+    const float grazing_cosine = static_cast<float>(std::cos(kGrazingAngle_rad));
     double sum_weight = 0;
     double sum_explained = 0;
     double sum_fit = 0;
     for (std::size_t v = 0; v < look_.visibility.visible.size(); ++v) {
-      const double weight = look_.visibility.facing[v] < steep_cosine ? options_.steep_weight : 1.0;
+      const double weight = look_.visibility.facing[v] < grazing_cosine ? kGrazingWeight : 1.0;
       const double fit = std::exp(-static_cast<double>(fit_exponent_[v]));
-      const bool explained = fit > options_.min_inlier_weight && look_.visibility.seen_through[v] == 0;
+      const bool explained = fit > options_.support.min_weight && look_.visibility.seen_through[v] == 0;
       sum_weight += weight;
       if (explained) {
         ++cues_.evidence.num_explained;
         sum_explained += weight;
         sum_fit += weight * fit;
       } else {
-        cues_.evidence.outlier_cost += options_.outlier_weight * weight;
+        cues_.evidence.outlier_cost += options_.selection.outlier_weight * weight;
       }
       cues_.state[look_.visibility.visible[v]] = explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
     }
@@ -205,7 +206,7 @@ struct CueComputer::Impl {
   }
 
   void claim_scene_points(const LocalScene& local) {
-    const double plane_weight = options_.plane_weight * (use_color_ ? 0.5 : 1.0);
+    const double plane_weight = kPlaneWeight * (use_color_ ? 0.5 : 1.0);
     for (std::size_t q = 0; q < local.size(); ++q) {
       const float weight = scene_weight_[q];
       if (weight < kMinWeight) continue;
@@ -221,42 +222,41 @@ struct CueComputer::Impl {
   }
 
   // Whether the surface goes on from p to q: near p's tangent plane, of like normal and colour.
-  bool continues(int p, int q) const {
+  bool continues(int p, int q, const ContinuationClutter& rule) const {
     const Eigen::Vector3f& normal = scene_.normals[p];
-    if (std::abs(normal.dot(scene_.points[q] - scene_.points[p])) >
-            static_cast<float>(options_.continuation_offset_m) ||
+    if (std::abs(normal.dot(scene_.points[q] - scene_.points[p])) > static_cast<float>(rule.max_offset_m) ||
         normal.dot(scene_.normals[q]) < kMinContinuationDot)
       return false;
     return !use_color_ || colors_.exponent(scene_.lab[p], scene_.lab[q]) < kMaxContinuationExponent;
   }
 
   // The same for whatever lies around, but only where the surface goes on.
-  float continuation_weight(const LocalScene& local, const LocalScene& well_explained, std::size_t q) const {
+  float continuation_weight(const LocalScene& local, const LocalScene& well_explained, std::size_t q,
+                            const ContinuationClutter& rule) const {
     if (beside_model_[q] == 0) return 0;  // Of another colour: the model's points there are outliers already.
     bool goes_on = false;
-    well_explained.visit_within(local.point(q), static_cast<float>(options_.clutter_radius_m),
+    well_explained.visit_within(local.point(q), static_cast<float>(options_.clutter.radius_m),
                                 [&](std::size_t p, float) {
-                                  goes_on = continues(well_explained.scene_index(p), local.scene_index(q));
+                                  goes_on = continues(well_explained.scene_index(p), local.scene_index(q), rule);
                                   return !goes_on;
                                 });
     if (!goes_on) return 0;
-    const double print =
-        options_.continuation_contrast > 0 ? cues_.evidence.shared_texture / options_.continuation_contrast : 0;
-    return static_cast<float>(options_.clutter_weight / (1 + print * print));
+    const double print = rule.texture_contrast ? cues_.evidence.shared_texture / *rule.texture_contrast : 0;
+    return static_cast<float>(options_.clutter.weight / (1 + print * print));
   }
 
   // Cost of leaving q unexplained beside the explained points around it.
-  float clutter_weight(const LocalScene& local, std::size_t q) const {
+  float segment_weight(const LocalScene& local, std::size_t q, const SegmentClutter& rule) const {
     const int scene_q = local.scene_index(q);
     const int segment = scene_.segment[scene_q];
-    const float radius = static_cast<float>(options_.clutter_radius_m);
-    const float near_weight = static_cast<float>(options_.near_clutter_weight);
+    const float radius = static_cast<float>(options_.clutter.radius_m);
+    const float near_weight = static_cast<float>(rule.near_weight);
     float weight = 0;
     local.visit_within(local.point(q), radius, [&](std::size_t p, float distance_sq) {
       const int scene_p = local.scene_index(p);
       if (scene_weight_[p] < kMinWeight || is_background(scene_p)) return true;
       if (segment >= 0 && scene_.segment[scene_p] == segment) {
-        weight = static_cast<float>(options_.clutter_weight);
+        weight = static_cast<float>(options_.clutter.weight);
         return false;  // Nothing else can be said of it.
       }
       if (segment <
@@ -279,12 +279,14 @@ struct CueComputer::Impl {
 
   void find_clutter(const LocalScene& local) {
     if (scene_.normals.empty() || cues_.explained.empty()) return;
-    const bool only_continuing = options_.continuation_offset_m > 0;
+    const auto* continuation = std::get_if<ContinuationClutter>(&options_.clutter.rule);
+    const auto* segments = std::get_if<SegmentClutter>(&options_.clutter.rule);
     std::optional<LocalScene> well_explained;
-    if (only_continuing) well_explained.emplace(find_well_explained(local));
+    if (continuation != nullptr) well_explained.emplace(find_well_explained(local));
     for (std::size_t q = 0; q < local.size(); ++q) {
       if (scene_weight_[q] >= kMinWeight || is_background(local.scene_index(q))) continue;
-      const float weight = only_continuing ? continuation_weight(local, *well_explained, q) : clutter_weight(local, q);
+      const float weight = continuation != nullptr ? continuation_weight(local, *well_explained, q, *continuation)
+                                                   : segment_weight(local, q, *segments);
       if (weight < kMinWeight) continue;
       cues_.clutter.push_back({local.scene_index(q), weight});
       cues_.evidence.clutter_cost += weight;
@@ -295,7 +297,7 @@ struct CueComputer::Impl {
 
   // The smaller of the two parts that a plane cuts the model into, over the part of the plane that was seen.
   void add_pierced_planes() {
-    const float clearance = static_cast<float>(options_.inlier_distance_m);
+    const float clearance = static_cast<float>(options_.support.max_distance_m);
     std::vector<float> distances(look_.points.size());
     for (const ScenePlane& plane : scene_.planes) {
       if (plane.extent_m <= 1.2F * model_.diameter_m) continue;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "resight/verification/scene_association.hpp"
 #include "resight/verification/testing/analytic_scene.hpp"
 
 namespace resight {
@@ -63,12 +64,12 @@ struct SmallCase {
 Sight expected_sight(const SmallCase& c, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const PreparedView& view) {
   const Rigid3& world_from_camera = view.frame.world_from_camera;
   const Eigen::Vector3d in_camera = world_from_camera.inverse() * p;
-  if ((world_from_camera.translation - p).normalized().dot(n) < c.options.min_facing) return Sight::kHidden;
+  if ((world_from_camera.translation - p).normalized().dot(n) < kMinFacing) return Sight::kHidden;
   const Eigen::Vector2d pixel = view.frame.camera.project(in_camera);
   if (!view.frame.camera.contains(pixel)) return Sight::kHidden;
   const float depth = view.cloud.z(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  if (std::isnan(depth) || in_camera.z() - depth > c.options.occlusion_margin_m) return Sight::kHidden;
-  return depth - in_camera.z() > c.options.occlusion_margin_m ? Sight::kSeenThrough : Sight::kConsistent;
+  if (std::isnan(depth) || in_camera.z() - depth > c.options.visibility.margin_m) return Sight::kHidden;
+  return depth - in_camera.z() > c.options.visibility.margin_m ? Sight::kSeenThrough : Sight::kConsistent;
 }
 
 TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
@@ -77,7 +78,8 @@ TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
   for (const Rigid3& pose : {c.solid.world_from_object, on_table(0.04, 0.05, 0.06, 0.5), on_table(0.1, 0, 0.05, 0.1)}) {
     const auto points = c.points_at(pose);
     const auto normals = c.normals_at(pose);
-    const ModelVisibility found = find_visible_points(points, normals, c.depth_views, c.everywhere, c.options);
+    const ModelVisibility found = find_visible_points(points, normals, c.depth_views, c.everywhere,
+                                                      c.options.visibility, {.spacing_m = c.options.resolution_m});
     int wrong = 0;
     std::array<int, 3> count{};
     std::vector<std::uint8_t> visible(points.size(), 0);
@@ -110,7 +112,7 @@ TEST(FindVisiblePoints, AModelHidesItself) {
       }
   const std::vector<DepthView> views = {view};
   const std::vector<std::uint8_t> allowed = {1};
-  const ModelVisibility found = find_visible_points(points, normals, views, allowed, {});
+  const ModelVisibility found = find_visible_points(points, normals, views, allowed, {}, {});
   int rear_seen = 0;
   int rear_hidden = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -134,7 +136,8 @@ struct BruteForce {
   int num_inliers = 0;
 };
 
-BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibility& visibility) {
+BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibility& visibility,
+                       const PhotometricFit& light) {
   const auto points = c.points_at(pose);
   const auto normals = c.normals_at(pose);
   const VerifyOptions& o = c.options;
@@ -144,38 +147,40 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
     double best_fit = 0;
     for (std::size_t q = 0; q < c.scene.points.size(); ++q) {
       const double d = (points[i] - c.scene.points[q]).cast<double>().norm();
-      if (d > o.inlier_distance_m) continue;
+      if (d > o.support.max_distance_m) continue;
       const double angle = std::acos(std::clamp<double>(normals[i].dot(c.scene.normals[q]), -1, 1));
-      const LabColor lab = to_lab(c.model.linear_light[i]);
+      const LabColor lab = to_lab(light(c.model.linear_light[i], normals[i]));
       const double dl = lab.l - c.scene.lab[q].l;
       const double da = lab.a - c.scene.lab[q].a;
       const double db = lab.b - c.scene.lab[q].b;
-      const double color = std::exp(-0.5 * (dl * dl / (2 * o.color_sigma_l * o.color_sigma_l) +
-                                            (da * da + db * db) / (2 * o.color_sigma_ab * o.color_sigma_ab)));
-      const double w = std::exp(-d * d / (2 * o.inlier_distance_m * o.inlier_distance_m)) * color *
+      const double color = std::exp(-0.5 * (dl * dl / (2 * o.appearance.sigma_l * o.appearance.sigma_l) +
+                                            (da * da + db * db) / (2 * o.appearance.sigma_ab * o.appearance.sigma_ab)));
+      const double w = std::exp(-d * d / (2 * o.support.max_distance_m * o.support.max_distance_m)) * color *
                        std::max(0.0, 1 - angle / (std::numbers::pi / 2));
       if (w > 0) result.explained[static_cast<int>(q)] = std::max(result.explained[static_cast<int>(q)], w);
-      const double wide = o.inlier_distance_m + o.resolution_m;
-      if (angle < o.max_inlier_angle_rad) best_fit = std::max(best_fit, std::exp(-d * d / (2 * wide * wide)) * color);
+      const double wide = o.support.max_distance_m + o.resolution_m;
+      if (angle < kMaxInlierAngle_rad) best_fit = std::max(best_fit, std::exp(-d * d / (2 * wide * wide)) * color);
     }
-    if (best_fit > o.min_inlier_weight && visibility.seen_through[v] == 0) ++result.num_inliers;
+    if (best_fit > o.support.min_weight && visibility.seen_through[v] == 0) ++result.num_inliers;
   }
   return result;
 }
 
 TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
-  c.options.use_planes = false;
+  c.options.planes.reset();
   c.options.refine.max_iterations = 0;
-  c.options.light = {0, 0, 0, 0, 0, 0};  // The oracle does not know of the light.
+  c.options.appearance.light = {0, 0, 0, 0};
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
        {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {
     const ModelVisibility visibility =
-        find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options);
-    const HypothesisCues cues =
-        CueComputer(c.model, pose, {}, c.scene, c.depth_views, c.everywhere, c.options).finish(Eigen::Array3f::Zero());
-    const BruteForce expected = brute_force(c, pose, visibility);
+        find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options.visibility,
+                            {.spacing_m = c.options.resolution_m});
+    CueComputer computer(c.model, pose, {}, c.scene, c.depth_views, c.everywhere, c.options);
+    const PhotometricFit light = limit_chromaticity(computer.light(), Eigen::Array3f::Zero());
+    const HypothesisCues cues = computer.finish(Eigen::Array3f::Zero());
+    const BruteForce expected = brute_force(c, pose, visibility, light);
     EXPECT_EQ(cues.evidence.num_visible, static_cast<int>(visibility.visible.size()));
     EXPECT_NEAR(cues.evidence.num_explained, expected.num_inliers, 2);
     EXPECT_GT(expected.num_inliers, 300);
@@ -194,8 +199,8 @@ TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
 TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
   // The lower half of the box alone is the model: the upper half of its sides is left over.
   SmallCase c;
-  c.options.use_planes = false;
-  c.options.min_explained_share = 0;
+  c.options.planes.reset();
+  c.options.acceptance.min_explained_share = 0;
   const Solid half{Shape::kBox, {0.08, 0.06, 0.05}, c.solid.paint, on_table(0, 0, 0.025, 0.3)};
   const PreparedModel model = prepare_model(make_model("half", half), c.options);
   const HypothesisCues cues =

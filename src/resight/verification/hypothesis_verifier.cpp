@@ -17,6 +17,9 @@
 namespace resight {
 namespace {
 
+// Refined hypotheses of one object nearer than this (at its centre; over its symmetries, 10 deg) are one.
+constexpr double kMergeDistance_m = 0.01;
+constexpr double kMergeRotation_rad = 0.174533;
 constexpr float kMinSurroundings_m =
     0.25F;  // A small object, too, stands on something that should be recognised as a plane.
 
@@ -49,7 +52,7 @@ std::vector<Ball> surroundings(std::span<const Hypothesis> hypotheses, const std
   for (const Hypothesis& h : hypotheses) {
     const PreparedModel& model = models[h.object];
     const float reach = std::max(1.5F * model.diameter_m, kMinSurroundings_m) +
-                        static_cast<float>(options.inlier_distance_m + options.clutter_radius_m);
+                        static_cast<float>(options.support.max_distance_m + options.clutter.radius_m);
     balls.push_back({Rigid3f(h.world_from_object) * model.center, reach});
   }
   return balls;
@@ -76,8 +79,7 @@ std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypothe
   });
   std::vector<PhotometricFit> lights;
   for (const std::optional<CueComputer>& computer : computers) lights.push_back(computer->light());
-  const Eigen::Array3f white_balance =
-      find_white_balance(lights, white_balance_weights(hypotheses, models.size()), options.light);
+  const Eigen::Array3f white_balance = find_white_balance(lights, white_balance_weights(hypotheses, models.size()));
   std::vector<HypothesisCues> cues(hypotheses.size());
   parallel_for(hypotheses.size(), options.num_threads,
                [&](std::size_t h) { cues[h] = computers[h]->finish(white_balance); });
@@ -95,7 +97,7 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
 // stays. Which of them explains a few points more is chance.
 void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
                       std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
-  if (options.refine.max_iterations == 0 && options.turn_step_rad == 0) return;
+  if (options.refine.max_iterations == 0 && !options.refine.symmetry_step_rad) return;
   std::vector<int> by_support = candidates;
   std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
     return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();
@@ -108,15 +110,15 @@ void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary
       if (hypotheses[other].object != hypotheses[h].object) return false;
       const Rigid3 pose = nearest_symmetric_pose(evidence[h].world_from_object, reference, model.symmetries);
       const Eigen::Vector3d center = model.center.cast<double>();
-      return (pose * center - reference * center).norm() < options.merge_distance_m &&
-             rotation_angle_rad(pose.rotation, reference.rotation) < options.merge_rotation_rad;
+      return (pose * center - reference * center).norm() < kMergeDistance_m &&
+             rotation_angle_rad(pose.rotation, reference.rotation) < kMergeRotation_rad;
     });
     if (same == kept.end()) {
       kept.push_back(h);
     } else {
       evidence[h].verdict = Verdict::kSuppressed;
       evidence[h].suppressed_by = *same;
-      evidence[h].unary_cost = unary_cost(evidence[h], options);
+      evidence[h].unary_cost = unary_cost(evidence[h]);
     }
   }
   std::sort(kept.begin(), kept.end());
@@ -171,12 +173,9 @@ void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
     candidate_cues.push_back(&cues[h]);
     placed.push_back({&library.objects[hypotheses[h].object].surface, result.evidence[h].world_from_object});
   }
-  const std::vector<SharedVoxels> shared = count_shared_voxels(placed, options.occupancy_voxel_m, options.num_threads);
-  const SelectionProblem problem = make_selection_problem(candidate_cues, shared, options);
-  const SearchSelectionResult found = search_selection(problem, {.max_moves = options.max_moves,
-                                                                 .max_exact_candidates = options.max_exact_hypotheses,
-                                                                 .min_shared_points = options.min_shared_points,
-                                                                 .seed = options.seed});
+  const std::vector<SharedVoxels> shared = count_shared_voxels(placed, options.resolution_m, options.num_threads);
+  const SelectionProblem problem = make_selection_problem(candidate_cues, shared, options.selection);
+  const SearchSelectionResult found = search_selection(problem, options.selection, options.seed);
   explain_choice(problem, found, candidates, result.evidence);
   result.cost = from_fixed(found.cost);
   result.num_moves = found.num_moves;
@@ -218,7 +217,7 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);
-    if (has_unary_gain(result.evidence[h], options_)) candidates.push_back(static_cast<int>(h));
+    if (has_unary_gain(result.evidence[h], options_.acceptance)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
   merge_duplicates(hypotheses, library_, options_, candidates, result.evidence);
@@ -229,6 +228,12 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
           estimate_pose_uncertainty(models_[hypotheses[h].object], e.world_from_object, visible_points(cues[h]),
                                     hypotheses[h].correspondences, scene, options_.refine);
   return result;
+}
+
+VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                               const PointCloud& scene_in_world, std::span<const VerificationView> views,
+                               std::span<const std::uint8_t> present, const VerifyOptions& options) {
+  return HypothesisVerifier(library, options).verify(hypotheses, scene_in_world, views, present);
 }
 
 }  // namespace resight

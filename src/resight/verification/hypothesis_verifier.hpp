@@ -4,10 +4,28 @@
 #include <span>
 #include <vector>
 
+#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/models/object_model.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
 #include "resight/verification/scene_preparation.hpp"
 #include "resight/verification/verify_options.hpp"
 
 namespace resight {
+
+/// Chooses the set of hypotheses that explains the scene best (binary cost of [11], local search with activate,
+/// deactivate and replace moves). `present`: views x hypotheses (view-major), non-zero where the change detection says
+/// that the object may be present; empty = everywhere. A model point counts as visible if one allowed view sees it (its
+/// own back and self-occluded parts do not count). Scene and views in the world frame.
+///
+/// Minimises J = -( E - r Out - Dup - Clut - w Occ - Plane ). Deviations from V4R, each because the published
+/// form fails where our tests look: small components are solved exactly; planes are always active, and count against a
+/// hypothesis only where they are larger than its object; Occ is summed over pairs and does not count voxels whose
+/// normals oppose (contact). A model or a scene without colours is judged by its shape, without normals by distance and
+/// colour. Throws std::invalid_argument for bad options, a null view, a wrong size of `present`, an unknown object or a
+/// pose that is not rigid. Non-finite scene points are ignored.
+[[nodiscard]] VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
+                                             const PointCloud& scene_in_world, std::span<const VerificationView> views,
+                                             std::span<const std::uint8_t> present, const VerifyOptions& options = {});
 
 /// verify_hypotheses() for many views: what hypotheses need of a model is made once, when the first asks for it, and
 /// kept. One call at a time.

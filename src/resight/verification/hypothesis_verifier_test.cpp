@@ -20,7 +20,7 @@ TEST(HypothesisVerifier, EachCallIsLikeTheFirst) {
   const Hypothesis can = make_hypothesis(kCylinder, on_table(0, 0, 0.06));
   const Hypothesis ball = make_hypothesis(kSphere, on_table(0.02, 0, 0.045));
   VerifyOptions options;
-  options.turn_step_rad = 0.2;
+  options.refine.symmetry_step_rad = 0.2;
   HypothesisVerifier verifier(library, options);
   for (const std::vector<Hypothesis>& hypotheses :
        {std::vector{can}, {}, std::vector{box, can}, std::vector{ball, box}, std::vector{can}}) {

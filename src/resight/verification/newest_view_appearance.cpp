@@ -41,16 +41,16 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
     seen_light_.push_back(to_linear_light((*view.color)(u, v)));
     if (!look.normals.empty()) normals_.push_back(look.normals[i]);
   }
-  light_ = fit_photometry(model_light_, seen_light_, normals_, options.light);
+  light_ = fit_photometry(model_light_, seen_light_, normals_, options.appearance.light);
 }
 
 double NewestViewAppearance::similarity(const Eigen::Array3f& white_balance) const {
   if (model_light_.empty()) return 1;
-  const PhotometricFit light = limit_chromaticity(light_, white_balance, options_.light);
+  const PhotometricFit light = limit_chromaticity(light_, white_balance);
   std::vector<LabColor> expected;
   for (std::size_t i = 0; i < model_light_.size(); ++i)
     expected.push_back(to_lab(light(model_light_[i], normal_at(normals_, i))));
-  return pattern_similarity(expected, to_lab(seen_light_), options_.color_sigma_l / options_.color_sigma_ab);
+  return pattern_similarity(expected, to_lab(seen_light_), options_.appearance.sigma_l / options_.appearance.sigma_ab);
 }
 
 }  // namespace resight

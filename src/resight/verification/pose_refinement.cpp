@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "resight/core/check.hpp"
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/verification/local_scene.hpp"
 #include "resight/verification/scene_preparation.hpp"
@@ -14,6 +12,7 @@ namespace resight {
 namespace {
 
 constexpr std::size_t kMaxPoints = 300;
+constexpr double kMaxStep_m = 0.02;  // A pose that moves farther in all (at the middle of the points) ran away.
 constexpr int kMinRefinedPairs = 20;
 constexpr std::size_t kCoarseStride = 3;       // Every third point until the pose stands still, and then...
 constexpr int kFineIterations = 6;             // ...all points.
@@ -71,7 +70,7 @@ class Refiner {
       const StepEquations equations = linearize(pose, local, stride, partners);
       if (equations.num_pairs * static_cast<int>(stride) < kMinRefinedPairs) return false;
       const double step_m = equations.step(pose, middle, radius_m_);
-      if ((pose * middle - start * middle).norm() > options_.max_step_m) return false;
+      if ((pose * middle - start * middle).norm() > kMaxStep_m) return false;
       if (step_m < StepEquations::kStill_m) break;
     }
     return true;
@@ -81,7 +80,7 @@ class Refiner {
     std::vector<Eigen::Vector3f> around;
     for (const Eigen::Vector3f& p : points_) around.push_back(Rigid3f(pose) * p);
     const LocalScene scene(scene_.points, scene_.blocks, around,
-                           static_cast<float>(options_.max_distance_m + options_.max_step_m),
+                           static_cast<float>(options_.max_distance_m + kMaxStep_m),
                            static_cast<float>(0.5 * options_.max_distance_m));
     return {scene, scene.select(scene_.normals)};
   }
@@ -167,14 +166,6 @@ bool has_enough(const PreparedModel& model, std::span<const int> visible, const 
 }
 
 }  // namespace
-
-void RefinePoseOptions::check() const {
-  check_not_negative("RefinePoseOptions.max_iterations", max_iterations);
-  check_positive("RefinePoseOptions.max_distance_m", max_distance_m);
-  check_in_range("RefinePoseOptions.max_normal_angle_rad", max_normal_angle_rad, 0, std::numbers::pi / 2);
-  check_positive("RefinePoseOptions.max_step_m", max_step_m);
-  check_not_negative("RefinePoseOptions.correspondence_weight", correspondence_weight);
-}
 
 Rigid3 refine_pose_on_scene(const PreparedModel& model, const Rigid3& world_from_object, std::span<const int> visible,
                             std::span<const Correspondence> correspondences, const PreparedScene& scene,

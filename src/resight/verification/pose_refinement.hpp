@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <numbers>
+#include <optional>
 #include <span>
 
+#include "resight/core/options.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
@@ -12,13 +15,30 @@ struct PreparedModel;
 struct PreparedScene;
 
 struct RefinePoseOptions {
-  int max_iterations = 10;  ///< 0: poses stay as they are.
+  int max_iterations = 10;
   double max_distance_m = 0.015;
-  double max_normal_angle_rad = 0.785398;  ///< 45 deg.
-  double max_step_m = 0.02;  ///< A pose that moves farther in all (at the middle of the points) is left as it was.
-  double correspondence_weight = 4;  ///< Of a pair of keypoints, beside 1 of a surface point (at most 300 are used).
-  void check() const;
+  double max_normal_angle_rad = 0.785398;
+  double correspondence_weight = 4;
+  std::optional<double> symmetry_step_rad{};
+  void check() const { check_options("RefinePoseOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, RefinePoseOptions& o) {
+  v.field(
+      "max_iterations", o.max_iterations, at_least(0),
+      "Iterations of point-to-plane ICP on a third of the points; up to six more on all. 0: poses stay as they are.",
+      "Chen and Medioni 1992");
+  v.field("max_distance_m", o.max_distance_m, positive(),
+          "Largest distance of a pair; weights fall to 0 there (Tukey).");
+  v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi / 2),
+          "Largest angle between the normals of a pair (45 deg).");
+  v.field("correspondence_weight", o.correspondence_weight, at_least(0),
+          "Weight of a pair of keypoints, beside 1 of each surface point (at most 300). 0: keypoints take no part.");
+  v.field(
+      "symmetry_step_rad", o.symmetry_step_rad, between(1e-3, std::numbers::pi),
+      "A refined pose is rotated by the symmetries of its shape (about the axis of a can in such steps; half turns of "
+      "a box) to where the texture fits best; the shape search finds such objects by shape alone. off: it stays.");
+}
 
 /// Point-to-plane ICP (Chen and Medioni 1992) of the model points that are seen against the scene: each with its
 /// nearest scene point of similar normal. The correspondences of the hypothesis take part as pairs of points: they hold

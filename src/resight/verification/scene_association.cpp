@@ -17,8 +17,10 @@ SceneAssociation::SceneAssociation(const PreparedModel& model, const Rigid3& pos
   normals.reserve(model.normals.size());
   for (const Eigen::Vector3f& p : model.points) points.push_back(motion * p);
   for (const Eigen::Vector3f& n : model.normals) normals.push_back(motion.rotation * n);
-  visibility = find_visible_points(points, normals, views, allowed, options);
-  if (options.clutter_sigmas > 0) depth_noise_m = largest_depth_noise(views);
+  visibility = find_visible_points(points, normals, views, allowed, options.visibility,
+                                   {.spacing_m = options.resolution_m, .min_points = kMinVisiblePoints});
+  const auto* continuation = std::get_if<ContinuationClutter>(&options.clutter.rule);
+  if (continuation != nullptr && continuation->noise_sigmas > 0) depth_noise_m = largest_depth_noise(views);
   if (!visibility.visible.empty()) compare_with_scene();
 }
 
@@ -38,9 +40,9 @@ void SceneAssociation::compare_with_scene() {
   std::vector<Eigen::Vector3f> visible_points;
   visible_points.reserve(visibility.visible.size());
   for (const int i : visibility.visible) visible_points.push_back(points[static_cast<std::size_t>(i)]);
-  const float inlier_distance = static_cast<float>(options_->inlier_distance_m);
+  const float inlier_distance = static_cast<float>(options_->support.max_distance_m);
   local.emplace(scene_->points, scene_->blocks, visible_points,
-                inlier_distance + static_cast<float>(options_->clutter_radius_m), inlier_distance);
+                inlier_distance + static_cast<float>(options_->clutter.radius_m), inlier_distance);
   if (!normals.empty() && !scene_->normals.empty()) local_normals = local->select(scene_->normals);
   if (!model_->linear_light.empty() && !scene_->linear_light.empty()) local_lab = local->select(scene_->lab);
   find_matches();
@@ -51,7 +53,7 @@ void SceneAssociation::find_matches() {
   matches.reserve(visibility.visible.size() * 24);
   for (std::size_t v = 0; v < visibility.visible.size(); ++v)
     local->visit_within(points[static_cast<std::size_t>(visibility.visible[v])],
-                        static_cast<float>(options_->inlier_distance_m), [&](std::size_t q, float distance_sq) {
+                        static_cast<float>(options_->support.max_distance_m), [&](std::size_t q, float distance_sq) {
                           matches.push_back({static_cast<int>(v), static_cast<int>(q), distance_sq});
                           return true;
                         });
@@ -59,7 +61,7 @@ void SceneAssociation::find_matches() {
 
 // From each visible point and its nearest scene point of similar normal.
 void SceneAssociation::fit_light_of_matches() {
-  const float min_dot = static_cast<float>(std::cos(options_->max_inlier_angle_rad));
+  const float min_dot = static_cast<float>(std::cos(kMaxInlierAngle_rad));
   for (std::size_t i = 0; i < matches.size();) {
     const PointMatch* best = nullptr;
     const int v = matches[i].visible;
@@ -79,13 +81,13 @@ void SceneAssociation::fit_light_of_matches() {
         scene_->linear_light[static_cast<std::size_t>(local->scene_index(static_cast<std::size_t>(m.local)))]);
     if (!normals.empty()) model_normals.push_back(normals[point]);
   }
-  light = fit_photometry(model_light, scene_light, model_normals, options_->light);
+  light = fit_photometry(model_light, scene_light, model_normals, options_->appearance.light);
 }
 
 double SceneAssociation::color_fit() const {
   if (nearest.empty() || local_lab.empty()) return 0;
-  const ColorTolerance tolerance(options_->color_sigma_l, options_->color_sigma_ab);
-  const PhotometricFit plain_light = limit_chromaticity(light, Eigen::Array3f::Zero(), options_->light);
+  const ColorTolerance tolerance(options_->appearance.sigma_l, options_->appearance.sigma_ab);
+  const PhotometricFit plain_light = limit_chromaticity(light, Eigen::Array3f::Zero());
   std::vector<LabColor> model_colors;
   std::vector<LabColor> scene_colors;
   double sum = 0;
@@ -96,12 +98,12 @@ double SceneAssociation::color_fit() const {
     sum += std::exp(-tolerance.exponent(model_colors.back(), scene_colors.back()));
   }
   return sum / static_cast<double>(visibility.visible.size()) +
-         pattern_similarity(model_colors, scene_colors, options_->color_sigma_l / options_->color_sigma_ab);
+         pattern_similarity(model_colors, scene_colors, options_->appearance.sigma_l / options_->appearance.sigma_ab);
 }
 
 double SceneAssociation::supported_share() const {
-  const float steep_cosine = static_cast<float>(std::cos(options_->steep_angle_rad));
-  const auto weight = [&](std::size_t v) { return visibility.facing[v] < steep_cosine ? options_->steep_weight : 1.0; };
+  const float grazing_cosine = static_cast<float>(std::cos(kGrazingAngle_rad));
+  const auto weight = [&](std::size_t v) { return visibility.facing[v] < grazing_cosine ? kGrazingWeight : 1.0; };
   double all = 0;
   for (std::size_t v = 0; v < visibility.visible.size(); ++v) all += weight(v);
   double supported = 0;
@@ -124,10 +126,9 @@ std::vector<int> find_roughly_visible(const PreparedModel& model, const Rigid3& 
     points.push_back(motion * model.points[i]);
     if (!model.normals.empty()) normals.push_back(motion.rotation * model.normals[i]);
   }
-  VerifyOptions rough = options;
-  rough.resolution_m *= std::sqrt(static_cast<double>(step));
-  rough.min_visible_points /= static_cast<int>(step);
-  std::vector<int> visible = find_visible_points(points, normals, views, allowed, rough).visible;
+  const ModelSampling rough{.spacing_m = options.resolution_m * std::sqrt(static_cast<double>(step)),
+                            .min_points = kMinVisiblePoints / static_cast<int>(step)};
+  std::vector<int> visible = find_visible_points(points, normals, views, allowed, options.visibility, rough).visible;
   for (int& i : visible) i *= static_cast<int>(step);
   return visible;
 }

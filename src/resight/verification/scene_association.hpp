@@ -8,9 +8,16 @@
 #include "resight/appearance/photometric_fit.hpp"
 #include "resight/verification/local_scene.hpp"
 #include "resight/verification/scene_preparation.hpp"
+#include "resight/verification/verify_options.hpp"
 #include "resight/verification/visibility.hpp"
 
 namespace resight {
+
+/// A scene point explains a model point only if their normals differ by less than this (60 deg).
+inline constexpr double kMaxInlierAngle_rad = 1.0472;
+/// Model points seen at a more grazing angle than this (V4R: 60 deg) count with a tenth: depth is worst there.
+inline constexpr double kGrazingAngle_rad = 1.0472;
+inline constexpr double kGrazingWeight = 0.1;
 
 /// Zero, which no shading applies to, where there are no normals.
 [[nodiscard]] inline Eigen::Vector3f normal_at(const std::vector<Eigen::Vector3f>& normals, std::size_t i) {

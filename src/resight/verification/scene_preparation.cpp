@@ -25,10 +25,19 @@ PointCloud keep_finite(const PointCloud& cloud) {
   return result;
 }
 
-template <typename Options>
-Options threaded(Options part, const VerifyOptions& all) {
-  part.num_threads = all.num_threads;
-  return part;
+FindPlanesOptions find_planes_options(const VerifyOptions& options) {
+  return {.max_distance_m = options.planes->max_distance_m, .num_threads = options.num_threads};
+}
+
+// Whether planes are found in the scene downsampled further, without smooth segments.
+bool finds_planes_apart(const VerifyOptions& options) {
+  return std::holds_alternative<ContinuationClutter>(options.clutter.rule) && options.planes &&
+         options.planes->spacing_m.value_or(0) > options.resolution_m;
+}
+
+bool needs_segments(const VerifyOptions& options) {
+  return std::holds_alternative<SegmentClutter>(options.clutter.rule) ||
+         (options.planes && !finds_planes_apart(options));
 }
 
 // In the scene thinned further: planes are large.
@@ -37,17 +46,16 @@ std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> poi
   PointCloud cloud;
   cloud.points.assign(points.begin(), points.end());
   cloud.normals.assign(normals.begin(), normals.end());
-  cloud = voxel_downsample(cloud, options.plane_spacing_m);
-  return find_planes_of_downsampled(cloud.points, cloud.normals, options.plane_spacing_m,
-                                    threaded(options.planes, options))
-      .planes;
+  const double spacing_m = *options.planes->spacing_m;
+  cloud = voxel_downsample(cloud, spacing_m);
+  return find_planes_of_downsampled(cloud.points, cloud.normals, spacing_m, find_planes_options(options)).planes;
 }
 
 // All but the segments and planes.
 PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
   if (!is_downsampled(cloud, options.resolution_m)) cloud = voxel_downsample(cloud, options.resolution_m);
   PreparedScene scene;
-  if (options.use_color && cloud.has_colors()) {
+  if (options.appearance.use_color && cloud.has_colors()) {
     scene.linear_light = to_linear_light(cloud.colors);
     scene.lab = to_lab(scene.linear_light);
   }
@@ -60,11 +68,11 @@ PreparedScene without_surfaces(PointCloud cloud, const VerifyOptions& options) {
 }
 
 void find_surfaces(PreparedScene& scene, const VerifyOptions& options) {
-  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, threaded(options.segments, options));
+  SmoothSegments segments = find_smooth_segments(scene.points, scene.normals, {.num_threads = options.num_threads});
   scene.num_segments = segments.num_segments;
-  if (options.use_planes) {
-    ScenePlanes planes = find_scene_planes(scene.points, scene.normals, segments, options.resolution_m,
-                                           threaded(options.planes, options));
+  if (options.planes) {
+    ScenePlanes planes =
+        find_scene_planes(scene.points, scene.normals, segments, options.resolution_m, find_planes_options(options));
     scene.planes = std::move(planes.planes);
     scene.plane = std::move(planes.plane_of_point);
   }
@@ -91,10 +99,9 @@ PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
 
 PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options) {
   PointCloud cloud = keep_finite(scene_in_world);
-  const bool has_segments = options.continuation_offset_m <= 0 || options.plane_spacing_m <= options.resolution_m;
-  if (!cloud.has_normals() || has_segments || !options.use_planes) {
+  if (!cloud.has_normals() || !finds_planes_apart(options)) {
     PreparedScene scene = without_surfaces(std::move(cloud), options);
-    if (has_segments && !scene.normals.empty()) find_surfaces(scene, options);
+    if (needs_segments(options) && !scene.normals.empty()) find_surfaces(scene, options);
     return scene;
   }
   // Mostly it is thin already: then its planes are those of the cloud, which need not wait for the rest.
@@ -105,22 +112,23 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
       [&] { scene = without_surfaces(cloud, options); });
   const bool was_thin = scene.points.size() == cloud.points.size();
   scene.planes = was_thin ? std::move(planes) : find_planes_quickly(scene.points, scene.normals, options);
-  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, threaded(options.planes, options));
+  scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, find_planes_options(options));
   return scene;
 }
 
 PreparedModel prepare_model(const ObjectModel& model, const VerifyOptions& options) {
   PointCloud downsampled = voxel_downsample(model.surface, options.resolution_m);
   PreparedModel prepared;
-  if (options.use_color && downsampled.has_colors()) {
+  if (options.appearance.use_color && downsampled.has_colors()) {
     prepared.linear_light = to_linear_light(downsampled.colors);
     prepared.lab = to_lab(prepared.linear_light);
-    if (options.turn_step_rad > 0) prepared.symmetry_motions = shape_symmetry_motions(model, options.turn_step_rad);
+    if (options.refine.symmetry_step_rad)
+      prepared.symmetry_motions = shape_symmetry_motions(model, *options.refine.symmetry_step_rad);
   }
   prepared.points = std::move(downsampled.points);
   prepared.normals = std::move(downsampled.normals);
   if (prepared.symmetry_motions.size() > 1)
-    prepared.nearest = NearestPointMap(prepared.points, 2 * static_cast<float>(options.inlier_distance_m),
+    prepared.nearest = NearestPointMap(prepared.points, 2 * static_cast<float>(options.support.max_distance_m),
                                        0.5F * static_cast<float>(options.resolution_m));
   prepared.center = centroid(prepared.points);
   prepared.diameter_m = model.diameter_m > 0 ? model.diameter_m : diameter(prepared.points);

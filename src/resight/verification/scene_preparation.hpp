@@ -7,6 +7,7 @@
 #include "resight/appearance/lab_color.hpp"
 #include "resight/geometry/block_grid.hpp"
 #include "resight/geometry/point_cloud.hpp"
+#include "resight/models/object_model.hpp"
 #include "resight/segmentation/scene_planes.hpp"
 #include "resight/verification/nearest_point_map.hpp"
 #include "resight/verification/verify_options.hpp"

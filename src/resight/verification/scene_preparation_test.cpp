@@ -74,9 +74,9 @@ TEST(PrepareScene, ARoundFaceIsAsWideAsItsDiameter) {
 
 TEST(PrepareScene, PlanesOfTheThinnedSceneAreTheSame) {
   VerifyOptions options;
-  options.continuation_offset_m = 0.005;
+  options.clutter.rule = ContinuationClutter{};
   const PreparedScene full = prepare_scene(box_and_ball_scene(), options);
-  options.plane_spacing_m = 0.012;
+  options.planes->spacing_m = 0.012;
   const PreparedScene quick = prepare_scene(box_and_ball_scene(), options);
   ASSERT_EQ(full.planes.size(), 1U);
   ASSERT_EQ(quick.planes.size(), 1U);
@@ -142,7 +142,7 @@ TEST(PrepareScene, FindsTheTableAndNothingElse) {
   EXPECT_TRUE(table.covers({0, 0, 0}));  // Under the box, where nothing was seen.
   EXPECT_TRUE(table.covers({0.3F, -0.3F, 0.1F}));
   EXPECT_FALSE(table.covers({0.8F, 0, 0}));
-  EXPECT_TRUE(prepare_scene(box_and_ball_scene(), {.use_planes = false}).planes.empty());
+  EXPECT_TRUE(prepare_scene(box_and_ball_scene(), {.planes = {}}).planes.empty());
 }
 
 TEST(PrepareScene, PlanesFollowATiltedWorldAndNoise) {
@@ -171,7 +171,7 @@ TEST(PrepareScene, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(PrepareScene, QuickPlanesDependNeitherOnThreadsNorOnWhoThinnedTheScene) {
-  VerifyOptions options{.continuation_offset_m = 0.005, .plane_spacing_m = 0.01};
+  VerifyOptions options{.clutter = {.rule = ContinuationClutter{}}, .planes = PlaneOptions{.spacing_m = 0.01}};
   const PreparedScene a = prepare_scene(box_and_ball_scene(), options);
   ASSERT_FALSE(a.planes.empty());
   options.num_threads = 4;
@@ -219,15 +219,15 @@ TEST(FindSmoothSegments, AgreesWithASlowTwin) {
       points.insert(points.end(), {{a, b, 0}, {0, b, a + 0.005F}, {a + 0.3F, b, 0}});
       normals.insert(normals.end(), {Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitZ()});
     }
-  const VerifyOptions options;
-  const SmoothSegments found = find_smooth_segments(points, normals, options.segments);
+  const SmoothSegmentsOptions options;
+  const SmoothSegments found = find_smooth_segments(points, normals, options);
   EXPECT_EQ(found.num_segments, 3);
   std::vector<float> curvature(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     int count = 0;
     for (std::size_t j = 0; j < points.size(); ++j)
-      if ((points[i] - points[j]).norm() <= options.segments.max_distance_m) {
+      if ((points[i] - points[j]).norm() <= options.max_distance_m) {
         sum += normals[j];
         ++count;
       }
@@ -236,11 +236,11 @@ TEST(FindSmoothSegments, AgreesWithASlowTwin) {
   int joined = 0;
   int edges = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (curvature[i] > options.segments.max_curvature) ++edges;
+    if (curvature[i] > options.max_curvature) ++edges;
     EXPECT_GE(found.segment[i], 0);
     for (std::size_t j = 0; j < i; ++j) {
-      if ((points[i] - points[j]).norm() > options.segments.max_distance_m) continue;
-      if (curvature[i] > options.segments.max_curvature || curvature[j] > options.segments.max_curvature) continue;
+      if ((points[i] - points[j]).norm() > options.max_distance_m) continue;
+      if (curvature[i] > options.max_curvature || curvature[j] > options.max_curvature) continue;
       if (normals[i].dot(normals[j]) < 0.9F)
         EXPECT_NE(found.segment[i], found.segment[j]);
       else

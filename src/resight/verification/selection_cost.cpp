@@ -26,25 +26,23 @@ std::vector<FixedWeight> merge_weights(const HypothesisCues& cues) {
 
 }  // namespace
 
-double own_cost(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  return evidence.outlier_cost + evidence.plane_cost + options.hypothesis_penalty;
-}
+double own_cost(const HypothesisEvidence& evidence) { return evidence.outlier_cost + evidence.plane_cost; }
 
-double unary_cost(const HypothesisEvidence& evidence, const VerifyOptions& options) {
-  return own_cost(evidence, options) + evidence.clutter_cost - evidence.explained_scene;
+double unary_cost(const HypothesisEvidence& evidence) {
+  return own_cost(evidence) + evidence.clutter_cost - evidence.explained_scene;
 }
 
 FixedCost to_fixed(double cost) { return std::llround(cost * kFixedOne); }
 
 SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> candidates,
-                                        std::span<const SharedVoxels> shared_voxels, const VerifyOptions& options) {
+                                        std::span<const SharedVoxels> shared_voxels, const SelectionOptions& options) {
   SelectionProblem problem;
   problem.duplicity_scale = std::llround(options.duplicity_weight * static_cast<double>(kCostPerWeight));
   problem.duplicity_rule = options.duplicity_rule;
   problem.conflicts.resize(candidates.size());
   int num_scene_points = 0;
   for (const HypothesisCues* cues : candidates) {
-    problem.unary.push_back(to_fixed(own_cost(cues->evidence, options)));
+    problem.unary.push_back(to_fixed(own_cost(cues->evidence)));
     problem.weights.push_back(merge_weights(*cues));
     if (!problem.weights.back().empty())
       num_scene_points = std::max(num_scene_points, problem.weights.back().back().point + 1);

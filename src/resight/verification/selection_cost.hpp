@@ -17,8 +17,8 @@ inline constexpr double kFixedOne = 16777216.0;
 [[nodiscard]] inline double from_fixed(FixedCost cost) { return static_cast<double>(cost) / kFixedOne; }
 
 /// What a hypothesis costs whatever else is chosen, and in all if nothing else is.
-[[nodiscard]] double own_cost(const HypothesisEvidence& evidence, const VerifyOptions& options);
-[[nodiscard]] double unary_cost(const HypothesisEvidence& evidence, const VerifyOptions& options);
+[[nodiscard]] double own_cost(const HypothesisEvidence& evidence);
+[[nodiscard]] double unary_cost(const HypothesisEvidence& evidence);
 
 /// A scene point and how much a hypothesis explains it or is charged for leaving it, 2^16 a unit.
 struct FixedWeight {
@@ -47,7 +47,7 @@ struct SelectionProblem {
 /// Only points that two candidates know remain points; the rest goes into the unary costs.
 [[nodiscard]] SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> candidates,
                                                       std::span<const SharedVoxels> shared_voxels,
-                                                      const VerifyOptions& options);
+                                                      const SelectionOptions& options);
 
 /// The set and its cost, kept up to date under changes of one candidate. A change touches the points of that candidate
 /// only.

@@ -11,6 +11,9 @@
 namespace resight {
 namespace {
 
+// Replace moves are tried for pairs that both explain more points than this (V4R: 10), or that conflict.
+constexpr int kMinSharedPoints = 10;
+
 // Switches `remove` off (unless -1) and `add` on (unless -1); a flip has one of them.
 struct Move {
   int remove = -1;
@@ -132,9 +135,9 @@ void enumerate(Selection& selection, const std::vector<int>& members) {
 }
 
 int search_locally(Selection& selection, const std::vector<int>& members, const SelectionProblem& problem,
-                   const SearchSelectionOptions& options) {
-  std::vector<Move> moves = list_moves(problem, members, options.min_shared_points);
-  Rng rng = Rng::stream(options.seed, static_cast<std::uint64_t>(members.front()));
+                   const SelectionOptions& options, std::uint64_t seed) {
+  std::vector<Move> moves = list_moves(problem, members, kMinSharedPoints);
+  Rng rng = Rng::stream(seed, static_cast<std::uint64_t>(members.front()));
   int num_moves = descend(selection, moves, options.max_moves, rng);
   const FixedCost cost_from_empty = selection.cost();
   const std::vector<std::uint8_t> from_empty = active_of(selection, members);
@@ -146,12 +149,6 @@ int search_locally(Selection& selection, const std::vector<int>& members, const 
 }
 
 }  // namespace
-
-void SearchSelectionOptions::check() const {
-  check_not_negative("SearchSelectionOptions.max_moves", max_moves);
-  check_in_range("SearchSelectionOptions.max_exact_candidates", max_exact_candidates, 0, 20);
-  check_not_negative("SearchSelectionOptions.min_shared_points", min_shared_points);
-}
 
 std::vector<std::vector<int>> find_components(const SelectionProblem& problem) {
   const int n = problem.num_candidates();
@@ -189,17 +186,18 @@ std::vector<std::vector<int>> find_components(const SelectionProblem& problem) {
   return components;
 }
 
-SearchSelectionResult search_selection(const SelectionProblem& problem, const SearchSelectionOptions& options) {
+SearchSelectionResult search_selection(const SelectionProblem& problem, const SelectionOptions& options,
+                                       std::uint64_t seed) {
   options.check();
   SearchSelectionResult result;
   Selection selection(problem);
   for (const std::vector<int>& members : find_components(problem)) {
     ++result.num_components;
-    if (static_cast<int>(members.size()) <= std::max(1, options.max_exact_candidates)) {
+    if (static_cast<int>(members.size()) <= std::max(1, options.max_exact_hypotheses)) {
       enumerate(selection, members);
     } else {
       result.is_optimal = false;
-      result.num_moves += search_locally(selection, members, problem, options);
+      result.num_moves += search_locally(selection, members, problem, options, seed);
     }
   }
   result.active = selection.active();

@@ -7,14 +7,6 @@
 
 namespace resight {
 
-struct SearchSelectionOptions {
-  int max_moves = 5000;           ///< Accepted moves per component.
-  int max_exact_candidates = 12;  ///< Components up to this size are enumerated; at most 20.
-  int min_shared_points = 10;  ///< Replace moves: for pairs that both explain more points than this, or that conflict.
-  std::uint64_t seed = 1;
-  void check() const;
-};
-
 struct SearchSelectionResult {
   std::vector<std::uint8_t> active;  ///< 0/1 per candidate.
   FixedCost cost = 0;
@@ -30,6 +22,6 @@ struct SearchSelectionResult {
 /// from the empty set and from a greedy one, taking the first improving move of a shuffled list of activate, deactivate
 /// and replace moves ([11]), until none improves. Ties go to the set found first, the empty one before all.
 [[nodiscard]] SearchSelectionResult search_selection(const SelectionProblem& problem,
-                                                     const SearchSelectionOptions& options = {});
+                                                     const SelectionOptions& options = {}, std::uint64_t seed = 1);
 
 }  // namespace resight

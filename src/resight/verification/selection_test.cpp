@@ -40,13 +40,13 @@ struct RandomCues {
 };
 
 // The objective as written down, from scratch, in floating point and per scene point.
-double slow_cost(const RandomCues& random, const std::vector<std::uint8_t>& active, const VerifyOptions& options) {
+double slow_cost(const RandomCues& random, const std::vector<std::uint8_t>& active, const SelectionOptions& options) {
   std::map<int, std::vector<double>> explained;
   std::map<int, double> clutter;
   double cost = 0;
   for (std::size_t c = 0; c < random.cues.size(); ++c) {
     if (active[c] == 0) continue;
-    cost += random.cues[c].evidence.outlier_cost + random.cues[c].evidence.plane_cost + options.hypothesis_penalty;
+    cost += random.cues[c].evidence.outlier_cost + random.cues[c].evidence.plane_cost;
     for (const WeightedPoint& w : random.cues[c].explained) explained[w.point].push_back(w.weight);
     for (const WeightedPoint& w : random.cues[c].clutter) clutter[w.point] += w.weight;
   }
@@ -75,8 +75,7 @@ FixedCost cost_from_scratch(const SelectionProblem& problem, const std::vector<s
 
 TEST(Selection, CostKeptUpToDateIsTheCostFromScratch) {
   for (const DuplicityRule rule : {DuplicityRule::kBeyondBest, DuplicityRule::kAllWeights}) {
-    const VerifyOptions options{
-        .duplicity_weight = 0.75, .duplicity_rule = rule, .occupancy_weight = 1.5, .hypothesis_penalty = 2.5};
+    const SelectionOptions options{.duplicity_weight = 0.75, .duplicity_rule = rule, .occupancy_weight = 1.5};
     const RandomCues random(15, 600, 150, 7);
     const SelectionProblem problem = make_selection_problem(random.pointers, random.voxels, options);
     ASSERT_GT(problem.num_points, 300);
@@ -120,7 +119,7 @@ TEST(SearchSelection, FindsTheMinimumOfSmallProblems) {
     const SelectionProblem problem = make_selection_problem(random.pointers, random.voxels, {});
     const FixedCost best = minimum(problem);
     const SearchSelectionResult exact = search_selection(problem);
-    const SearchSelectionResult local = search_selection(problem, {.max_exact_candidates = 0});
+    const SearchSelectionResult local = search_selection(problem, {.max_exact_hypotheses = 0});
     EXPECT_TRUE(exact.is_optimal);
     EXPECT_EQ(exact.cost, best);
     EXPECT_EQ(cost_from_scratch(problem, exact.active), exact.cost);
@@ -187,7 +186,7 @@ TEST(SearchSelection, TakesNothingWhenNothingPaysOff) {
   EXPECT_EQ(found.active, std::vector<std::uint8_t>{0});
   EXPECT_EQ(found.cost, 0);
   EXPECT_EQ(search_selection(make_selection_problem({}, {}, {})).num_components, 0);
-  EXPECT_THROW((void)search_selection({}, {.max_exact_candidates = 21}), std::invalid_argument);
+  EXPECT_THROW((void)search_selection({}, {.max_exact_hypotheses = 21}), std::invalid_argument);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "resight/core/random.hpp"
+#include "resight/verification/hypothesis_verifier.hpp"
 #include "resight/verification/testing/verify_fixture.hpp"
-#include "resight/verification/verify_options.hpp"
 
 namespace resight {
 namespace {
@@ -75,11 +75,14 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
         i % 3, disturb(on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065),
                        {rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0}, kZ, rng.uniform(-0.3, 0.3))));
   const VerifyResult serial =
-      f.verify(hypotheses, make_library(), {.max_exact_hypotheses = 2, .min_explained_share = 0.35});
+      f.verify(hypotheses, make_library(),
+               {.selection = {.max_exact_hypotheses = 2}, .acceptance = {.min_explained_share = 0.35}});
   ASSERT_GT(accepted(serial).size(), 0U);
   for (const int threads : {2, 5}) {
-    const VerifyResult parallel = f.verify(
-        hypotheses, make_library(), {.max_exact_hypotheses = 2, .min_explained_share = 0.35, .num_threads = threads});
+    const VerifyResult parallel = f.verify(hypotheses, make_library(),
+                                           {.selection = {.max_exact_hypotheses = 2},
+                                            .acceptance = {.min_explained_share = 0.35},
+                                            .num_threads = threads});
     EXPECT_EQ(parallel.cost, serial.cost);
     EXPECT_EQ(parallel.num_moves, serial.num_moves);
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
@@ -105,8 +108,8 @@ TEST(VerifyHypotheses, RefusesTheCallersMistakes) {
   EXPECT_THROW(f.verify({make_hypothesis(-1, {})}, library), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {}, {1}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.resolution_m = 0}), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.min_visible_share = 2}), std::invalid_argument);
-  EXPECT_THROW(f.verify(good, library, {.color_sigma_l = std::numeric_limits<double>::quiet_NaN()}),
+  EXPECT_THROW(f.verify(good, library, {.acceptance = {.min_visible_share = 2}}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.appearance = {.sigma_l = std::numeric_limits<double>::quiet_NaN()}}),
                std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.num_threads = 0}), std::invalid_argument);
   Hypothesis broken = good[0];

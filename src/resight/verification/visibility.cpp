@@ -117,11 +117,10 @@ float median_of_neighbors(const Image<float>& depth, int u, int v) {
 }
 
 // Whether a view looks through most of what it could see of the model.
-bool looks_through(std::span<const Sight> sight, const VerifyOptions& options) {
+bool looks_through(std::span<const Sight> sight, double min_share, int min_points) {
   const auto through = std::ranges::count(sight, Sight::kSeenThrough);
   const auto seen = through + std::ranges::count(sight, Sight::kConsistent);
-  return seen >= options.min_visible_points &&
-         static_cast<double>(through) > options.max_absent_share * static_cast<double>(seen);
+  return seen >= min_points && static_cast<double>(through) > min_share * static_cast<double>(seen);
 }
 
 // What the views see of each model point, from the newest view back.
@@ -138,9 +137,9 @@ struct Seen {
     }
   }
   // Most of what was seen of it so far, and enough of it.
-  [[nodiscard]] bool is_there(const VerifyOptions& options) const {
-    return std::ranges::count(newest, Sight::kConsistent) >= std::max(1, options.min_visible_points) &&
-           !looks_through(newest, options);
+  [[nodiscard]] bool is_there(double arrival_share, int min_points) const {
+    return std::ranges::count(newest, Sight::kConsistent) >= std::max(1, min_points) &&
+           !looks_through(newest, arrival_share, min_points);
   }
 
   std::vector<float> best_facing;
@@ -172,9 +171,11 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
 
 ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                                     std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
-                                    const VerifyOptions& options) {
-  const float margin = static_cast<float>(options.occlusion_margin_m);
-  const float min_facing = static_cast<float>(options.min_facing);
+                                    const VisibilityOptions& options, const ModelSampling& sampling) {
+  const float margin = static_cast<float>(options.margin_m);
+  const float min_facing = static_cast<float>(kMinFacing);
+  const auto* majority = std::get_if<MajorityFreeSpace>(&options.free_space);
+  const int min_points = sampling.min_points;
   ModelVisibility result;
   result.sight.resize(views.size());
   std::vector<Projected> projected(points.size());
@@ -183,11 +184,12 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
   for (std::size_t v = views.size(); v-- > 0;) {
     if (allowed[v] == 0) continue;
     project_model(points, normals, views[v], projected);
-    const SelfOcclusion self(projected, static_cast<float>(views[v].camera.fx),
-                             static_cast<float>(options.resolution_m));
+    const SelfOcclusion self(projected, static_cast<float>(views[v].camera.fx), static_cast<float>(sampling.spacing_m));
     for (std::size_t i = 0; i < points.size(); ++i)
       sight[i] = look_at(projected[i], views[v], self, margin, min_facing);
-    if (looks_through(sight, options) && seen.is_there(options)) break;  // It came since.
+    if (options.arrival_share && looks_through(sight, *options.arrival_share, min_points) &&
+        seen.is_there(*options.arrival_share, min_points))
+      break;  // It arrived since.
     seen.add(sight, projected);
     result.sight[v] = sight;
   }
@@ -195,9 +197,8 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
     if (seen.num_views[i] == 0) continue;
     result.visible.push_back(static_cast<int>(i));
     result.facing.push_back(seen.best_facing[i]);
-    const bool through = options.newest_view_decides
-                             ? seen.newest[i] == Sight::kSeenThrough
-                             : seen.num_through[i] > options.max_seen_through_share * seen.num_views[i];
+    const bool through = majority != nullptr ? seen.num_through[i] > majority->max_share * seen.num_views[i]
+                                             : seen.newest[i] == Sight::kSeenThrough;
     result.seen_through.push_back(through ? 1 : 0);
   }
   return result;

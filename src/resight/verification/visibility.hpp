@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "resight/verification/verify_options.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
+#include "resight/verification/visibility_options.hpp"
 
 namespace resight {
 
@@ -31,6 +32,15 @@ enum class Sight : std::uint8_t {
   kSeenThrough,  ///< The view looks through it: in front of the measured depth by more than the margin.
 };
 
+/// Points are not visible if they are seen at a more grazing angle: cosine between normal and viewing ray (84 deg).
+inline constexpr double kMinFacing = 0.1;
+
+/// How densely points sample a model.
+struct ModelSampling {
+  double spacing_m = 0.005;
+  int min_points = 20;  ///< Fewer that are seen are no evidence that it is there, or not.
+};
+
 struct ModelVisibility {
   std::vector<std::vector<Sight>>
       sight;                 ///< Per view (empty where not allowed, and of before it came) and model point.
@@ -38,17 +48,19 @@ struct ModelVisibility {
   std::vector<float>
       facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
   std::vector<std::uint8_t> seen_through;  ///< Per entry of `visible`: the newest of those views looks through it, or
-                                           ///< more than max_seen_through_share of them do.
+                                           ///< more than MajorityFreeSpace::max_share do.
 };
 
 /// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). Views from
-/// the oldest to the newest; `allowed`: one per view. A view that looks through more than max_absent_share of what it
-/// could see, while newer ones see the model where it is, is of before it came: it and older ones do not count. V4R's
-/// GO3D without its gaps: intrinsics of the view instead of f = 525, and the model hides its own far parts (back faces
-/// by their normals, the rest by a z-buffer of the model, whose cells are as wide as the spacing of its points).
+/// the oldest to the newest; `allowed`: one per view. A view that looks through more than
+/// VisibilityOptions::arrival_share of what it could see, while newer ones see the model where it is, is of before it
+/// came: it and older ones do not count. V4R's GO3D without its gaps: intrinsics of the view instead of f = 525, and
+/// the model hides its own far parts (back faces by their normals, the rest by a z-buffer of the model, whose cells are
+/// as wide as the spacing of its points).
 [[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
                                                   std::span<const Eigen::Vector3f> normals_in_world,
                                                   std::span<const DepthView> views,
-                                                  std::span<const std::uint8_t> allowed, const VerifyOptions& options);
+                                                  std::span<const std::uint8_t> allowed,
+                                                  const VisibilityOptions& options, const ModelSampling& sampling);
 
 }  // namespace resight

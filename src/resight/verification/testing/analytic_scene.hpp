@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "resight/verification/verify_options.hpp"
+#include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight::analytic {
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/verification/verify_options.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
 #include "resight/core/random.hpp"
+#include "resight/verification/hypothesis_verifier.hpp"
 #include "resight/verification/testing/verify_fixture.hpp"
 
 namespace resight {
 namespace {
+
+const ClutterOptions kNoClutter{.weight = 0, .rule = SegmentClutter{.near_weight = 0}};
 
 using namespace analytic;
 
@@ -86,7 +87,7 @@ TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
     const VerifyResult result =
         f.verify({make_hypothesis(kBox, disturb(truth, {0.002, 0, 0}, kZ, 0)), make_hypothesis(kBox, truth),
                   make_hypothesis(kBox, disturb(truth, {0, 0.002, 0}, kZ, 0.02))},
-                 make_library(), {.duplicity_rule = rule});
+                 make_library(), {.selection = {.duplicity_rule = rule}});
     ASSERT_EQ(accepted(result).size(), 1U);
     const int winner = accepted(result)[0];
     for (int i = 0; i < 3; ++i) {
@@ -114,7 +115,7 @@ TEST(VerifyHypotheses, TellsLookAlikesByColor) {
     EXPECT_GT(result.evidence[1].fit, result.evidence[0].fit + 0.2);
     // Even without a rival, and accepted when colour is not looked at.
     EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
-    EXPECT_THAT(accepted(f.verify({both[0]}, library, {.use_color = false})), testing::ElementsAre(0));
+    EXPECT_THAT(accepted(f.verify({both[0]}, library, {.appearance = {.use_color = false}})), testing::ElementsAre(0));
   }
 }
 
@@ -171,16 +172,14 @@ TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
   EXPECT_GT(result.evidence[0].plane_cost, 100);
   // The planes are what rejects it.
-  EXPECT_FALSE(
-      accepted(f.verify(hypotheses, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false}))
-          .empty());
+  EXPECT_FALSE(accepted(f.verify(hypotheses, library, {.clutter = kNoClutter, .planes = {}})).empty());
 }
 
 TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
   const Fixture f(one_box(), circle_of_cameras(4));
   const VerifyResult result =
       f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
-               make_library(), {.min_explained_share = 0.1});
+               make_library(), {.acceptance = {.min_explained_share = 0.1}});
   EXPECT_LT(result.evidence[0].plane_cost, 60);
   EXPECT_GT(result.evidence[1].plane_cost, 300);
   EXPECT_THAT(accepted(result), testing::ElementsAre(0));
@@ -222,16 +221,16 @@ TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
   const std::vector<VerificationView> refs = references(views);
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
   EXPECT_THAT(accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {})), testing::IsEmpty());
-  EXPECT_THAT(
-      accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {}, {.max_seen_through_share = 1})),
-      testing::ElementsAre(0));
+  EXPECT_THAT(accepted(verify_hypotheses(hypotheses, make_library(), merge(views), refs, {},
+                                         {.visibility = {.free_space = MajorityFreeSpace{.max_share = 1}}})),
+              testing::ElementsAre(0));
 }
 
 TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
   const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
   const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, truth)};
-  const VerifyOptions newest{.newest_view_decides = true};
+  const VerifyOptions newest{.visibility = {.free_space = NewestViewFreeSpace{}}};
   const auto accepts = [&](const std::vector<PreparedView>& views, const VerifyOptions& options) {
     return !accepted(verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options))
                 .empty();
@@ -252,10 +251,10 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   // They look through what the newest view cannot see: the far sides of the box.
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
   const std::vector<Rigid3> cameras = circle_of_cameras(3);
-  const auto evidence = [&](const std::vector<World>& worlds, double max_absent_share) {
+  const auto evidence = [&](const std::vector<World>& worlds, std::optional<double> arrival_share) {
     std::vector<PreparedView> views;
     for (std::size_t v = 0; v < 3; ++v) views.push_back(render(worlds[v], cameras[v]));
-    const VerifyOptions options{.newest_view_decides = true, .max_absent_share = max_absent_share};
+    const VerifyOptions options{.visibility = {.free_space = NewestViewFreeSpace{}, .arrival_share = arrival_share}};
     return verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options).evidence[0];
   };
   const HypothesisEvidence came = evidence({{}, {}, one_box()}, 0.6);
@@ -263,7 +262,7 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   EXPECT_GT(came.explained_share, 0.95);
   EXPECT_EQ(came.visible_share_per_view[0], 0);
   EXPECT_EQ(came.visible_share_per_view[1], 0);
-  EXPECT_EQ(evidence({{}, {}, one_box()}, 1).verdict, Verdict::kNoSupport);
+  EXPECT_EQ(evidence({{}, {}, one_box()}, std::nullopt).verdict, Verdict::kNoSupport);
   // What came and went: the newest view looks through it, and nothing excuses that.
   const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
   EXPECT_FALSE(gone.accepted);
@@ -273,19 +272,18 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
 
 TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
   // The box is measured at its place and up to 14 mm too near.
-  const auto clutter = [](double distance_m, double clutter_sigmas) {
+  const auto clutter = [](double distance_m, double noise_sigmas) {
     const Rigid3 camera = look_at({distance_m, 0, 0.1}, {0, 0, 0.05});
     const Rigid3 pose = on_table(0, 0, 0.07);
     const Fixture f({.solids = {placed(make_box(), pose)}, .has_table = false}, {camera});
     const Eigen::Vector3f towards = (camera.translation - pose.translation).normalized().cast<float>();
     PointCloud scene = f.scene;
     for (std::size_t i = 0; i < f.scene.size(); ++i) scene.points[i] += 0.0035F * static_cast<float>(i % 5) * towards;
-    const VerifyOptions options{.inlier_distance_m = 0.01,
-                                .clutter_weight = 6,
-                                .continuation_offset_m = 0.005,
-                                .clutter_sigmas = clutter_sigmas,
+    const ContinuationClutter rule{.noise_sigmas = noise_sigmas};
+    const VerifyOptions options{.support = {.max_distance_m = 0.01},
                                 .refine = {.max_iterations = 0},
-                                .use_planes = false};
+                                .clutter = {.weight = 6, .rule = rule},
+                                .planes = {}};
     const std::vector<VerificationView> refs = references(f.views);
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, pose)};
     return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].clutter_cost;
@@ -301,7 +299,7 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, plain({180, 170, 60}), on_table(0, 0, 0.04)};
   library.objects.push_back(make_model("small", small));
   VerifyOptions options{
-      .clutter_weight = 6, .continuation_offset_m = 0.005, .use_planes = false, .min_explained_share = 0};
+      .clutter = {.weight = 6, .rule = ContinuationClutter{}}, .planes = {}, .acceptance = {.min_explained_share = 0}};
   const auto clutter = [&](const World& world, const Rigid3& pose) {
     const Fixture f(world, circle_of_cameras(4));
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
@@ -320,25 +318,22 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
 }
 
 TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
-  const auto evidence = [](const Paint& paint, double contrast) {
+  const auto evidence = [](const Paint& paint, std::optional<double> contrast) {
     const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, paint, on_table(0, 0, 0.04)};
     const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, paint, on_table(0, 0, 0.04)};
     const ModelLibrary library{.objects = {make_model("small", small)}};
     const Fixture f({.solids = {board}}, circle_of_cameras(4));
-    const VerifyOptions options{.clutter_weight = 6,
-                                .continuation_offset_m = 0.005,
-                                .continuation_contrast = contrast,
-                                .refine = {.max_iterations = 0},
-                                .use_planes = false};
+    const ContinuationClutter rule{.texture_contrast = contrast};
+    const VerifyOptions options{.refine = {.max_iterations = 0}, .clutter = {.weight = 6, .rule = rule}, .planes = {}};
     return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
   };
   const Paint yellow = plain({180, 170, 60});
-  const double full = evidence(yellow, 0).clutter_cost;
+  const double full = evidence(yellow, std::nullopt).clutter_cost;
   EXPECT_GT(full, 100);
   EXPECT_LT(evidence(yellow, 0.5).shared_texture, 0.01);
   EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
   const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
-  const double full_of_printed = evidence(printed, 0).clutter_cost;
+  const double full_of_printed = evidence(printed, std::nullopt).clutter_cost;
   EXPECT_GT(full_of_printed, 100);
   const HypothesisEvidence e = evidence(printed, 0.5);
   EXPECT_GT(e.shared_texture, 0.5);
@@ -359,13 +354,15 @@ TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
   ModelLibrary library{.objects = {make_model("can", can)}};
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
   const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
-  const auto angle_left_deg = [&](double turned_deg, double step_rad) {
+  const auto angle_left_deg = [&](double turned_deg, std::optional<double> step_rad) {
     const Rigid3 pose = can.world_from_object * Rigid3::from_axis_angle(kZ, turned_deg / 57.29578);
-    const VerifyResult result = f.verify({make_hypothesis(0, pose)}, library, {.turn_step_rad = step_rad});
+    const VerifyResult result =
+        f.verify({make_hypothesis(0, pose)}, library, {.refine = {.symmetry_step_rad = step_rad}});
     return 57.29578 * rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation);
   };
   for (const double turned_deg : {-100.0, 37.0, 170.0}) {
-    EXPECT_NEAR(angle_left_deg(turned_deg, 0), std::abs(turned_deg), 5) << turned_deg;  // Shape says nothing of it.
+    EXPECT_NEAR(angle_left_deg(turned_deg, std::nullopt), std::abs(turned_deg), 5)
+        << turned_deg;  // Shape says nothing of it.
     EXPECT_LT(angle_left_deg(turned_deg, 0.1745), 12) << turned_deg;
   }
   EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
@@ -389,7 +386,8 @@ TEST(VerifyHypotheses, NoTurnToAWorseFit) {
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
   can.paint = painted(1.7);
   const Fixture f({.solids = {can}}, {look_at({0.8, 0, 0.4}, {0, 0, 0.05})});
-  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  const VerifyResult result =
+      f.verify({make_hypothesis(0, can.world_from_object)}, library, {.refine = {.symmetry_step_rad = 0.1745}});
   EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
@@ -408,7 +406,8 @@ TEST(VerifyHypotheses, APlainCanIsNotTurned) {
   can.paint = stained(120);
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});  // As if its own had been overlooked.
   const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
-  const VerifyResult result = f.verify({make_hypothesis(0, can.world_from_object)}, library, {.turn_step_rad = 0.1745});
+  const VerifyResult result =
+      f.verify({make_hypothesis(0, can.world_from_object)}, library, {.refine = {.symmetry_step_rad = 0.1745}});
   EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
@@ -425,15 +424,14 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   const VerifyResult with_planes = f.verify(both, library);
   EXPECT_THAT(accepted(with_planes), testing::ElementsAre(0));
   EXPECT_GT(with_planes.evidence[1].plane_cost, 50);
-  const VerifyResult segments_only = f.verify(both, library, {.use_planes = false});
+  const VerifyResult segments_only = f.verify(both, library, {.planes = {}});
   EXPECT_THAT(accepted(segments_only), testing::ElementsAre(0));
   EXPECT_GT(segments_only.evidence[1].clutter_cost, 200);
   EXPECT_LT(segments_only.evidence[0].clutter_cost, 50);
   // Also without the rival, and it is the clutter cue that does it.
   const std::vector<Hypothesis> small = {both[1]};
-  EXPECT_THAT(accepted(f.verify(small, library, {.use_planes = false})), testing::IsEmpty());
-  EXPECT_THAT(accepted(f.verify(small, library, {.clutter_weight = 0, .near_clutter_weight = 0, .use_planes = false})),
-              testing::ElementsAre(0));
+  EXPECT_THAT(accepted(f.verify(small, library, {.planes = {}})), testing::IsEmpty());
+  EXPECT_THAT(accepted(f.verify(small, library, {.clutter = kNoClutter, .planes = {}})), testing::ElementsAre(0));
 }
 
 TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
@@ -447,7 +445,8 @@ TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
   const Fixture f({.solids = {box}}, circle_of_cameras(4));
   const std::vector<Hypothesis> negative = {make_hypothesis(0, box.world_from_object)};
   const HypothesisEvidence evidence =
-      f.verify(negative, library, {.light = {0, 0, 0, 0, 0}, .min_explained_share = 0}).evidence[0];
+      f.verify(negative, library, {.appearance = {.light = {0, 0, 0, 0.08}}, .acceptance = {.min_explained_share = 0}})
+          .evidence[0];
   EXPECT_LT(evidence.pattern_similarity, 0);
   EXPECT_GT(evidence.num_explained, 0);
   EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
@@ -469,7 +468,7 @@ TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
   f.views.push_back(newest);  // And the scene as older views have it.
   const auto before = [&](double min_newest_similarity) {
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(0, can.world_from_object)};
-    return f.verify(hypotheses, library, {.min_newest_similarity = min_newest_similarity}).evidence[0];
+    return f.verify(hypotheses, library, {.acceptance = {.min_newest_similarity = min_newest_similarity}}).evidence[0];
   };
   EXPECT_TRUE(before(-1).accepted);
   EXPECT_GT(before(-1).pattern_similarity, 0.8);
@@ -493,7 +492,7 @@ TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
   const Fixture f({.solids = {can}}, circle_of_cameras(4));
   const std::vector<Hypothesis> either = {make_hypothesis(0, can.world_from_object),
                                           make_hypothesis(1, can.world_from_object)};
-  const VerifyOptions options{.min_pattern_similarity = 0.8};
+  const VerifyOptions options{.acceptance = {.min_pattern_similarity = 0.8}};
   const VerifyResult result = f.verify(either, library, options);
   EXPECT_THAT(accepted(result), testing::ElementsAre(1));
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kDifferentAppearance);

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/appearance/photometric_fit.hpp"
+#include "resight/core/options.hpp"
+
+namespace resight {
+
+/// How colours of a model and of the scene are compared.
+struct AppearanceOptions {
+  bool use_color = true;
+  double sigma_l = 0.4;
+  double sigma_ab = 0.2;
+  PhotometricLimits light{};
+};
+
+inline void declare(OptionVisitor& v, AppearanceOptions& o) {
+  v.field("use_color", o.use_color, "Off: models and scene are compared by shape alone.");
+  v.only_if(o.use_color, "use_color", "true", [&] {
+    v.field("sigma_l", o.sigma_l, positive(),
+            "Standard deviation of lightness, of (L* - 50) / 50, after the model's colours are adapted to the light.",
+            "ours; reference code: 0.6");
+    v.field("sigma_ab", o.sigma_ab, positive(), "Standard deviation of chromaticity, of a* / 128 and b* / 128.",
+            "ours; reference code: 0.6");
+    v.group("light", o.light);
+  });
+}
+
+}  // namespace resight

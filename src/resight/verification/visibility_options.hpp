@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <variant>
+
+#include "resight/core/options.hpp"
+
+namespace resight {
+
+/// Free space at a model point rejects it if the newest view that observes it sees through it: things come and go.
+struct NewestViewFreeSpace {};
+
+inline void declare(OptionVisitor& /*v*/, NewestViewFreeSpace& /*o*/) {}
+
+/// Free space at a model point rejects it if more than this share of the views that observe it see through it.
+struct MajorityFreeSpace {
+  double max_share = 0.5;
+};
+
+inline void declare(OptionVisitor& v, MajorityFreeSpace& o) {
+  v.field(
+      "max_share", o.max_share, between(0, 1),
+      "A model point that a larger share of its views sees through is an outlier, whatever the reconstruction says. "
+      "1: never.",
+      "ours; V4R has no such test");
+}
+
+/// What the views say of the points of a model.
+struct VisibilityOptions {
+  double margin_m = 0.02;
+  std::variant<MajorityFreeSpace, NewestViewFreeSpace> free_space{};
+  std::optional<double> arrival_share{};
+};
+
+inline void declare(OptionVisitor& v, VisibilityOptions& o) {
+  v.field("margin_m", o.margin_m, at_least(0),
+          "A model point farther than the measured depth by more than this is hidden; nearer by more, it is seen "
+          "through.");
+  v.choice("free_space", o.free_space,
+           {{"majority", "most of the views that observe the point"},
+            {"newest_view", "the newest view that observes the point, whatever older ones saw"}},
+           "Which views decide that a model point is seen through.");
+  v.field("arrival_share", o.arrival_share, between(0, 1),
+          "A view that sees through a larger share of the model, while newer views confirm it, is from before the "
+          "object arrived: this view and older ones are ignored. off: no view is.");
+}
+
+}  // namespace resight
