@@ -34,12 +34,8 @@ struct DifferenceContest {
 
 bool is_seen_through(const Eigen::Vector3f& p_in_world, const PreparedView& by) {
   const Eigen::Vector3d p = by.frame.world_from_camera.inverse() * p_in_world.cast<double>().eval();
-  if (p.z() <= 0) return false;
-  const Eigen::Vector2d pixel = by.frame.camera.project(p);
-  if (!by.frame.camera.contains(pixel)) return false;
-  const int u = std::min(static_cast<int>(std::floor(pixel.x() + 0.5)), by.frame.camera.width - 1);
-  const int v = std::min(static_cast<int>(std::floor(pixel.y() + 0.5)), by.frame.camera.height - 1);
-  return by.cloud.z(u, v) > static_cast<float>(p.z()) + kSeenThrough_m;  // False for NaN.
+  const std::optional<Pixel> pixel = by.frame.camera.pixel_of(p);
+  return pixel && by.cloud.z(pixel->u, pixel->v) > static_cast<float>(p.z()) + kSeenThrough_m;  // False for NaN.
 }
 
 Side make_side(const PreparedView& own, const ViewTruth& truth, const PreparedView& other) {

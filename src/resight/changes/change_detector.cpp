@@ -39,8 +39,14 @@ FrustumLimits view_volume(const Camera& camera, const DetectChangesOptions& opti
   return ViewFrustum{camera, options.min_depth_m, options.max_depth_m, options.frustum_margin_rad}.limits();
 }
 
-DepthEvidenceOptions depth_options(const DetectChangesOptions& options) {
-  return {options.window_radius_px, options.occlusion_margin_m, options.occlusion_sigmas, options.num_threads};
+/// What a view says about points in its camera frame.
+std::vector<Evidence> classify_in_view(const Points& points_in_camera, const PreparedView& view,
+                                       const DetectChangesOptions& options) {
+  return classify_surface({.points = points_in_camera}, Rigid3::identity(), {view.frame.camera, view.frame.depth_m},
+                          {.margin = {options.occlusion_margin_m, options.occlusion_sigmas},
+                           .window_radius_px = options.window_radius_px,
+                           .num_threads = options.num_threads})
+      .points;
 }
 
 Tolerance tolerance_of(const Camera& camera, const DetectChangesOptions& options) {
@@ -56,16 +62,15 @@ struct Unexplained {
 /// What the view says about points of the past that nothing of it explains.
 std::vector<Evidence> judge_unexplained(const Points& queries_in_camera, const PreparedView& view,
                                         const DetectChangesOptions& options) {
-  const Camera& camera = view.frame.camera;
-  if (options.occlusion_test == OcclusionTest::kDepthImage)
-    return classify_against_depth(queries_in_camera, camera, view.frame.depth_m, depth_options(options));
+  if (options.occlusion_test == OcclusionTest::kDepthImage) return classify_in_view(queries_in_camera, view, options);
+  const DepthImage image{view.frame.camera, view.frame.depth_m};
   std::vector<Evidence> evidence =
       classify_occlusion(queries_in_camera, collect_points(view.cloud), SphericalBins(options.bin_size_rad),
                          options.occlusion_margin_m, options.num_threads);
   if (!options.require_return) return evidence;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     if (evidence[i] == Evidence::kSeenThrough &&
-        std::isnan(nearest_depth(queries_in_camera[i], camera, view.frame.depth_m, options.window_radius_px)))
+        std::isnan(nearest_depth(queries_in_camera[i], image, options.window_radius_px)))
       evidence[i] = Evidence::kUnobserved;
   }
   return evidence;
@@ -95,9 +100,8 @@ std::vector<Evidence> judge_previous(const Points& psi_in_camera, const Prepared
 /// Which of these pixels of the view an earlier view saw through.
 std::vector<std::uint8_t> find_seen_through(const std::vector<int>& pixels, const PreparedView& view,
                                             const PreparedView& earlier, const DetectChangesOptions& options) {
-  const RgbdFrame& frame = earlier.frame;
-  const Rigid3f earlier_from_view(frame.world_from_camera.inverse() * view.frame.world_from_camera);
-  const FrustumLimits volume = view_volume(frame.camera, options);
+  const Rigid3f earlier_from_view(earlier.frame.world_from_camera.inverse() * view.frame.world_from_camera);
+  const FrustumLimits volume = view_volume(earlier.frame.camera, options);
   std::vector<int> positions;
   Points queries;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -106,8 +110,7 @@ std::vector<std::uint8_t> find_seen_through(const std::vector<int>& pixels, cons
     positions.push_back(static_cast<int>(i));
     queries.push_back(p);
   }
-  const std::vector<Evidence> evidence =
-      classify_against_depth(queries, frame.camera, frame.depth_m, depth_options(options));
+  const std::vector<Evidence> evidence = classify_in_view(queries, earlier, options);
   std::vector<std::uint8_t> seen_through(pixels.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
     seen_through[static_cast<std::size_t>(positions[i])] = evidence[i] == Evidence::kSeenThrough ? 1 : 0;

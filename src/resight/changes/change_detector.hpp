@@ -19,8 +19,8 @@ struct DetectChangesOptions {
   OcclusionTest occlusion_test = OcclusionTest::kDepthImage;  ///< Paper: kSphericalBins.
   double bin_size_rad = 0.0349066;                            ///< Of the spherical z-buffer; paper: 2 deg.
   double occlusion_margin_m = 0.0;  ///< A blocker hides what is farther by more than this. Paper: 0.
-  double occlusion_sigmas = 3.0;    ///< kDepthImage only: the noise's share of that margin; DepthEvidenceOptions.
-  int window_radius_px = 1;         ///< Of the look at the depth image around a point: DepthEvidenceOptions.
+  double occlusion_sigmas = 3.0;    ///< kDepthImage only: the noise's share of that margin (DepthMargin).
+  int window_radius_px = 1;         ///< Of the look-up in the depth image: SurfaceEvidenceOptions.
   bool require_return = true;       ///< kSphericalBins only: see detect_changes().
   bool novel_needs_free_space =
       true;                  ///< Novel points must be seen through by an earlier view. Paper: false, Eq. (3) alone.

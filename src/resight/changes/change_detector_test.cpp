@@ -270,7 +270,7 @@ TEST_P(DetectChanges, AHoleInTheDepthKeepsItsPoints) {
   EXPECT_GT(count(result, Evidence::kUnobserved), 300);
   const Rigid3f camera_from_world(after.frame.world_from_camera.inverse());
   for (const Eigen::Vector3f& p : result.removed_in_world.points)
-    EXPECT_FALSE(std::isnan(nearest_depth(camera_from_world * p, after.frame.camera, after.frame.depth_m, 1)));
+    EXPECT_FALSE(std::isnan(nearest_depth(camera_from_world * p, {after.frame.camera, after.frame.depth_m}, 1)));
   if (GetParam() == OcclusionTest::kSphericalBins) {
     DetectChangesOptions literal = options;
     literal.require_return = false;  // the bins are coarser than the holes

@@ -13,7 +13,7 @@ namespace resight {
 /// The two ways to tell whether a view sees past a point.
 enum class OcclusionTest : std::uint8_t {
   kSphericalBins,  ///< The paper's, Eq. (4) and Fig. 4: classify_occlusion().
-  kDepthImage,     ///< Ours: project into the depth image, classify_against_depth().
+  kDepthImage,     ///< Ours: project into the depth image, classify_surface().
 };
 
 /// The paper's spherical z-buffer. Queries and blockers: metres, camera frame, NaN = no measurement. For each query:

@@ -9,7 +9,6 @@
 
 #include "resight/changes/analytic_scene_test_util.hpp"
 #include "resight/core/random.hpp"
-#include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
@@ -86,74 +85,10 @@ TEST(ClassifyOcclusion, ThreeAnswersAndTheMargin) {
   EXPECT_THROW((void)classify_occlusion(Points{}, blockers, bins, -0.1), std::invalid_argument);
 }
 
-/// The slow twin of the depth test: all pixels, without the window arithmetic.
-Evidence classify_depth_slowly(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m,
-                               const DepthEvidenceOptions& options) {
-  if (!p.allFinite() || p.z() <= 0) return Evidence::kUnobserved;
-  const Eigen::Vector2d pixel = camera.project(p.cast<double>());
-  if (!camera.contains(pixel)) return Evidence::kUnobserved;
-  bool any = false;
-  bool behind = true;
-  bool in_front = false;
-  const double margin = options.margin_m + options.noise_sigmas * nguyen_noise(p.z(), 0, camera.fx).axial_m;
-  for (int v = 0; v < camera.height; ++v)
-    for (int u = 0; u < camera.width; ++u) {
-      const double reach = options.window_radius_px + 0.5;
-      if (std::abs(u - pixel.x()) > reach || std::abs(v - pixel.y()) > reach || std::isnan(depth_m(u, v))) continue;
-      // The window is centred on the pixel that the point falls into.
-      if (std::abs(u - std::floor(pixel.x() + 0.5)) > options.window_radius_px) continue;
-      if (std::abs(v - std::floor(pixel.y() + 0.5)) > options.window_radius_px) continue;
-      any = true;
-      behind = behind && depth_m(u, v) > p.z() + margin;
-      in_front = in_front || depth_m(u, v) < p.z() - margin;
-    }
-  if (!any) return Evidence::kUnobserved;
-  if (in_front) return Evidence::kOccluded;
-  return behind ? Evidence::kSeenThrough : Evidence::kPresent;
-}
-
-TEST(ClassifyAgainstDepth, AgreesWithAllPixels) {
-  const Camera camera{32, 24, 30, 31, 14, 12.5};
-  Image<float> depth_m(32, 24);
-  Rng rng(4);
-  for (float& z : depth_m.data()) z = rng.uniform() < 0.3 ? kNaN : static_cast<float>(rng.uniform(0.8, 2.2));
-  Points queries = random_points(10000, 2.5, 5);
-  queries[0] = {kNaN, 0, 1};
-  queries[1] = {0, 0, kNaN};
-  queries[2] = {0, 0, 0};
-  for (const int radius : {0, 1, 2}) {
-    const DepthEvidenceOptions options{.window_radius_px = radius, .margin_m = 0.15, .noise_sigmas = 2};
-    const std::vector<Evidence> evidence = classify_against_depth(queries, camera, depth_m, options);
-    for (std::size_t i = 0; i < queries.size(); ++i)
-      EXPECT_EQ(evidence[i], classify_depth_slowly(queries[i], camera, depth_m, options)) << i;
-    for (const int n : count(evidence)) EXPECT_GT(n, 5) << "radius " << radius;
-  }
-}
-
-TEST(ClassifyAgainstDepth, BordersOfTheImage) {
-  const Camera camera{4, 3, 100, 100, 1.5, 1};
-  const Image<float> depth_m(4, 3, 2.0F);
-  const auto ask = [&](double u, double v, int radius) {
-    return classify_against_depth(Points{camera.unproject(u, v, 1).cast<float>()}, camera, depth_m,
-                                  {.window_radius_px = radius})
-        .front();
-  };
-  for (const int radius : {0, 1}) {
-    EXPECT_EQ(ask(-0.49, -0.49, radius), Evidence::kSeenThrough);
-    EXPECT_EQ(ask(3.49, 2.49, radius), Evidence::kSeenThrough);
-    EXPECT_EQ(ask(-0.51, 1, radius), Evidence::kUnobserved);
-    EXPECT_EQ(ask(1, 2.51, radius), Evidence::kUnobserved);
-  }
-}
-
-TEST(ClassifyAgainstDepth, RefusesNonsense) {
-  const Points queries{{0, 0, 1}};
-  const Image<float> depth_m(320, 240, 1.0F);
-  EXPECT_NO_THROW((void)classify_against_depth(queries, small_camera(), depth_m));
-  EXPECT_THROW((void)classify_against_depth(queries, make_kinect_camera(), depth_m), std::invalid_argument);
-  EXPECT_THROW((void)classify_against_depth(queries, small_camera(), depth_m, {.window_radius_px = -1}),
-               std::invalid_argument);
-  EXPECT_THROW((void)classify_against_depth(queries, small_camera(), depth_m, {.margin_m = -1}), std::invalid_argument);
+std::vector<Evidence> classify_in_depth_image(const Points& queries_in_camera, const PreparedView& view) {
+  return classify_surface({.points = queries_in_camera}, Rigid3::identity(), {view.frame.camera, view.frame.depth_m},
+                          {.margin = {.base_m = 0}, .window_radius_px = 1})
+      .points;
 }
 
 TEST(OcclusionTests, SerialIsParallel) {
@@ -163,8 +98,6 @@ TEST(OcclusionTests, SerialIsParallel) {
   const SphericalBins bins;
   EXPECT_EQ(classify_occlusion(queries, blockers.points, bins, 0, 3),
             classify_occlusion(queries, blockers.points, bins, 0, 1));
-  EXPECT_EQ(classify_against_depth(queries, view.frame.camera, view.frame.depth_m, {.num_threads = 3}),
-            classify_against_depth(queries, view.frame.camera, view.frame.depth_m, {.num_threads = 1}));
 }
 
 /// Points in the air above a slanted table, `height_m` over it, that the camera surely sees past.
@@ -184,7 +117,7 @@ TEST(OcclusionTests, OnASlantTheBinsHideWhatThePixelsSee) {
     const Points queries = points_above_table(height_m, view.frame.world_from_camera);
     const std::vector<Evidence> evidence = test == OcclusionTest::kSphericalBins
                                                ? classify_occlusion(queries, blockers.points, SphericalBins(), 0)
-                                               : classify_against_depth(queries, view.frame.camera, view.frame.depth_m);
+                                               : classify_in_depth_image(queries, view);
     EXPECT_EQ(count(evidence, Evidence::kUnobserved), 0);
     return static_cast<double>(count(evidence, Evidence::kSeenThrough)) / static_cast<double>(queries.size());
   };
@@ -207,8 +140,7 @@ TEST(OcclusionTests, BehindABoxIsHidden) {
   const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
   EXPECT_EQ(count(classify_occlusion(queries, blockers.points, SphericalBins(), 0), Evidence::kOccluded),
             static_cast<int>(queries.size()));
-  EXPECT_EQ(count(classify_against_depth(queries, view.frame.camera, view.frame.depth_m), Evidence::kOccluded),
-            static_cast<int>(queries.size()));
+  EXPECT_EQ(count(classify_in_depth_image(queries, view), Evidence::kOccluded), static_cast<int>(queries.size()));
 }
 
 }  // namespace

@@ -21,11 +21,6 @@ constexpr std::size_t kRowGrain = 16;
 constexpr int kMaxFirstLook_px = 4;
 constexpr double kRounding_px = 1.0;  // For points that project not quite where their pixel is.
 
-struct Pixel {
-  int u;
-  int v;
-};
-
 /// Rectangle of pixels, clipped to the image; empty if begin >= end.
 struct PixelWindow {
   int begin_u, end_u;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "resight/core/check.hpp"
@@ -20,10 +21,8 @@ double ratio(long part, long whole) {
 // Measured depth minus the depth of the point, along z; NaN without measurement.
 double depth_behind(const RgbdFrame& frame, const Eigen::Vector3d& p_in_world) {
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * p_in_world;
-  if (p.z() <= 0) return kNotANumber;
-  const Eigen::Vector2d pixel = frame.camera.project(p);
-  if (!frame.camera.contains(pixel)) return kNotANumber;
-  return frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))) - p.z();
+  const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
+  return pixel ? frame.depth_m(pixel->u, pixel->v) - p.z() : kNotANumber;
 }
 
 }  // namespace

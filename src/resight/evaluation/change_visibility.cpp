@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "resight/core/check.hpp"
 
@@ -13,11 +14,8 @@ namespace {
 bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const ObjectModel& model) {
   const Eigen::Vector3d center = world_from_object * model.center.cast<double>().eval();
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * center;
-  if (p.z() <= 0) return false;
-  const Eigen::Vector2d pixel = frame.camera.project(p);
-  if (!frame.camera.contains(pixel)) return false;
-  const float depth = frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  return depth >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
+  const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
+  return pixel && frame.depth_m(pixel->u, pixel->v) >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ const ObjectModel* find_model(const std::string& name, const ModelLibrary& libra
 bool is_same_placement(const FormerPlace& place, const std::string& object, const Rigid3& world_from_object,
                        const ObjectModel& model, const FindFormerPlacesOptions& options) {
   if (place.object != object) return false;
-  const PoseDifference difference = compare_poses(world_from_object, place.world_from_object, model);
-  return difference.center_distance_m <= options.max_center_distance_m &&
-         difference.rotation_rad <= options.max_rotation_rad;
+  return is_within(
+      compare_poses(world_from_object, place.world_from_object, model),
+      {.max_center_distance_m = options.max_center_distance_m, .max_rotation_rad = options.max_rotation_rad});
 }
 
 bool is_explained_by_truth(const DetectedObject& detection, const std::vector<GroundTruthObject>& truth,
@@ -32,7 +32,7 @@ bool is_explained_by_truth(const DetectedObject& detection, const std::vector<Gr
 
 bool sees(const Camera& camera, const Rigid3& camera_from_object, const ObjectModel& model) {
   const Eigen::Vector3d center_in_camera = camera_from_object * Eigen::Vector3d(model.center.cast<double>());
-  return center_in_camera.z() > 0 && camera.contains(camera.project(center_in_camera));
+  return camera.pixel_of(center_in_camera).has_value();
 }
 
 }  // namespace

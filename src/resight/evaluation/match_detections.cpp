@@ -94,14 +94,6 @@ MatchDetectionsOptions strict_match_options() {
   return {.max_center_distance_m = 0.01, .max_rotation_rad = 10 * kDegree};
 }
 
-PoseDifference compare_poses(const Rigid3& a_from_object, const Rigid3& reference_a_from_object,
-                             const ObjectModel& model) {
-  const Rigid3 nearest = nearest_symmetric_pose(a_from_object, reference_a_from_object, model.symmetries);
-  const Eigen::Vector3d center = model.center.cast<double>();
-  return {(nearest * center - reference_a_from_object * center).norm(),
-          rotation_angle_rad(nearest.rotation, reference_a_from_object.rotation)};
-}
-
 bool is_within(const PoseDifference& difference, const MatchDetectionsOptions& options) {
   return difference.center_distance_m <= options.max_center_distance_m &&
          difference.rotation_rad <= options.max_rotation_rad;

@@ -8,6 +8,7 @@
 #include "resight/geometry/rigid3.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/object_model.hpp"
+#include "resight/models/pose_distance.hpp"
 
 namespace resight {
 
@@ -30,17 +31,6 @@ struct MatchDetectionsOptions {
 
 /// The strict limits: 1 cm and 10 deg.
 [[nodiscard]] MatchDetectionsOptions strict_match_options();
-
-/// Difference of two poses of one object.
-struct PoseDifference {
-  double center_distance_m = 0;
-  double rotation_rad = 0;  ///< Smallest angle over the object's symmetries.
-};
-
-/// Compares two poses in the same frame a. Centres are compared after choosing the nearest symmetric equivalent, so
-/// that a symmetry axis beside the centroid adds no distance.
-[[nodiscard]] PoseDifference compare_poses(const Rigid3& a_from_object, const Rigid3& reference_a_from_object,
-                                           const ObjectModel& model);
 
 /// Whether the difference is within both limits (inclusive).
 [[nodiscard]] bool is_within(const PoseDifference& difference, const MatchDetectionsOptions& options);

@@ -7,8 +7,7 @@ namespace resight {
 
 double share_in_image(const ObjectModel& model, const Rigid3& camera_from_object, const Camera& camera) {
   const auto is_inside = [&](const Eigen::Vector3f& p_in_object) {
-    const Eigen::Vector3d p = camera_from_object * p_in_object.cast<double>().eval();
-    return p.z() > 0 && camera.contains(camera.project(p));
+    return camera.pixel_of(camera_from_object * p_in_object.cast<double>().eval()).has_value();
   };
   if (model.surface.empty()) return is_inside(model.center) ? 1.0 : 0.0;
   const auto count = std::ranges::count_if(model.surface.points, is_inside);

@@ -9,8 +9,7 @@
 namespace resight {
 
 struct PresenceOptions {
-  double depth_margin_m =
-      0.015;  ///< Depth within this of the object's surface (plus three sigma of the sensor) agrees with it.
+  DepthMargin margin = {};       ///< Depth within this of the object's surface agrees with it.
   int min_seen_points = 40;      ///< Fewer points that are present or seen through: the view tells nothing.
   double min_seen_share = 0.10;  ///< Likewise as a share of the points that face the camera.
   double min_gone_share = 0.6;   ///< Seen through / (seen through + present) above this: the object is not there.
@@ -25,8 +24,8 @@ struct ObjectPresence {
   bool is_gone = false;         ///< Informative, and free space where the object should be.
 };
 
-/// Compares the surface of an object at a pose with the depth of a view. Only points whose normal faces the camera are
-/// asked; the depth behind a point by more than the margin means that one looks through it.
+/// Compares the surface of an object at a pose with the depth of a view: classify_surface() of the points whose normal
+/// faces the camera.
 [[nodiscard]] ObjectPresence assess_presence(const PointCloud& surface_in_object, const Rigid3& world_from_object,
                                              const RgbdFrame& frame, const PresenceOptions& options = {});
 

@@ -1,38 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "resight/core/image.hpp"
 #include "resight/geometry/camera.hpp"
+#include "resight/geometry/rigid3.hpp"
 
 namespace resight {
 
-/// What a view says about a point of the past. Absence needs evidence: only kSeenThrough may remove a point.
-enum class Evidence : std::uint8_t { kUnobserved, kOccluded, kPresent, kSeenThrough };
+/// What a depth view says about a surface point. Only kSeenThrough is evidence of absence.
+enum class Evidence : std::uint8_t {
+  kUnobserved,   ///< No return, outside the image, behind the camera, or seen at too grazing an angle.
+  kOccluded,     ///< Behind the measured depth by more than the margin.
+  kPresent,      ///< At the measured depth, within the margin.
+  kSeenThrough,  ///< In front of the measured depth by more than the margin: the view sees free space there.
+};
 
-struct DepthEvidenceOptions {
-  int window_radius_px = 1;   ///< The nearest return within this many rows and columns of the projection counts.
-  double margin_m = 0.0;      ///< Along z, added to that of the noise.
-  double noise_sigmas = 3.0;  ///< Margin in axial standard deviations of a surface seen head-on (nguyen_noise()).
-  int num_threads = 1;        ///< Same bits for any value >= 1.
+/// Tolerance along z between a surface and the measured depth.
+struct DepthMargin {
+  double base_m = 0.015;
+  double noise_sigmas = 3;  ///< Axial standard deviations of a surface seen head-on (nguyen_noise()), added to base_m.
+
+  /// In metres, for a surface at this depth; `focal_px` as in nguyen_noise().
+  [[nodiscard]] float at(float z_m, double focal_px) const;
+  /// Throws std::invalid_argument that names `field`.
+  void check(const std::string& field) const;
+};
+
+/// A depth image (metres along z, NaN: no return) and its camera, which must outlive it.
+struct DepthImage {
+  const Camera& camera;
+  const Image<float>& depth_m;
+};
+
+/// Points of a surface with their unit normals, in one frame, which must outlive it.
+struct OrientedPoints {
+  std::span<const Eigen::Vector3f> points;
+  std::span<const Eigen::Vector3f> normals = {};  ///< Empty, or one per point.
+};
+
+struct SurfaceEvidenceOptions {
+  DepthMargin margin = {};
+  int window_radius_px = 0;         ///< The nearest return within this many rows and columns of the projection counts.
+  double min_viewing_cosine = 0.2;  ///< Points with a normal seen at a more grazing angle (78 deg) are kUnobserved.
+  int num_threads = 1;              ///< Same bits for any value >= 1.
   void check() const;
 };
 
-/// The test against the depth image itself. For each query (camera frame), with d the smallest depth in the window
-/// around its projection: kOccluded if d lies in front of it by more than the margin, kSeenThrough if behind, kPresent
-/// if within; kUnobserved where the window has no return or lies outside the image, for z <= 0 and for NaN. Ours, in
-/// place of the spherical bins: a window of 3 px is six times finer than a bin, so that slanted surfaces do not hide
-/// themselves, and it holds no more than the view itself knows. Taking the nearest keeps the points beside an edge.
-[[nodiscard]] std::vector<Evidence> classify_against_depth(std::span<const Eigen::Vector3f> queries_in_camera,
-                                                           const Camera& camera, const Image<float>& depth_m,
-                                                           const DepthEvidenceOptions& options = {});
+struct SurfaceEvidence {
+  std::vector<Evidence> points;
+  std::array<int, 4> count{};  ///< By Evidence, of the points that face the camera (all points without normals).
+  [[nodiscard]] int num(Evidence evidence) const { return count[static_cast<std::size_t>(evidence)]; }
+};
 
-/// Smallest depth within `radius_px` rows and columns of the pixel that a point projects to; NaN if there is no return,
-/// the pixel lies outside the image, or for z <= 0 and NaN.
-[[nodiscard]] float nearest_depth(const Eigen::Vector3f& p_in_camera, const Camera& camera, const Image<float>& depth_m,
-                                  int radius_px);
+/// Compares the depth of a surface point with a measurement of the same pixel; kUnobserved if that is NaN.
+[[nodiscard]] inline Evidence compare_depth(float surface_z_m, float measured_z_m, float margin_m) {
+  const float behind_m = measured_z_m - surface_z_m;
+  if (std::isnan(behind_m)) return Evidence::kUnobserved;
+  if (behind_m > margin_m) return Evidence::kSeenThrough;
+  return behind_m < -margin_m ? Evidence::kOccluded : Evidence::kPresent;
+}
+
+/// Smallest depth within `radius_px` rows and columns of the pixel that shows a point; NaN if there is no return, the
+/// pixel lies outside the image, and for z <= 0 and NaN. Taking the nearest return protects points beside an edge.
+[[nodiscard]] float nearest_depth(const Eigen::Vector3f& p_in_camera, const DepthImage& view, int radius_px);
+
+/// What the view says about one point.
+[[nodiscard]] Evidence classify_point(const Eigen::Vector3f& p_in_camera, const DepthImage& view,
+                                      const DepthMargin& margin, int window_radius_px = 0);
+
+/// classify_point() for every point of a surface at a pose. Instead of the paper's spherical bins (see
+/// classify_occlusion()), the depth image itself is the z-buffer: a window of 3 px is six times finer than a bin of
+/// 2 deg, so that slanted surfaces do not hide themselves.
+[[nodiscard]] SurfaceEvidence classify_surface(const OrientedPoints& surface, const Rigid3& camera_from_surface,
+                                               const DepthImage& view, const SurfaceEvidenceOptions& options = {});
 
 }  // namespace resight

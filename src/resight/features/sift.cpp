@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <span>
 #include <tuple>
 
@@ -92,10 +93,9 @@ FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, co
   for (const int row : reading_order(keypoints)) {
     const double u = keypoints[row].pt.x - kDoublingShiftPx;
     const double v = keypoints[row].pt.y - kDoublingShiftPx;
-    const int nearest_u = static_cast<int>(std::lround(u));
-    const int nearest_v = static_cast<int>(std::lround(v));
-    if (!cloud.z.contains(nearest_u, nearest_v)) continue;
-    const std::size_t pixel = cloud.z.index(nearest_u, nearest_v);
+    const std::optional<Pixel> nearest = view.frame.camera.pixel_at({u, v});
+    if (!nearest) continue;
+    const std::size_t pixel = cloud.z.index(nearest->u, nearest->v);
     if (!cloud.has_normal(pixel) || (mask != nullptr && (*mask)[pixel] == 0)) continue;
     const auto* values = descriptors.ptr<float>(row);
     const std::size_t begin = features.descriptors.size();

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <optional>
 
 namespace resight {
+
+/// Column and row of an image.
+struct Pixel {
+  int u = 0;
+  int v = 0;
+  friend bool operator==(const Pixel&, const Pixel&) = default;
+};
 
 /// A pinhole camera without distortion. Pixel centres are at whole numbers. Camera frame: x right, y down, z forward.
 struct Camera {
@@ -26,6 +35,18 @@ struct Camera {
   /// Whether the pixel lies within the image, including borders of half a pixel around the outer pixel centres.
   [[nodiscard]] bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < width - 0.5 && pixel.y() < height - 0.5;
+  }
+  /// The pixel whose centre is nearest to a position in the image; none outside the image and for NaN.
+  [[nodiscard]] std::optional<Pixel> pixel_at(const Eigen::Vector2d& position_px) const {
+    if (!contains(position_px)) return std::nullopt;
+    // Truncation rounds down: the sum is not negative. In an image of a few pixels it may round up to the size.
+    return Pixel{std::min(static_cast<int>(position_px.x() + 0.5), width - 1),
+                 std::min(static_cast<int>(position_px.y() + 0.5), height - 1)};
+  }
+  /// The pixel that shows a point; none for z <= 0, outside the image and for NaN.
+  [[nodiscard]] std::optional<Pixel> pixel_of(const Eigen::Vector3d& p_in_camera) const {
+    if (!(p_in_camera.z() > 0)) return std::nullopt;
+    return pixel_at(project(p_in_camera));
   }
   friend bool operator==(const Camera&, const Camera&) = default;
 };

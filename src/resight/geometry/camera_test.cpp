@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "resight/core/random.hpp"
 
@@ -29,6 +31,38 @@ TEST(Camera, HandComputedPixel) {
   const Eigen::Vector2d pixel = camera.project({0.1, -0.2, 1.0});
   EXPECT_NEAR(pixel.x(), 319.5 + 52.5, 1e-9);
   EXPECT_NEAR(pixel.y(), 239.5 - 105.0, 1e-9);
+}
+
+TEST(Camera, PixelOfIsTheNearestCentreWithinTheImage) {
+  const Camera camera{320, 240, 250, 260, 161, 118};
+  Rng rng(2);
+  int num_inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d p(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-1, 3));
+    const std::optional<Pixel> pixel = camera.pixel_of(p);
+    const bool is_seen = p.z() > 0 && camera.contains(camera.project(p));
+    ASSERT_EQ(pixel.has_value(), is_seen);
+    if (!is_seen) continue;
+    ++num_inside;
+    EXPECT_LE(std::abs(pixel->u - camera.project(p).x()), 0.5);
+    EXPECT_LE(std::abs(pixel->v - camera.project(p).y()), 0.5);
+    EXPECT_TRUE(pixel->u >= 0 && pixel->u < camera.width && pixel->v >= 0 && pixel->v < camera.height);
+  }
+  EXPECT_GT(num_inside, 200);
+}
+
+TEST(Camera, PixelAtTheBorders) {
+  const Camera camera{4, 1, 10, 10, 0, 0};
+  EXPECT_EQ(camera.pixel_at({-0.5, -0.5}), (Pixel{0, 0}));  // Rounding away from zero would leave the image.
+  EXPECT_EQ(camera.pixel_at({1.5, 0}), (Pixel{2, 0}));
+  EXPECT_EQ(camera.pixel_at({3, std::nextafter(0.5, 0)}), (Pixel{3, 0}));  // 0.5 and this is 1.
+  EXPECT_FALSE(camera.pixel_at({3.5, 0}));
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(camera.pixel_at({kNaN, 0}));
+  EXPECT_FALSE(camera.pixel_at({0, kNaN}));
+  EXPECT_FALSE(camera.pixel_of({0, 0, 0}));
+  EXPECT_FALSE(camera.pixel_of({0, 0, -1}));
+  EXPECT_FALSE(camera.pixel_of({0, 0, kNaN}));
 }
 
 TEST(Camera, ContainsHalfAPixelAroundTheCentres) {

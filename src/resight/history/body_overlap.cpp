@@ -39,11 +39,6 @@ bool is_mostly_within(const ObjectModel& one, const Rigid3& world_from_one, cons
   return share_within(one, world_from_one, other, world_from_other) >= 0.5;
 }
 
-double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b) {
-  const Eigen::Vector3d center = model.center.cast<double>();
-  return (a * center - b * center).norm();
-}
-
 double same_body_distance_m(const ObjectModel& model) { return 0.5 * model.diameter_m; }
 
 }  // namespace resight

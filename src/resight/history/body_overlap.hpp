@@ -13,9 +13,6 @@ namespace resight {
 [[nodiscard]] bool is_mostly_within(const ObjectModel& one, const Rigid3& world_from_one, const ObjectModel& other,
                                     const Rigid3& world_from_other);
 
-/// Distance between the centres of one object at two poses in the same frame.
-[[nodiscard]] double center_distance_m(const ObjectModel& model, const Rigid3& a, const Rigid3& b);
-
 /// Two detections of one kind whose centres are nearer than this may be one object with an inaccurate pose: for most
 /// objects, the two bodies would overlap.
 [[nodiscard]] double same_body_distance_m(const ObjectModel& model);

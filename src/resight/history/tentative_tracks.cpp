@@ -2,6 +2,7 @@
 #include "resight/history/tentative_tracks.hpp"
 
 #include "resight/history/body_overlap.hpp"
+#include "resight/models/pose_distance.hpp"
 
 namespace resight {
 

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <tuple>
 
-#include "resight/geometry/symmetry.hpp"
 #include "resight/history/body_overlap.hpp"
+#include "resight/models/pose_distance.hpp"
 
 namespace resight {
 
 bool TrackAssociation::is_same_place(int object, const Rigid3& a, const Rigid3& b) const {
   const ObjectModel& model = model_of(object);
-  return center_distance_m(model, a, b) <= same_place_m_ &&
-         symmetric_rotation_distance_rad(a, b, model.symmetries) <= same_rotation_rad_;
+  return resight::is_same_place(model, a, b, {same_place_m_, same_rotation_rad_});
 }
 
 bool TrackAssociation::is_within(int one, const Rigid3& world_from_one, int other,

@@ -74,9 +74,9 @@ bool hides_itself(const ImagePoints& points, const Camera& camera) {
 TrainingView draw(const PointCloud& cloud, const ImagePoints& points, const Camera& camera) {
   TrainingView view = empty_view(camera);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!camera.contains(points[i].head<2>())) continue;
-    const int u = static_cast<int>(points[i].x() + 0.5);
-    const int v = static_cast<int>(points[i].y() + 0.5);
+    const std::optional<Pixel> pixel = camera.pixel_at(points[i].head<2>());
+    if (!pixel) continue;
+    const auto [u, v] = *pixel;
     const auto z = static_cast<float>(points[i].z());
     float& depth_m = view.frame.depth_m(u, v);
     if (depth_m <= z) continue;  // false for NaN

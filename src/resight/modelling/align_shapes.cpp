@@ -8,6 +8,7 @@
 
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/kd_tree.hpp"
+#include "resight/registration/point_to_plane.hpp"
 #include "resight/registration/twist.hpp"
 
 namespace resight {
@@ -64,18 +65,15 @@ Rigid3 improve(const Shape& fixed, const Shape& moving, Rigid3 pose, const Align
   for (int k = 0; k < options.num_iterations; ++k) {
     const double left = 1 - static_cast<double>(k) / (options.num_iterations - 1);
     const double reach_m = options.max_distance_m + 0.3 * fixed.radius_m * left * left;
-    Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
-    Twist g = Twist::Zero();
+    NormalEquations equations;
+    equations.matrix = Matrix6::Identity() * 1e-6;  // So that what the shapes leave free has a solution.
     find_pairs(fixed, moving, pose, reach_m, std::cos(options.max_normal_angle_rad), [&](const Vector3f& p, int i) {
       const Vector3d at = p.cast<double>() - fixed.middle;
       const Vector3d normal = fixed.normals[i].cast<double>();
-      Twist j;
-      j << at.cross(normal), normal;
-      h += j * j.transpose();
-      g += j * normal.dot((p - fixed.points[i]).cast<double>());
+      equations.add_row(point_to_plane_row(at, normal), normal.dot((p - fixed.points[i]).cast<double>()));
     });
     const Rigid3 to_middle = Rigid3::from_translation(fixed.middle);
-    pose = to_middle * from_twist(-h.ldlt().solve(g)) * to_middle.inverse() * pose;
+    pose = to_middle * from_twist(-equations.matrix.ldlt().solve(equations.right)) * to_middle.inverse() * pose;
   }
   pose.rotation = nearest_rotation(pose.rotation);
   return pose;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -103,14 +104,14 @@ class VertexPainter {
     const FusionView& view = views_[k];
     const Vector3f p = camera_from_object_[k] * p_in_object;
     if (view.depth_m.empty() || p.z() <= 0) return {};
-    const Eigen::Vector2d pixel = view.camera.project(p.cast<double>());
-    const int u = static_cast<int>(std::lround(pixel.x()));
-    const int v = static_cast<int>(std::lround(pixel.y()));
-    if (!view.depth_m.contains(u, v) || view.weight(u, v) <= 0) return {};
+    const Eigen::Vector2d position_px = view.camera.project(p.cast<double>());
+    const std::optional<Pixel> pixel = view.camera.pixel_at(position_px);
+    if (!pixel || view.weight(pixel->u, pixel->v) <= 0) return {};
+    const auto [u, v] = *pixel;
     if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return {};
     const double cosine = static_cast<double>(-(camera_from_object_[k].rotation * normal).dot(p.normalized()));
     if (cosine < 0.2) return {};
-    return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, pixel)};
+    return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, position_px)};
   }
 
   // Bilinear interpolation.

@@ -111,10 +111,9 @@ class TrackJoiner {
       const Rigid3 camera_from_mesh = frame.world_from_camera.inverse() * views_from_mesh;
       for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) {
         const Vector3d p = camera_from_mesh * mesh.vertices[k].cast<double>().eval();
-        const Eigen::Vector2d pixel = frame.camera.project(p);
-        if (p.z() <= 0 || !frame.camera.contains(pixel)) continue;
-        const float depth_m =
-            frame.depth_m(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+        const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
+        if (!pixel) continue;
+        const float depth_m = frame.depth_m(pixel->u, pixel->v);
         if (std::isnan(depth_m)) continue;
         ++seen;
         before += p.z() < depth_m - kFreeM;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "resight/core/check.hpp"
@@ -311,11 +312,9 @@ class RegionFinder {
 
   // 1 if the plane is visible at a point of it, -1 if it is missing there, 0 if the place is occluded or unknown.
   [[nodiscard]] int look_for(const SupportPlane& plane, const Vector3d& point) const {
-    if (point.z() <= 0) return 0;
-    const Vector2d pixel = view_.frame.camera.project(point);
-    if (!view_.frame.camera.contains(pixel)) return 0;
-    const std::size_t i =
-        cloud_.z.index(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+    const std::optional<Pixel> pixel = view_.frame.camera.pixel_of(point);
+    if (!pixel) return 0;
+    const std::size_t i = cloud_.z.index(pixel->u, pixel->v);
     if (!cloud_.has_point(i)) return 0;
     const double height_m = plane.height_m(cloud_.point(i).cast<double>());
     if (std::abs(height_m) <= options_.plane_distance_m) return 1;

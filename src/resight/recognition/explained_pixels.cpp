@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace resight {
@@ -27,11 +28,10 @@ class Marker {
 
  private:
   void mark_around(const Eigen::Vector3f& p) {
-    const Eigen::Vector2d pixel = frame_.camera.project(p.cast<double>());
-    if (!frame_.camera.contains(pixel)) return;
+    const std::optional<Pixel> pixel = frame_.camera.pixel_of(p.cast<double>());
+    if (!pixel) return;
     const int radius = 1 + static_cast<int>(kPointRadius_m * frame_.camera.fx / static_cast<double>(p.z()));
-    const int u = static_cast<int>(std::lround(pixel.x()));
-    const int v = static_cast<int>(std::lround(pixel.y()));
+    const auto [u, v] = *pixel;
     for (int y = std::max(0, v - radius); y <= std::min(frame_.camera.height - 1, v + radius); ++y)
       for (int x = std::max(0, u - radius); x <= std::min(frame_.camera.width - 1, u + radius); ++x)
         if (std::abs(frame_.depth_m(x, y) - p.z()) < tolerance_m_) mask_(x, y) = 255;  // false for NaN
@@ -46,7 +46,7 @@ class Marker {
 
 Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> known,
                                           const ModelLibrary& library, const PresenceOptions& presence) {
-  Marker marker(frame, static_cast<float>(presence.depth_margin_m));
+  Marker marker(frame, static_cast<float>(presence.margin.base_m));
   for (const TrackedObject& object : known) {
     const PointCloud& surface = library.objects[static_cast<std::size_t>(object.object)].surface;
     const ObjectPresence seen = assess_presence(surface, object.world_from_object, frame, presence);

@@ -198,7 +198,7 @@ void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
                                   {"history.min_told_score", &c.history.confirm_score},
                                   {"history.min_new_share", &c.history.min_new_share},
                                   {"history.min_displaced_gone_share", &c.history.min_displaced_gone_share},
-                                  {"history.presence_depth_margin_m", &c.history.presence.depth_margin_m},
+                                  {"history.presence_depth_margin_m", &c.history.presence.margin.base_m},
                                   {"history.presence_min_seen_points", &c.history.presence.min_seen_points},
                                   {"history.presence_min_seen_share", &c.history.presence.min_seen_share},
                                   {"history.presence_min_gone_share", &c.history.presence.min_gone_share},

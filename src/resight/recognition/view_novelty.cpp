@@ -3,9 +3,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "resight/core/check.hpp"
-#include "resight/sensor/noise_model.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 
 namespace resight {
 namespace {
@@ -13,17 +14,14 @@ namespace {
 constexpr std::size_t kLooks = 4;
 constexpr int kPixelStep = 4;
 constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, the same surface is measured here and there.
-constexpr float kTolerance_m = 0.02F;     // Of the depth, as of a change...
-constexpr double kSigmas = 3;  // ...and so many standard deviations of the sensor's: far away, noise flickers.
+constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As of a change; far away, noise flickers.
 
 // Whether one of the pixels around has the depth of the point.
 bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m) {
-  if (!(p.z() > 0)) return false;
-  const Eigen::Vector2d pixel = camera.project(p.cast<double>());
-  if (!camera.contains(pixel)) return false;
-  const auto tolerance_m = kTolerance_m + static_cast<float>(kSigmas * nguyen_noise(p.z(), 0, camera.fx).axial_m);
-  const int u = static_cast<int>(std::lround(pixel.x()));
-  const int v = static_cast<int>(std::lround(pixel.y()));
+  const std::optional<Pixel> pixel = camera.pixel_of(p.cast<double>());
+  if (!pixel) return false;
+  const float tolerance_m = kMargin.at(p.z(), camera.fx);
+  const auto [u, v] = *pixel;
   for (int dv = -1; dv <= 1; ++dv)
     for (int du = -1; du <= 1; ++du)
       if (depth_m.contains(u + du, v + dv) && std::abs(depth_m(u + du, v + dv) - p.z()) < tolerance_m) return true;

@@ -12,17 +12,13 @@ namespace {
 // Damping as a share of the mean information. It holds directions that no pair constrains.
 constexpr double kDamping = 1e-3;
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 }  // namespace
 
 void StepEquations::add(const Eigen::Vector3d& arm, const Eigen::Vector3d& normal, double residual, double weight,
                         double radius_m) {
-  Vector6 row;
-  row << arm.cross(normal) / radius_m, normal;
-  matrix += weight * row * row.transpose();
-  right += weight * residual * row;
+  Vector6 row = point_to_plane_row(arm, normal);
+  row.head<3>() /= radius_m;
+  add_row(row, residual, weight);
   sum_weights += weight;
   sum_residuals_sq += weight * residual * residual;
   ++num_pairs;

@@ -1,19 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 
 #include "resight/geometry/rigid3.hpp"
 
 namespace resight {
 
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// The normal equations `matrix * x = right` of a linear least-squares problem with six unknowns, row by row.
+struct NormalEquations {
+  Matrix6 matrix = Matrix6::Zero();
+  Vector6 right = Vector6::Zero();
+
+  /// Adds weight * (row . x - residual)^2 to what x minimises.
+  void add_row(const Vector6& row, double residual, double weight = 1) {
+    for (int c = 0; c < 6; ++c) {
+      const double weighted = weight * row[c];
+      matrix.col(c) += weighted * row;
+      right[c] += weighted * residual;
+    }
+  }
+  NormalEquations& operator+=(const NormalEquations& other) {
+    matrix += other.matrix;
+    right += other.right;
+    return *this;
+  }
+};
+
+/// How the distance of a point to a plane changes with a small motion of the point, [rotation vector; shift]; `arm`:
+/// the point from the centre of rotation, `normal`: of the plane (Chen and Medioni 1992).
+template <typename Scalar>
+[[nodiscard]] Eigen::Matrix<Scalar, 6, 1> point_to_plane_row(const Eigen::Matrix<Scalar, 3, 1>& arm,
+                                                             const Eigen::Matrix<Scalar, 3, 1>& normal) {
+  Eigen::Matrix<Scalar, 6, 1> row;
+  row << arm.cross(normal), normal;
+  return row;
+}
+
 /// Normal equations of one point-to-plane ICP step (Chen and Medioni 1992). The step is a rotation about the middle of
 /// the moved points and a translation, both in the target frame. Rotations are scaled to metres by the radius of the
 /// points, so that the damping treats rotation and translation alike.
-struct StepEquations {
+struct StepEquations : NormalEquations {
   static constexpr double kStill_m = 1e-4;  ///< Shorter steps have converged.
-  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   double sum_weights = 0;
   double sum_residuals_sq = 0;  ///< Weighted sum.
   int num_pairs = 0;

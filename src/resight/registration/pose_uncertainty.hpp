@@ -10,9 +10,6 @@ namespace resight {
 
 /// First-order uncertainty of an estimated pose.
 struct PoseUncertainty {
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
   /// Covariance of a small rotation about the object's centre (rotation vector, rad) followed by a translation (m),
   /// along the world axes: the true pose is the estimate moved by both. NaN = unknown (too few pairs).
   Matrix6 covariance = Matrix6::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -17,7 +17,6 @@ namespace resight {
 namespace {
 
 using namespace analytic;
-using Vector6 = PoseUncertainty::Vector6;
 
 Eigen::Vector3d random_vector(Rng& rng) { return {rng.normal(), rng.normal(), rng.normal()}; }
 

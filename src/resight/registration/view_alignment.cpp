@@ -9,12 +9,12 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/registration/point_to_plane.hpp"
 #include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Twistf = Eigen::Matrix<float, 6, 1>;
 
 constexpr std::size_t kBlock = 512;      // Samples per partial sum.
@@ -54,11 +54,11 @@ Samples draw_samples(const AlignmentLevel& level, int max_samples) {
 
 // Normal equations and counts. Partial sums are added in order, so that results do not depend on the number of threads.
 struct Sums {
-  Matrix6 h = Matrix6::Zero();  // Upper triangle.
-  // Like h, with the view's own normal in one of the two factors. Noise tilts every normal slightly, so that h claims
-  // information along a featureless floor. The noise of two independent normals cancels. Symmetric only in the total.
+  NormalEquations equations;
+  // Like its matrix, with the view's own normal in one of the two factors. Noise tilts every normal slightly, so that
+  // the matrix claims information along a featureless floor. The noise of two independent normals cancels. Symmetric
+  // only in the total.
   Matrix6 unbiased = Matrix6::Zero();
-  Twist g = Twist::Zero();
   double distance_m = 0;
   int num_pairs = 0;
   double brightness[5] = {};  // Sums of a, b, a^2, b^2 and a b over num_bright pairs.
@@ -67,12 +67,10 @@ struct Sums {
   int num_seen_through = 0;
 
   void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
-    for (int c = 0; c < 6; ++c) {
-      const double wj = weight * j[c];
-      for (int r = 0; r <= c; ++r) h(r, c) += wj * j[r];
-      for (int r = 0; r < 6; ++r) unbiased(r, c) += wj * other_j[r];
-      g[c] += wj * residual;
-    }
+    const Twist row = j.cast<double>();
+    const Twist other_row = other_j.cast<double>();
+    equations.add_row(row, residual, weight);
+    for (int c = 0; c < 6; ++c) unbiased.col(c) += weight * row[c] * other_row;
   }
   void add_brightness(double a, double b) {
     const double terms[5] = {a, b, a * a, b * b, a * b};
@@ -86,9 +84,8 @@ struct Sums {
     return (n * brightness[4] - brightness[0] * brightness[1]) / std::sqrt(variances);  // NaN without texture.
   }
   void add(const Sums& other) {
-    h += other.h;
+    equations += other.equations;
     unbiased += other.unbiased;
-    g += other.g;
     distance_m += other.distance_m;
     num_pairs += other.num_pairs;
     for (int k = 0; k < 5; ++k) brightness[k] += other.brightness[k];
@@ -97,13 +94,6 @@ struct Sums {
     num_seen_through += other.num_seen_through;
   }
 };
-
-// Derivative of the motion of a point along `direction`, in the view's frame, with respect to a twist of the view.
-Twistf jacobian(const Eigen::Vector3f& p, const Eigen::Vector3f& direction) {
-  Twistf j;
-  j << p.cross(direction), direction;
-  return j;
-}
 
 double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
 
@@ -171,7 +161,10 @@ class LevelTarget {
                 const Eigen::Vector3f& normal, float distance, float gate, float sigma_sq, Sums& sums) const {
     const Eigen::Vector3f p = samples.points[s];
     const double weight = tukey(distance / gate);
-    sums.add(jacobian(p, pose_.rotation.transpose() * normal), jacobian(p, samples.normals[s]), distance,
+    // Derivatives of the motion of the point along a direction, in the view's frame, with respect to a twist of the
+    // view.
+    const Eigen::Vector3f normal_in_view = pose_.rotation.transpose() * normal;
+    sums.add(point_to_plane_row(p, normal_in_view), point_to_plane_row(p, samples.normals[s]), distance,
              weight / sigma_sq);
     sums.distance_m += std::abs(distance);
     ++sums.num_pairs;
@@ -186,7 +179,8 @@ class LevelTarget {
     const auto gu = static_cast<float>(du * level_.camera.fx) / q.z();
     const auto gv = static_cast<float>(dv * level_.camera.fy) / q.z();
     const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // Brightness per metre.
-    const Twistf j = jacobian(p, pose_.rotation.transpose() * gradient);
+    const Eigen::Vector3f gradient_in_view = pose_.rotation.transpose() * gradient;
+    const Twistf j = point_to_plane_row(p, gradient_in_view);
     sums.add(j, j, residual, brightness_weight / (sigma * sigma));
   }
 
@@ -220,7 +214,7 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
   });
   Sums all;
   for (const Sums& sums : partial) all.add(sums);
-  all.h = Matrix6(all.h.selfadjointView<Eigen::Upper>());
+  all.equations.matrix = Matrix6(all.equations.matrix.selfadjointView<Eigen::Upper>());  // To the last bit.
   all.unbiased = 0.5 * Matrix6(all.unbiased + all.unbiased.transpose());
   return all;
 }
@@ -260,11 +254,12 @@ Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targ
   for (int i = 0; i < options.max_iterations; ++i) {
     const Sums sums = sum_pairs(samples, targets, level, pose, gate_m, options);
     if (sums.num_pairs == 0) break;
-    Matrix6 h = options.information_per_pair * sums.h;
+    Matrix6 h = options.information_per_pair * sums.equations.matrix;
     Matrix6 unbiased = options.information_per_pair * sums.unbiased;
     h.diagonal() += prior;
     unbiased.diagonal() += prior;
-    const Twist g = options.information_per_pair * sums.g + prior.cwiseProduct(to_twist(given.inverse() * pose));
+    const Twist g =
+        options.information_per_pair * sums.equations.right + prior.cwiseProduct(to_twist(given.inverse() * pose));
     const Twist step = solve_step(h, unbiased, g);
     pose = pose * from_twist(step);
     if (step.cwiseAbs().maxCoeff() < kConvergedStep) break;

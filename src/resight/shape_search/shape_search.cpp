@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -12,6 +13,7 @@
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/hypotheses/white_balance_weights.hpp"
+#include "resight/models/pose_distance.hpp"
 #include "resight/models/shape_symmetry_motions.hpp"
 #include "resight/shape_search/match_pairs.hpp"
 #include "resight/shape_search/point_pair_search.hpp"
@@ -37,10 +39,8 @@ SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
 PointCloud without_explained(const PointCloud& points, const Camera& camera, const Image<std::uint8_t>& explained) {
   PointCloud searched;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d pixel = camera.project(points.points[i].cast<double>());
-    if (camera.contains(pixel) &&
-        explained(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))) != 0)
-      continue;
+    const std::optional<Pixel> pixel = camera.pixel_of(points.points[i].cast<double>());
+    if (pixel && explained(pixel->u, pixel->v) != 0) continue;
     searched.points.push_back(points.points[i]);
     if (points.has_normals()) searched.normals.push_back(points.normals[i]);
     if (points.has_colors()) searched.colors.push_back(points.colors[i]);
@@ -177,8 +177,9 @@ struct ShapeSearch::Impl {
       const auto object = static_cast<std::size_t>(c.object);
       const ObjectModel& sought = library.objects[object];
       const ObjectSymmetries& symmetries = is_round_in_shape(object) ? sought.shape_symmetries : sought.symmetries;
-      if (std::any_of(tried.begin(), tried.end(),
-                      [&](const Rigid3& other) { return is_same(c.object, rough, other, symmetries); }))
+      if (std::any_of(tried.begin(), tried.end(), [&](const Rigid3& other) {
+            return is_same_place(sought, symmetries, rough, other, same_place());
+          }))
         continue;
       const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
@@ -210,10 +211,10 @@ struct ShapeSearch::Impl {
       if (static_cast<int>(kept.size()) == options.max_hypotheses) break;
       int num_here = 0;
       bool repeated = false;
+      const ObjectModel& model = library.objects[static_cast<std::size_t>(c.object)];
       for (const ShapeCandidate& other : kept) {
-        repeated = repeated || is_same(c.object, c.camera_from_object, other.camera_from_object,
-                                       library.objects[static_cast<std::size_t>(c.object)].symmetries);
-        num_here += distance_m(c.object, c.camera_from_object, other.camera_from_object) < kSamePlace_m ? 1 : 0;
+        repeated = repeated || is_same_place(model, c.camera_from_object, other.camera_from_object, same_place());
+        num_here += center_distance_m(model, c.camera_from_object, other.camera_from_object) < kSamePlace_m ? 1 : 0;
       }
       const int most = is_round_in_shape(static_cast<std::size_t>(c.object)) ? kMaxRoundPerPlace : kMaxPerPlace;
       if (!repeated && num_here < most) kept.push_back(c);
@@ -221,15 +222,7 @@ struct ShapeSearch::Impl {
     return kept;
   }
 
-  [[nodiscard]] double distance_m(int object, const Rigid3& a, const Rigid3& b) const {
-    const Eigen::Vector3d center = library.objects[static_cast<std::size_t>(object)].center.cast<double>();
-    return (a * center - b * center).norm();
-  }
-
-  [[nodiscard]] bool is_same(int object, const Rigid3& a, const Rigid3& b, const ObjectSymmetries& symmetries) const {
-    return distance_m(object, a, b) < options.same_place_m &&
-           symmetric_rotation_distance_rad(a, b, symmetries) < options.same_rotation_rad;
-  }
+  [[nodiscard]] SamePlaceOptions same_place() const { return {options.same_place_m, options.same_rotation_rad}; }
 
   const ModelLibrary& library;
   ShapeSearchOptions options;

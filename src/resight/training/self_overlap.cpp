@@ -9,14 +9,13 @@
 
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
+#include "resight/registration/point_to_plane.hpp"
 
 namespace resight::internal {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr std::size_t kMaxPoints = 20000;  // more points only take longer
 constexpr std::size_t kPointsPerTask = 256;
@@ -101,29 +100,23 @@ std::vector<Vector3f> blur_colors(const PointCloud& surface, const KdTree& tree,
   return blurred;
 }
 
-// Normal equations of ICP.
-struct NormalEquations {
-  Matrix6d a = Matrix6d::Zero();
-  Vector6d b = Vector6d::Zero();
+// Adds a residual n . (motion p - s) and with its derivative by a twist of the axis about `center`, in units of `scale`
+// metres: motion' = T motion T^-1.
+void add_pair(const Rigid3& motion, const Vector3d& p, const Vector3d& s, const Vector3d& n, const Vector3d& center,
+              double scale, NormalEquations& equations) {
+  const Vector3d q = motion * p;
+  const Vector3d n_before = motion.rotation.transpose() * n;
+  Vector6 row;
+  row << ((q - center).cross(n) - (p - center).cross(n_before)) / scale, n - n_before;
+  equations.add_row(row, -n.dot(q - s) / scale);
+}
 
-  // Adds a residual n . (motion p - s) with its derivative by a twist of the axis about `center`, in units of `scale`
-  // metres: motion' = T motion T^-1.
-  void add(const Rigid3& motion, const Vector3d& p, const Vector3d& s, const Vector3d& n, const Vector3d& center,
-           double scale) {
-    const Vector3d q = motion * p;
-    const Vector3d n_before = motion.rotation.transpose() * n;
-    Vector6d j;
-    j << ((q - center).cross(n) - (p - center).cross(n_before)) / scale, n - n_before;
-    a += j * j.transpose();
-    b -= j * (n.dot(q - s) / scale);
-  }
-  [[nodiscard]] Vector6d solve() const {
-    const double damping = kIcpDamping * a.trace() + 1e-12;
-    return (a + damping * Matrix6d::Identity()).ldlt().solve(b);
-  }
-};
+Vector6 solve_damped(const NormalEquations& equations) {
+  const double damping = kIcpDamping * equations.matrix.trace() + 1e-12;
+  return (equations.matrix + damping * Matrix6::Identity()).ldlt().solve(equations.right);
+}
 
-TurnAxis move_axis(const TurnAxis& axis, const Vector6d& twist, const Vector3d& center, double scale) {
+TurnAxis move_axis(const TurnAxis& axis, const Vector6& twist, const Vector3d& center, double scale) {
   const double angle = twist.head<3>().norm();
   const Eigen::Matrix3d turn = angle > 0 ? Rigid3::from_axis_angle(twist.head<3>(), angle).rotation
                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
@@ -241,11 +234,11 @@ TurnAxis SelfOverlap::refine(TurnAxis axis, std::span<const double> angles_rad) 
             find_partner(moved * p, moved.rotation * surface_.normals[i], std::max<double>(reach_m, limits_.reach_m));
         if (j < 0) continue;
         const auto partner = static_cast<std::size_t>(j);
-        equations.add(motion, p.cast<double>(), surface_.points[partner].cast<double>(),
-                      surface_.normals[partner].cast<double>(), center_, radius_m_);
+        add_pair(motion, p.cast<double>(), surface_.points[partner].cast<double>(),
+                 surface_.normals[partner].cast<double>(), center_, radius_m_, equations);
       }
     }
-    axis = move_axis(axis, equations.solve(), center_, radius_m_);
+    axis = move_axis(axis, solve_damped(equations), center_, radius_m_);
   }
   return axis;
 }
