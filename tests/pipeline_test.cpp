@@ -174,14 +174,14 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
 TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
   constexpr std::size_t kViews = 3;
   RecognizerConfig config = RecognizerConfig::from_preset("default");
-  config.attention.object_look_every = 0;
-  config.attention.max_unseen_share = 0;  // Every view is searched.
+  config.search.place_interval = 0;
+  config.search.max_new_share = 0;  // Every view is searched.
   config.set_num_threads(kThreads);
   SceneRecognizer everywhere(world().library, config);
-  config.attention.object_look_every = 4;
-  config.attention.min_sure_share = 0;
+  config.search.place_interval = 4;
+  config.search.min_explained_share = 0;
   SceneRecognizer attentive(world().library, config);
-  config.attention.min_sure_share = 1;
+  config.search.min_explained_share = 1;
   SceneRecognizer tentative(world().library, config);
   for (std::size_t v = 0; v < kViews; ++v) {
     RecognitionTrace all, less, again;

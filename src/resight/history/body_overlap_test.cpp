@@ -40,7 +40,7 @@ TEST(ShareWithin, IsThatOfTheFirst) {
   EXPECT_LT(share_within(carton, at(0.05), can, at(0)), 0.1);
 }
 
-TEST(ShareWithin, TurnsWithTheObject) {
+TEST(ShareWithin, RotatesWithTheObject) {
   const ObjectModel plank = make_box(0.4, 0.06, 0.06);
   const Rigid3 across = at(0) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), M_PI / 2);
   EXPECT_LT(share_within(plank, across, plank, at(0)), 0.35);

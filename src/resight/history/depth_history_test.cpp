@@ -38,7 +38,7 @@ TEST(DepthHistory, ForgetsTheOldest) {
 }
 
 // Each plate is as wide as 26 px: a place next to a plate is free for any thinning that leaves a few pixels of it.
-TEST(DepthHistory, ThinnedViewsSeeTheSamePlaces) {
+TEST(DepthHistory, DownsampledViewsSeeTheSamePlaces) {
   const PointCloud surface = make_plate("a").surface;
   const RgbdFrame frame = see_plates({kLeft});
   for (const int step : {1, 2, 3, 4, 5}) {

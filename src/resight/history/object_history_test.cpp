@@ -15,7 +15,7 @@ using test::see_nothing;
 using test::see_plates;
 using K = ObjectEventKind;
 
-TEST_F(ObjectHistoryTest, KnowsWhatWasNotSeenToLeave) {
+TEST_F(ObjectHistoryTest, TracksObjectsUntilTheyAreSeenToLeave) {
   EXPECT_TRUE(history_->tracked_objects().empty());
   view({{0, left_}, {1, right_}}, see_plates({left_, right_}));
   ASSERT_EQ(history_->tracked_objects().size(), 2U);
@@ -61,7 +61,7 @@ TEST_F(ObjectHistoryTest, AMoveRecognisedOneViewLateIsStillAMove) {
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kMoved}));
 }
 
-TEST_F(ObjectHistoryTest, AMoveFoundAfterItsRemovalWasToldReplacesIt) {
+TEST_F(ObjectHistoryTest, AMoveSupersedesItsReportedRemoval) {
   view({{0, left_}}, see_plates({left_}));
   RgbdFrame left_is_free = see_plates({});
   hide_right_half(left_is_free);  // Where it is now no view sees.
@@ -77,7 +77,7 @@ TEST_F(ObjectHistoryTest, AMoveFoundAfterItsRemovalWasToldReplacesIt) {
   EXPECT_EQ(events[0].supersedes->view, removal[0].view);
 }
 
-TEST_F(ObjectHistoryTest, WhatWasAwayInBetweenWasRemovedAndAdded) {
+TEST_F(ObjectHistoryTest, AnObjectAwayInBetweenWasRemovedAndAdded) {
   view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(view({}, see_plates({})).empty());  // Free are both places.
   const auto events = view({{0, right_}}, see_plates({right_}));
@@ -87,7 +87,7 @@ TEST_F(ObjectHistoryTest, WhatWasAwayInBetweenWasRemovedAndAdded) {
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
+TEST_F(ObjectHistoryTest, AnObjectThatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
   view({{0, left_}}, see_plates({left_}));
   // Something else stands at the old place: it is neither free nor out of sight.
   ASSERT_EQ(kinds(view({{0, right_}}, see_plates({left_, right_}))), (std::vector{K::kNotSeen, K::kAdded}));
@@ -107,7 +107,7 @@ TEST_F(ObjectHistoryTest, WhatLeavesAfterOneWasAddedElsewhereHasMovedThere) {
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(ObjectHistoryTest, WhatMovesOnAsItsOldPlaceIsSeenHasMovedTwice) {
+TEST_F(ObjectHistoryTest, AnObjectThatMovesOnWhenItsOldPlaceIsSeenHasMovedTwice) {
   const Rigid3 third = plate_at(0, 0.25, 1);
   view({{0, left_}}, see_plates({left_}));
   view({{0, right_}}, see_plates({left_, right_}));
@@ -118,7 +118,7 @@ TEST_F(ObjectHistoryTest, WhatMovesOnAsItsOldPlaceIsSeenHasMovedTwice) {
   EXPECT_DOUBLE_EQ(events[1].world_from_object_after->translation.x(), 0.0);
 }
 
-TEST_F(ObjectHistoryTest, WhatThisViewRecognisesInItsPlaceIsNotTheNewOne) {
+TEST_F(ObjectHistoryTest, AnObjectAtItsPlaceIsNotTheNewOne) {
   view({{0, left_}}, see_plates({left_}));
   RgbdFrame left_is_hidden = see_plates({right_});
   hide_left_half(left_is_hidden);
@@ -137,7 +137,7 @@ TEST_F(ObjectHistoryTest, AShiftThatTheViewDoesNotConfirmIsNoMove) {
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(ObjectHistoryTest, OneDetectionTakesThePlaceOfOneTrackOnly) {
+TEST_F(ObjectHistoryTest, OneObservationBelongsToOneTrackOnly) {
   // Two on top of each other, as far as plates go; the one detection left lies within half a diameter of both.
   const Rigid3 upper = plate_at(-0.3, -0.04, 1);
   const Rigid3 lower = plate_at(-0.3, 0.04, 1);
@@ -151,7 +151,7 @@ TEST_F(ObjectHistoryTest, OneDetectionTakesThePlaceOfOneTrackOnly) {
   EXPECT_EQ(known.size(), 2U) << "the other was not seen to leave";
 }
 
-TEST_F(ObjectHistoryTest, WhatWasRemovedBeforeTheMemoryBeginsHasNotMoved) {
+TEST_F(ObjectHistoryTest, AnObjectRemovedBeforeTheMemoryBeginsHasNotMoved) {
   ObjectHistoryOptions options;
   options.memory.max_views = 2;
   history_ = std::make_unique<ObjectHistory>(library_, options);
@@ -163,7 +163,7 @@ TEST_F(ObjectHistoryTest, WhatWasRemovedBeforeTheMemoryBeginsHasNotMoved) {
   EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kFound}));
 }
 
-TEST_F(ObjectHistoryTest, OneThatWasSeenAfterTheOtherWasAddedIsAnother) {
+TEST_F(ObjectHistoryTest, AnObjectSeenAfterTheOtherWasAddedIsAnother) {
   view({{0, left_}}, see_plates({left_}));
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   view({{0, right_}}, see_plates({right_}));
@@ -194,7 +194,7 @@ TEST_F(ObjectHistoryTest, AddedNeedsAnEarlierViewOfFreeSpace) {
             (std::vector{K::kStillThere, K::kAdded}));
 }
 
-TEST_F(ObjectHistoryTest, FirstSeenWhereNoViewLookedIsOnlyFound) {
+TEST_F(ObjectHistoryTest, FirstSeenAtAnUnobservedPlaceIsOnlyFound) {
   view({{0, left_}}, see_nothing());
   EXPECT_EQ(kinds(view({{0, left_}, {1, right_}}, see_plates({left_, right_}))),
             (std::vector{K::kStillThere, K::kFound}));
@@ -227,7 +227,7 @@ TEST_F(ObjectHistoryTest, APoseCorrectedWhereNothingIsSeenFreeIsNoMove) {
   EXPECT_EQ(kinds(view({{0, left_}}, see_plates({left_}), false)), (std::vector{K::kMoved}));
 }
 
-TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
+TEST_F(ObjectHistoryTest, ANewObjectWhoseOldPlaceIsOutOfSightHasMoved) {
   view({{0, left_}}, see_plates({left_}));
   RgbdFrame only_right = see_plates({right_});
   hide_left_half(only_right);
@@ -239,7 +239,7 @@ TEST_F(ObjectHistoryTest, WhatIsNewWhileItsOldPlaceIsOutOfSightHasMoved) {
   EXPECT_TRUE(history_->finish().empty());  // Its old place is known to be left: no removal follows.
 }
 
-TEST_F(ObjectHistoryTest, WhatOnlyEarlierViewsSawIsNoNews) {
+TEST_F(ObjectHistoryTest, AnObjectThatOnlyEarlierViewsConfirmIsNotReported) {
   ObjectHistoryOptions options;
   options.min_new_share = 0.02;
   history_ = std::make_unique<ObjectHistory>(library_, options);
@@ -260,7 +260,7 @@ TEST_F(ObjectHistoryTest, OfTwoOfAKindTheOneOutOfSightHasMoved) {
   EXPECT_LE(events[1].confidence, 0.5);
 }
 
-TEST_F(ObjectHistoryTest, OfTwoOutOfSightNoneIsTakenForANewOne) {
+TEST_F(ObjectHistoryTest, OfTwoOutOfSightNoneIsTheNewOne) {
   const Rigid3 third = plate_at(0, 0.2, 1);
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   RgbdFrame without_both = see_plates({third});
@@ -285,125 +285,6 @@ TEST_F(ObjectHistoryTest, AnOldPlaceThatTheViewDoesNotConfirmIsLeft) {
   EXPECT_EQ(tracks_[1], 0);
 }
 
-TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneStoodHasTakenItsPlace) {
-  view({{0, left_}}, see_plates({left_}));
-  // The depth is the same: nothing is seen through.
-  const auto events = view({{1, left_}}, see_plates({left_}));
-  ASSERT_EQ(kinds(events), (std::vector{K::kAdded})) << "not found: the other one was there before";
-  EXPECT_EQ(events[0].object, 1);
-  const auto later = view({{1, left_}}, see_plates({left_}));
-  ASSERT_EQ(kinds(later), (std::vector{K::kStillThere, K::kRemoved}));
-  EXPECT_EQ(later[1].object, 0);
-  EXPECT_EQ(later[1].view, 1);
-}
-
-TEST_F(ObjectHistoryTest, TakenForAnotherInOneViewIsNotRemoved) {
-  view({{0, left_}}, see_plates({left_}));
-  view({{1, left_}}, see_plates({left_}));
-  const auto events = view({{0, left_}}, see_plates({left_}));
-  EXPECT_EQ(std::ranges::count(events, K::kRemoved, &ObjectEvent::kind), 0);
-  EXPECT_EQ(events[0].kind, K::kStillThere);
-  EXPECT_EQ(events[0].object, 0);
-}
-
-TEST_F(ObjectHistoryTest, TakenByWhatWasSeenOnceIsNotRemoved) {
-  view({{0, left_}}, see_plates({left_}));
-  view({{1, left_}}, see_plates({left_}));
-  EXPECT_EQ(kinds(view({}, see_nothing())), (std::vector{K::kNotSeen})) << "of the other one";
-  EXPECT_TRUE(history_->finish().empty());
-  const std::vector<TrackedObject> known = history_->tracked_objects();
-  EXPECT_EQ(known.size(), 2U);
-}
-
-TEST_F(ObjectHistoryTest, TwoOnOneSpotInOneViewAreBothFound) {
-  const Rigid3 near = plate_at(-0.28, 0, 1);
-  view({}, see_nothing());
-  EXPECT_EQ(kinds(view({{0, left_}, {1, near}}, see_plates({left_}))), (std::vector{K::kFound, K::kFound}));
-}
-
-TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneWasFoundToHaveMovedAwayWasAdded) {
-  view({{0, left_}}, see_plates({left_}));
-  view({{0, right_}}, see_plates({left_, right_}));  // Something stands at the old place, and is not recognised.
-  const auto events = view({{0, right_}, {1, left_}}, see_plates({left_, right_}));
-  ASSERT_EQ(kinds(events), (std::vector{K::kMoved, K::kAdded})) << "not found";
-  EXPECT_EQ(events[0].object, 0);
-  EXPECT_EQ(events[1].object, 1);
-}
-
-TEST_F(ObjectHistoryTest, WhatStandsWhereAnotherOneMovedAwayWasAdded) {
-  view({{0, left_}}, see_plates({left_}));
-  RgbdFrame left_is_hidden = see_plates({right_});
-  hide_left_half(left_is_hidden);  // No view sees the place free.
-  ASSERT_EQ(kinds(view({{0, right_}}, left_is_hidden)), (std::vector{K::kMoved}));
-  EXPECT_EQ(kinds(view({{0, right_}, {1, left_}}, see_plates({left_, right_}))),
-            (std::vector{K::kStillThere, K::kAdded}));
-}
-
-TEST_F(ObjectHistoryTest, AnArrivalWhosePoseTurnsOutOtherwiseIsToldAnew) {
-  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
-  view({{0, left_}}, see_plates({left_}));
-  const auto reported = view({{0, turned}}, see_plates({right_}));
-  ASSERT_EQ(kinds(reported), (std::vector{K::kMoved}));
-  const auto events = view({{0, right_}}, see_plates({right_}));
-  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
-  EXPECT_EQ(events[1].world_from_object_after->rotation, right_.rotation);
-  EXPECT_DOUBLE_EQ(events[1].world_from_object_before->translation.x(), -0.3);
-  ASSERT_TRUE(events[1].supersedes);
-  EXPECT_EQ(events[1].supersedes->kind, K::kMoved);
-  EXPECT_EQ(events[1].supersedes->track, reported[0].track);
-  EXPECT_EQ(events[1].supersedes->view, 1);
-  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere})) << "once";
-}
-
-TEST_F(ObjectHistoryTest, AnArrivalThatWasCorrectedIsReplacedAsItWasToldLast) {
-  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
-  for (const bool at_once : {false, true}) {
-    history_ = std::make_unique<ObjectHistory>(library_);
-    view_ = 0;
-    std::vector<std::vector<ObjectEvent>> all;
-    all.push_back(view({{0, left_}}, see_plates({left_})));
-    all.push_back(view({{0, turned}}, see_plates({left_, right_})));  // added: the old place looks taken
-    if (!at_once) all.push_back(view({{0, right_}}, see_plates({left_, right_})));
-    all.push_back(view({{0, right_}}, see_plates({right_})));  // moved there
-    drop_superseded(all);
-    std::vector<ObjectEventKind> changes;
-    for (const auto& events : all)
-      for (const ObjectEvent& e : events)
-        if (is_change(e.kind)) changes.push_back(e.kind);
-    EXPECT_EQ(changes, (std::vector{K::kMoved})) << "corrected in the same view: " << at_once;
-  }
-}
-
-TEST_F(ObjectHistoryTest, ACorrectionIsCorrectedInTurn) {
-  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
-  view({{0, left_}}, see_plates({left_}));
-  for (int i = 0; i < 3; ++i) view({{0, right_}}, see_plates({right_}));
-  const auto wrong = view({{0, turned}}, see_plates({right_}));
-  ASSERT_EQ(kinds(wrong), (std::vector{K::kStillThere, K::kMoved}));
-  const auto events = view({{0, right_}}, see_plates({right_}));
-  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere, K::kMoved}));
-  EXPECT_EQ(events[1].world_from_object_after->rotation, right_.rotation);
-  EXPECT_EQ(events[1].supersedes->view, wrong[1].view);
-}
-
-TEST_F(ObjectHistoryTest, AMoveThatTurnsOutToBeNoneIsTakenBack) {
-  const Rigid3 shifted = plate_at(-0.24, 0, 1);
-  view({{0, left_}}, see_plates({left_}));
-  ASSERT_EQ(kinds(view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
-  const auto events = view({{0, left_}}, see_plates({plate_at(-0.26, 0, 1)}));
-  ASSERT_EQ(kinds(events), (std::vector{K::kStillThere}));
-  ASSERT_TRUE(events[0].supersedes);
-  EXPECT_EQ(events[0].supersedes->kind, K::kMoved);
-  EXPECT_EQ(events[0].supersedes->view, 1);
-}
-
-TEST_F(ObjectHistoryTest, LongAfterItsArrivalAnOtherPoseIsNoNews) {
-  const Rigid3 turned = right_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 0.7);
-  view({{0, left_}}, see_plates({left_}));
-  for (int i = 0; i < 7; ++i) view({{0, turned}}, see_plates({right_}));
-  EXPECT_EQ(kinds(view({{0, right_}}, see_plates({right_}))), (std::vector{K::kStillThere}));
-}
-
 TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {
   view({{0, left_}, {0, right_}}, see_plates({left_, right_}));
   EXPECT_EQ(kinds(view({{0, right_}, {0, left_}}, see_plates({left_, right_}))),
@@ -412,7 +293,7 @@ TEST_F(ObjectHistoryTest, TwoOfAKindKeepTheirTracks) {
   EXPECT_EQ(tracks_[1], 0);
 }
 
-TEST_F(ObjectHistoryTest, AStaticWorldKnowsNoRemoval) {
+TEST_F(ObjectHistoryTest, AStaticWorldHasNoRemoval) {
   view({{0, left_}}, see_plates({left_}), false);
   EXPECT_EQ(kinds(view({}, see_plates({}), false)), (std::vector{K::kNotSeen}));
   EXPECT_TRUE(history_->finish().empty());

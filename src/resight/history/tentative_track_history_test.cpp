@@ -29,7 +29,7 @@ class TentativeTrackHistoryTest : public ObjectHistoryTest {
   ObjectHistoryOptions options_;
 };
 
-TEST_F(TentativeTrackHistoryTest, NothingIsToldBeforeAViewIsSure) {
+TEST_F(TentativeTrackHistoryTest, NoEventIsReportedBeforeAViewConfirmsIt) {
   view({}, see_plates({}));
   EXPECT_TRUE(tentative_view({{0, left_}}, see_plates({left_})).empty());
   const int track = tracks_[0];
@@ -46,7 +46,7 @@ TEST_F(TentativeTrackHistoryTest, NothingIsToldBeforeAViewIsSure) {
       << "once is enough";
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatWasNeverSureGoesWithoutAWord) {
+TEST_F(TentativeTrackHistoryTest, ATrackNeverConfirmedEndsWithoutAnEvent) {
   tentative_view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(view({}, see_nothing()).empty());
   EXPECT_EQ(history_->tracked_objects().size(), 1U) << "the view does not see its place";
@@ -56,7 +56,7 @@ TEST_F(TentativeTrackHistoryTest, WhatWasNeverSureGoesWithoutAWord) {
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatIsOutOfSightIsForgottenWithTheMemory) {
+TEST_F(TentativeTrackHistoryTest, ATrackOutOfSightIsForgottenWithTheMemory) {
   options_.memory.max_views = 3;
   history_ = std::make_unique<ObjectHistory>(library_, options_);
   tentative_view({{0, left_}}, see_plates({left_}));
@@ -66,7 +66,7 @@ TEST_F(TentativeTrackHistoryTest, WhatIsOutOfSightIsForgottenWithTheMemory) {
   EXPECT_TRUE(history_->tracked_objects().empty());
 }
 
-TEST_F(TentativeTrackHistoryTest, AMoveWaitsForASureSightOfTheNewPlace) {
+TEST_F(TentativeTrackHistoryTest, AMoveWaitsForConfirmationAtTheNewPlace) {
   view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(tentative_view({{0, right_}}, see_plates({right_})).empty());
   EXPECT_EQ(kinds(tentative_view({{0, right_}}, see_plates({right_}))), (std::vector{K::kRemoved}));
@@ -78,7 +78,7 @@ TEST_F(TentativeTrackHistoryTest, AMoveWaitsForASureSightOfTheNewPlace) {
   EXPECT_EQ(history_->tracked_objects().size(), 1U);
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatWasHereWhileTheOtherWasSeenElsewhereIsNotThatOne) {
+TEST_F(TentativeTrackHistoryTest, ATrackSeenHereWhileTheOtherWasElsewhereIsNotThatOne) {
   for (const bool is_out_of_sight : {false, true}) {
     history_ = std::make_unique<ObjectHistory>(library_, options_);
     view_ = 0;
@@ -96,19 +96,19 @@ TEST_F(TentativeTrackHistoryTest, WhatWasHereWhileTheOtherWasSeenElsewhereIsNotT
   }
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatLiesInItsOldPlaceHasMovedHoweverUnsure) {
+TEST_F(TentativeTrackHistoryTest, AnObjectWithinItsOldPlaceHasMovedWhateverItsScore) {
   const Rigid3 shifted = plate_at(-0.24, 0, 1);
   view({{0, left_}}, see_plates({left_}));
   EXPECT_EQ(kinds(tentative_view({{0, shifted}}, see_plates({shifted}))), (std::vector{K::kMoved}));
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatIsUnsureTakesNoPlace) {
+TEST_F(TentativeTrackHistoryTest, ATentativeObjectReplacesNoOther) {
   view({{1, left_}}, see_plates({left_}));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(kinds(tentative_view({{0, left_}}, see_nothing())), (std::vector{K::kNotSeen}));
   EXPECT_EQ(history_->tracked_objects().size(), 2U);
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatIsFoundToBeAKnownOneIsNoOtherAnyMore) {
+TEST_F(TentativeTrackHistoryTest, ATrackFoundToBeAnotherEnds) {
   const Rigid3 beside = plate_at(-0.25, 0, 1);
   view({{0, left_}}, see_plates({left_}));
   tentative_view({{0, left_}, {0, beside}}, see_plates({left_}));
@@ -128,7 +128,7 @@ TEST_F(TentativeTrackHistoryTest, WithoutChangeDetectionItIsForgottenInTime) {
   EXPECT_TRUE(history_->tracked_objects().empty());
 }
 
-TEST_F(TentativeTrackHistoryTest, WhatHardlyOverlapsIsAnother) {
+TEST_F(TentativeTrackHistoryTest, AnObjectThatHardlyOverlapsIsAnother) {
   tentative_view({{0, left_}}, see_plates({left_}));
   const int track = tracks_[0];
   tentative_view({{0, plate_at(-0.25, 0, 1)}}, see_nothing());

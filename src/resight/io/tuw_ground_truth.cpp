@@ -177,16 +177,4 @@ Result<void> write_tuw_annotation(const path& directory, const std::string& view
   return {};
 }
 
-Result<void> write_tuw_anno(const path& directory, const std::string& view,
-                            const std::vector<GroundTruthObject>& objects) {
-  if (const auto done = check_objects(directory, objects); !done) return done;
-  std::string text;
-  for (const GroundTruthObject& object : objects) {
-    // The format cannot express "unknown". A share of 1 keeps the object in evaluations.
-    const double share = std::isnan(object.visible_share) ? 1.0 : object.visible_share;
-    text += fmt::format("{} ({}): {}\n", object.object, share, format_pose(object.camera_from_object));
-  }
-  return io::write_file(directory / (view + ".anno"), text);
-}
-
 }  // namespace resight

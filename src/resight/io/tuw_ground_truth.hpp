@@ -42,8 +42,5 @@ struct TuwViewAnnotation {
 /// `<view>_occlusion_<object>_<instance>.txt`.
 [[nodiscard]] Result<void> write_tuw_annotation(const std::filesystem::path& directory, const std::string& view,
                                                 const std::vector<GroundTruthObject>& objects);
-/// Writes `<view>.anno`.
-[[nodiscard]] Result<void> write_tuw_anno(const std::filesystem::path& directory, const std::string& view,
-                                          const std::vector<GroundTruthObject>& objects);
 
 }  // namespace resight

@@ -4,9 +4,9 @@
 
 namespace resight {
 
-/// Weights of a logistic regression; all 0: .5 whatever the evidence. Those of the presets (recognizer_config.cpp) were
-/// fitted to their detections at K = 5 on two seeds of `dynamic-tabletop`; docs/results.md says how well they hold
-/// elsewhere. Those of `default` leave out how like colours look, which depends on the light.
+/// Weights of a logistic regression; all 0: 0.5 for any evidence. The weights of the presets (recognizer_config.cpp)
+/// were fitted to their detections at K = 5 on two seeds of `dynamic-tabletop`; docs/results.md says how well they
+/// generalise. Those of `default` leave out the similarity of colours, which depends on the lighting.
 struct DetectionScoreOptions {
   double offset = 0;
   double gain_weight = 0;            ///< Of what it explains of the scene less what it costs, as a share of the former.

@@ -35,7 +35,7 @@ TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
   EXPECT_NEAR(detection_score(some_evidence(), true, kSome), 1 / (1 + std::exp(-log_odds - 0.8)), 1e-12);
 }
 
-TEST(DetectionScore, GrowsWithAllThatSpeaksForIt) {
+TEST(DetectionScore, GrowsWithTheEvidence) {
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
     const DetectionScoreOptions options = RecognizerConfig::from_preset(preset).score;
     const double score = detection_score(some_evidence(), false, options);
@@ -50,7 +50,7 @@ TEST(DetectionScore, GrowsWithAllThatSpeaksForIt) {
   }
 }
 
-TEST(DetectionScore, WhatExplainsNothingOrCostsMoreThanItDoesIsNoNumberGoneWild) {
+TEST(DetectionScore, IsFiniteIfNothingIsExplainedOrTheCostIsHigher) {
   HypothesisEvidence evidence = some_evidence();
   evidence.explained_scene = 0;
   const double nothing = detection_score(evidence, false, kSome);

@@ -26,7 +26,7 @@ class FindExplainedPixels : public ::testing::Test {
   ModelLibrary library_;
 };
 
-TEST_F(FindExplainedPixels, AreThoseOfWhatStandsWhereItStood) {
+TEST_F(FindExplainedPixels, AreThoseOfAnObjectAtItsPlace) {
   const RgbdFrame frame = see_plates({kLeft, kRight});
   const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<TrackedObject>{{0, 0, kLeft, 0}}, library_);
   ASSERT_EQ(mask.width(), frame.camera.width);
@@ -35,7 +35,7 @@ TEST_F(FindExplainedPixels, AreThoseOfWhatStandsWhereItStood) {
       EXPECT_EQ(mask(u, v) != 0, frame.depth_m(u, v) < 1.5F && u < mask.width() / 2) << u << " " << v;
 }
 
-TEST_F(FindExplainedPixels, WhatHasLeftOrIsNotSeenExplainsNothing) {
+TEST_F(FindExplainedPixels, AnObjectThatHasLeftOrIsNotSeenExplainsNothing) {
   const std::vector<TrackedObject> known{{0, 0, kLeft, 0}};
   EXPECT_EQ(count(find_explained_pixels(see_plates({kRight}), known, library_)), 0);
   EXPECT_EQ(count(find_explained_pixels(see_nothing(), known, library_)), 0);
@@ -44,7 +44,7 @@ TEST_F(FindExplainedPixels, WhatHasLeftOrIsNotSeenExplainsNothing) {
   EXPECT_EQ(count(find_explained_pixels(see_plates({plate_at(-0.26, 0, 1)}), known, library_)), 0);
 }
 
-TEST_F(FindExplainedPixels, WhatStandsBeforeItIsNotExplained) {
+TEST_F(FindExplainedPixels, AnObjectInFrontIsNotExplained) {
   const Rigid3 before = plate_at(-0.16, 0, 0.8);
   const RgbdFrame frame = see_plates({kLeft, before});
   const Image<std::uint8_t> mask = find_explained_pixels(frame, std::vector<TrackedObject>{{0, 0, kLeft, 0}}, library_);

@@ -143,4 +143,28 @@ std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypo
   return mask;
 }
 
+void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return;
+  const std::size_t num_all = hypotheses.size();
+  const std::size_t newest = mask.size() - num_all;  // Of the current view's row.
+  std::vector<std::uint8_t> kept_mask;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+    if (mask[newest + i % num_all] != 0) kept_mask.push_back(mask[i]);
+  std::vector<Hypothesis> kept;
+  for (std::size_t h = 0; h < num_all; ++h)
+    if (mask[newest + h] != 0) kept.push_back(std::move(hypotheses[h]));
+  hypotheses = std::move(kept);
+  mask = std::move(kept_mask);
+}
+
+void reverify_removed(std::size_t num_hypotheses, std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return;
+  const std::size_t newest = mask.size() - num_hypotheses;
+  for (std::size_t h = 0; h < num_hypotheses; ++h) {
+    if (mask[newest + h] != 0) continue;
+    for (std::size_t i = h; i < newest; i += num_hypotheses) mask[i] = 0;
+    mask[newest + h] = 1;
+  }
+}
+
 }  // namespace resight

@@ -18,16 +18,22 @@ struct ViewChanges {
 };
 
 /// In which views of the window (ascending, the current one last) each hypothesis may be present: views x hypotheses,
-/// view-major, 1 = may be. Paper Sec. III-A: "only checks nearby points for test views where the object is indicated as
-/// present".
+/// view-major, 1 = may be present. Paper Sec. III-A: "only checks nearby points for test views where the object is
+/// indicated as present".
 ///
-/// Each view may hold two events for the place of a hypothesis: removed points on its surface (from then on it is
-/// absent, unless the view or a later one generated the hypothesis again) and novel points on its surface (present from
-/// then on, absent before). The last event up to a view decides; before all events, the first one does.
+/// Each view may hold two events for the place of a hypothesis: removed points on its surface (absent from then on,
+/// unless the view or a later one generated the hypothesis again) and novel points on its surface (present from then
+/// on, absent before). The last event up to a view decides; before all events, the first one does.
 [[nodiscard]] std::vector<std::uint8_t> compute_presence_mask(std::span<const Hypothesis> hypotheses,
                                                               const ModelLibrary& library,
                                                               std::span<const ViewChanges> window,
                                                               const RemovalSupportOptions& options = {},
                                                               int num_threads = 1);
+
+/// Drops the hypotheses that the mask excludes from the current view, from both. Does nothing if the mask is empty.
+void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
+/// Admits the hypotheses that the mask excludes from the current view to this view alone: it decides whether they are
+/// still there.
+void reverify_removed(std::size_t num_hypotheses, std::vector<std::uint8_t>& mask);
 
 }  // namespace resight

@@ -70,5 +70,34 @@ TEST_F(PresenceMaskTest, ManyHypothesesAreViewMajorOnAnyNumberOfThreads) {
   EXPECT_EQ(compute_presence_mask(hypotheses, library_, window, {}, 2), expected);
 }
 
+// Three views and three hypotheses; the current view excludes the second one.
+TEST(RemovedHypotheses, AreDiscarded) {
+  std::vector<Hypothesis> hypotheses(3);
+  for (std::size_t h = 0; h < 3; ++h) hypotheses[h].id = h;
+  Mask mask{1, 1, 0, 1, 1, 0, 1, 0, 1};
+  discard_removed(hypotheses, mask);
+  EXPECT_EQ(mask, (Mask{1, 0, 1, 0, 1, 1}));
+  ASSERT_EQ(hypotheses.size(), 2U);
+  EXPECT_EQ(hypotheses[0].id, 0U);
+  EXPECT_EQ(hypotheses[1].id, 2U);
+}
+
+TEST(RemovedHypotheses, AreLeftToTheCurrentView) {
+  Mask mask{1, 1, 0, 1, 1, 0, 1, 0, 1};
+  reverify_removed(3, mask);
+  EXPECT_EQ(mask, (Mask{1, 0, 0, 1, 0, 0, 1, 1, 1}));
+}
+
+TEST(RemovedHypotheses, WithoutAMaskAllStay) {
+  std::vector<Hypothesis> hypotheses(2);
+  Mask mask;
+  discard_removed(hypotheses, mask);
+  reverify_removed(2, mask);
+  EXPECT_EQ(hypotheses.size(), 2U);
+  EXPECT_TRUE(mask.empty());
+  std::vector<Hypothesis> none;
+  discard_removed(none, mask);
+}
+
 }  // namespace
 }  // namespace resight

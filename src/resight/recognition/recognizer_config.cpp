@@ -155,14 +155,14 @@ void add_shape_fields(RecognizerConfig& c, std::vector<Field>& fields) {
 
 void add_change_fields(RecognizerConfig& c, std::vector<Field>& fields) {
   fields.insert(fields.end(), {
-                                  {"attention.max_unseen_share", &c.attention.max_unseen_share},
-                                  {"attention.full_look_every", &c.attention.full_look_every},
-                                  {"attention.max_turn_rad", &c.attention.max_turn_rad},
-                                  {"attention.max_distance_ratio", &c.attention.max_distance_ratio},
-                                  {"attention.max_depth_m", &c.attention.max_depth_m},
-                                  {"attention.object_look_every", &c.attention.object_look_every},
-                                  {"attention.object_min_views", &c.attention.object_min_views},
-                                  {"attention.min_sure_share", &c.attention.min_sure_share},
+                                  {"attention.max_unseen_share", &c.search.max_new_share},
+                                  {"attention.full_look_every", &c.search.full_interval},
+                                  {"attention.max_turn_rad", &c.search.max_turn_rad},
+                                  {"attention.max_distance_ratio", &c.search.max_distance_ratio},
+                                  {"attention.max_depth_m", &c.search.max_depth_m},
+                                  {"attention.object_look_every", &c.search.place_interval},
+                                  {"attention.object_min_views", &c.search.place_min_views},
+                                  {"attention.min_sure_share", &c.search.min_explained_share},
                                   {"changes.tolerance_m", &c.changes.tolerance_m},
                                   {"changes.tolerance_sigmas", &c.changes.tolerance_sigmas},
                                   {"changes.voxel_m", &c.changes.voxel_m},
@@ -378,8 +378,8 @@ RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
     config.poses.enabled = true;
     config.min_carried_share = 0.8;
     config.judge_absent = true;
-    config.attention.max_unseen_share = 0.003;  // 30 x 30 px.
-    config.attention.object_look_every = 4;
+    config.search.max_new_share = 0.003;  // 30 x 30 px.
+    config.search.place_interval = 4;
     config.shape.max_seeds = 600;
     config.skip_planes = true;
     config.shape.enabled = true;
@@ -416,7 +416,7 @@ void RecognizerConfig::check() const {
   poses.check();
   prepare.check();
   sift.check();
-  attention.check();
+  search.check();
   shot.check();
   match.check();
   generate.check();

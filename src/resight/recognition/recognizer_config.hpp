@@ -14,7 +14,7 @@
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
 #include "resight/recognition/detection_score.hpp"
-#include "resight/recognition/view_novelty.hpp"
+#include "resight/recognition/search_planner_options.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/registration/camera_corrector.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -40,9 +40,9 @@ struct RecognizerConfig {
                                   ///< for K views (K > 0).
   double deadline_ms = 0;  ///< From the moment that a view is handed over; what cannot be done until then is left out,
                            ///< and the results depend on the machine. 0 = no deadline.
-  bool skip_planes = false;    ///< No keypoints on planes larger than the largest object (shape.enabled only).
-  AttentionOptions attention;  ///< Of no effect unless objects are remembered: a view that is not searched needs them.
-  CorrectCameraOptions poses;  ///< Of given camera poses (K > 0).
+  bool skip_planes = false;     ///< No keypoints on planes larger than the largest object (shape.enabled only).
+  SearchPlannerOptions search;  ///< No effect unless objects are remembered: a view that is not searched needs them.
+  CorrectCameraOptions poses;   ///< Of given camera poses (K > 0).
   PrepareViewOptions prepare;
   SiftOptions sift;
   ShotOptions shot;
@@ -66,8 +66,8 @@ struct RecognizerConfig {
   void set_seed(std::uint64_t seed);
   /// Single views stand for themselves.
   [[nodiscard]] bool remembers() const { return remember_objects && num_previous_views > 0; }
-  /// Whether what is known decides where a view is searched (AttentionOptions::object_look_every).
-  [[nodiscard]] bool leaves_out_explained() const { return remembers() && attention.object_look_every > 1; }
+  /// Whether tracked objects decide where a view is searched (SearchPlannerOptions::place_interval).
+  [[nodiscard]] bool skips_places() const { return remembers() && search.place_interval > 1; }
   void check() const;
   /// Every field as "section.name" and its value as text, in order: what summary.json keeps of a run.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;

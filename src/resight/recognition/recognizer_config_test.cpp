@@ -94,7 +94,7 @@ TEST(RecognizerConfig, EveryFieldOfEveryOptionsIsASetting) {
   constexpr int kPose = num_fields<EstimatePoseOptions>();
   const std::map<std::string, int> expected{
       {"", num_fields<RecognizerConfig>() - 15},  // the options of the stages
-      {"attention", num_fields<AttentionOptions>()},
+      {"attention", num_fields<SearchPlannerOptions>()},
       {"poses", num_fields<CorrectCameraOptions>() - 2 + num_fields<AlignmentViewOptions>() +
                     num_fields<AlignViewOptions>() - kThreads - 2},  // the prior is that of the poses
       {"prepare", num_fields<PrepareViewOptions>() - 2 - kThreads + num_fields<ComputeNormalsOptions>() - kThreads +

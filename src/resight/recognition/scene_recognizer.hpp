@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -13,26 +12,27 @@
 
 namespace resight {
 
-/// The whole way from views to objects and changes: the one class that knows all stages.
+/// Recognises objects and changes view by view: the one class that sequences all stages (paper, Algorithm 1 and
+/// Sec. III).
 ///
 ///     SceneRecognizer recognizer(library, RecognizerConfig::from_preset("default"));
 ///     recognize_sequence(recognizer, sequence, on_view);  // or add_view() for each frame, then finish()
 ///
-/// Keeps the last K views; its memory does not grow with the length of the sequence. Not thread-safe; it uses threads
-/// itself.
+/// Keeps the last K + 1 views; its memory does not grow with the length of the sequence. Not thread-safe; it uses
+/// threads itself.
 class SceneRecognizer {
  public:
   /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check(). `store`:
-  /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own. `clock`: tells
-  /// the time for RecognizerConfig::deadline_ms.
+  /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own. `clock`: for
+  /// RecognizerConfig::deadline_ms.
   SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
                   std::shared_ptr<ViewHypothesisStore> store = nullptr, Clock clock = steady_clock_s);
   ~SceneRecognizer();
   SceneRecognizer(SceneRecognizer&&) noexcept;
 
-  /// Recognises the scene as it stands at this view. Views in time order; poses in one world frame. Throws
-  /// std::invalid_argument for a frame that fails check_frame(); the recogniser is then as before. `trace`: filled with
-  /// what the stages handed on, unless null.
+  /// Recognises the scene at this view. Views in time order; poses in one world frame. Throws std::invalid_argument for
+  /// a frame that fails check_frame(); the recogniser is then unchanged. `trace`: filled with the intermediate results
+  /// of the stages, unless null.
   SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace = nullptr);
   /// Events that were waiting for a further view; call once after the last view.
   std::vector<ObjectEvent> finish();

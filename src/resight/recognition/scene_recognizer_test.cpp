@@ -15,7 +15,7 @@ namespace {
 using namespace analytic;
 using test::BoxScene;
 
-TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
+TEST(SceneRecognizer, RemembersObjectsBeyondTheLastViews) {
   BoxScene c;
   c.config.num_previous_views = 1;
   for (const SceneUpdate& update : c.run()) {
@@ -29,7 +29,7 @@ TEST(SceneRecognizer, RemembersWhatWasFoundBeyondTheLastViews) {
   EXPECT_TRUE(forgetful[2].detections.empty());
 }
 
-TEST(SceneRecognizer, APoseThatIsOffIsMended) {
+TEST(SceneRecognizer, AnInaccuratePoseIsCorrected) {
   BoxScene c;
   const Rigid3 truth = c.cameras[1];
   RgbdFrame second = render(c.world, truth).frame;
@@ -54,7 +54,7 @@ TEST(SceneRecognizer, SingleViewsAreSingle) {
   EXPECT_TRUE(updates[1].detections.empty());
 }
 
-TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
+TEST(SceneRecognizer, ATrackedObjectTakenAwayIsNotDetected) {
   BoxScene c;
   SceneRecognizer recognizer(c.library, c.config, c.store);
   EXPECT_EQ(recognizer.add_view(render(c.world, c.cameras[0]).frame).detections.size(), 1U);
@@ -67,7 +67,7 @@ TEST(SceneRecognizer, WhatIsRememberedAndTakenAwayIsNoDetection) {
   EXPECT_EQ(last.events[0].kind, ObjectEventKind::kRemoved);
 }
 
-TEST(SceneRecognizer, WhatANeighborTakesWithItIsJudgedByTheNewestView) {
+TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
   BoxScene c;
   c.config.remember_objects = false;
   c.config.min_carried_share = 0;  // Within the sleeve little of the box is seen.
@@ -87,7 +87,7 @@ TEST(SceneRecognizer, WhatANeighborTakesWithItIsJudgedByTheNewestView) {
   }
 }
 
-TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
+TEST(SceneRecognizer, AnObjectOutOfSightIsTrackedButNotDetected) {
   BoxScene c;
   const Eigen::Vector3d eye = c.cameras[0].translation;
   c.cameras[1] = look_at(eye, eye + Eigen::Vector3d(eye.x(), eye.y(), -0.6));  // The other way.
@@ -101,7 +101,7 @@ TEST(SceneRecognizer, WhatTheViewDoesNotSeeIsKnownButNoDetectionOfIt) {
   EXPECT_EQ(c.run()[1].detections.size(), 1U);
 }
 
-TEST(SceneRecognizer, WhatTheSensorIsBlindToIsSeenByItsPrint) {
+TEST(SceneRecognizer, AnObjectWithoutDepthIsConfirmedByItsTexture) {
   const BoxScene c;
   for (const bool has_colors : {true, false}) {
     SceneRecognizer recognizer(c.library, c.config, c.store);
@@ -116,7 +116,7 @@ TEST(SceneRecognizer, WhatTheSensorIsBlindToIsSeenByItsPrint) {
   }
 }
 
-TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
+TEST(SceneRecognizer, RefutedHypothesesAreNotCarriedOver) {
   BoxScene c;
   ViewHypotheses first;
   first.world_from_camera = c.cameras[0];
@@ -139,7 +139,7 @@ TEST(SceneRecognizer, WhatASightRefutesIsNotCarriedOver) {
   for (const SceneUpdate& update : c.run()) EXPECT_EQ(update.counts.merged, 2) << update.view;
 }
 
-TEST(SceneRecognizer, WhatThereIsNoTimeForHasItsTurnAtTheNextView) {
+TEST(SceneRecognizer, LateHypothesesHaveTheirTurnInTheNextView) {
   BoxScene c;
   ViewHypotheses first = *c.store->find(0);
   const Hypothesis right = first.hypotheses[0];
@@ -189,7 +189,7 @@ TEST(SceneRecognizer, TheShapeSearchIsNotBegunTooLate) {
   EXPECT_EQ(update.left_out[0], "shape search");
 }
 
-TEST(SceneRecognizer, HypothesesHaveIdsOfTheirOwn) {
+TEST(SceneRecognizer, HypothesesHaveUniqueIds) {
   BoxScene c;
   SceneRecognizer recognizer(c.library, c.config);
   std::set<std::uint64_t> ids;

@@ -13,26 +13,26 @@
 
 namespace resight {
 
-/// What one of the views in use says about a detection.
+/// Evidence of one view of the window for a detection.
 struct DetectionViewEvidence {
   int view = 0;                ///< Number of the view in the sequence.
-  bool allowed = true;         ///< False: the change detection excludes it (the object was not there yet, or had left).
+  bool allowed = true;         ///< False: change detection excludes it (the object was not there yet, or had left).
   double visible_share = 0;    ///< Of the model's points.
-  double explained_share = 0;  ///< Of the visible ones.
-  double color_share = 0;      ///< Of the model's points: shown in the right colours, without depth. Newest view only,
+  double explained_share = 0;  ///< Of the visible points.
+  double color_share = 0;      ///< Of the model's points: confirmed by their colours, without depth. Newest view only,
                                ///< and only if depth confirms less than min_reported_share.
-  /// Of the model's points: what the view itself sees and explains.
+  /// Share of the model's points that the view itself confirms.
   [[nodiscard]] double confirmed_share() const { return visible_share * explained_share + color_share; }
 };
 
-/// An object recognised in the scene as it stands at a view.
+/// An object recognised in the scene at a view.
 struct Detection {
   int object = -1;  ///< Index into the ModelLibrary.
   int track = -1;   ///< Number in the object history; the same object keeps it when it moves.
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
-  double score = 0;          ///< How likely it is right, in [0, 1] (detection_score.hpp).
+  double score = 0;          ///< Probability that it is right, in [0, 1] (detection_score.hpp).
   double fit = 0;            ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
@@ -42,7 +42,7 @@ struct Detection {
   }
 };
 
-/// Numbers of hypotheses on their way through a view.
+/// Number of hypotheses after each stage.
 struct HypothesisCounts {
   int correspondences = 0;
   int generated = 0;
@@ -51,7 +51,7 @@ struct HypothesisCounts {
   int accepted = 0;
 };
 
-/// All that one view brought.
+/// Result of one view.
 struct SceneUpdate {
   int view = 0;  ///< Number in the sequence, from 0.
   std::string view_name;
@@ -59,8 +59,8 @@ struct SceneUpdate {
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.
-  bool searched = true;  ///< False: nothing new was to be seen, and only what is known was looked at (ViewNovelty).
-  std::vector<std::string> left_out;  ///< What there was no time for (RecognizerConfig::deadline_ms), for the reader.
+  bool searched = true;  ///< False: the view shows nothing new; only tracked objects were verified (SearchPlanner).
+  std::vector<std::string> left_out;  ///< Skipped to meet RecognizerConfig::deadline_ms; for display.
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;
   StageTimes times;

@@ -39,7 +39,7 @@ void add(TrackCorrespondences& track_correspondences, int track, int view, int c
   track_correspondences.add(track, view, found_in(view, count), Rigid3::identity(), {});
 }
 
-TEST(TrackCorrespondences, ThoseOfTheLastSearchesAreHeld) {
+TEST(TrackCorrespondences, KeepsThoseOfTheLastSearches) {
   TrackCorrespondences track_correspondences(2, 0.01);
   add(track_correspondences, 7, 0, 3);
   add(track_correspondences, 7, 4, 2);
@@ -48,7 +48,7 @@ TEST(TrackCorrespondences, ThoseOfTheLastSearchesAreHeld) {
   EXPECT_EQ(views_of(track_correspondences, 7), (std::vector<int>{4, 4, 8}));
 }
 
-TEST(TrackCorrespondences, WhatTheWindowHoldsAndWhatWasBeforeItsPlaceIsLeftOut) {
+TEST(TrackCorrespondences, LeavesOutTheWindowAndViewsOfAFormerPlace) {
   TrackCorrespondences track_correspondences(10, 0.01);
   for (int view = 0; view < 6; ++view) add(track_correspondences, 1, view, 1);
   EXPECT_EQ(views_of(track_correspondences, 1, 2, 5), (std::vector<int>{2, 3, 4}));
@@ -67,7 +67,7 @@ TEST(TrackCorrespondences, EachTrackHasItsOwnUntilItIsForgotten) {
   EXPECT_EQ(views_of(track_correspondences, 2).size(), 2U);
 }
 
-TEST(TrackCorrespondences, WhatIsFarFromThePoseIsNotHeld) {
+TEST(TrackCorrespondences, CorrespondencesFarFromThePoseAreDropped) {
   const Rigid3 shifted = Rigid3::from_translation({0.02, 0, 0});
   TrackCorrespondences track_correspondences(3, 0.01);
   track_correspondences.add(1, 0, found_in(0, 1, shifted), Rigid3::identity(), {});
@@ -77,7 +77,7 @@ TEST(TrackCorrespondences, WhatIsFarFromThePoseIsNotHeld) {
   EXPECT_EQ(track_correspondences.of_views(1, 0, 100, Rigid3::from_translation({0.005, 0, 0})).size(), 1U);
 }
 
-TEST(TrackCorrespondences, AHypothesisAtASymmetricPoseIsMovedOver) {
+TEST(TrackCorrespondences, AHypothesisAtASymmetricPoseIsTransformed) {
   ObjectSymmetries half_turn;
   half_turn.discrete = {Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), std::numbers::pi)};
   TrackCorrespondences track_correspondences(3, 0.01);

@@ -9,6 +9,9 @@ namespace resight {
 
 std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera) {
   std::vector<Hypothesis> hypotheses = of_view.hypotheses;
+  if (of_view.world_from_camera.rotation == world_from_camera.rotation &&
+      of_view.world_from_camera.translation == world_from_camera.translation)
+    return hypotheses;
   const Rigid3 new_from_old = world_from_camera * of_view.world_from_camera.inverse();
   const Rigid3f new_from_old_f(new_from_old);
   for (Hypothesis& h : hypotheses) {
@@ -50,7 +53,7 @@ std::string generation_settings(const RecognizerConfig& config) {
     return std::ranges::any_of(sections, [&](std::string_view s) { return name.starts_with(s); });
   };
   std::string text;
-  const bool all_count = config.leaves_out_explained();  // What is known comes from all stages.
+  const bool all_count = config.skips_places();  // Tracked objects come from all stages.
   for (const auto& [name, value] : config.to_settings())
     if (all_count || !starts_with_one_of(name, kLaterSections) || starts_with_one_of(name, kColors))
       text += name + "=" + value + "\n";

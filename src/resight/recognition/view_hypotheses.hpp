@@ -11,26 +11,25 @@
 
 namespace resight {
 
-/// What recognition takes from one view, before it looks at other views (but for where it needs no search).
+/// What recognition extracts from a single view. Tracked objects only decide where it is searched.
 struct ViewHypotheses {
   std::vector<Hypothesis> hypotheses;                        ///< World frame; ids in the order of the sequence.
   FeatureSet sift;                                           ///< Camera frame.
   FeatureSet shot;                                           ///< Camera frame.
   std::vector<std::vector<Correspondence>> correspondences;  ///< Per object.
   StageTimes times;                                          ///< What it took to make them.
-  std::vector<std::string> left_out;                         ///< Stages that there was no time for.
-  Rigid3 world_from_camera;                                  ///< Of the view, with which they were put into the world.
+  std::vector<std::string> left_out;                         ///< Stages skipped to meet the deadline.
+  Rigid3 world_from_camera;                                  ///< The pose that placed the hypotheses in the world.
 };
 
-/// The same hypotheses for a view whose pose is another.
+/// The same hypotheses for another pose of their view; unchanged, bit for bit, if it is the same pose.
 [[nodiscard]] std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera);
 
-/// Keeps the hypotheses of each view for several recognisers that are shown the same sequence with the same library and
-/// the same generation_settings(), on which alone they depend. The first recogniser makes them, the others take them,
-/// times included. Not thread-safe.
+/// Keeps the hypotheses of each view for several recognisers of the same sequence with the same library and the same
+/// generation_settings(). The first recogniser generates them, the others reuse them, times included. Not thread-safe.
 class ViewHypothesisStore {
  public:
-  /// Null if there is none yet.
+  /// Null if the view has none yet.
   [[nodiscard]] const ViewHypotheses* find(int view) const {
     const auto entry = of_view_.find(view);
     return entry == of_view_.end() ? nullptr : &entry->second;
@@ -43,8 +42,8 @@ class ViewHypothesisStore {
   std::map<int, ViewHypotheses> of_view_;
 };
 
-/// All settings that the hypotheses of a view depend on, as one text: equal texts, equal hypotheses. Neither K nor what
-/// follows the hypotheses is among them, unless what is known decides where a view is searched.
+/// All settings that the hypotheses of a view depend on, as one text: equal texts, equal hypotheses. K and the settings
+/// of later stages are left out, unless tracked objects decide where a view is searched.
 [[nodiscard]] std::string generation_settings(const RecognizerConfig& config);
 
 }  // namespace resight

@@ -6,7 +6,7 @@
 namespace resight {
 namespace {
 
-TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
+TEST(GenerationSettings, DependOnTheGenerationOnly) {
   const RecognizerConfig base = RecognizerConfig::from_preset("mvr");
   const std::string text = generation_settings(base);
   EXPECT_GT(text.size(), 100U);
@@ -35,20 +35,20 @@ TEST(GenerationSettings, DependOnWhatMakesHypothesesOnly) {
 }
 
 // Where a view is searched then depends on what is known, and that on all settings.
-TEST(GenerationSettings, AreAllSettingsWhereWhatIsKnownIsNotSearchedFor) {
+TEST(GenerationSettings, AreAllSettingsIfPlacesAreSkipped) {
   RecognizerConfig base = RecognizerConfig::from_preset("default");
-  base.attention.object_look_every = 4;
+  base.search.place_interval = 4;
   RecognizerConfig other = base;
   other.num_previous_views = base.num_previous_views + 1;
   EXPECT_NE(generation_settings(other), generation_settings(base));
   other = base;
   other.verify.selection.outlier_weight *= 2;
   EXPECT_NE(generation_settings(other), generation_settings(base));
-  base.attention.object_look_every = other.attention.object_look_every = 0;
+  base.search.place_interval = other.search.place_interval = 0;
   EXPECT_EQ(generation_settings(other), generation_settings(base));
 }
 
-TEST(ViewHypothesisStore, GivesBackWhatItWasGiven) {
+TEST(ViewHypothesisStore, ReturnsWhatWasStored) {
   ViewHypothesisStore store;
   EXPECT_EQ(store.find(3), nullptr);
   ViewHypotheses made;
@@ -60,7 +60,7 @@ TEST(ViewHypothesisStore, GivesBackWhatItWasGiven) {
   EXPECT_EQ(store.find(2), nullptr);
 }
 
-TEST(MoveHypotheses, PutsThemWhereTheOtherPoseSeesThem) {
+TEST(MoveHypotheses, TransformsThemWithThePose) {
   ViewHypotheses made;
   made.world_from_camera = {Rigid3::from_axis_angle({1, 2, 3}, 0.4).rotation, {0.1, 0.2, 0.3}};
   const Rigid3 camera_from_object = {Rigid3::from_axis_angle({0, 1, 0}, 1.0).rotation, {0, 0.1, 0.8}};

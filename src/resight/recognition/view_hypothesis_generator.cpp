@@ -87,7 +87,7 @@ void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const Sea
                                               view.frame.world_from_camera, candidate.object, number));
 }
 
-// Most groups of correspondences are chance, and a look at their own view tells.
+// Most groups of correspondences are spurious, which their own view shows.
 void ViewHypothesisGenerator::discard_spurious(const SearchView& view, std::vector<Hypothesis>& hypotheses) const {
   if (config_.shape.min_feature_share <= 0) return;
   const std::vector<PoseFit> fits = shapes_.look_at(view, hypotheses);

@@ -16,15 +16,15 @@ namespace resight {
 /// What the shape search shares with the verification.
 [[nodiscard]] MatchCriteria match_criteria(const VerifyOptions& verify);
 
-/// Makes the hypotheses of single views: from groups of correspondences (paper Sec. III-A), and from shape if
+/// Generates the hypotheses of single views: from groups of correspondences (paper, Sec. III-A), and from shape if
 /// RecognizerConfig::shape is enabled. Library and config must outlive it.
 class ViewHypothesisGenerator {
  public:
   ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config);
 
-  /// Of a view with its number in the sequence; ids start at `first_id`. Where `explained` is not 0 nothing is searched
-  /// (as large as the view; empty: everywhere is). Neither the search as a whole nor that by shape is begun after the
-  /// deadline.
+  /// Searches a view with its number in the sequence; ids start at `first_id`. Pixels where `explained` is not 0 are
+  /// skipped (same size as the view; empty: none is). After the deadline, neither the search as a whole nor the search
+  /// by shape is begun.
   [[nodiscard]] ViewHypotheses generate(const PreparedView& view, int number, std::uint64_t first_id,
                                         const Deadline& deadline = {}, const Image<std::uint8_t>& explained = {}) const;
 

@@ -2,7 +2,6 @@
 #include "resight/recognition/view_novelty.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "resight/core/check.hpp"
@@ -11,10 +10,10 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kLooks = 4;
+constexpr std::size_t kRememberedViews = 4;
 constexpr int kPixelStep = 4;
-constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, the same surface is measured here and there.
-constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As of a change; far away, noise flickers.
+constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, measurements of the same surface vary.
+constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As in change detection.
 
 // Whether one of the pixels around has the depth of the point.
 bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m) {
@@ -30,35 +29,24 @@ bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<fl
 
 }  // namespace
 
-void AttentionOptions::check() const {
-  check_in_range("AttentionOptions.max_unseen_share", max_unseen_share, 0, 1);
-  check_positive("AttentionOptions.full_look_every", full_look_every);
-  check_in_range("AttentionOptions.max_turn_rad", max_turn_rad, 0, std::numbers::pi);
-  check_in_range("AttentionOptions.max_distance_ratio", max_distance_ratio, 1, 1000);
-  check_positive("AttentionOptions.max_depth_m", max_depth_m);
-  check_not_negative("AttentionOptions.object_look_every", object_look_every);
-  check_positive("AttentionOptions.object_min_views", object_min_views);
-  check_in_range("AttentionOptions.min_sure_share", min_sure_share, 0, 1);
-}
-
-ViewNovelty::ViewNovelty(const AttentionOptions& options) : options_((options.check(), options)) {}
+ViewNovelty::ViewNovelty(const SearchPlannerOptions& options) : options_((options.check(), options)) {}
 
 bool ViewNovelty::needs_search(const PreparedView& view, const ChangeResult& changes) {
-  if (options_.max_unseen_share <= 0) return true;
-  ++views_since_look_;
-  const bool due = looks_.empty() || views_since_look_ == 0 || views_since_look_ >= options_.full_look_every ||
+  if (options_.max_new_share <= 0) return true;
+  ++views_since_search_;
+  const bool due = searched_.empty() || views_since_search_ == 0 || views_since_search_ >= options_.full_interval ||
                    changes.pose_suspect || shows_something_new(view, changes);
   if (!due) return false;
-  views_since_look_ = 0;
-  looks_.push_back({view.frame.camera, view.frame.world_from_camera, view.frame.depth_m});
-  if (looks_.size() > kLooks) looks_.pop_front();
+  views_since_search_ = 0;
+  searched_.push_back({view.frame.camera, view.frame.world_from_camera, view.frame.depth_m});
+  if (searched_.size() > kRememberedViews) searched_.pop_front();
   return true;
 }
 
 bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResult& changes) const {
   const Rigid3f world_from_camera(view.frame.world_from_camera);
   const OrganizedCloud& cloud = view.cloud;
-  require(view.edge_distance_px.size() == cloud.z.size(), "Attention: the view is not prepared");
+  require(view.edge_distance_px.size() == cloud.z.size(), "ViewNovelty: the view is not prepared");
   int num_seen = 0;
   int num_new = 0;
   for (int v = 0; v < cloud.height(); v += kPixelStep)
@@ -71,17 +59,17 @@ bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResu
       const bool novel = changes.novel_mask.size() > 0 && changes.novel_mask[i] != 0;
       if (novel || !was_searched(world_from_camera * cloud.point(i), world_from_camera.translation)) ++num_new;
     }
-  return num_new > options_.max_unseen_share * num_seen;
+  return num_new > options_.max_new_share * num_seen;
 }
 
 bool ViewNovelty::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vector3f& eye_in_world) const {
   const Eigen::Vector3f ray = p_in_world - eye_in_world;
   const auto min_cosine = static_cast<float>(std::cos(options_.max_turn_rad));
-  for (const Look& look : looks_) {
-    const Rigid3f camera_from_world(look.world_from_camera.inverse());
+  for (const SearchedView& searched : searched_) {
+    const Rigid3f camera_from_world(searched.world_from_camera.inverse());
     const Eigen::Vector3f p = camera_from_world * p_in_world;
-    if (!was_measured(p, look.camera, look.depth_m)) continue;
-    const Eigen::Vector3f ray_then = p_in_world - look.world_from_camera.translation.cast<float>();
+    if (!was_measured(p, searched.camera, searched.depth_m)) continue;
+    const Eigen::Vector3f ray_then = p_in_world - searched.world_from_camera.translation.cast<float>();
     const float distance = ray.norm();
     if (ray.dot(ray_then) > min_cosine * distance * ray_then.norm() &&
         ray_then.norm() < static_cast<float>(options_.max_distance_ratio) * distance)

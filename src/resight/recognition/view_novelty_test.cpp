@@ -15,21 +15,21 @@ using namespace analytic;
 struct Watch {
   World world = one_box();
   std::vector<Rigid3> cameras = circle_of_cameras(12, 0.8, 0.6, 0.6);
-  ViewNovelty attention{{.max_unseen_share = 0.003, .full_look_every = 5}};
+  ViewNovelty novelty{{.max_new_share = 0.003, .full_interval = 5}};
 
   bool needs_search(const Rigid3& camera, const ChangeResult& changes = {}) {
-    return attention.needs_search(prepare_view(render(world, camera).frame), changes);
+    return novelty.needs_search(prepare_view(render(world, camera).frame), changes);
   }
 };
 
-TEST(ViewNovelty, ALookIsRepeatedAfterSomeViewsOnly) {
+TEST(ViewNovelty, AnUnchangedViewIsSearchedOncePerInterval) {
   Watch w;
   for (int view = 0; view < 12; ++view) EXPECT_EQ(w.needs_search(w.cameras[0]), view % 5 == 0) << view;
 }
 
-TEST(ViewNovelty, OffItIsAlwaysDue) {
+TEST(ViewNovelty, OffEveryViewIsSearched) {
   Watch w;
-  w.attention = ViewNovelty({});
+  w.novelty = ViewNovelty({});
   for (int view = 0; view < 3; ++view) EXPECT_TRUE(w.needs_search(w.cameras[0]));
 }
 
@@ -41,7 +41,7 @@ TEST(ViewNovelty, AnotherSideIsNew) {
   EXPECT_FALSE(w.needs_search(w.cameras[1]));
 }
 
-TEST(ViewNovelty, SoIsANearerLook) {
+TEST(ViewNovelty, ANearerViewIsNew) {
   Watch w;
   const Eigen::Vector3d eye = w.cameras[0].translation;
   EXPECT_TRUE(w.needs_search(look_at(eye, {0, 0, 0})));
@@ -49,7 +49,7 @@ TEST(ViewNovelty, SoIsANearerLook) {
   EXPECT_TRUE(w.needs_search(look_at(0.6 * eye, {0, 0, 0})));
 }
 
-TEST(ViewNovelty, WhatWasPutThereOrUncoveredIsNew) {
+TEST(ViewNovelty, AddedAndUncoveredSurfacesAreNew) {
   Watch w;
   EXPECT_TRUE(w.needs_search(w.cameras[0]));
   w.world.solids.clear();
@@ -63,7 +63,7 @@ TEST(ViewNovelty, WhatWasPutThereOrUncoveredIsNew) {
   EXPECT_TRUE(w.needs_search(w.cameras[0], changes));
 }
 
-TEST(ViewNovelty, NoiseOfTheDepthIsNothingNew) {
+TEST(ViewNovelty, DepthNoiseIsNotNew) {
   const auto shifted = [](const Watch& w, float by_m) {
     RgbdFrame frame = render(w.world, w.cameras[0]).frame;
     for (std::size_t i = 0; i < frame.depth_m.size(); ++i) frame.depth_m[i] += by_m;
@@ -71,11 +71,11 @@ TEST(ViewNovelty, NoiseOfTheDepthIsNothingNew) {
   };
   Watch w;
   EXPECT_TRUE(w.needs_search(w.cameras[0]));
-  EXPECT_FALSE(w.attention.needs_search(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
-  EXPECT_TRUE(w.attention.needs_search(shifted(w, 0.04F), {}));
+  EXPECT_FALSE(w.novelty.needs_search(shifted(w, 0.022F), {})) << "2 cm and half of three sigmas";
+  EXPECT_TRUE(w.novelty.needs_search(shifted(w, 0.04F), {}));
 }
 
-TEST(ViewNovelty, AWrongPoseIsNoReasonToLookAway) {
+TEST(ViewNovelty, AViewWithASuspectPoseIsSearched) {
   Watch w;
   EXPECT_TRUE(w.needs_search(w.cameras[0]));
   ChangeResult suspect;
@@ -84,7 +84,7 @@ TEST(ViewNovelty, AWrongPoseIsNoReasonToLookAway) {
 }
 
 // From recognition on: a view that shows nothing new is not searched, and what is known is found in it all the same.
-TEST(ViewNovelty, KnownObjectsAreConfirmedWithoutASearch) {
+TEST(ViewNovelty, TrackedObjectsAreConfirmedWithoutASearch) {
   const World world = one_box();
   const ModelLibrary library = analytic::make_library();
   auto store = std::make_shared<ViewHypothesisStore>();
@@ -116,9 +116,9 @@ TEST(ViewNovelty, SingleViewsAreSearched) {
   }
 }
 
-TEST(ViewNovelty, RefusesNonsense) {
-  EXPECT_THROW(ViewNovelty({.max_unseen_share = 2}), std::invalid_argument);
-  EXPECT_THROW(ViewNovelty({.full_look_every = 0}), std::invalid_argument);
+TEST(ViewNovelty, RefusesInvalidOptions) {
+  EXPECT_THROW(ViewNovelty({.max_new_share = 2}), std::invalid_argument);
+  EXPECT_THROW(ViewNovelty({.full_interval = 0}), std::invalid_argument);
   EXPECT_THROW(ViewNovelty({.max_distance_ratio = 0.5}), std::invalid_argument);
 }
 

@@ -6,54 +6,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
 #include <stdexcept>
 
 #include "resight/core/random.hpp"
-#include "resight/geometry/triangle_mesh.hpp"
 #include "resight/geometry/voxel_key.hpp"
 
 namespace resight {
 namespace {
-
-// A closed tube of `radius` and height 0.1 m around z. Facets face outwards.
-TriangleMesh make_cylinder(float radius) {
-  TriangleMesh mesh;
-  constexpr int kSides = 64;
-  for (int i = 0; i < kSides; ++i) {
-    const double phi = 2 * std::numbers::pi * i / kSides;
-    const auto x = static_cast<float>(radius * std::cos(phi));
-    const auto y = static_cast<float>(radius * std::sin(phi));
-    mesh.vertices.emplace_back(x, y, 0.0F);
-    mesh.vertices.emplace_back(x, y, 0.1F);
-  }
-  mesh.vertices.emplace_back(0.0F, 0.0F, 0.0F);
-  mesh.vertices.emplace_back(0.0F, 0.0F, 0.1F);
-  for (int i = 0; i < kSides; ++i) {
-    const int a = 2 * i;
-    const int b = 2 * ((i + 1) % kSides);
-    mesh.faces.push_back({a, b, b + 1});
-    mesh.faces.push_back({a, b + 1, a + 1});
-    mesh.faces.push_back({2 * kSides, b, a});
-    mesh.faces.push_back({2 * kSides + 1, a + 1, b + 1});
-  }
-  return mesh;
-}
-
-double mesh_area(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& f : mesh.faces) {
-    const Eigen::Vector3d a = mesh.vertices[f[0]].cast<double>();
-    area += 0.5 * (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a).norm();
-  }
-  return area;
-}
-
-Eigen::Vector3f cylinder_normal(const Eigen::Vector3f& p) {
-  if (p.z() < 1e-5F) return {0, 0, -1};
-  if (p.z() > 0.1F - 1e-5F) return {0, 0, 1};
-  return Eigen::Vector3f(p.x(), p.y(), 0).normalized();
-}
 
 SurfaceSamples make_samples(int count, std::uint64_t seed) {
   Rng rng(seed);

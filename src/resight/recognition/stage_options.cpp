@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/stage_options.hpp"
+
+namespace resight {
+
+DynamicSceneOptions scene_options(const RecognizerConfig& config) {
+  return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
+          config.integrate};
+}
+
+CorrectCameraOptions correction_options(const RecognizerConfig& config) {
+  CorrectCameraOptions options = config.poses;
+  options.enabled &= config.num_previous_views > 0;
+  return options;
+}
+
+SearchPlanner make_search_planner(const ModelLibrary& library, const RecognizerConfig& config) {
+  const auto max_searches = static_cast<std::size_t>(config.num_previous_views) + 1;
+  return {library, config.remembers() ? config.search : SearchPlannerOptions{}, config.history.presence,
+          TrackCorrespondences(max_searches, config.verify.support.max_distance_m)};
+}
+
+}  // namespace resight

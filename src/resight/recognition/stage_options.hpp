@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/recognition/search_planner.hpp"
+#include "resight/reconstruction/dynamic_scene.hpp"
+
+namespace resight {
+
+/// Options of single stages that depend on several settings of the recogniser.
+[[nodiscard]] DynamicSceneOptions scene_options(const RecognizerConfig& config);
+/// No correction for single views: they have nothing to be aligned to.
+[[nodiscard]] CorrectCameraOptions correction_options(const RecognizerConfig& config);
+/// Searches every view everywhere unless objects are remembered.
+[[nodiscard]] SearchPlanner make_search_planner(const ModelLibrary& library, const RecognizerConfig& config);
+
+}  // namespace resight
