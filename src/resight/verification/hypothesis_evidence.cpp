@@ -12,9 +12,9 @@ const char* to_string(Verdict verdict) {
     case Verdict::kNoSupport:
       return "no support";
     case Verdict::kDifferentAppearance:
-      return "other pattern";
+      return "different appearance";
     case Verdict::kSuppressed:
-      return "outvoted";
+      return "suppressed";
     case Verdict::kCost:
       return "cost";
   }
