@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxGoneShare = 0.1;
+constexpr double kMaxGoneShare = 0.1;  // A pose that sees more free space may be wrong.
 constexpr float kMinDepth_m = 0.1F;
 constexpr double kPointRadius_m = 0.0015;  // Surfaces of models are sampled about 2 mm apart.
 
@@ -44,10 +44,10 @@ class Marker {
 
 }  // namespace
 
-Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> known,
+Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> tracked,
                                           const ModelLibrary& library, const PresenceOptions& presence) {
   Marker marker(frame, static_cast<float>(presence.margin.base_m));
-  for (const TrackedObject& object : known) {
+  for (const TrackedObject& object : tracked) {
     const PointCloud& surface = library.objects[static_cast<std::size_t>(object.object)].surface;
     const ObjectPresence seen = assess_presence(surface, object.world_from_object, frame, presence);
     if (!seen.is_informative || seen.gone_share > kMaxGoneShare) continue;

@@ -10,10 +10,10 @@
 
 namespace resight {
 
-/// The pixels (255, others 0) whose depth is that of a known object at its place, within presence.margin.base_m: what
-/// is thinner and lies on it is explained with it. An object of which the view sees too little to tell, or more than a
-/// tenth free (ObjectPresence::gone_share), explains none.
-[[nodiscard]] Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> known,
+/// The pixels (255, others 0) whose depth is that of a tracked object at its place, within presence.margin.base_m:
+/// thinner things that lie on it are explained with it. An object explains no pixels if the view sees too little of its
+/// place, or more than a tenth of it free (ObjectPresence::gone_share).
+[[nodiscard]] Image<std::uint8_t> find_explained_pixels(const RgbdFrame& frame, std::span<const TrackedObject> tracked,
                                                         const ModelLibrary& library,
                                                         const PresenceOptions& presence = {});
 

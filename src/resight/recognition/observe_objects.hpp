@@ -12,8 +12,8 @@ namespace resight {
 /// Called after each view.
 using ObserveProgress = std::function<void(int view, const SceneUpdate& update)>;
 
-/// What each view of a sequence shows by itself (preset `default`, K = 0): needs no right camera poses. The error names
-/// the view that cannot be read.
+/// Recognises each view of a sequence by itself (preset `default`, K = 0). Camera poses are not used. Fails with the
+/// error of the first view that cannot be read.
 [[nodiscard]] Result<std::vector<ObservedObject>> observe_objects(const Sequence& sequence, const ModelLibrary& library,
                                                                   int num_threads,
                                                                   const ObserveProgress& progress = {});

@@ -8,15 +8,15 @@
 
 namespace resight {
 
-/// What the stages handed on at one view: for finding out where an object was lost (evaluation/loss.hpp). Filled on
-/// request by SceneRecognizer::add_view(); it changes nothing of the result.
+/// Intermediate results of the stages at one view, to find out where an object was lost (evaluation/loss.hpp). Filled
+/// on request by SceneRecognizer::add_view(); the result is the same with and without it.
 struct RecognitionTrace {
   FeatureSet sift;                                           ///< Of the view, camera frame.
   FeatureSet shot;                                           ///< Of the view, camera frame.
   std::vector<std::vector<Correspondence>> correspondences;  ///< Of the view, per object; scene side in camera frame.
   std::vector<Hypothesis> merged;                            ///< Of the window, before clustering; world frame.
   std::vector<Hypothesis> clustered;                         ///< After clustering; world frame.
-  std::vector<Hypothesis> verified;          ///< Of these, those that the changes do not exclude; world frame.
+  std::vector<Hypothesis> verified;          ///< Without those that changes exclude or that were late; world frame.
   std::vector<HypothesisEvidence> evidence;  ///< One per entry of `verified`.
 };
 
