@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # The documents name what exists: tests and files of docs/paper-to-code.md, links between documents, and the C++ of the README,
-# each line of which must stand in examples/. Usage: docs_test.sh SOURCE_DIR
+# each line of which must stand in examples/, and the options of the program. Usage: docs_test.sh SOURCE_DIR [PROGRAM]
 set -uo pipefail
 cd "$1"
 failures=0
@@ -36,6 +36,10 @@ while read -r line; do
   checked=$((checked + 1))
   grep -rqF -- "$line" examples || missing "README.md: no example holds this line: $line"
 done < <(awk '/^```cpp/ { on = 1; next } /^```/ { on = 0 } on' README.md | sed 's/^ *//')
+
+if [[ -n ${2:-} ]]; then
+  "$2" options | diff -q - docs/options.md >/dev/null || missing "docs/options.md differs from what 'resight options' prints: write it anew"
+fi
 
 ((checked > 40)) || missing "only $checked names were checked"
 ((failures == 0)) && echo "docs: all $checked names exist"

@@ -174,8 +174,8 @@ INSTANTIATE_TEST_SUITE_P(Presets, PipelineTest,
 TEST(Pipeline, WhatIsKnownAndConfirmedIsNotSearchedForInEachView) {
   constexpr std::size_t kViews = 3;
   RecognizerConfig config = RecognizerConfig::from_preset("default");
-  config.search.place_interval = 0;
-  config.search.max_new_share = 0;  // Every view is searched.
+  config.search.place_interval.reset();
+  config.search.max_new_share.reset();  // Every view is searched.
   config.set_num_threads(kThreads);
   SceneRecognizer everywhere(world().library, config);
   config.search.place_interval = 4;

@@ -7,6 +7,7 @@
 #include "resight/core/files.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
+#include "resight/recognition/stage_options.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
 #include "resight/report/overlay.hpp"
 
@@ -37,8 +38,9 @@ void run_changes(const ChangesArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = value_or_throw(open_posed_sequence(arguments.sequence));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  DynamicScene scene(
-      {config.num_previous_views, true, config.clear_tolerance_m, config.prepare, config.changes, config.integrate});
+  DynamicSceneOptions options = scene_options(config);
+  options.detect_changes = true;  // Whatever the preset: this is what the command is for.
+  DynamicScene scene(options);
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
     const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));

@@ -48,7 +48,7 @@ struct RecognizeArguments {
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;
   std::optional<double> deadline_ms;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
   int num_threads = 1;
 };
 
@@ -115,9 +115,9 @@ struct EvaluateArguments {
   bool without_clustering = false;  ///< Also run without clustering.
   int shard = 1;
   int num_shards = 1;
-  bool merge = false;  ///< Merge only, without computing.
-  bool bop = false;    ///< Also compute the BOP average recalls.
-  std::uint64_t seed = 1;
+  bool merge = false;                 ///< Merge only, without computing.
+  bool bop = false;                   ///< Also compute the BOP average recalls.
+  std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
   int num_threads = 1;
 };
 

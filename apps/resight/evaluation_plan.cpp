@@ -89,8 +89,8 @@ std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
         } catch (const std::invalid_argument& error) {
           throw InputError(fmt::format("--presets: {}", error.what()));
         }
-        config.set_seed(arguments.seed);
-        config.cluster_hypotheses = clustered;
+        if (arguments.seed) config.set_seed(*arguments.seed);
+        if (!clustered) config.hypotheses.cluster.reset();
         configs.push_back(config);
       }
     }
@@ -135,7 +135,7 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
       const auto [entry, is_new] = group_of.try_emplace(generation_settings(config), num_groups);
       num_groups += is_new ? 1 : 0;
       const std::string name = fmt::format("{}.{}.k{}{}", sequence.name, config.preset, config.num_previous_views,
-                                           config.cluster_hypotheses ? "" : ".unclustered");
+                                           config.hypotheses.cluster ? "" : ".unclustered");
       plan.units.push_back({name, fingerprint(config, models_hash), sequence, config, entry->second,
                             entry->second % arguments.num_shards + 1});
     }

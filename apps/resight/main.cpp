@@ -14,6 +14,7 @@
 #include "processor.hpp"
 #include "resight/core/allocator.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/recognition/options_reference.hpp"
 
 namespace {
 
@@ -91,9 +92,9 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "Camera poses: given, refine (starting from the given poses) or auto (from the views alone)")
       ->check(CLI::IsMember({"given", "refine", "auto"}))
       ->capture_default_str();
-  command->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results")
-      ->check(kSeeds)
-      ->capture_default_str();
+  command
+      ->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results [run.seed: 1]")
+      ->check(kSeeds);
   command
       ->add_option(
           "--deadline-ms", a.deadline_ms,
@@ -198,9 +199,9 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
   command->add_option("--shard", shard,
                       "I/N: compute only the I-th of N parts; the last part to finish merges the results");
   command->add_flag("--merge", a.merge, "Only merge existing runs; fails if one is missing")->excludes("--shard");
-  command->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results")
-      ->check(kSeeds)
-      ->capture_default_str();
+  command
+      ->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results [run.seed: 1]")
+      ->check(kSeeds);
   add_threads(command, a.num_threads);
   return [&a, &shard] {
     if (!shard.empty()) parse_shard(shard, a.shard, a.num_shards);
@@ -217,6 +218,11 @@ std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
       ->capture_default_str();
   add_threads(command, a.num_threads);
   return [&a] { run_demo(a); };
+}
+
+std::function<void()> add_options(CLI::App& app) {
+  app.add_subcommand("options", "Print all options of settings files (--config) as Markdown");
+  return [] { fmt::print("{}", resight::options_reference()); };
 }
 
 int refuse(const std::string& message) {
@@ -263,10 +269,16 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{
-      add_demo(app, a.demo),           add_simulate(app, a.simulate), add_train(app, a.train),
-      add_recognize(app, a.recognize), add_changes(app, a.changes),   add_track(app, a.track),
-      add_model(app, a.model),         add_convert(app, a.convert),   add_evaluate(app, a.evaluate, a.shard)};
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),
+                                          add_simulate(app, a.simulate),
+                                          add_train(app, a.train),
+                                          add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes),
+                                          add_track(app, a.track),
+                                          add_model(app, a.model),
+                                          add_convert(app, a.convert),
+                                          add_evaluate(app, a.evaluate, a.shard),
+                                          add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);

@@ -8,6 +8,7 @@
 #include "progress.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/evaluation/ghosts.hpp"
+#include "resight/io/settings_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight::app {
@@ -40,7 +41,7 @@ std::string describe(const SceneUpdate& update) {
 RecognizerConfig make_config(const std::string& preset, const std::optional<std::filesystem::path>& file,
                              std::optional<int> num_previous_views, int num_threads) {
   RecognizerConfig config = RecognizerConfig::from_preset(preset);
-  if (file) config = value_or_throw(read_config(*file, config));
+  if (file) config = value_or_throw(read_settings(*file, config));
   if (num_previous_views) config.num_previous_views = *num_previous_views;
   config.set_num_threads(num_threads);
   return config;

@@ -17,8 +17,8 @@ namespace resight::app {
 void run_recognize(const RecognizeArguments& arguments) {
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
-  config.set_seed(arguments.seed);
-  if (arguments.deadline_ms) config.deadline_ms = *arguments.deadline_ms;
+  if (arguments.seed) config.set_seed(*arguments.seed);
+  if (arguments.deadline_ms) config.run.deadline_ms = *arguments.deadline_ms;
   const ModelLibrary library = value_or_throw(load_library(arguments.models, TrainOptions{}.hash()));
   if (library.objects.empty()) throw InputError(fmt::format("{}: contains no models", arguments.models.string()));
   for (const ObjectModel& object : library.objects)

@@ -18,7 +18,7 @@ double group_ours(const StageInput& input, Posed& found) {
   return cpu_time_s([&] {
     for (std::size_t o = 0; o < input.correspondences.size(); ++o)
       for (const CorrespondenceGroup& group :
-           group_correspondences(input.correspondences[o], input.config.generate.grouping))
+           group_correspondences(input.correspondences[o], input.config.hypotheses.generate.grouping))
         found.push_back({static_cast<int>(o), group.scene_from_object});
   });
 }
@@ -57,9 +57,9 @@ double group_peer(const StageInput& input, Posed& found, Group&& group) {
 void compare_grouping(const StageInput& input) {
   std::size_t num_correspondences = 0;
   for (const auto& of_object : input.correspondences) num_correspondences += of_object.size();
-  const GroupCorrespondencesOptions& options = input.config.generate.grouping;
+  const GroupCorrespondencesOptions& options = input.config.hypotheses.generate.grouping;
   const auto consistency_m = static_cast<float>(options.max_distance_difference_m);
-  const ShotOptions& shot = input.config.shot;
+  const ShotOptions& shot = input.config.features.shot;
   const PointCloud surface = voxel_downsample(to_point_cloud(input.view.cloud, nullptr, true), shot.support_voxel_m);
   const auto by_consistency = [&](const Pairs& pairs, const ObjectModel&) {
     return pcl_peers::group_correspondences(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,

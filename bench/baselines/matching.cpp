@@ -104,7 +104,7 @@ MatchingContest make_contest(const FeatureSet& features, CodedFeatures ObjectMod
     const auto row = features.descriptor(i);
     contest.queries.insert(contest.queries.end(), row.begin(), row.end());
   }
-  const DescriptorIndex exact(contest.indexed, contest.dimension, {.num_cells = 1});
+  const DescriptorIndex exact(contest.indexed, contest.dimension, {.search = IndexSearch::kExact});
   for (const DescriptorMatch& m : exact.search(contest.queries, 1)) contest.nearest_sq.push_back(m.distance_sq);
   return contest;
 }
@@ -112,7 +112,7 @@ MatchingContest make_contest(const FeatureSet& features, CodedFeatures ObjectMod
 void run(const std::string& name, MatchingContest& contest, const DescriptorIndexOptions& options) {
   if (contest.queries.empty() || contest.indexed.empty()) return;
   add_ours(contest, "resight", options);
-  add_ours(contest, "resight, exact", {.num_cells = 1});
+  add_ours(contest, "resight, exact", {.search = IndexSearch::kExact});
   cv::setRNGSeed(1);
   for (const int num_leaves : {32, 128, 512})
     add_opencv(contest, fmt::format("OpenCV FlannBasedMatcher, 4 trees, {} leaves", num_leaves),
@@ -130,9 +130,9 @@ void compare_matching(const StageInput& input) {
   const int num_threads_before = cv::getNumThreads();
   cv::setNumThreads(1);
   MatchingContest sift = make_contest(input.sift, &ObjectModel::sift, input.library);
-  run("SIFT", sift, input.config.match.sift_index);
+  run("SIFT", sift, input.config.features.match.sift_index);
   MatchingContest shot = make_contest(input.shot, &ObjectModel::shot, input.library);
-  run("SHOT", shot, input.config.match.shot_index);
+  run("SHOT", shot, input.config.features.match.shot_index);
   cv::setNumThreads(num_threads_before);
 }
 

@@ -74,7 +74,7 @@ Described describe_peer(const ShotTask& task, const ShotOptions& options) {
 }
 
 std::string rate(const Described& view, const Described& before, std::size_t num_keypoints) {
-  const DescriptorIndex exact(before.descriptors, kDimension, {.num_cells = 1});
+  const DescriptorIndex exact(before.descriptors, kDimension, {.search = IndexSearch::kExact});
   const std::vector<DescriptorMatch> matches = exact.search(view.descriptors, 1);
   const KdTree tree(before.points_in_world);
   int num_with_partner = 0, num_right = 0;
@@ -93,7 +93,7 @@ std::string rate(const Described& view, const Described& before, std::size_t num
 }  // namespace
 
 void compare_shot(const StageInput& input) {
-  ShotOptions options = input.config.shot;
+  ShotOptions options = input.config.features.shot;
   const int radius_px = input.config.prepare.normals.window_radius_px;
   const ShotTask task = make_task(input.view, options, radius_px);
   const ShotTask before = make_task(input.before, options, radius_px);

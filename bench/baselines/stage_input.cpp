@@ -26,13 +26,13 @@ StageInput start_input() {
 }
 
 void add_features(StageInput& input) {
-  input.sift = extract_sift(input.view, input.config.sift);
-  input.shot = extract_shot(input.view, input.config.shot);
+  input.sift = extract_sift(input.view, input.config.features.sift);
+  input.shot = extract_shot(input.view, input.config.features.shot);
   if (input.library.objects.empty()) return;
-  const ModelFeatureIndex index(input.library, input.config.match);
+  const ModelFeatureIndex index(input.library, input.config.features.match);
   input.correspondences = index.match(input.sift, input.shot);
-  input.hypotheses =
-      generate_hypotheses(input.correspondences, input.view.frame.world_from_camera, 0, 0, input.config.generate);
+  input.hypotheses = generate_hypotheses(input.correspondences, input.view.frame.world_from_camera, 0, 0,
+                                         input.config.hypotheses.generate);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ const MatchingTask& matching_task(int dimension) {
   if (is_new) {
     task.model = make_descriptors(kNumModelDescriptors, dimension, 1);
     task.queries = make_descriptors(kNumQueries, dimension, 2);
-    const DescriptorIndex exact(task.model, dimension, {.num_cells = 1});
+    const DescriptorIndex exact(task.model, dimension, {.search = IndexSearch::kExact});
     for (const DescriptorMatch& match : exact.search(task.queries, 1)) task.nearest.push_back(match.index);
   }
   return task;

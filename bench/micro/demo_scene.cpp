@@ -6,6 +6,7 @@
 #include "../quality/arguments.hpp"
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
+#include "resight/recognition/stage_options.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/simulation.hpp"
@@ -31,26 +32,21 @@ DemoScene make_demo() {
   demo.scene = std::make_unique<DynamicScene>(scene_options(demo.config));
   for (std::size_t v = 0; v + 1 < demo.views.size(); ++v) (void)demo.scene->add_view(demo.views[v]);
   const PreparedView& view = demo.views.back();
-  demo.sift = extract_sift(view, demo.config.sift);
-  demo.shot = extract_shot(view, demo.config.shot);
+  demo.sift = extract_sift(view, demo.config.features.sift);
+  demo.shot = extract_shot(view, demo.config.features.shot);
   return demo;
 }
 
 /// Adds members that refer to the library, after it has reached its final address.
 void add_searches(DemoScene& demo) {
-  demo.index = std::make_unique<ModelFeatureIndex>(demo.library, demo.config.match);
+  demo.index = std::make_unique<ModelFeatureIndex>(demo.library, demo.config.features.match);
   demo.shapes = std::make_unique<ShapeSearch>(demo.library, demo.config.shape, match_criteria(demo.config.verify));
   demo.correspondences = demo.index->match(demo.sift, demo.shot);
   demo.hypotheses = generate_hypotheses(demo.correspondences, demo.views.back().frame.world_from_camera,
-                                        static_cast<int>(demo.views.size()) - 1, 0, demo.config.generate);
+                                        static_cast<int>(demo.views.size()) - 1, 0, demo.config.hypotheses.generate);
 }
 
 }  // namespace
-
-DynamicSceneOptions scene_options(const RecognizerConfig& config) {
-  return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
-          config.integrate};
-}
 
 const DemoScene& demo_scene() {
   static DemoScene demo = make_demo();

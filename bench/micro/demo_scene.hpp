@@ -29,6 +29,5 @@ struct DemoScene {
 };
 
 [[nodiscard]] const DemoScene& demo_scene();
-[[nodiscard]] DynamicSceneOptions scene_options(const RecognizerConfig& config);
 
 }  // namespace resight::bench

@@ -75,7 +75,7 @@ BENCHMARK(IndexSearchOfOneObject)->Arg(1024)->Arg(8192)->Unit(benchmark::kMillis
 void IndexExactSearch(benchmark::State& state) {
   const int dimension = static_cast<int>(state.range(0));
   const MatchingTask& task = matching_task(dimension);
-  const DescriptorIndex index(task.model, dimension, {.num_cells = 1});
+  const DescriptorIndex index(task.model, dimension, {.search = IndexSearch::kExact});
   for (auto _ : state) benchmark::DoNotOptimize(index.search(task.queries, 1));
 }
 BENCHMARK(IndexExactSearch)->Arg(128)->Arg(352)->Unit(benchmark::kMillisecond);

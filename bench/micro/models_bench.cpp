@@ -38,7 +38,7 @@ void IndexLibrary(benchmark::State& state) {
   for (const ObjectModel& object : demo.library.objects)
     num_descriptors += static_cast<std::int64_t>(object.sift.size() + object.shot.size());
   for (auto _ : state) {
-    const ModelFeatureIndex index(demo.library, demo.config.match);
+    const ModelFeatureIndex index(demo.library, demo.config.features.match);
     benchmark::DoNotOptimize(&index);
   }
   state.SetItemsProcessed(state.iterations() * num_descriptors);

@@ -32,8 +32,8 @@ void GenerateHypotheses(benchmark::State& state) {
   std::int64_t num_correspondences = 0;
   for (const auto& of_object : demo.correspondences) num_correspondences += static_cast<std::int64_t>(of_object.size());
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        generate_hypotheses(demo.correspondences, demo.views.back().frame.world_from_camera, 0, 0, config.generate));
+    benchmark::DoNotOptimize(generate_hypotheses(demo.correspondences, demo.views.back().frame.world_from_camera, 0, 0,
+                                                 config.hypotheses.generate));
   state.SetItemsProcessed(state.iterations() * num_correspondences);
   state.counters["hypotheses"] = static_cast<double>(demo.hypotheses.size());
 }
@@ -64,7 +64,9 @@ BENCHMARK(ShapeSearchOfView)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->Mea
 
 void ClusterHypotheses(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
-  for (auto _ : state) benchmark::DoNotOptimize(cluster_hypotheses(demo.hypotheses, demo.library, demo.config.cluster));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(cluster_hypotheses(demo.hypotheses, demo.library, *demo.config.hypotheses.cluster,
+                                                demo.config.hypotheses.generate.grouping.pose));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(demo.hypotheses.size()));
 }
 BENCHMARK(ClusterHypotheses)->Unit(benchmark::kMillisecond);

@@ -5,6 +5,7 @@
 #include "demo_scene.hpp"
 #include "resight/changes/difference.hpp"
 #include "resight/changes/view_difference.hpp"
+#include "resight/recognition/stage_options.hpp"
 
 namespace resight::bench {
 namespace {
@@ -39,13 +40,13 @@ BENCHMARK(DifferenceOfClouds)->Unit(benchmark::kMillisecond);
 /// Alg. 1, lines 1 to 3, and the novel points. Argument: threads.
 void DetectChanges(benchmark::State& state) {
   const DemoScene& demo = demo_scene();
-  DetectChangesOptions options = demo.config.changes;
+  DetectChangesOptions options = demo.config.changes.detection;
   options.num_threads = static_cast<int>(state.range(0));
-  options.previous_voxel_m = demo.config.integrate.voxel_m;
   std::vector<const PreparedView*> earlier;
   for (const DynamicScene::View& view : demo.scene->window()) earlier.push_back(&view.cleared);
   for (auto _ : state)
-    benchmark::DoNotOptimize(detect_changes(demo.scene->reconstruction(), last_view(), options, earlier));
+    benchmark::DoNotOptimize(
+        detect_changes(demo.scene->reconstruction(), last_view(), options, earlier, demo.config.integrate.voxel_m));
   state.counters["psi"] = static_cast<double>(demo.scene->reconstruction().size());
 }
 BENCHMARK(DetectChanges)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();

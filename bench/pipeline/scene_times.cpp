@@ -14,6 +14,7 @@
 #include "resight/core/hash.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/recognition/stage_options.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
 
 namespace {
@@ -69,8 +70,7 @@ int main(int argc, char** argv) {
   double cpu_s = 0;
   std::uint64_t sum = kHashSeed;
   for (int pass = 0; pass < num_passes; ++pass) {
-    DynamicScene scene({config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare,
-                        config.changes, config.integrate});
+    DynamicScene scene(scene_options(config));
     sum = kHashSeed;
     for (const PreparedView& view : views) {
       PreparedView copy = view;

@@ -16,6 +16,7 @@
 #include "../quality/arguments.hpp"
 #include "resight/core/allocator.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/io/settings_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
 #include "resize_library.hpp"
@@ -98,7 +99,7 @@ int main(int argc, char** argv) {
   if (library.objects.empty()) exit_with("the library has no objects");
   if (argc > 8) resize_library(library, static_cast<std::size_t>(std::max(1, std::atoi(argv[8]))));
   RecognizerConfig config = preset_or_exit(argc > 3 ? argv[3] : "default");
-  if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_config(argv[4], config));
+  if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_settings(argv[4], config));
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
   config.set_num_threads(argc > 6 ? std::atoi(argv[6]) : 2);
   const int num_views = std::min(sequence->num_views(), argc > 7 ? std::atoi(argv[7]) : sequence->num_views());

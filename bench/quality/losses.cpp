@@ -12,6 +12,7 @@
 #include "arguments.hpp"
 #include "resight/evaluation/loss.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/io/settings_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/view_record.hpp"
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   RecognizerConfig config = preset_or_exit(argc > 3 ? argv[3] : "default");
-  if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_config(argv[4], config));
+  if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_settings(argv[4], config));
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
   config.set_num_threads(2);
   FindLossOptions options;

@@ -31,7 +31,7 @@ void set_planes(RecognizerConfig& c) { c.verify.planes->max_distance_m = 0.02; }
 void set_shares(RecognizerConfig& c) {
   c.verify.acceptance.min_visible_share = c.verify.acceptance.min_explained_share = 0;
 }
-void set_novel(RecognizerConfig& c) { c.changes.novel_needs_free_space = false; }
+void set_novel(RecognizerConfig& c) { c.changes.detection.novel_needs_free_space = false; }
 
 const Switch kSwitches[] = {
     {"as it is", [](RecognizerConfig&) {}},
@@ -43,7 +43,7 @@ const Switch kSwitches[] = {
     {"novel by Eq. 3 alone", set_novel},
     {"colour sigmas 0.6",
      [](RecognizerConfig& c) { c.verify.appearance.sigma_l = c.verify.appearance.sigma_ab = 0.6; }},
-    {"no clustering", [](RecognizerConfig& c) { c.cluster_hypotheses = false; }},
+    {"no clustering", [](RecognizerConfig& c) { c.hypotheses.cluster.reset(); }},
 };
 
 double cpu_ms(const StageTimes& times, std::string_view stage, int num_views) {

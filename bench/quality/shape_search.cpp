@@ -13,6 +13,7 @@
 #include "arguments.hpp"
 #include "resight/evaluation/match_detections.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/io/settings_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
 
@@ -37,7 +38,7 @@ int main(int argc, char** argv) {
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   RecognizerConfig config = preset_or_exit("default");
-  if (argc > 3 && std::string(argv[3]) != "-") config = value_or_exit(read_config(argv[3], config));
+  if (argc > 3 && std::string(argv[3]) != "-") config = value_or_exit(read_settings(argv[3], config));
   const int every = argc > 4 ? std::atoi(argv[4]) : 1;
   config.set_num_threads(2);
   const auto start = std::chrono::steady_clock::now();

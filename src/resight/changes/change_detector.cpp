@@ -163,25 +163,9 @@ void check_views(const PreparedView& view, std::span<const PreparedView* const> 
 
 }  // namespace
 
-void DetectChangesOptions::check() const {
-  check_positive("DetectChangesOptions.tolerance_m", tolerance_m);
-  check_in_range("DetectChangesOptions.tolerance_sigmas", tolerance_sigmas, 0, 10);
-  check_positive("DetectChangesOptions.voxel_m", voxel_m);
-  check_not_negative("DetectChangesOptions.previous_voxel_m", previous_voxel_m);
-  check_in_range("DetectChangesOptions.bin_size_rad", bin_size_rad, 0.001, std::numbers::pi / 2);
-  check_not_negative("DetectChangesOptions.occlusion_margin_m", occlusion_margin_m);
-  check_not_negative("DetectChangesOptions.occlusion_sigmas", occlusion_sigmas);
-  check_in_range("DetectChangesOptions.window_radius_px", window_radius_px, 0, 100);
-  check_not_negative("DetectChangesOptions.min_depth_m", min_depth_m);
-  require(std::isfinite(max_depth_m) && max_depth_m > min_depth_m,
-          "DetectChangesOptions.max_depth_m (must be finite and > min_depth_m)");
-  check_in_range("DetectChangesOptions.frustum_margin_rad", frustum_margin_rad, 0, std::numbers::pi / 2);
-  check_in_range("DetectChangesOptions.max_changed_share", max_changed_share, 0, 1);
-  check_positive("DetectChangesOptions.num_threads", num_threads);
-}
-
 ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedView& view,
-                            const DetectChangesOptions& options, std::span<const PreparedView* const> earlier_views) {
+                            const DetectChangesOptions& options, std::span<const PreparedView* const> earlier_views,
+                            double previous_voxel_m) {
   options.check();
   check_views(view, earlier_views);
   if (!options.novel_needs_free_space) earlier_views = {};
@@ -190,7 +174,7 @@ ChangeResult detect_changes(const PointCloud& previous_in_world, const PreparedV
   if (previous_in_world.empty()) return result;
 
   // All in the camera frame: moving Psi there is cheaper than moving the view's points to the world.
-  const bool thin = options.previous_voxel_m == options.voxel_m || is_downsampled(previous_in_world, options.voxel_m);
+  const bool thin = previous_voxel_m == options.voxel_m || is_downsampled(previous_in_world, options.voxel_m);
   const PointCloud downsampled = thin ? PointCloud{} : voxel_downsample(previous_in_world, options.voxel_m);
   const PointCloud& psi_in_world = thin ? previous_in_world : downsampled;
   const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();

@@ -81,14 +81,6 @@ std::vector<std::vector<int>> cluster_points(std::span<const Eigen::Vector3f> po
   return by_root;
 }
 
-void RemovalSupportOptions::check() const {
-  check_positive("RemovalSupportOptions.cluster_distance_m", cluster_distance_m);
-  check_positive("RemovalSupportOptions.min_cluster_points", min_cluster_points);
-  check_positive("RemovalSupportOptions.model_distance_m", model_distance_m);
-  check_in_range("RemovalSupportOptions.min_overlap", min_overlap, 0, 1);
-  check_not_negative("RemovalSupportOptions.min_support_points", min_support_points);
-}
-
 int count_removal_support(const ProximityGrid& surface_in_object, const Rigid3& object_from_world,
                           const PointCloud& removed_in_world, std::span<const std::vector<int>> clusters,
                           const RemovalSupportOptions& options) {

@@ -4,19 +4,32 @@
 #include <vector>
 
 #include "resight/changes/difference.hpp"
+#include "resight/core/options.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/rigid3.hpp"
 
 namespace resight {
 
 struct RemovalSupportOptions {
-  double cluster_distance_m = 0.03;  ///< Removed points nearer than this are one cluster (V4R).
-  int min_cluster_points = 50;       ///< V4R: 50.
-  double model_distance_m = 0.02;    ///< A removed point this near the object's surface speaks for its removal.
-  double min_overlap = 0.8;          ///< Share of a cluster's points that must lie there (V4R: 0.8).
-  int min_support_points = 50;       ///< More than this in sum: the object is gone (V4R: 50).
-  void check() const;
+  double cluster_distance_m = 0.03;
+  int min_cluster_points = 50;
+  double model_distance_m = 0.02;
+  double min_overlap = 0.8;
+  int min_support_points = 50;
+  void check() const { check_options("RemovalSupportOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, RemovalSupportOptions& o) {
+  v.field("cluster_distance_m", o.cluster_distance_m, positive(), "Removed points nearer to each other form a cluster.",
+          "V4R");
+  v.field("min_cluster_points", o.min_cluster_points, at_least(1), "Smaller clusters are noise.", "V4R");
+  v.field("model_distance_m", o.model_distance_m, positive(),
+          "A removed point within this distance of an object's surface supports its removal.");
+  v.field("min_overlap", o.min_overlap, between(0, 1),
+          "Least share of a cluster that must be so near for the cluster to count.", "V4R");
+  v.field("min_support_points", o.min_support_points, at_least(0),
+          "With more supporting points than this, the object is removed.", "V4R");
+}
 
 /// Euclidean clusters: points are in one cluster if a chain of points joins them, each step at most `distance_m` long.
 /// Clusters of at least `min_points`, in the order of their first point; indices ascending. NaN points are in none.

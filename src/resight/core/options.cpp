@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/core/options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <charconv>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 
 #include "resight/core/check.hpp"
@@ -12,24 +12,17 @@
 namespace resight {
 namespace {
 
-// The shortest text that reads back as the same number, as in fmt: 0.15, 1e-05, 5.
-std::string shortest_text(double value) {
-  char buffer[64];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  return {buffer, end};
-}
+// The shortest text that reads back as the same number: 0.15, 1e-05, 5.
+std::string shortest_text(double value) { return fmt::format("{}", value); }
 
-std::string rounded_text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
+std::string rounded_text(double value) { return fmt::format("{:g}", value); }
 
 struct ToText {
   std::string operator()(const bool* v) const { return *v ? "true" : "false"; }
   std::string operator()(const int* v) const { return std::to_string(*v); }
   std::string operator()(const std::uint64_t* v) const { return std::to_string(*v); }
   std::string operator()(const double* v) const { return shortest_text(*v); }
+  std::string operator()(const std::optional<int>* v) const { return *v ? std::to_string(**v) : "off"; }
   std::string operator()(const std::optional<double>* v) const { return *v ? shortest_text(**v) : "off"; }
   std::string operator()(const OptionChoice& choice) const {
     return std::string(choice.alternatives[static_cast<std::size_t>(choice.index(choice.value))].name);
@@ -40,6 +33,18 @@ std::optional<double> number_in(const OptionValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   return std::nullopt;
+}
+
+std::optional<int> whole_number_in(const OptionValue& value) {
+  constexpr std::int64_t kLimit = 1000000000;
+  const auto* whole = std::get_if<std::int64_t>(&value);
+  if (whole == nullptr || *whole < -kLimit || *whole > kLimit) return std::nullopt;
+  return static_cast<int>(*whole);
+}
+
+bool is_off(const OptionValue& value) {
+  const auto* word = std::get_if<std::string>(&value);
+  return word != nullptr && *word == "off";
 }
 
 // Takes a value over; returns what was expected if it does not fit.
@@ -53,10 +58,15 @@ struct Assign {
     return {};
   }
   std::string operator()(int* v) const {
-    constexpr std::int64_t kLimit = 1000000000;
-    const std::int64_t* given = std::get_if<std::int64_t>(&value);
-    if (given == nullptr || *given < -kLimit || *given > kLimit) return "a whole number";
-    *v = static_cast<int>(*given);
+    const std::optional<int> given = whole_number_in(value);
+    if (!given) return "a whole number";
+    *v = *given;
+    return {};
+  }
+  std::string operator()(std::optional<int>* v) const {
+    const std::optional<int> given = whole_number_in(value);
+    if (!given && !is_off(value)) return "a whole number or \"off\"";
+    *v = given;
     return {};
   }
   std::string operator()(std::uint64_t* v) const {
@@ -72,9 +82,8 @@ struct Assign {
     return {};
   }
   std::string operator()(std::optional<double>* v) const {
-    const std::string* word = std::get_if<std::string>(&value);
     const std::optional<double> given = number_in(value);
-    if (!given && (word == nullptr || *word != "off")) return "a number or \"off\"";
+    if (!given && !is_off(value)) return "a number or \"off\"";
     *v = given;
     return {};
   }
@@ -149,6 +158,15 @@ std::string assign_option(const Option& option, const OptionValue& value) {
   return std::visit(Assign{value}, pointer);
 }
 
+std::string joined_values(std::span<const Option> options) {
+  std::string text;
+  for (const Option& option : options) {
+    if (!text.empty()) text += ' ';
+    text += option.value == "off" ? "0" : option.value;
+  }
+  return text;
+}
+
 std::vector<std::pair<std::string, std::string>> settings_of(std::span<const Option> options) {
   std::vector<std::pair<std::string, std::string>> settings;
   for (const Option& option : options)
@@ -157,9 +175,13 @@ std::vector<std::pair<std::string, std::string>> settings_of(std::span<const Opt
 }
 
 std::string nearest_key(std::span<const Option> options, std::string_view unknown) {
-  // The same last part in another section is nearer than any other spelling.
+  // The same last part in another section is nearer than any other spelling, and so is one that contains the other.
+  const std::string_view name = last_part(unknown);
   const auto distance = [&](const Option& option) {
-    return 4 * edit_distance(last_part(option.key), last_part(unknown)) + edit_distance(option.key, unknown);
+    const std::string_view known = last_part(option.key);
+    const bool contained = known.find(name) != std::string_view::npos || name.find(known) != std::string_view::npos;
+    const int of_names = contained ? (known == name ? 0 : 1) : edit_distance(known, name);
+    return 10 * of_names + edit_distance(option.key, unknown);
   };
   const auto nearest = std::ranges::min_element(options, {}, distance);
   return nearest == options.end() ? std::string() : nearest->key;
@@ -191,6 +213,7 @@ void CheckVisitor::visit(const OptionDeclaration& option) {
   std::optional<double> value;
   if (auto* const* number = std::get_if<double*>(&option.pointer)) value = **number;
   if (auto* const* number = std::get_if<int*>(&option.pointer)) value = **number;
+  if (auto* const* number = std::get_if<std::optional<int>*>(&option.pointer)) value = **number;
   if (auto* const* number = std::get_if<std::optional<double>*>(&option.pointer)) value = **number;
   if (!value || option.range.contains(*value)) return;
   throw std::invalid_argument(full_name(option.name) + " = " + rounded_text(*value) + " (must be " +
@@ -202,8 +225,9 @@ void CheckVisitor::visit_num_threads(int& num_threads) {
 }
 
 void CheckVisitor::broken_rule(std::string_view message) {
-  const std::string name = full_name("");
-  throw std::invalid_argument((name.empty() ? "" : name.substr(0, name.size() - 1) + ": ") + std::string(message));
+  std::string name = full_name("");
+  if (!name.empty()) name.back() = ':';  // A dot.
+  throw std::invalid_argument(name + (name.empty() ? "" : " ") + std::string(message));
 }
 
 }  // namespace internal

@@ -46,7 +46,8 @@ struct OptionChoice {
 };
 
 /// Where the value of an option is kept. An empty optional number is written as "off".
-using OptionPointer = std::variant<bool*, int*, std::uint64_t*, double*, std::optional<double>*, OptionChoice>;
+using OptionPointer =
+    std::variant<bool*, int*, std::uint64_t*, double*, std::optional<int>*, std::optional<double>*, OptionChoice>;
 
 /// An option as it is declared. All texts are literals.
 struct OptionDeclaration {
@@ -78,6 +79,10 @@ class OptionVisitor {
              std::string_view source = {}) {
     leaf({name, doc, source, range, &value});
   }
+  void field(std::string_view name, std::optional<int>& value, OptionRange range, std::string_view doc,
+             std::string_view source = {}) {
+    leaf({name, doc, source, range, &value});
+  }
   void field(std::string_view name, bool& value, std::string_view doc, std::string_view source = {}) {
     leaf({name, doc, source, {}, &value});
   }
@@ -93,6 +98,9 @@ class OptionVisitor {
     ++num_declared_.back();
     visit_num_threads(value);
   }
+
+  /// A field that is no option: the name of the whole.
+  void label(const std::string& /*name*/) { ++num_declared_.back(); }
 
   /// An enum whose values are 0, 1, ... in the order of `alternatives`.
   template <typename Enum>
@@ -139,7 +147,14 @@ class OptionVisitor {
     path_.pop_back();
   }
 
-  /// Likewise, with a key "enabled": false if there is none.
+  /// A struct whose options stand beside those of the struct that it is a part of.
+  template <typename Struct>
+  void merge(Struct& options) {
+    ++num_declared_.back();
+    visit_struct(options);
+  }
+
+  /// A group that may be missing, with a key "enabled": false if there is none.
   template <typename Struct>
   void group(std::string_view name, std::optional<Struct>& options, std::string_view doc,
              std::string_view source = {}) {
@@ -341,6 +356,9 @@ void set_all_num_threads(Struct& options, int num_threads) {
 
 /// Key and value of all settings that have an effect.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings_of(std::span<const Option> options);
+
+/// All values in order, separated by blanks; 0 where there is none. For hashes that must not change with names.
+[[nodiscard]] std::string joined_values(std::span<const Option> options);
 
 /// The known key that is most like an unknown one.
 [[nodiscard]] std::string nearest_key(std::span<const Option> options, std::string_view unknown);

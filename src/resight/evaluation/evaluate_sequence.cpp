@@ -28,10 +28,10 @@ class SequenceEvaluator {
       : truth_(truth),
         library_(library),
         options_(options),
-        has_changes_(config.detect_changes && truth.changes.has_value()) {
+        has_changes_(config.changes.enabled && truth.changes.has_value()) {
     run_.preset = config.preset;
     run_.num_previous_views = config.num_previous_views;
-    run_.is_clustered = config.cluster_hypotheses;
+    run_.is_clustered = config.hypotheses.cluster.has_value();
     run_.num_former_places = static_cast<int>(truth.former_places.size());
     run_.has_changes = has_changes_;
     if (!has_changes_) return;

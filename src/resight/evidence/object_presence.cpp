@@ -6,14 +6,16 @@
 #include "resight/core/check.hpp"
 
 namespace resight {
+namespace {
 
-void PresenceOptions::check() const {
-  margin.check("PresenceOptions.margin");
-  check_positive("PresenceOptions.margin.base_m", margin.base_m);
-  check_not_negative("PresenceOptions.min_seen_points", min_seen_points);
-  check_in_range("PresenceOptions.min_seen_share", min_seen_share, 0, 1);
-  check_in_range("PresenceOptions.min_gone_share", min_gone_share, 0, 1);
-}
+// A view with fewer points that are present or seen through says nothing,
+constexpr int kMinSeenPoints = 40;
+// and neither does one with a smaller share of the points that face the camera.
+constexpr double kMinSeenShare = 0.10;
+// The object is gone if a larger share of these points is seen through.
+constexpr double kMinGoneShare = 0.6;
+
+}  // namespace
 
 ObjectPresence assess_presence(const PointCloud& surface_in_object, const Rigid3& world_from_object,
                                const RgbdFrame& frame, const PresenceOptions& options) {
@@ -28,8 +30,8 @@ ObjectPresence assess_presence(const PointCloud& surface_in_object, const Rigid3
   ObjectPresence result;
   result.count = evidence.count;
   result.gone_share = num_seen > 0 ? static_cast<double>(num_through) / num_seen : 0.0;
-  result.is_informative = num_seen >= options.min_seen_points && num_seen >= options.min_seen_share * num_facing;
-  result.is_gone = result.is_informative && result.gone_share > options.min_gone_share;
+  result.is_informative = num_seen >= kMinSeenPoints && num_seen >= kMinSeenShare * num_facing;
+  result.is_gone = result.is_informative && result.gone_share > kMinGoneShare;
   return result;
 }
 

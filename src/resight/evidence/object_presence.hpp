@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "resight/core/options.hpp"
 #include "resight/evidence/surface_evidence.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
@@ -9,12 +10,11 @@
 namespace resight {
 
 struct PresenceOptions {
-  DepthMargin margin = {};       ///< Depth within this of the object's surface agrees with it.
-  int min_seen_points = 40;      ///< Fewer points that are present or seen through: the view tells nothing.
-  double min_seen_share = 0.10;  ///< Likewise as a share of the points that face the camera.
-  double min_gone_share = 0.6;   ///< Seen through / (seen through + present) above this: the object is not there.
-  void check() const;
+  DepthMargin margin{};
+  void check() const { check_options("PresenceOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, PresenceOptions& o) { v.group("margin", o.margin); }
 
 /// What one view says about an object at a place.
 struct ObjectPresence {

@@ -56,7 +56,7 @@ TEST(AssessPresence, ABackFaceIsNotAsked) {
 
 TEST(AssessPresence, RefusesNonsense) {
   PresenceOptions options;
-  options.min_gone_share = 2;
+  options.margin.base_m = -1;
   EXPECT_THROW((void)assess_presence({}, {}, see_plates({}), options), std::invalid_argument);
 }
 

@@ -43,18 +43,6 @@ float DepthMargin::at(float z_m, double focal_px) const {
   return static_cast<float>(base_m + noise_sigmas * nguyen_noise(z_m, 0, focal_px).axial_m);
 }
 
-void DepthMargin::check(const std::string& field) const {
-  check_not_negative(field + ".base_m", base_m);
-  check_not_negative(field + ".noise_sigmas", noise_sigmas);
-}
-
-void SurfaceEvidenceOptions::check() const {
-  margin.check("SurfaceEvidenceOptions.margin");
-  check_in_range("SurfaceEvidenceOptions.window_radius_px", window_radius_px, 0, 100);
-  check_in_range("SurfaceEvidenceOptions.min_viewing_cosine", min_viewing_cosine, -1, 1);
-  check_positive("SurfaceEvidenceOptions.num_threads", num_threads);
-}
-
 float nearest_depth(const Eigen::Vector3f& p_in_camera, const DepthImage& view, int radius_px) {
   const Image<float>& depth_m = view.depth_m;
   float nearest = std::numeric_limits<float>::quiet_NaN();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "resight/core/image.hpp"
+#include "resight/core/options.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
 
@@ -25,13 +26,17 @@ enum class Evidence : std::uint8_t {
 /// Tolerance along z between a surface and the measured depth.
 struct DepthMargin {
   double base_m = 0.015;
-  double noise_sigmas = 3;  ///< Axial standard deviations of a surface seen head-on (nguyen_noise()), added to base_m.
+  double noise_sigmas = 3;
 
   /// In metres, for a surface at this depth; `focal_px` as in nguyen_noise().
   [[nodiscard]] float at(float z_m, double focal_px) const;
-  /// Throws std::invalid_argument that names `field`.
-  void check(const std::string& field) const;
 };
+
+inline void declare(OptionVisitor& v, DepthMargin& o) {
+  v.field("base_m", o.base_m, at_least(0), "Depth within this of a surface, plus the noise, confirms it.");
+  v.field("noise_sigmas", o.noise_sigmas, at_least(0),
+          "Noise, in standard deviations of the depth of a surface seen head-on. 0: none.", "Nguyen et al. 2012");
+}
 
 /// A depth image (metres along z, NaN: no return) and its camera, which must outlive it.
 struct DepthImage {
@@ -46,12 +51,21 @@ struct OrientedPoints {
 };
 
 struct SurfaceEvidenceOptions {
-  DepthMargin margin = {};
-  int window_radius_px = 0;         ///< The nearest return within this many rows and columns of the projection counts.
-  double min_viewing_cosine = 0.2;  ///< Points with a normal seen at a more grazing angle (78 deg) are kUnobserved.
-  int num_threads = 1;              ///< Same bits for any value >= 1.
-  void check() const;
+  DepthMargin margin{};
+  int window_radius_px = 0;
+  double min_viewing_cosine = 0.2;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("SurfaceEvidenceOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, SurfaceEvidenceOptions& o) {
+  v.group("margin", o.margin);
+  v.field("window_radius_px", o.window_radius_px, between(0, 100),
+          "The nearest return within this many rows and columns of the projection counts.");
+  v.field("min_viewing_cosine", o.min_viewing_cosine, between(-1, 1),
+          "Points with a normal seen at a more grazing angle (78 deg) are not observed.");
+  v.num_threads(o.num_threads);
+}
 
 struct SurfaceEvidence {
   std::vector<Evidence> points;

@@ -169,14 +169,6 @@ Matrix principal_components(const DescriptorRows& all, const Eigen::RowVectorXf&
 
 }  // namespace
 
-void DescriptorIndexOptions::check() const {
-  check_not_negative("DescriptorIndexOptions.num_cells", num_cells);
-  check_positive("DescriptorIndexOptions.num_probes", num_probes);
-  check_not_negative("DescriptorIndexOptions.exact_below", exact_below);
-  check_not_negative("DescriptorIndexOptions.num_components", num_components);
-  check_positive("DescriptorIndexOptions.num_threads", num_threads);
-}
-
 struct DescriptorIndex::Impl {
   Impl(DescriptorRows descriptors, const DescriptorIndexOptions& settings);
   void build_cells(const Matrix& data, int num_cells);
@@ -210,15 +202,15 @@ DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOpt
     : options(settings), dimension(descriptors.dimension()) {
   const auto n = static_cast<Index>(descriptors.size());
   const int automatic = static_cast<int>(4 * std::sqrt(static_cast<double>(n)));
-  const int num_cells = std::min<int>(options.num_cells > 0 ? options.num_cells : automatic, static_cast<int>(n));
-  if (n < options.exact_below || num_cells <= 1) {
+  const int num_cells = std::min<int>(options.num_cells.value_or(automatic), static_cast<int>(n));
+  if (options.search == IndexSearch::kExact || n < options.exact_below || num_cells <= 1) {
     rows = read_rows(descriptors, 0, n);
     original.resize(static_cast<std::size_t>(n));
     std::iota(original.begin(), original.end(), 0);
-  } else if (options.num_components > 0 && 2 * options.num_components <= dimension) {
+  } else if (options.num_components && 2 * *options.num_components <= dimension) {
     whole = std::move(descriptors);
     mean = mean_of(whole);
-    basis = principal_components(whole, mean, options.num_components);
+    basis = principal_components(whole, mean, *options.num_components);
     build_cells(project_all(), num_cells);
   } else {
     build_cells(read_rows(descriptors, 0, n), num_cells);

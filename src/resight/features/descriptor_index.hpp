@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/features/descriptor_rows.hpp"
 
 namespace resight {
@@ -15,16 +17,38 @@ struct DescriptorMatch {
   float distance_sq = 0;  ///< Squared L2 distance.
 };
 
-struct DescriptorIndexOptions {
-  int num_cells = 0;       ///< Of the inverted file; 0 = about 4 sqrt(n); 1 = exact search.
-  int num_probes = 32;     ///< Cells looked into per query: recall against time.
-  int exact_below = 8192;  ///< Smaller sets are searched exactly.
-  int num_components = 0;  ///< Unit descriptors at least twice as long are looked for by so many principal components
-                           ///< of the set, and only the best few compared whole; 0 = never.
-  std::uint64_t seed = 1;  ///< Of the k-means start.
-  int num_threads = 1;     ///< For building and searching. Same bits for any value >= 1.
-  void check() const;
+enum class IndexSearch : std::uint8_t {
+  kInvertedFile,  ///< The nearest cells of a k-means clustering. Approximate.
+  kExact,         ///< All descriptors.
 };
+
+struct DescriptorIndexOptions {
+  IndexSearch search = IndexSearch::kInvertedFile;
+  std::optional<int> num_cells{};
+  int num_probes = 32;
+  int exact_below = 8192;
+  std::optional<int> num_components{};
+  std::uint64_t seed = 1;  ///< Of the initial cells.
+  int num_threads = 1;     ///< For building and searching. Same bits for any value >= 1.
+  void check() const { check_options("DescriptorIndexOptions", *this); }
+};
+
+inline void declare(OptionVisitor& v, DescriptorIndexOptions& o) {
+  v.choice("search", o.search,
+           {{"inverted_file", "in the nearest cells of a k-means clustering"}, {"exact", "among all descriptors"}},
+           "How the nearest descriptors are found.", "Jegou et al. 2011 (inverted file)");
+  v.only_if(o.search == IndexSearch::kInvertedFile, "search", "inverted_file", [&] {
+    v.field("num_cells", o.num_cells, at_least(1), "Cells of the inverted file. off: about 4 sqrt(n).");
+    v.field("num_probes", o.num_probes, at_least(1), "Cells searched per query. More: better recall, slower.");
+    v.field("exact_below", o.exact_below, at_least(0), "Smaller sets are searched exactly.");
+    v.field(
+        "num_components", o.num_components, at_least(1),
+        "Unit descriptors at least twice as long are searched by this many principal components of the set, and only "
+        "the best few are compared in full. off: all are.");
+  });
+  v.seed(o.seed);
+  v.num_threads(o.num_threads);
+}
 
 /// k nearest neighbours among descriptors. Search is exact for small sets, and otherwise uses an inverted file over
 /// k-means cells (IVF-flat), optionally of principal components. Deterministic.

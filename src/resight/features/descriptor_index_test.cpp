@@ -67,7 +67,7 @@ TEST(DescriptorIndex, CellsFindNearlyAllNearestNeighbors) {
   const auto data = make_clustered(20000, kDimension, 400, 0.6, 3);
   const auto queries = make_clustered(500, kDimension, 400, 0.6, 4);
   const DescriptorIndex cells(data, kDimension, {.num_probes = 32, .exact_below = 0});
-  const DescriptorIndex exact(data, kDimension, {.num_cells = 1});
+  const DescriptorIndex exact(data, kDimension, {.search = IndexSearch::kExact});
   const auto found = cells.search(queries, 1);
   const auto truth = exact.search(queries, 1);
   int hits = 0;
@@ -80,7 +80,7 @@ TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
   const auto families = make_clustered(20000, kDimension, 12, 0.05, 3);
   const auto queries = make_clustered(300, kDimension, 12, 0.05, 4);
   const DescriptorIndex few(families, kDimension, {.num_probes = 16, .exact_below = 0, .num_components = 14});
-  const DescriptorIndex exact(families, kDimension, {.num_cells = 1});
+  const DescriptorIndex exact(families, kDimension, {.search = IndexSearch::kExact});
   const auto found = few.search(queries, 2);
   const auto truth = exact.search(queries, 2);
   double sum_found = 0;
@@ -119,7 +119,7 @@ TEST(DescriptorIndex, AllCellsProbedIsExact) {
   const auto data = make_clustered(4000, kDimension, 40, 0.6, 5);
   const auto queries = make_clustered(200, kDimension, 40, 0.6, 6);
   const DescriptorIndex cells(data, kDimension, {.num_cells = 60, .num_probes = 60, .exact_below = 0});
-  const DescriptorIndex exact(data, kDimension, {.num_cells = 1});
+  const DescriptorIndex exact(data, kDimension, {.search = IndexSearch::kExact});
   const auto found = cells.search(queries, 4);
   const auto truth = exact.search(queries, 4);
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i].distance_sq, truth[i].distance_sq, 1e-6);

@@ -104,16 +104,6 @@ FeatureSet describe(const PointCloud& support, const PointCloud& keypoints, std:
 
 }  // namespace
 
-void ShotOptions::check() const {
-  check_positive("ShotOptions.keypoint_spacing_m", keypoint_spacing_m);
-  check_positive("ShotOptions.support_radius_m", support_radius_m);
-  check_not_negative("ShotOptions.support_voxel_m", support_voxel_m);
-  check_in_range("ShotOptions.min_surface_variation", min_surface_variation, 0, 1.0 / 3);
-  check_not_negative("ShotOptions.max_keypoint_depth_m", max_keypoint_depth_m);
-  check_in_range("ShotOptions.min_neighbors", min_neighbors, 3, 1e9);
-  check_positive("ShotOptions.num_threads", num_threads);
-}
-
 FeatureSet describe_shot(const PointCloud& support, const PointCloud& keypoints, const ShotOptions& options,
                          std::vector<int>* kept) {
   options.check();
@@ -129,8 +119,8 @@ FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, co
           "extract_shot: the mask must have the size of the camera image");
   const PointCloud support = support_of_view(view, options, mask);
   std::vector<int> indices = sample_uniformly(support.points, options.keypoint_spacing_m);
-  if (options.max_keypoint_depth_m > 0)
-    std::erase_if(indices, [&](int i) { return support.points[i].z() > options.max_keypoint_depth_m; });
+  if (options.max_keypoint_depth_m)
+    std::erase_if(indices, [&](int i) { return support.points[i].z() > *options.max_keypoint_depth_m; });
   std::vector<double> noise_variance_sq_m;
   for (const int i : indices) {
     const double sigma_m = nguyen_noise(support.points[i].z(), 0.0, view.frame.camera.fx).axial_m;

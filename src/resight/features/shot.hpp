@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+
+#include "resight/core/options.hpp"
 #include "resight/features/feature_set.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -7,17 +10,30 @@
 namespace resight {
 
 struct ShotOptions {
-  double keypoint_spacing_m = 0.01;  ///< Uniform sampling (paper; V4R: 1 cm).
-  double support_radius_m = 0.04;    ///< V4R: 4 cm.
-  double support_voxel_m = 0.005;    ///< The surface is thinned to this before description; 0 keeps every pixel.
-  /// l0 / (l0 + l1 + l2) of the support around its mean: flatter keypoints are dropped; 0 keeps all. In extract_shot()
-  /// the variance of the sensor's axial noise is taken off l0 first: at 2 m it alone makes a wall look curved.
+  double keypoint_spacing_m = 0.01;
+  double support_radius_m = 0.04;
+  double support_voxel_m = 0.005;
   double min_surface_variation = 0.01;
-  double max_keypoint_depth_m = 0;  ///< Of extract_shot(): no keypoints farther away (later V4R: 1.8 m); 0 = no limit.
-  int min_neighbors = 10;           ///< Fewer support points: no descriptor.
-  int num_threads = 1;              ///< Same bits for any value >= 1.
-  void check() const;
+  std::optional<double> max_keypoint_depth_m{};
+  int min_neighbors = 10;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("ShotOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, ShotOptions& o) {
+  v.field("keypoint_spacing_m", o.keypoint_spacing_m, positive(), "Spacing of the keypoints (uniform sampling).",
+          "paper; V4R");
+  v.field("support_radius_m", o.support_radius_m, positive(), "Radius of the surface that is described.", "V4R");
+  v.field("support_voxel_m", o.support_voxel_m, at_least(0),
+          "The surface is downsampled to this before description. 0: every pixel is used.");
+  v.field("min_surface_variation", o.min_surface_variation, between(0, 1.0 / 3),
+          "Keypoints on flatter surface are dropped: smallest eigenvalue of the support over the sum of all, without "
+          "the variance of the sensor noise. 0: all are kept.");
+  v.field("max_keypoint_depth_m", o.max_keypoint_depth_m, positive(),
+          "No keypoints of a view farther away. off: no limit.", "later V4R: 1.8");
+  v.field("min_neighbors", o.min_neighbors, between(3, 1e9), "Keypoints with fewer support points are not described.");
+  v.num_threads(o.num_threads);
+}
 
 /// Computes SHOT-352 (Tombari, Salti, Di Stefano 2010) of `keypoints` over `support`, which is not downsampled further.
 /// Both need normals and must be in the same frame. Keypoints without a stable descriptor are left out: too few

@@ -67,12 +67,6 @@ bool normalize(bool root_sift, std::span<float> descriptor) {
 
 }  // namespace
 
-void SiftOptions::check() const {
-  check_not_negative("SiftOptions.contrast_threshold", contrast_threshold);
-  check_positive("SiftOptions.edge_threshold", edge_threshold);
-  check_in_range("SiftOptions.num_octave_layers", num_octave_layers, 1, 20);
-}
-
 FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, const Image<std::uint8_t>* mask) {
   options.check();
   const OrganizedCloud& cloud = view.cloud;

@@ -27,15 +27,13 @@ RgbdFrame downsample(const RgbdFrame& frame, int step_px) {
 
 }  // namespace
 
-void DepthHistoryOptions::check() const {
-  check_not_negative("DepthHistoryOptions.max_views", max_views);
-  check_in_range("DepthHistoryOptions.step_px", step_px, 1, 64);
+DepthHistory::DepthHistory(DepthHistoryOptions options, int step_px) : options_(options), step_px_(step_px) {
+  options_.check();
+  check_positive("step_px", step_px);
 }
 
-DepthHistory::DepthHistory(DepthHistoryOptions options) : options_(options) { options_.check(); }
-
 void DepthHistory::add(int view, const RgbdFrame& frame) {
-  views_.push_back({view, downsample(frame, options_.step_px)});
+  views_.push_back({view, downsample(frame, step_px_)});
   while (views_.size() > static_cast<std::size_t>(options_.max_views)) views_.pop_front();
 }
 

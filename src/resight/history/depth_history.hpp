@@ -3,22 +3,27 @@
 #include <deque>
 #include <optional>
 
+#include "resight/core/options.hpp"
 #include "resight/evidence/object_presence.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 
 struct DepthHistoryOptions {
-  int max_views = 64;  ///< Older views are forgotten.
-  int step_px = 4;     ///< Every step_px-th row and column is kept: 77 KB per view of 640 x 480.
-  void check() const;
+  int max_views = 64;
+  void check() const { check_options("DepthHistoryOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, DepthHistoryOptions& o) {
+  v.field("max_views", o.max_views, at_least(0), "Older views are forgotten.");
+}
 
 /// The downsampled depth of the last views: enough to decide whether a place was free, for longer than whole views can
 /// be kept.
 class DepthHistory {
  public:
-  explicit DepthHistory(DepthHistoryOptions options = {});
+  /// Every `step_px`-th row and column of a view is kept: with 4, 77 KB of 640 x 480.
+  explicit DepthHistory(DepthHistoryOptions options = {}, int step_px = 4);
 
   void add(int view, const RgbdFrame& frame);
   /// Number of the last view that saw free space where the object would be.
@@ -34,6 +39,7 @@ class DepthHistory {
     RgbdFrame frame;  // without colours
   };
   DepthHistoryOptions options_;
+  int step_px_;
   std::deque<View> views_;
 };
 

@@ -42,7 +42,7 @@ TEST(DepthHistory, DownsampledViewsSeeTheSamePlaces) {
   const PointCloud surface = make_plate("a").surface;
   const RgbdFrame frame = see_plates({kLeft});
   for (const int step : {1, 2, 3, 4, 5}) {
-    DepthHistory memory({.step_px = step});
+    DepthHistory memory({}, step);
     memory.add(0, frame);
     for (double x = -0.4; x < 0.42; x += 0.05) {
       const Rigid3 place = plate_at(x, 0, 1);
@@ -54,7 +54,7 @@ TEST(DepthHistory, DownsampledViewsSeeTheSamePlaces) {
 
 TEST(DepthHistory, RefusesBadOptions) {
   EXPECT_THROW(DepthHistory({.max_views = -1}), std::invalid_argument);
-  EXPECT_THROW(DepthHistory({.step_px = 0}), std::invalid_argument);
+  EXPECT_THROW(DepthHistory({}, 0), std::invalid_argument);
 }
 
 }  // namespace

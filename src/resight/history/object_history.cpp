@@ -5,25 +5,17 @@
 #include <optional>
 #include <utility>
 
-#include "resight/core/check.hpp"
-
 namespace resight {
+namespace {
 
-void ObjectHistoryOptions::check() const {
-  check_positive("ObjectHistoryOptions.same_place_m", same_place_m);
-  check_positive("ObjectHistoryOptions.same_rotation_rad", same_rotation_rad);
-  check_not_negative("ObjectHistoryOptions.confirm_removal_views", confirm_removal_views);
-  check_not_negative("ObjectHistoryOptions.correct_views", correct_views);
-  check_in_range("ObjectHistoryOptions.min_new_share", min_new_share, 0, 1);
-  check_in_range("ObjectHistoryOptions.confirm_score", confirm_score, 0, 1);
-  check_in_range("ObjectHistoryOptions.min_displaced_gone_share", min_displaced_gone_share, 0, 1);
-  presence.check();
-  memory.check();
-}
+// A removal is reported if the object is not recognised elsewhere for this many views after its place was seen free.
+constexpr int kConfirmRemovalViews = 1;
+
+}  // namespace
 
 ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
     : options_((options.check(), std::move(options))),
-      association_(library, options_.same_place_m, options_.same_rotation_rad),
+      association_(library, options_.same_place_m, kSameTrackRotation_rad),
       memory_(library, options_.memory),
       tentative_(library) {}
 
@@ -95,7 +87,7 @@ void ObjectHistory::update_unmatched_tracks(View& view) {
     const int displaced = association_.find_displaced(track, free);
     if (displaced != kUnmatched) free.track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
     const bool is_free =
-        !view.use_evidence || (presence.is_informative && presence.gone_share >= options_.min_displaced_gone_share);
+        !view.use_evidence || (presence.is_informative && presence.gone_share >= kMinDisplacedGoneShare);
     const bool has_moved = displaced != kUnmatched && is_free &&
                            is_confirmed_by_view(view.observations[static_cast<std::size_t>(displaced)]);
     if (presence.is_gone || has_moved) {
@@ -175,7 +167,7 @@ void ObjectHistory::join(Track& left, Track& added, View& view) {
 
 void ObjectHistory::confirm_removals(View& view) {
   for (Track& track : tracks_) {
-    if (track.state != TrackState::kLeaving || view.view - track.left_view < options_.confirm_removal_views) continue;
+    if (track.state != TrackState::kLeaving || view.view - track.left_view < kConfirmRemovalViews) continue;
     if (track.is_replaced && !association_.is_still_occupied(track, view.view, tracks_))
       track.state = TrackState::kPresent;  // The other object was seen only once: it may have been this one.
     else

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/evidence/object_presence.hpp"
 #include "resight/history/object_event.hpp"
 #include "resight/history/object_observation.hpp"
@@ -16,25 +17,33 @@
 
 namespace resight {
 
+/// An observation at a track's place is of that track if it is rotated by less than this (20 deg), over the symmetries.
+inline constexpr double kSameTrackRotation_rad = 0.349;
+/// An object recognised within its old place has moved if at least this share of the old place is seen free. With less,
+/// only its pose is known better, or worse.
+inline constexpr double kMinDisplacedGoneShare = 0.2;
+
 struct ObjectHistoryOptions {
-  /// An observation within this distance and same_rotation_rad of a track's pose is at the same place.
   double same_place_m = 0.03;
-  double same_rotation_rad = 0.349;  ///< 20 deg, over the object's symmetries.
-  /// An object recognised within its old place has moved if at least this share of the old place is seen free. With
-  /// less, only its pose is known better, or worse.
-  double min_displaced_gone_share = 0.2;
-  double min_new_share = 0;  ///< An observation is new only if the view confirms this share of the model's points.
-  /// A new object whose score is lower is tentative: no event is reported for it until a view scores this much. If it
-  /// has moved, its old place is reported as if it had not been recognised.
+  double min_new_share = 0;
   double confirm_score = 0;
-  /// A removal is reported if the object is not recognised elsewhere for this many views after its place was seen free.
-  int confirm_removal_views = 1;
-  /// An arrival whose pose is corrected is reported again, up to this many views after its first report.
-  int correct_views = 6;
-  PresenceOptions presence;
-  DepthHistoryOptions memory;
-  void check() const;  ///< Throws std::invalid_argument: field, value, rule.
+  PresenceOptions presence{};
+  DepthHistoryOptions memory{};
+  void check() const { check_options("ObjectHistoryOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, ObjectHistoryOptions& o) {
+  v.field("same_place_m", o.same_place_m, positive(),
+          "An observation within this distance of a track's pose (and 20 deg) is at the same place.");
+  v.field("min_new_share", o.min_new_share, between(0, 1),
+          "An observation is new only if the view itself confirms this share of the model. 0: it always may be.");
+  v.field(
+      "confirm_score", o.confirm_score, between(0, 1),
+      "A new object that scores less is tentative: no event is reported for it until a view scores this much. If it "
+      "has moved, its old place is reported as if it had not been recognised. 0: every object is confirmed at once.");
+  v.group("presence", o.presence);
+  v.group("memory", o.memory);
+}
 
 /// What a view adds to the history.
 struct HistoryUpdate {

@@ -6,6 +6,12 @@
 #include "resight/history/object_history.hpp"
 
 namespace resight {
+namespace {
+
+// An arrival whose pose is corrected is reported again, up to this many views after its first report.
+constexpr int kCorrectViews = 6;
+
+}  // namespace
 
 void ObjectHistory::add_unmatched_observations(View& view) {
   std::vector<std::size_t> tentative;
@@ -37,7 +43,7 @@ Track* ObjectHistory::find_out_of_sight(const ObjectObservation& observed, int s
   if (only == nullptr) return nullptr;
   const ObjectPresence presence =
       assess_presence(association_.model_of(only->object).surface, only->world_from_object, frame, options_.presence);
-  const bool is_there = presence.is_informative && presence.gone_share < options_.min_displaced_gone_share;
+  const bool is_there = presence.is_informative && presence.gone_share < kMinDisplacedGoneShare;
   return is_there ? nullptr : only;
 }
 
@@ -110,7 +116,7 @@ Track& ObjectHistory::new_track(int object, int id) {
 
 // The first pose of an object that was seen in part only may be off.
 void ObjectHistory::correct_arrival(Track& track, View& view) const {
-  if (!track.arrival || view.view - track.reported_view > options_.correct_views) return;
+  if (!track.arrival || view.view - track.reported_view > kCorrectViews) return;
   ObjectEvent& arrival = *track.arrival;
   std::vector<ObjectEvent>& events = view.update.events;
   if (association_.is_same_place(track.object, *arrival.world_from_object_after, track.world_from_object)) return;

@@ -129,7 +129,7 @@ void append_views(std::vector<int>& views, const Hypothesis& hypothesis) {
 }
 
 Hypothesis merge(const Cluster& cluster, std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
-                 const ClusterHypothesesOptions& options) {
+                 const ClusterHypothesesOptions& options, const EstimatePoseOptions& pose_options) {
   Hypothesis merged = at(hypotheses, cluster.front().index);
   if (merged.origin_views.empty()) merged.origin_views = {merged.origin_view};
   if (cluster.size() == 1) return merged;
@@ -145,7 +145,7 @@ Hypothesis merge(const Cluster& cluster, std::span<const Hypothesis> hypotheses,
   merged.origin_views.erase(std::unique(merged.origin_views.begin(), merged.origin_views.end()),
                             merged.origin_views.end());
   merged.correspondences = without_repeats(pool);
-  const auto estimate = estimate_pose(merged.correspondences, options.pose);
+  const auto estimate = estimate_pose(merged.correspondences, pose_options);
   if (!estimate) return merged;
   const Rigid3& pose = estimate->scene_from_model;
   const Eigen::Vector3d center = object.center.cast<double>();
@@ -157,13 +157,6 @@ Hypothesis merge(const Cluster& cluster, std::span<const Hypothesis> hypotheses,
 }
 
 }  // namespace
-
-void ClusterHypothesesOptions::check() const {
-  check_positive("ClusterHypothesesOptions.max_translation_m", max_translation_m);
-  check_in_range("ClusterHypothesesOptions.max_rotation_rad", max_rotation_rad, 1e-9, std::numbers::pi);
-  check_positive("ClusterHypothesesOptions.num_threads", num_threads);
-  pose.check();
-}
 
 void append_correspondences(std::vector<Correspondence>& pool, const Hypothesis& hypothesis,
                             const Rigid3& equivalent_pose) {
@@ -192,8 +185,9 @@ bool rotations_are_near(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b, doub
 }
 
 ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
-                                 const ClusterHypothesesOptions& options) {
+                                 const ClusterHypothesesOptions& options, const EstimatePoseOptions& pose) {
   options.check();
+  pose.check();
   for (const Hypothesis& h : hypotheses)
     require(h.object >= 0 && static_cast<std::size_t>(h.object) < library.objects.size(),
             "cluster_hypotheses: an object is not in the library");
@@ -203,7 +197,7 @@ ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const M
   result.members.resize(clusters.size());
   parallel_for(clusters.size(), options.num_threads, [&](std::size_t i) {
     for (const Member& member : clusters[i]) result.members[i].push_back(member.index);
-    result.hypotheses[i] = merge(clusters[i], hypotheses, library, options);
+    result.hypotheses[i] = merge(clusters[i], hypotheses, library, options, pose);
   });
   return result;
 }

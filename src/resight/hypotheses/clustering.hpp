@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/registration/pose_estimation.hpp"
@@ -18,13 +20,23 @@ enum class RotationTest : std::uint8_t {
 };
 
 struct ClusterHypothesesOptions {
-  double max_translation_m = 0.02;  ///< delta_t; paper: 2 cm. Between the objects' centres (the paper: model origins).
-  double max_rotation_rad = 0.174533;  ///< delta_r; paper: 10 deg.
+  double max_translation_m = 0.02;
+  double max_rotation_rad = 0.174533;
   RotationTest rotation_test = RotationTest::kGeodesic;
-  EstimatePoseOptions pose{};  ///< Of the final RANSAC over all correspondences of a cluster.
-  int num_threads = 1;         ///< Same bits for any value >= 1.
-  void check() const;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("ClusterHypothesesOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, ClusterHypothesesOptions& o) {
+  v.field("max_translation_m", o.max_translation_m, positive(),
+          "delta_t: largest distance of two hypotheses of a cluster, at the object's centre.", "paper, Eq. (1)");
+  v.field("max_rotation_rad", o.max_rotation_rad, between(1e-9, std::numbers::pi),
+          "delta_r: largest angle between their rotations.", "paper, Eq. (1): 10 deg");
+  v.choice("rotation_test", o.rotation_test,
+           {{"geodesic", "one angle"}, {"absolute_euler", "yaw, pitch and roll separately (paper)"}},
+           "What the angle between two rotations is.");
+  v.num_threads(o.num_threads);
+}
 
 /// Merged hypotheses and their members.
 struct ClusterResult {
@@ -41,11 +53,12 @@ struct ClusterResult {
 /// pose is replaced by the equivalent pose nearest to the seed, and the model side of its correspondences is moved
 /// accordingly.
 ///
-/// The pose of a cluster is re-estimated from all its correspondences. If that fails or leaves the seed's
+/// The pose of a cluster is re-estimated from all its correspondences (with `pose`). If that fails or leaves the seed's
 /// neighbourhood, the seed's pose stays. A cluster of one equals its seed. Throws std::invalid_argument if an object is
 /// not in the library.
 [[nodiscard]] ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
-                                               const ClusterHypothesesOptions& options = {});
+                                               const ClusterHypothesesOptions& options = {},
+                                               const EstimatePoseOptions& pose = {});
 
 /// Appends the hypothesis' correspondences. Their model side is moved by the symmetry motion that turns its pose into
 /// the equivalent one: equivalent_pose * moved point = world_from_object * point.

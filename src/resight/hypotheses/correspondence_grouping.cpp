@@ -172,20 +172,6 @@ Pruned prune_to_core(const BitGraph& graph, int min_clique_size) {
 
 }  // namespace
 
-void GroupCorrespondencesOptions::check() const {
-  check_positive("GroupCorrespondencesOptions.max_distance_difference_m", max_distance_difference_m);
-  check_positive("GroupCorrespondencesOptions.max_dot_difference", max_dot_difference);
-  check_not_negative("GroupCorrespondencesOptions.min_distance_m", min_distance_m);
-  check_in_range("GroupCorrespondencesOptions.min_group_size", min_group_size, 3, 1e9);
-  check_positive("GroupCorrespondencesOptions.max_correspondences", max_correspondences);
-  check_not_negative("GroupCorrespondencesOptions.max_cliques", max_cliques);
-  check_positive("GroupCorrespondencesOptions.max_poses", max_poses);
-  check_positive("GroupCorrespondencesOptions.max_uses", max_uses);
-  check_not_negative("GroupCorrespondencesOptions.merge_distance_m", merge_distance_m);
-  check_in_range("GroupCorrespondencesOptions.merge_rotation_rad", merge_rotation_rad, 0.0, std::numbers::pi);
-  pose.check();
-}
-
 std::vector<int> select_best_correspondences(std::span<const Correspondence> correspondences, int max_count) {
   check_positive("max_count", max_count);
   std::array<std::vector<int>, 2> of_type;

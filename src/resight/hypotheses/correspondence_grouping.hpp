@@ -1,28 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <numbers>
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
 
 struct GroupCorrespondencesOptions {
-  double max_distance_difference_m = 0.015;  ///< | |m_i - m_j| - |s_i - s_j| | below this (V4R: 1.5 cm).
-  double max_dot_difference = 0.2;           ///< Of the normals' dot products (V4R: 0.2).
-  double min_distance_m = 0.005;             ///< Pairs nearer than this say nothing on the pose.
-  int min_group_size = 5;                    ///< V4R: 5.
-  int max_correspondences = 1000;            ///< Per object; the best by descriptor distance are kept.
-  int max_cliques = 20000;          ///< Budget of the clique search in steps, never in milliseconds; then greedy.
-  int max_poses = 500;              ///< Estimated from cliques, the largest first: the other part of the budget.
-  int max_uses = 3;                 ///< A correspondence may serve in this many groups (V4R: 3).
-  bool expand_groups = true;        ///< Also take the correspondences outside a clique that agree with its pose (ours).
-  double merge_distance_m = 0.015;  ///< Of two groups nearer than this (at the middle of their points) and
-  double merge_rotation_rad = 0.174533;  ///< nearer than this, only the larger is kept; 0 keeps both (V4R).
+  double max_distance_difference_m = 0.015;
+  double max_dot_difference = 0.2;
+  double min_distance_m = 0.005;
+  int min_group_size = 5;
+  int max_correspondences = 1000;
+  int max_cliques = 20000;
+  int max_poses = 500;
+  int max_uses = 3;
+  bool expand_groups = true;
+  double merge_distance_m = 0.015;
+  double merge_rotation_rad = 0.174533;
   EstimatePoseOptions pose{};
-  void check() const;
+  void check() const { check_options("GroupCorrespondencesOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
+  v.field(
+      "max_distance_difference_m", o.max_distance_difference_m, positive(),
+      "Two correspondences are consistent if the distances of their model points and of their scene points differ by "
+      "less.",
+      "V4R");
+  v.field("max_dot_difference", o.max_dot_difference, positive(), "...and the dot products of their normals by less.",
+          "V4R");
+  v.field("min_distance_m", o.min_distance_m, at_least(0),
+          "Pairs of points nearer to each other do not constrain a pose.");
+  v.field("min_group_size", o.min_group_size, at_least(3), "Smaller groups of consistent correspondences are dropped.",
+          "V4R");
+  v.field("max_correspondences", o.max_correspondences, at_least(1),
+          "Correspondences kept per object, by descriptor distance.");
+  v.field("max_cliques", o.max_cliques, at_least(0),
+          "Budget of the clique search in steps, not in time; greedy afterwards. 0: greedy only.");
+  v.field("max_poses", o.max_poses, at_least(1), "Poses estimated per object, from the largest cliques.");
+  v.field("max_uses", o.max_uses, at_least(1), "A correspondence may be part of at most this many groups.", "V4R");
+  v.field("expand_groups", o.expand_groups, "A group also takes all other correspondences that agree with its pose.",
+          "ours");
+  v.field("merge_distance_m", o.merge_distance_m, at_least(0),
+          "Of two groups nearer than this (at the middle of their points), only the larger is kept. 0: both are (V4R).",
+          "ours");
+  v.field("merge_rotation_rad", o.merge_rotation_rad, between(0, std::numbers::pi),
+          "...if the angle between their rotations is smaller. 0: both are kept (V4R).", "ours");
+  v.group("pose", o.pose);
+}
 
 /// Correspondences that agree with one pose of an object.
 struct CorrespondenceGroup {

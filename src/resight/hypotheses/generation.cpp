@@ -18,22 +18,21 @@ struct FeatureOwner {
 
 // All descriptors of one type.
 struct TypeIndex {
-  TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*features, int neighbors, double max_distance,
+  TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*features, int neighbors,
             const DescriptorIndexOptions& options);
   void match(const ModelLibrary& library, const FeatureSet& scene,
              std::vector<std::vector<Correspondence>>& correspondences) const;
 
   CodedFeatures ObjectModel::*features;
   int neighbors;
-  double max_distance;
   int dimension = 0;  // 0: no object has features of this type.
   std::vector<FeatureOwner> owners;
   std::unique_ptr<DescriptorIndex> index;
 };
 
-TypeIndex::TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*member, int num_neighbors, double max_l2,
+TypeIndex::TypeIndex(const ModelLibrary& library, CodedFeatures ObjectModel::*member, int num_neighbors,
                      const DescriptorIndexOptions& options)
-    : features(member), neighbors(num_neighbors), max_distance(max_l2) {
+    : features(member), neighbors(num_neighbors) {
   std::vector<const std::uint8_t*> codes;
   for (std::size_t o = 0; o < library.objects.size(); ++o) {
     const CodedFeatures& set = library.objects[o].*features;
@@ -64,7 +63,6 @@ void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
     const DescriptorMatch& match = matches[i];
     const std::size_t scene_feature = i / k;
     if (match.index < 0 || !scene.points[scene_feature].allFinite()) continue;
-    if (max_distance > 0 && !(std::sqrt(static_cast<double>(match.distance_sq)) <= max_distance)) continue;
     const FeatureOwner owner = owners[static_cast<std::size_t>(match.index)];
     const CodedFeatures& model = library.objects[static_cast<std::size_t>(owner.object)].*features;
     const auto model_feature = static_cast<std::size_t>(owner.feature);
@@ -106,21 +104,11 @@ struct ModelFeatureIndex::Impl {
   TypeIndex shot;
 };
 
-void MatchFeaturesOptions::check() const {
-  check_positive("MatchFeaturesOptions.sift_neighbors", sift_neighbors);
-  check_positive("MatchFeaturesOptions.shot_neighbors", shot_neighbors);
-  check_not_negative("MatchFeaturesOptions.max_sift_distance", max_sift_distance);
-  check_not_negative("MatchFeaturesOptions.max_shot_distance", max_shot_distance);
-  sift_index.check();
-  shot_index.check();
-}
-
 ModelFeatureIndex::ModelFeatureIndex(const ModelLibrary& library, const MatchFeaturesOptions& options) {
   options.check();
-  impl_ = std::make_unique<Impl>(Impl{
-      &library,
-      TypeIndex(library, &ObjectModel::sift, options.sift_neighbors, options.max_sift_distance, options.sift_index),
-      TypeIndex(library, &ObjectModel::shot, options.shot_neighbors, options.max_shot_distance, options.shot_index)});
+  impl_ = std::make_unique<Impl>(
+      Impl{&library, TypeIndex(library, &ObjectModel::sift, options.sift_neighbors, options.sift_index),
+           TypeIndex(library, &ObjectModel::shot, options.shot_neighbors, options.shot_index)});
 }
 
 ModelFeatureIndex::~ModelFeatureIndex() = default;
@@ -135,11 +123,6 @@ std::vector<std::vector<Correspondence>> ModelFeatureIndex::match(const FeatureS
   impl_->sift.match(*impl_->library, sift, correspondences);
   impl_->shot.match(*impl_->library, shot, correspondences);
   return correspondences;
-}
-
-void GenerateHypothesesOptions::check() const {
-  grouping.check();
-  check_positive("GenerateHypothesesOptions.num_threads", num_threads);
 }
 
 std::vector<Hypothesis> generate_hypotheses(std::span<const std::vector<Correspondence>> correspondences_per_object,

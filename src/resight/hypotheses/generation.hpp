@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/features/descriptor_index.hpp"
 #include "resight/hypotheses/correspondence_grouping.hpp"
 #include "resight/models/object_model.hpp"
@@ -12,14 +13,21 @@
 namespace resight {
 
 struct MatchFeaturesOptions {
-  int sift_neighbors = 3;  ///< k of the kNN search (V4R P branch: 3).
+  int sift_neighbors = 3;
   int shot_neighbors = 1;
-  double max_sift_distance = 0;  ///< L2 between unit descriptors; 0 = no limit (paper).
-  double max_shot_distance = 0;
   DescriptorIndexOptions sift_index{};
   DescriptorIndexOptions shot_index{};
-  void check() const;
+  void check() const { check_options("MatchFeaturesOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, MatchFeaturesOptions& o) {
+  v.field("sift_neighbors", o.sift_neighbors, at_least(1),
+          "Nearest SIFT descriptors of the models matched per keypoint.", "V4R");
+  v.field("shot_neighbors", o.shot_neighbors, at_least(1),
+          "Nearest SHOT descriptors of the models matched per keypoint.", "V4R");
+  v.group("sift_index", o.sift_index);
+  v.group("shot_index", o.shot_index);
+}
 
 /// Index over the descriptors of all objects. The library must outlive it and stay unchanged.
 class ModelFeatureIndex {
@@ -48,8 +56,13 @@ class ModelFeatureIndex {
 struct GenerateHypothesesOptions {
   GroupCorrespondencesOptions grouping{};
   int num_threads = 1;  ///< Same bits for any value >= 1.
-  void check() const;
+  void check() const { check_options("GenerateHypothesesOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, GenerateHypothesesOptions& o) {
+  v.group("grouping", o.grouping);
+  v.num_threads(o.num_threads);
+}
 
 /// Generates the hypotheses of one view from its correspondences per object (scene side in the camera frame).
 /// Hypotheses and their correspondences are in the WORLD frame. Ids start at `first_id`: by object, then largest group

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "resight/core/check.hpp"
-
 namespace resight {
 namespace {
 
@@ -16,15 +14,6 @@ double gain_of(const HypothesisEvidence& evidence) {
 }
 
 }  // namespace
-
-void DetectionScoreOptions::check() const {
-  check_in_range("DetectionScoreOptions.offset", offset, -100, 100);
-  check_in_range("DetectionScoreOptions.gain_weight", gain_weight, 0, 100);
-  check_in_range("DetectionScoreOptions.correspondence_weight", correspondence_weight, 0, 100);
-  check_in_range("DetectionScoreOptions.fit_weight", fit_weight, 0, 100);
-  check_in_range("DetectionScoreOptions.visible_weight", visible_weight, 0, 100);
-  check_in_range("DetectionScoreOptions.known_weight", known_weight, 0, 100);
-}
 
 double detection_score(const HypothesisEvidence& evidence, bool is_tracked, const DetectionScoreOptions& options) {
   const double log_odds = options.offset + options.gain_weight * gain_of(evidence) +

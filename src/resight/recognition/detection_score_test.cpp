@@ -37,7 +37,7 @@ TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
 
 TEST(DetectionScore, GrowsWithTheEvidence) {
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
-    const DetectionScoreOptions options = RecognizerConfig::from_preset(preset).score;
+    const DetectionScoreOptions options = RecognizerConfig::from_preset(preset).detections.score;
     const double score = detection_score(some_evidence(), false, options);
     EXPECT_GT(score, 0) << preset;
     EXPECT_LT(score, 1) << preset;

@@ -25,7 +25,7 @@ std::vector<DetectionViewEvidence> evidence_of_views(const VerifiedHypotheses& v
 void confirm_by_colors(Detection& detection, const RgbdFrame& current, const ModelLibrary& library,
                        const RecognizerConfig& config) {
   DetectionViewEvidence& newest = detection.views.back();
-  if (newest.confirmed_share() >= config.min_reported_share) return;
+  if (newest.confirmed_share() >= config.detections.min_reported_share) return;
   const double share = color_confirmed_share(library.objects[static_cast<std::size_t>(detection.object)],
                                              detection.world_from_object, current, config.verify);
   if (share > newest.visible_share) newest.color_share = share;
@@ -46,7 +46,7 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     detection.hypothesis_id = hypothesis.id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = detection_score(evidence, pool.is_tracked(hypothesis), config.score);
+    detection.score = detection_score(evidence, pool.is_tracked(hypothesis), config.detections.score);
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     detection.views = evidence_of_views(verified, h, window);

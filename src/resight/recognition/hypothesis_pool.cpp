@@ -36,7 +36,7 @@ std::vector<Hypothesis> HypothesisPool::cluster(std::vector<Hypothesis> merged) 
     for (const Hypothesis& h : merged) members_of_cluster_[h.id] = {h.id};
     return merged;
   }
-  ClusterResult clusters = cluster_hypotheses(merged, library_, *clustering_);
+  ClusterResult clusters = cluster_hypotheses(merged, library_, *clustering_, pose_);
   for (std::size_t c = 0; c < clusters.hypotheses.size(); ++c)
     for (const int m : clusters.members[c])
       members_of_cluster_[clusters.hypotheses[c].id].push_back(merged[static_cast<std::size_t>(m)].id);

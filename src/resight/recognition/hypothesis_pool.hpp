@@ -18,9 +18,10 @@ namespace resight {
 /// carrying hypotheses over to the next view is collecting them. Ids of the hypotheses of views must be below 2^40.
 class HypothesisPool {
  public:
-  /// `clustering`: none = hypotheses are not clustered. `library` must outlive the pool.
-  HypothesisPool(const ModelLibrary& library, std::optional<ClusterHypothesesOptions> clustering)
-      : library_(library), clustering_(clustering) {}
+  /// `clustering`: none = hypotheses are not clustered. `pose`: of clusters. `library` must outlive the pool.
+  HypothesisPool(const ModelLibrary& library, std::optional<ClusterHypothesesOptions> clustering,
+                 const EstimatePoseOptions& pose = {})
+      : library_(library), clustering_(clustering), pose_(pose) {}
 
   /// Adds the hypotheses of the current view, and forgets those of all but the last `num_views` views.
   void add_view(std::vector<Hypothesis> hypotheses, std::size_t num_views);
@@ -45,6 +46,7 @@ class HypothesisPool {
  private:
   const ModelLibrary& library_;
   std::optional<ClusterHypothesesOptions> clustering_;
+  EstimatePoseOptions pose_;
   std::deque<std::vector<Hypothesis>> hypotheses_of_view_;
   std::unordered_map<std::uint64_t, std::vector<std::uint64_t>> members_of_cluster_;  // Ids, by the id of the cluster.
   std::uint64_t num_tracked_ids_ = 0;

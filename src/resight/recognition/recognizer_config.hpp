@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <filesystem>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "resight/changes/change_detector.hpp"
 #include "resight/changes/removal_support.hpp"
-#include "resight/core/result.hpp"
+#include "resight/core/options.hpp"
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/history/object_history.hpp"
@@ -23,58 +24,150 @@
 
 namespace resight {
 
-/// Every setting of the recogniser. Start from a preset, then change single fields.
+/// Seed and time budget of a run.
+struct RunOptions {
+  std::uint64_t seed = 1;
+  std::optional<double> deadline_ms{};
+};
+
+inline void declare(OptionVisitor& v, RunOptions& o) {
+  v.field("seed", o.seed, "Of all random samples of all stages.");
+  v.field(
+      "deadline_ms", o.deadline_ms, positive(),
+      "Time per view, from its arrival on. Work that cannot be done until then is left out, and the results depend on "
+      "the machine. off: no limit.");
+}
+
+/// Features of a view, and their matches in the models.
+struct FeatureOptions {
+  SiftOptions sift{};
+  ShotOptions shot{};
+  MatchFeaturesOptions match{};
+};
+
+inline void declare(OptionVisitor& v, FeatureOptions& o) {
+  v.group("sift", o.sift);
+  v.group("shot", o.shot);
+  v.group("match", o.match);
+}
+
+/// Hypotheses of a view and of the views before it.
+struct HypothesisOptions {
+  GenerateHypothesesOptions generate{};
+  std::optional<ClusterHypothesesOptions> cluster = ClusterHypothesesOptions{};
+  double min_carried_share = 0;
+};
+
+inline void declare(OptionVisitor& v, HypothesisOptions& o) {
+  v.merge(o.generate);
+  v.group("cluster", o.cluster, "Whether hypotheses of several views are clustered.", "paper, Tables II and III");
+  v.field(
+      "min_carried_share", o.min_carried_share, between(0, 1),
+      "A hypothesis that is visible, and explains a smaller share of itself or differs in texture, is not carried over "
+      "to the next views. 0: all are.",
+      "ours");
+}
+
+/// What happens to hypotheses of objects that the detected changes say are gone.
+enum class RemovedHypotheses : std::uint8_t {
+  kDiscard,   ///< They are dropped (paper).
+  kReverify,  ///< The newest view alone verifies them.
+};
+
+/// Detected changes, and what follows from them.
+struct ChangeOptions {
+  bool enabled = true;
+  DetectChangesOptions detection{};
+  double clear_tolerance_m = 0.02;
+  RemovalSupportOptions removal{};
+  RemovedHypotheses removed_hypotheses = RemovedHypotheses::kDiscard;
+};
+
+inline void declare(OptionVisitor& v, ChangeOptions& o) {
+  v.field("enabled", o.enabled, "Off: the static world of the paper's baseline.", "paper");
+  v.only_if(o.enabled, "enabled", "true", [&] {
+    v.merge(o.detection);
+    v.field("clear_tolerance_m", o.clear_tolerance_m, positive(),
+            "Points within this distance of removed ones are cleared from older views.", "V4R");
+    v.group("removal", o.removal);
+    v.choice("removed_hypotheses", o.removed_hypotheses,
+             {{"discard", "they are dropped (paper)"}, {"reverify", "the newest view alone verifies them"}},
+             "What happens to hypotheses of objects that the changes say are gone.");
+  });
+}
+
+/// Which accepted hypotheses are detections, and how likely they are right.
+struct DetectionOptions {
+  double min_reported_share = 0;
+  DetectionScoreOptions score{};
+};
+
+inline void declare(OptionVisitor& v, DetectionOptions& o) {
+  v.field("min_reported_share", o.min_reported_share, between(0, 1),
+          "An object of which the view itself confirms a smaller share of the model (hidden, or outside the image) is "
+          "tracked, but no detection of this view. 0: every object is one.",
+          "ours");
+  v.group("score", o.score);
+}
+
+/// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the
+/// names of these fields, but for hypotheses.generate and changes.detection, whose fields stand in the table itself.
 struct RecognizerConfig {
   std::string preset = "default";
-  int num_previous_views =
-      5;  ///< K: the current view is recognised together with up to K views before it; 0 = single view.
-  bool detect_changes = true;       ///< Off: the static world of the paper's baseline.
-  bool cluster_hypotheses = true;   ///< Off: Tables II and III without clustering.
-  double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
-  bool judge_absent = false;      ///< What the changes say is gone is not dropped, but judged by the newest view alone.
-  double min_reported_share = 0;  ///< An object of which the view itself confirms less (of the model's points; hidden,
-                                  ///< or outside the image) is known to the history, but no detection of this view.
-  double min_carried_share = 0;   ///< A hypothesis that is seen, and explains less of itself or has another print, is
-                                  ///< not carried over to the next views; 0 = all are.
-  bool remember_objects = false;  ///< What was recognised is a hypothesis as long as it is not seen to leave, not only
-                                  ///< for K views (K > 0).
-  double deadline_ms = 0;  ///< From the moment that a view is handed over; what cannot be done until then is left out,
-                           ///< and the results depend on the machine. 0 = no deadline.
-  bool skip_planes = false;     ///< No keypoints on planes larger than the largest object (shape.enabled only).
-  SearchPlannerOptions search;  ///< No effect unless objects are remembered: a view that is not searched needs them.
-  CorrectCameraOptions poses;   ///< Of given camera poses (K > 0).
-  PrepareViewOptions prepare;
-  SiftOptions sift;
-  ShotOptions shot;
-  MatchFeaturesOptions match;
-  GenerateHypothesesOptions generate;
-  ShapeSearchOptions shape;
-  ClusterHypothesesOptions cluster;
-  DetectChangesOptions changes;
-  RemovalSupportOptions removal;
-  IntegrateOptions integrate;
-  VerifyOptions verify;
-  DetectionScoreOptions score;
-  ObjectHistoryOptions history;
+  int num_previous_views = 5;
+  bool remember_objects = false;
+  RunOptions run{};
+  CorrectCameraOptions poses{};
+  PrepareViewOptions prepare{};
+  FeatureOptions features{};
+  HypothesisOptions hypotheses{};
+  ShapeSearchOptions shape{};
+  ChangeOptions changes{};
+  IntegrateOptions integrate{};
+  VerifyOptions verify{};
+  DetectionOptions detections{};
+  ObjectHistoryOptions history{};
+  SearchPlannerOptions search{};
 
-  /// "mvr" (the paper's baseline: a static world), "mvr-chd" (the paper's system) or "default" (the best we know).
-  /// Throws std::invalid_argument, listing the names, for any other.
+  /// "mvr" (the paper's baseline: a static world), "mvr-chd" (the paper's system) or "default" (the best we know); see
+  /// presets.cpp. Throws std::invalid_argument, listing the names, for any other.
   [[nodiscard]] static RecognizerConfig from_preset(const std::string& name);
 
-  /// Same bytes for any value >= 1.
+  /// Of all stages. Same bytes for any value >= 1.
   void set_num_threads(int num_threads);
+  /// run.seed, and those of all stages.
   void set_seed(std::uint64_t seed);
   /// Single views stand for themselves.
   [[nodiscard]] bool remembers() const { return remember_objects && num_previous_views > 0; }
-  /// Whether tracked objects decide where a view is searched (SearchPlannerOptions::place_interval).
-  [[nodiscard]] bool skips_places() const { return remembers() && search.place_interval > 1; }
+  /// Whether tracked objects decide where a view is searched.
+  [[nodiscard]] bool skips_places() const { return remembers() && search.place_interval.has_value(); }
   void check() const;
-  /// Every field as "section.name" and its value as text, in order: what summary.json keeps of a run.
+  /// Every setting that has an effect as key and value, in order: what summary.json keeps of a run.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;
 };
 
-/// Overwrites fields of `config` by a TOML file: sections and keys as in to_settings() (e.g. "[changes]\ntolerance_m =
-/// 0.01"). Unknown keys, wrong types and values out of range are errors that name file and key.
-[[nodiscard]] Result<RecognizerConfig> read_config(const std::filesystem::path& path, RecognizerConfig config);
+inline void declare(OptionVisitor& v, RecognizerConfig& o) {
+  v.label(o.preset);
+  v.field("num_previous_views", o.num_previous_views, between(0, 1000),
+          "K: a view is recognised together with up to K views before it. 0: by itself.", "paper");
+  v.field("remember_objects", o.remember_objects,
+          "Recognised objects remain hypotheses until a view sees their place empty, not only for K views (K > 0).",
+          "ours");
+  v.group("run", o.run);
+  v.group("poses", o.poses);
+  v.group("prepare", o.prepare);
+  v.group("features", o.features);
+  v.group("hypotheses", o.hypotheses);
+  v.group("shape", o.shape);
+  v.group("changes", o.changes);
+  v.group("integrate", o.integrate);
+  v.group("verify", o.verify);
+  v.group("detections", o.detections);
+  v.group("history", o.history);
+  v.group("search", o.search);
+  v.rule(o.remember_objects || (!o.search.max_new_share && !o.search.place_interval),
+         "search.max_new_share and search.place_interval have no effect unless remember_objects = true: a view that is "
+         "not searched needs the objects of others (set both to \"off\")");
+}
 
 }  // namespace resight

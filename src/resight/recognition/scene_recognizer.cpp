@@ -15,6 +15,15 @@
 #include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight {
+namespace {
+
+RecognizerConfig checked(RecognizerConfig config) {
+  config.check();
+  config.set_seed(config.run.seed);
+  return config;
+}
+
+}  // namespace
 
 struct SceneRecognizer::Impl {
   using Hypotheses = std::vector<Hypothesis>;
@@ -22,13 +31,13 @@ struct SceneRecognizer::Impl {
 
   Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> store, Clock clock)
       : library(models),
-        config((settings.check(), std::move(settings))),
+        config(checked(std::move(settings))),
         corrector(correction_options(config)),
         scene(scene_options(config)),
         planner(make_search_planner(models, config)),
         source(models, config, std::move(store)),
-        pool(models, config.cluster_hypotheses ? std::optional(config.cluster) : std::nullopt),
-        budget(config.deadline_ms, std::move(clock)),
+        pool(models, config.hypotheses.cluster, config.hypotheses.generate.grouping.pose),
+        budget(config.run.deadline_ms, std::move(clock)),
         verifier(models, config.verify),
         history(models, config.history) {}
 
@@ -70,9 +79,10 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   update_history(update);
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
   if (pool.is_tracked_object_rejected(verified.hypotheses, verified.evidence)) planner.request_search();
-  pool.forget_refuted(verified.hypotheses, verified.evidence, config.min_carried_share);
-  std::erase_if(update.detections,
-                [&](const Detection& d) { return d.views.back().confirmed_share() < config.min_reported_share; });
+  pool.forget_refuted(verified.hypotheses, verified.evidence, config.hypotheses.min_carried_share);
+  std::erase_if(update.detections, [&](const Detection& d) {
+    return d.views.back().confirmed_share() < config.detections.min_reported_share;
+  });
   if (trace != nullptr) {
     trace->verified = std::move(verified.hypotheses);
     trace->evidence = std::move(verified.evidence);
@@ -148,18 +158,21 @@ auto SceneRecognizer::Impl::tracked_hypotheses() const -> Hypotheses {
 
 // Empty without change detection.
 auto SceneRecognizer::Impl::presence_of(const Hypotheses& hypotheses) const -> Mask {
-  if (!config.detect_changes) return {};
+  if (!config.changes.enabled) return {};
   std::vector<ViewChanges> changes;
   for (const DynamicScene::View& view : scene.window())
     changes.push_back({view.number, &view.removed_in_world, &view.novel_in_world});
-  return compute_presence_mask(hypotheses, library, changes, config.removal, config.verify.num_threads);
+  return compute_presence_mask(hypotheses, library, changes, config.changes.removal, config.verify.num_threads);
 }
 
 auto SceneRecognizer::Impl::handle_removed(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
-  if (!config.detect_changes) return {};
+  if (!config.changes.enabled) return {};
   const ScopedTimer timer(update.times, "presence");
   Mask present = presence_of(hypotheses);
-  config.judge_absent ? reverify_removed(hypotheses.size(), present) : discard_removed(hypotheses, present);
+  if (config.changes.removed_hypotheses == RemovedHypotheses::kReverify)
+    reverify_removed(hypotheses.size(), present);
+  else
+    discard_removed(hypotheses, present);
   return present;
 }
 
@@ -178,7 +191,7 @@ void SceneRecognizer::Impl::update_history(SceneUpdate& update) {
   const ScopedTimer timer(update.times, "history");
   std::vector<ObjectObservation> observed;
   for (const Detection& detection : update.detections) observed.push_back(detection.observation());
-  HistoryUpdate result = history.update(update.view, observed, scene.window().back().raw, config.detect_changes);
+  HistoryUpdate result = history.update(update.view, observed, scene.window().back().raw, config.changes.enabled);
   for (std::size_t d = 0; d < observed.size(); ++d) update.detections[d].track = result.tracks[d];
   update.events = std::move(result.events);
   planner.record(update.view, update.detections, history.tracked_objects(), pool);

@@ -24,6 +24,7 @@ TEST(SceneRecognizer, RemembersObjectsBeyondTheLastViews) {
     EXPECT_EQ(update.detections[0].track, 0);
   }
   c.config.remember_objects = false;
+  c.config.search = {};
   const std::vector<SceneUpdate> forgetful = c.run();
   EXPECT_EQ(forgetful[1].detections.size(), 1U);
   EXPECT_TRUE(forgetful[2].detections.empty());
@@ -36,7 +37,7 @@ TEST(SceneRecognizer, AnInaccuratePoseIsCorrected) {
   second.world_from_camera =
       truth * Rigid3{Rigid3::from_axis_angle({1, 2, 0}, 0.015).rotation, Eigen::Vector3d(0.008, -0.004, 0.003)};
   for (const bool correct : {true, false}) {
-    c.config.poses.enabled = correct;
+    c.config.poses.correct = correct;
     SceneRecognizer recognizer(c.library, c.config, c.store);
     recognizer.add_view(render(c.world, c.cameras[0]).frame);
     const SceneUpdate update = recognizer.add_view(second);
@@ -70,7 +71,8 @@ TEST(SceneRecognizer, ATrackedObjectTakenAwayIsNotDetected) {
 TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
   BoxScene c;
   c.config.remember_objects = false;
-  c.config.min_carried_share = 0;  // Within the sleeve little of the box is seen.
+  c.config.search = {};
+  c.config.hypotheses.min_carried_share = 0;  // Within the sleeve little of the box is seen.
   const World with_box = c.world;
   Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, a little wider.
   sleeve.size_m += Eigen::Vector3d(0.03, 0.03, -0.05);
@@ -78,7 +80,7 @@ TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
   World with_sleeve = with_box;
   with_sleeve.solids.push_back(sleeve);
   for (const bool judge : {true, false}) {
-    c.config.judge_absent = judge;
+    c.config.changes.removed_hypotheses = judge ? RemovedHypotheses::kReverify : RemovedHypotheses::kDiscard;
     SceneRecognizer recognizer(c.library, c.config, c.store);
     recognizer.add_view(render(with_sleeve, c.cameras[0]).frame);
     recognizer.add_view(render(with_sleeve, c.cameras[1]).frame);
@@ -97,7 +99,7 @@ TEST(SceneRecognizer, AnObjectOutOfSightIsTrackedButNotDetected) {
   ASSERT_EQ(updates[1].events.size(), 1U);
   EXPECT_EQ(updates[1].events[0].kind, ObjectEventKind::kStillThere);
   EXPECT_EQ(updates[2].detections.size(), 1U);
-  c.config.min_reported_share = 0;
+  c.config.detections.min_reported_share = 0;
   EXPECT_EQ(c.run()[1].detections.size(), 1U);
 }
 
@@ -130,12 +132,13 @@ TEST(SceneRecognizer, RefutedHypothesesAreNotCarriedOver) {
   }
   c.store->add(0, std::move(first));
   c.config.remember_objects = false;
-  c.config.min_carried_share = 0.4;
+  c.config.search = {};
+  c.config.hypotheses.min_carried_share = 0.4;
   for (const SceneUpdate& update : c.run()) {
     EXPECT_EQ(update.counts.merged, update.view == 0 ? 2 : 1) << update.view;
     EXPECT_EQ(update.detections.size(), 1U) << update.view;
   }
-  c.config.min_carried_share = 0;
+  c.config.hypotheses.min_carried_share = 0;
   for (const SceneUpdate& update : c.run()) EXPECT_EQ(update.counts.merged, 2) << update.view;
 }
 
@@ -150,7 +153,7 @@ TEST(SceneRecognizer, LateHypothesesHaveTheirTurnInTheNextView) {
     if (i < 12) first.hypotheses.back().world_from_object.translation += Eigen::Vector3d(0, 0.1, 0.1 + 0.1 * i);
   }
   c.store->add(0, std::move(first));
-  c.config.deadline_ms = 500;
+  c.config.run.deadline_ms = 500;
   double now_s = 0;
   int num_calls = 0;  // When the view comes, before its verification, ...
   SceneRecognizer recognizer(c.library, c.config, c.store, [&] { return now_s += ++num_calls == 2 ? 1 : 0; });
@@ -168,19 +171,19 @@ TEST(SceneRecognizer, LateHypothesesHaveTheirTurnInTheNextView) {
 TEST(SceneRecognizer, ALateViewIsNotSearched) {
   BoxScene c;
   double now_s = 0;
-  c.config.deadline_ms = 500;
+  c.config.run.deadline_ms = 500;
   SceneRecognizer late(c.library, c.config, nullptr, [&] { return now_s += 1; });
   const SceneUpdate update = late.add_view(render(c.world, c.cameras[0]).frame);
   EXPECT_EQ(update.left_out, std::vector<std::string>{"search"});
   EXPECT_EQ(update.counts.generated, 0);
-  c.config.deadline_ms = 0;
+  c.config.run.deadline_ms.reset();
   SceneRecognizer patient(c.library, c.config, nullptr, [&] { return now_s += 1; });
   EXPECT_TRUE(patient.add_view(render(c.world, c.cameras[0]).frame).left_out.empty());
 }
 
 TEST(SceneRecognizer, TheShapeSearchIsNotBegunTooLate) {
   BoxScene c;
-  c.config.deadline_ms = 500;
+  c.config.run.deadline_ms = 500;
   int num_calls = 0;
   // Asked when the view comes, before the search, and before the shape search.
   SceneRecognizer recognizer(c.library, c.config, nullptr, [&] { return ++num_calls < 3 ? 0.0 : 1.0; });

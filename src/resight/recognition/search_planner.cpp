@@ -2,24 +2,18 @@
 #include "resight/recognition/search_planner.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/recognition/explained_pixels.hpp"
 
 namespace resight {
+namespace {
 
-void SearchPlannerOptions::check() const {
-  check_in_range("SearchPlannerOptions.max_new_share", max_new_share, 0, 1);
-  check_positive("SearchPlannerOptions.full_interval", full_interval);
-  check_in_range("SearchPlannerOptions.max_turn_rad", max_turn_rad, 0, std::numbers::pi);
-  check_in_range("SearchPlannerOptions.max_distance_ratio", max_distance_ratio, 1, 1000);
-  check_positive("SearchPlannerOptions.max_depth_m", max_depth_m);
-  check_not_negative("SearchPlannerOptions.place_interval", place_interval);
-  check_positive("SearchPlannerOptions.place_min_views", place_min_views);
-  check_in_range("SearchPlannerOptions.min_explained_share", min_explained_share, 0, 1);
-}
+// A place is searched in this many views after the object was first recognised there.
+constexpr int kPlaceMinViews = 2;
+
+}  // namespace
 
 SearchPlanner::SearchPlanner(const ModelLibrary& library, const SearchPlannerOptions& options,
                              const PresenceOptions& presence, TrackCorrespondences correspondences)
@@ -33,11 +27,10 @@ SearchPlanner::SearchPlanner(const ModelLibrary& library, const SearchPlannerOpt
 // than in any search, or was not all that the last view saw at its place.
 bool SearchPlanner::needs_search(const TrackedObject& tracked, int number, double depth_m) const {
   const auto last = search_of_track_.find(tracked.track);
-  return !tracked.is_confirmed || last == search_of_track_.end() ||
-         number - tracked.since_view < options_.place_min_views ||
-         number - last->second.view >= options_.place_interval || tracked.seen_view + 1 != number ||
+  return !tracked.is_confirmed || last == search_of_track_.end() || number - tracked.since_view < kPlaceMinViews ||
+         number - last->second.view >= options_.place_interval.value_or(0) || tracked.seen_view + 1 != number ||
          last->second.explained_share < options_.min_explained_share ||
-         depth_m * options_.max_distance_ratio < last->second.depth_m;
+         depth_m * kMaxDistanceRatio < last->second.depth_m;
 }
 
 Image<std::uint8_t> SearchPlanner::find_skipped_pixels(int number, const RgbdFrame& frame,

@@ -35,7 +35,7 @@ class SearchPlanner {
     return novelty_.needs_search(view, changes);
   }
   /// Whether places of tracked objects are skipped in views that are searched.
-  [[nodiscard]] bool skips_places() const { return options_.place_interval > 1; }
+  [[nodiscard]] bool skips_places() const { return options_.place_interval.has_value(); }
   /// Where not to search a view: non-zero where a tracked object that needs no search explains the pixel. Empty if no
   /// places are skipped. Remembers which places are searched. `present`: of the tracked objects, as
   /// compute_presence_mask() returns it (its last row is this view); empty = all are present.

@@ -4,13 +4,17 @@
 namespace resight {
 
 DynamicSceneOptions scene_options(const RecognizerConfig& config) {
-  return {config.num_previous_views, config.detect_changes, config.clear_tolerance_m, config.prepare, config.changes,
-          config.integrate};
+  return {.num_previous_views = config.num_previous_views,
+          .detect_changes = config.changes.enabled,
+          .clear_tolerance_m = config.changes.clear_tolerance_m,
+          .prepare = config.prepare,
+          .changes = config.changes.detection,
+          .integrate = config.integrate};
 }
 
 CorrectCameraOptions correction_options(const RecognizerConfig& config) {
   CorrectCameraOptions options = config.poses;
-  options.enabled &= config.num_previous_views > 0;
+  options.correct &= config.num_previous_views > 0;
   return options;
 }
 

@@ -12,7 +12,7 @@ constexpr std::size_t kMinHypotheses = 10;  // Verified in every view, so that l
 }  // namespace
 
 void TimeBudget::start_view() {
-  if (deadline_ms_ > 0) deadline_ = Deadline(1e-3 * deadline_ms_, clock_);
+  if (deadline_ms_) deadline_ = Deadline(1e-3 * *deadline_ms_, clock_);
 }
 
 void TimeBudget::drop_late(std::vector<Hypothesis>& hypotheses, const IsTracked& is_tracked,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +16,8 @@ class TimeBudget {
  public:
   using IsTracked = std::function<bool(const Hypothesis&)>;
 
-  /// `deadline_ms` from start_view() on; 0 = no deadline.
-  TimeBudget(double deadline_ms, Clock clock) : deadline_ms_(deadline_ms), clock_(std::move(clock)) {}
+  /// `deadline_ms` from start_view() on.
+  TimeBudget(std::optional<double> deadline_ms, Clock clock) : deadline_ms_(deadline_ms), clock_(std::move(clock)) {}
 
   void start_view();
   /// The deadline of the search: it leaves the time that the last verification took.
@@ -30,7 +31,7 @@ class TimeBudget {
   void finish_verification(std::size_t num_hypotheses);
 
  private:
-  double deadline_ms_;
+  std::optional<double> deadline_ms_;
   Clock clock_;
   Deadline deadline_;  // Of this view.
   double verification_start_s_ = 0;

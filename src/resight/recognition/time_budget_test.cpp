@@ -86,7 +86,7 @@ TEST_F(TimeBudgetTest, HoweverLateItKeepsTenAndAllTrackedOnes) {
 
 TEST(TimeBudget, WithoutADeadlineThereIsAlwaysTime) {
   double now_s = 0;
-  TimeBudget budget(0, [&] { return now_s += 1000; });
+  TimeBudget budget(std::nullopt, [&] { return now_s += 1000; });
   budget.start_view();
   budget.start_verification();
   budget.finish_verification(1);

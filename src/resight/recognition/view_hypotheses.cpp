@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/view_hypotheses.hpp"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 namespace resight {
 
 std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rigid3& world_from_camera) {
@@ -25,38 +21,22 @@ std::vector<Hypothesis> move_hypotheses(const ViewHypotheses& of_view, const Rig
 }
 
 std::string generation_settings(const RecognizerConfig& config) {
-  // What follows the hypotheses of a view. All else counts, so that a new setting is not forgotten.
-  constexpr std::array<std::string_view, 19> kLaterSections{"preset",
-                                                            "num_previous_views",
-                                                            "detect_changes",
-                                                            "cluster_hypotheses",
-                                                            "clear_tolerance_m",
-                                                            "min_reported_share",
-                                                            "min_carried_share",
-                                                            "judge_absent",
-                                                            "remember_objects",
-                                                            "poses.",
-                                                            "attention.",
-                                                            "cluster.",
-                                                            "changes.",
-                                                            "removal.",
-                                                            "integrate.",
-                                                            "verify.",
-                                                            "score.",
-                                                            "history.",
-                                                            "presence."};
-  // Shapes are checked as the verification does (MatchCriteria).
-  constexpr std::array<std::string_view, 4> kColors{"verify.appearance.", "verify.support.min_weight",
-                                                    "verify.acceptance.min_pattern_similarity",
-                                                    "verify.refine.symmetry_step_rad"};
-  const auto starts_with_one_of = [](const std::string& name, const auto& sections) {
-    return std::ranges::any_of(sections, [&](std::string_view s) { return name.starts_with(s); });
-  };
+  // All but what follows the hypotheses of a view is as it is by default.
+  RecognizerConfig counted;
+  counted.run = config.run;
+  counted.prepare = config.prepare;
+  counted.features = config.features;
+  counted.hypotheses.generate = config.hypotheses.generate;
+  counted.shape = config.shape;
+  // Shapes are checked as the verification does (match_criteria()).
+  counted.verify.appearance = config.verify.appearance;
+  counted.verify.support.min_weight = config.verify.support.min_weight;
+  counted.verify.acceptance.min_pattern_similarity = config.verify.acceptance.min_pattern_similarity;
+  counted.verify.refine.symmetry_step_rad = config.verify.refine.symmetry_step_rad;
   std::string text;
-  const bool all_count = config.skips_places();  // Tracked objects come from all stages.
-  for (const auto& [name, value] : config.to_settings())
-    if (all_count || !starts_with_one_of(name, kLaterSections) || starts_with_one_of(name, kColors))
-      text += name + "=" + value + "\n";
+  // Tracked objects come from all stages.
+  for (const auto& [name, value] : (config.skips_places() ? config : counted).to_settings())
+    text += name + "=" + value + "\n";
   return text;
 }
 

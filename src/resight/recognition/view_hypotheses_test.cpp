@@ -14,11 +14,11 @@ TEST(GenerationSettings, DependOnTheGenerationOnly) {
 
   RecognizerConfig later = base;
   later.num_previous_views = 1;
-  later.cluster_hypotheses = false;
-  later.min_reported_share = 0.5;
+  later.hypotheses.cluster.reset();
+  later.detections.min_reported_share = 0.5;
   later.remember_objects = true;
-  later.cluster.max_translation_m *= 2;
-  later.changes.tolerance_m *= 2;
+  later.hypotheses.min_carried_share = 0.5;
+  later.changes.detection.tolerance_m *= 2;
   later.verify.selection.outlier_weight *= 2;
   later.history.same_place_m *= 2;
   later.integrate.voxel_m *= 2;
@@ -26,10 +26,10 @@ TEST(GenerationSettings, DependOnTheGenerationOnly) {
 
   RecognizerConfig normals = base, sift = base, shot = base, match = base, grouping = base;
   normals.prepare.normals.window_radius_px += 1;
-  sift.sift.contrast_threshold *= 2;
-  shot.shot.support_radius_m *= 2;
-  match.match.sift_neighbors += 1;
-  grouping.generate.grouping.min_group_size += 1;
+  sift.features.sift.contrast_threshold *= 2;
+  shot.features.shot.support_radius_m *= 2;
+  match.features.match.sift_neighbors += 1;
+  grouping.hypotheses.generate.grouping.min_group_size += 1;
   for (const RecognizerConfig* changed : {&normals, &sift, &shot, &match, &grouping})
     EXPECT_NE(generation_settings(*changed), text);
 }
@@ -44,7 +44,7 @@ TEST(GenerationSettings, AreAllSettingsIfPlacesAreSkipped) {
   other = base;
   other.verify.selection.outlier_weight *= 2;
   EXPECT_NE(generation_settings(other), generation_settings(base));
-  base.search.place_interval = other.search.place_interval = 0;
+  base.search.place_interval = other.search.place_interval = std::nullopt;
   EXPECT_EQ(generation_settings(other), generation_settings(base));
 }
 

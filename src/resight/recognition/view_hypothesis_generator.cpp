@@ -21,7 +21,7 @@ MatchCriteria match_criteria(const VerifyOptions& verify) {
 
 ViewHypothesisGenerator::ViewHypothesisGenerator(const ModelLibrary& library, const RecognizerConfig& config)
     : config_(config),
-      index_(library, config.match),
+      index_(library, config.features.match),
       shapes_(config.shape.enabled ? library : kNoModels, config.shape, match_criteria(config.verify)) {
   for (const ObjectModel& model : library.objects)
     largest_diameter_m_ = std::max(largest_diameter_m_, model.diameter_m);
@@ -47,8 +47,8 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
   }
   {
     const ScopedTimer timer(made.times, "hypotheses");
-    made.hypotheses =
-        generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, first_id, config_.generate);
+    made.hypotheses = generate_hypotheses(made.correspondences, view.frame.world_from_camera, number, first_id,
+                                          config_.hypotheses.generate);
   }
   if (searched) add_from_shape(view, *searched, number, deadline, made);
   for (std::size_t h = 0; h < made.hypotheses.size(); ++h) made.hypotheses[h].id = first_id + h;
@@ -58,7 +58,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
 void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchView* searched,
                                                const Image<std::uint8_t>& explained, ViewHypotheses& made) const {
   Image<std::uint8_t> where;
-  if (searched != nullptr && config_.skip_planes) where = searched->probe.off_larger_planes(largest_diameter_m_);
+  if (searched != nullptr && config_.shape.skip_planes) where = searched->probe.off_larger_planes(largest_diameter_m_);
   if (explained.size() > 0) {
     if (where.size() == 0) where = Image<std::uint8_t>(explained.width(), explained.height(), 255);
     for (std::size_t i = 0; i < explained.size(); ++i)
@@ -67,10 +67,10 @@ void ViewHypothesisGenerator::extract_features(const PreparedView& view, const S
   const Image<std::uint8_t>* mask = where.size() > 0 ? &where : nullptr;
   {
     const ScopedTimer timer(made.times, "sift");
-    made.sift = extract_sift(view, config_.sift, mask);
+    made.sift = extract_sift(view, config_.features.sift, mask);
   }
   const ScopedTimer timer(made.times, "shot");
-  made.shot = extract_shot(view, config_.shot, mask);
+  made.shot = extract_shot(view, config_.features.shot, mask);
 }
 
 void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const SearchView& searched, int number,

@@ -10,6 +10,8 @@
 namespace resight {
 namespace {
 
+constexpr double kMaxTurn_rad = 0.26;  // A surface seen from a direction that differs more (15 deg) is searched again.
+constexpr double kMaxDepth_m = 2.0;    // Surfaces farther away do not count: nothing is recognised there.
 constexpr std::size_t kRememberedViews = 4;
 constexpr int kPixelStep = 4;
 constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, measurements of the same surface vary.
@@ -32,7 +34,7 @@ bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<fl
 ViewNovelty::ViewNovelty(const SearchPlannerOptions& options) : options_((options.check(), options)) {}
 
 bool ViewNovelty::needs_search(const PreparedView& view, const ChangeResult& changes) {
-  if (options_.max_new_share <= 0) return true;
+  if (!options_.max_new_share) return true;
   ++views_since_search_;
   const bool due = searched_.empty() || views_since_search_ == 0 || views_since_search_ >= options_.full_interval ||
                    changes.pose_suspect || shows_something_new(view, changes);
@@ -52,19 +54,19 @@ bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResu
   for (int v = 0; v < cloud.height(); v += kPixelStep)
     for (int u = 0; u < cloud.width(); u += kPixelStep) {
       const std::size_t i = cloud.z.index(u, v);
-      if (!cloud.has_point(i) || cloud.z[i] > static_cast<float>(options_.max_depth_m) ||
+      if (!cloud.has_point(i) || cloud.z[i] > static_cast<float>(kMaxDepth_m) ||
           view.edge_distance_px[i] < kMinEdgeDistance_px)
         continue;
       ++num_seen;
       const bool novel = changes.novel_mask.size() > 0 && changes.novel_mask[i] != 0;
       if (novel || !was_searched(world_from_camera * cloud.point(i), world_from_camera.translation)) ++num_new;
     }
-  return num_new > options_.max_new_share * num_seen;
+  return num_new > *options_.max_new_share * num_seen;
 }
 
 bool ViewNovelty::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vector3f& eye_in_world) const {
   const Eigen::Vector3f ray = p_in_world - eye_in_world;
-  const auto min_cosine = static_cast<float>(std::cos(options_.max_turn_rad));
+  const auto min_cosine = static_cast<float>(std::cos(kMaxTurn_rad));
   for (const SearchedView& searched : searched_) {
     const Rigid3f camera_from_world(searched.world_from_camera.inverse());
     const Eigen::Vector3f p = camera_from_world * p_in_world;
@@ -72,7 +74,7 @@ bool ViewNovelty::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::V
     const Eigen::Vector3f ray_then = p_in_world - searched.world_from_camera.translation.cast<float>();
     const float distance = ray.norm();
     if (ray.dot(ray_then) > min_cosine * distance * ray_then.norm() &&
-        ray_then.norm() < static_cast<float>(options_.max_distance_ratio) * distance)
+        ray_then.norm() < static_cast<float>(kMaxDistanceRatio) * distance)
       return true;
   }
   return false;

@@ -33,17 +33,15 @@ void DynamicSceneOptions::check() const {
   integrate.check();
 }
 
-DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(options)) {
-  options_.check();
-  options_.changes.previous_voxel_m = options_.integrate.voxel_m;  // Psi is our reconstruction.
-}
+DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(options)) { options_.check(); }
 
 ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
   // Psi_{k-1} is reconstructed from the last K views. With K = 0 there is nothing to compare with.
   if (!options_.detect_changes || options_.num_previous_views == 0 || window_.empty()) return {};
   std::vector<const PreparedView*> earlier_views;
   for (const View& earlier : window_) earlier_views.push_back(&earlier.cleared);
-  return detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views);
+  return detect_changes(reconstruction_.cloud_in_world, view, options_.changes, earlier_views,
+                        options_.integrate.voxel_m);
 }
 
 void DynamicScene::clear_from_window(const PointCloud& removed_in_world) {

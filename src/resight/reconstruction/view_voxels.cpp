@@ -146,13 +146,6 @@ void update_order(const std::vector<int>& changed, const std::vector<std::uint8_
 
 }  // namespace
 
-void IntegrateOptions::check() const {
-  check_positive("IntegrateOptions.voxel_m", voxel_m);
-  check_not_negative("IntegrateOptions.min_edge_distance_px", min_edge_distance_px);
-  check_positive("IntegrateOptions.min_points_per_voxel", min_points_per_voxel);
-  check_positive("IntegrateOptions.num_threads", num_threads);
-}
-
 int VoxelNumbers::number_of(std::uint64_t key) {
   constexpr std::uint64_t kWithin = (3ULL << 42U) | (3ULL << 21U) | 3ULL;  // Two bits per axis; see voxel_key().
   const std::uint64_t block_key = key & ~kWithin;

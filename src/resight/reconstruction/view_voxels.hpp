@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/voxel_map.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -12,11 +13,20 @@ namespace resight {
 
 struct IntegrateOptions {
   double voxel_m = 0.005;
-  double min_edge_distance_px = 3.0;  ///< Points nearer to a depth discontinuity are dropped (V4R: 3 px).
-  int min_points_per_voxel = 1;       ///< Of all views together.
-  int num_threads = 1;                ///< Same bits for any value >= 1.
-  void check() const;
+  double min_edge_distance_px = 3.0;
+  int min_points_per_voxel = 1;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("IntegrateOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, IntegrateOptions& o) {
+  v.field("voxel_m", o.voxel_m, positive(), "Voxel of the reconstruction: one point each.", "V4R");
+  v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
+          "Points nearer to a depth edge are not integrated. 0: all are.", "V4R");
+  v.field("min_points_per_voxel", o.min_points_per_voxel, at_least(1),
+          "Voxels with fewer points of all views are empty.");
+  v.num_threads(o.num_threads);
+}
 
 /// A single view reduced to one point per voxel: the more expensive half of integrate_views(). It depends on the view
 /// alone, so an unchanged view need not be reduced again for the next reconstruction. All fields but the last two are

@@ -1,24 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
+#include <optional>
 
+#include "resight/core/options.hpp"
 #include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 
 struct CorrectCameraOptions {
-  bool enabled = false;
-  int num_views = 3;           ///< Views before that a view is aligned to.
-  double sigma_m = 0.01;       ///< Of given positions.
-  double sigma_rad = 0.0175;   ///< Of given rotations (1 deg).
-  double min_overlap = 0.2;    ///< Less of the view in common with those before fixes no pose.
-  double min_surprise = 22.5;  ///< Squared distance of the given pose from the aligned one, in units of its
-                               ///< covariance: below, the given one stands. 22.5: one in 1,000 by chance.
-  double max_sigmas = 4;       ///< A given pose is not off by more: then it is not the pose that is wrong.
-  AlignmentViewOptions view;
-  AlignViewOptions align;  ///< Its prior is that of sigma_m and sigma_rad.
-  void check() const;
+  bool correct = false;
+  int num_views = 3;
+  double sigma_m = 0.01;
+  double sigma_rad = 0.0175;
+  double min_overlap = 0.2;
+  double max_distance_m = 0.05;
+  std::optional<double> brightness_sigma = 12;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("CorrectCameraOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
+  v.field("correct", o.correct, "Given camera poses are corrected by alignment to the views before.", "ours");
+  v.only_if(o.correct, "correct", "true", [&] {
+    v.field("num_views", o.num_views, at_least(1), "A view is aligned to this many views before it.");
+    v.field("sigma_m", o.sigma_m, positive(), "Standard deviation of given positions.");
+    v.field("sigma_rad", o.sigma_rad, positive(), "Standard deviation of given rotations (1 deg).");
+    v.field("min_overlap", o.min_overlap, between(0, 1),
+            "With a smaller share of the view in common with those before, the given pose stays.");
+    v.field("max_distance_m", o.max_distance_m, positive(), "Largest distance of a pair at the coarsest level.");
+    v.field("brightness_sigma", o.brightness_sigma, positive(),
+            "Standard deviation of brightness, in grey levels. off: depth alone.", "Steinbruecker et al. 2011");
+  });
+  v.num_threads(o.num_threads);
+}
 
 /// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected poses.
 /// Robust weights keep changed regions from pulling. A pose that agrees with its alignment is returned unchanged, bit
@@ -39,6 +54,7 @@ class CameraCorrector {
   [[nodiscard]] bool is_surprising(const AlignedView& aligned, const Rigid3& world_from_camera) const;
 
   CorrectCameraOptions options_;
+  AlignViewOptions align_;
   std::deque<View> views_;
 };
 

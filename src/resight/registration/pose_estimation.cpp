@@ -253,13 +253,6 @@ struct WeightedMeans {
 
 }  // namespace
 
-void EstimatePoseOptions::check() const {
-  check_positive("EstimatePoseOptions.inlier_distance_m", inlier_distance_m);
-  check_in_range("EstimatePoseOptions.max_normal_angle_rad", max_normal_angle_rad, 0.0, std::numbers::pi);
-  check_positive("EstimatePoseOptions.max_iterations", max_iterations);
-  check_in_range("EstimatePoseOptions.min_inliers", min_inliers, 3, std::numeric_limits<int>::max());
-}
-
 std::optional<Rigid3> fit_rigid(std::span<const Eigen::Vector3f> model, std::span<const Eigen::Vector3f> scene,
                                 std::span<const double> weights) {
   require(model.size() == scene.size(), "fit_rigid: model and scene differ in length");

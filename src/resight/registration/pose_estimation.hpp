@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/registration/correspondence.hpp"
 
 namespace resight {
@@ -16,13 +19,24 @@ namespace resight {
                                               std::span<const double> weights = {});
 
 struct EstimatePoseOptions {
-  double inlier_distance_m = 0.015;      ///< V4R: 1.5 cm.
-  double max_normal_angle_rad = 0.6435;  ///< V4R accepts at cos >= 0.8.
-  int max_iterations = 500;              ///< Of the RANSAC; fewer when the inlier share allows.
+  double inlier_distance_m = 0.015;
+  double max_normal_angle_rad = 0.6435;
+  int max_iterations = 500;
   int min_inliers = 5;
   std::uint64_t seed = 1;
-  void check() const;
+  void check() const { check_options("EstimatePoseOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, EstimatePoseOptions& o) {
+  v.field("inlier_distance_m", o.inlier_distance_m, positive(),
+          "Correspondences within this distance agree with a pose.", "V4R");
+  v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi),
+          "...if the angle between their normals is smaller.", "V4R (cosine of 0.8)");
+  v.field("max_iterations", o.max_iterations, at_least(1),
+          "Iterations of RANSAC; fewer if the share of inliers allows.");
+  v.field("min_inliers", o.min_inliers, at_least(3), "Poses with fewer inliers are none.");
+  v.seed(o.seed);
+}
 
 /// A pose and the correspondences that agree with it.
 struct PoseEstimate {

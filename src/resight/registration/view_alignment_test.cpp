@@ -181,7 +181,7 @@ class Corrector : public testing::Test {
  protected:
   static CorrectCameraOptions options() {
     CorrectCameraOptions o;
-    o.enabled = true;
+    o.correct = true;
     return o;
   }
 };

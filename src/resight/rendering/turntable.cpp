@@ -8,7 +8,6 @@
 #include <numbers>
 #include <string>
 
-#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
 #include "resight/rendering/sensor_model.hpp"
@@ -75,13 +74,6 @@ TrainingView render_training_view(const RaycastScene& scene, const Rigid3& objec
 }
 
 }  // namespace
-
-void TurntableOptions::check() const {
-  check_in_range("TurntableOptions.step_deg", step_deg, 1, 360);
-  check_in_range("TurntableOptions.elevation_deg", elevation_deg, 0, 85);
-  check_not_negative("TurntableOptions.distance_m", distance_m);
-  check_in_range("TurntableOptions.num_threads", num_threads, 1, 4096);
-}
 
 std::vector<TrainingView> render_turntable(const TriangleMesh& mesh, const TurntableOptions& options) {
   options.check();

@@ -113,12 +113,6 @@ Image<float> cut_out(const Image<float>& image, const Rectangle& r) {
 
 }  // namespace
 
-void DepthEdgeOptions::check() const {
-  check_positive("DepthEdgeOptions.max_depth_jump", max_depth_jump);
-  check_in_range("DepthEdgeOptions.max_gap_px", max_gap_px, 0, 1000);
-  check_positive("DepthEdgeOptions.max_distance_px", max_distance_px);
-}
-
 Image<std::uint8_t> find_depth_edges(const Image<float>& depth_m, const DepthEdgeOptions& options) {
   options.check();
   const int width = depth_m.width();

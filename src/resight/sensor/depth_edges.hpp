@@ -3,16 +3,25 @@
 #include <span>
 
 #include "resight/core/image.hpp"
+#include "resight/core/options.hpp"
 
 namespace resight {
 
 struct DepthEdgeOptions {
-  double max_depth_jump = 0.05;  ///< Share of z; a larger step between neighbours is a discontinuity (V4R: 0.05 z).
-  int max_gap_px =
-      2;  ///< Missing runs up to so long between two like depths are gaps in a surface (registration leaves them).
-  double max_distance_px = 5.0;  ///< Distances are capped here (V4R searches within 5 px).
-  void check() const;
+  double max_depth_jump = 0.05;
+  int max_gap_px = 2;
+  double max_distance_px = 5.0;
+  void check() const { check_options("DepthEdgeOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, DepthEdgeOptions& o) {
+  v.field("max_depth_jump", o.max_depth_jump, positive(),
+          "Neighbouring pixels whose depths differ by more than this share of z are a depth edge.", "V4R");
+  v.field("max_gap_px", o.max_gap_px, between(0, 1000),
+          "Up to as many missing pixels in a row between similar depths are a gap in a surface and no edge. 0: every "
+          "missing pixel is at an edge.");
+  v.field("max_distance_px", o.max_distance_px, positive(), "Distances to the nearest edge are capped here.", "V4R");
+}
 
 /// Marks pixels at depth discontinuities with 1: pixels whose depth differs from that of one of their 8 neighbours by
 /// more than the limit (a share of the smaller depth), and pixels at a border to missing depth. Marks both sides of a

@@ -194,13 +194,6 @@ void compute_block(OrganizedCloud& cloud, int v, int begin, int end, const Compu
 
 }  // namespace
 
-void ComputeNormalsOptions::check() const {
-  check_in_range("ComputeNormalsOptions.window_radius_px", window_radius_px, 1, 100);
-  check_positive("ComputeNormalsOptions.max_depth_change", max_depth_change);
-  check_in_range("ComputeNormalsOptions.min_neighbors", min_neighbors, 2, 40400);
-  check_positive("ComputeNormalsOptions.num_threads", num_threads);
-}
-
 void compute_normals(OrganizedCloud& cloud, const ComputeNormalsOptions& options) {
   options.check();
   const int width = cloud.width();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "resight/core/image.hpp"
+#include "resight/core/options.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/point_cloud.hpp"
 
@@ -29,12 +30,21 @@ struct OrganizedCloud {
 [[nodiscard]] OrganizedCloud back_project(const Camera& camera, const Image<float>& depth_m);
 
 struct ComputeNormalsOptions {
-  int window_radius_px = 2;        ///< 2 = a 5x5 window.
-  double max_depth_change = 0.02;  ///< A neighbour counts when its z differs by less than this share of z.
-  int min_neighbors = 6;           ///< Fewer (the pixel itself not counted): no normal.
-  int num_threads = 1;             ///< Same bits for any value >= 1.
-  void check() const;
+  int window_radius_px = 2;
+  double max_depth_change = 0.02;
+  int min_neighbors = 6;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("ComputeNormalsOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, ComputeNormalsOptions& o) {
+  v.field("window_radius_px", o.window_radius_px, between(1, 100),
+          "Normals are fitted to a window of 2 r + 1 pixels. Larger: less noise, rounder edges, slower.");
+  v.field("max_depth_change", o.max_depth_change, positive(),
+          "Pixels of the window count if their z differs by less than this share of z.");
+  v.field("min_neighbors", o.min_neighbors, between(2, 40400), "With fewer such pixels there is no normal.");
+  v.num_threads(o.num_threads);
+}
 
 /// Computes normals as the smallest eigenvectors of the covariances of windows, oriented towards the camera. Fills nx,
 /// ny, nz with NaN where there is no point, too few neighbours count, or the neighbours lie on a line.

@@ -3,8 +3,6 @@
 
 #include <limits>
 
-#include "resight/core/check.hpp"
-
 namespace resight {
 namespace {
 
@@ -19,13 +17,6 @@ void drop_farther_points(double max_depth_m, OrganizedCloud& cloud) {
 
 }  // namespace
 
-void PrepareViewOptions::check() const {
-  normals.check();
-  edges.check();
-  check_not_negative("PrepareViewOptions.max_depth_m", max_depth_m);
-  check_positive("PrepareViewOptions.num_threads", num_threads);
-}
-
 PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
   options.check();
   if (const Result<void> valid = check_frame(frame); !valid) throw std::invalid_argument(valid.error().message);
@@ -35,7 +26,7 @@ PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
   ComputeNormalsOptions normals = options.normals;
   normals.num_threads = options.num_threads;
   compute_normals(view.cloud, normals);
-  if (options.max_depth_m > 0) drop_farther_points(options.max_depth_m, view.cloud);
+  if (options.max_depth_m) drop_farther_points(*options.max_depth_m, view.cloud);
   view.edge_distance_px =
       find_edge_distance(find_depth_edges(view.frame.depth_m, options.edges), options.edges.max_distance_px);
   view.noise = model_noise(view.cloud, view.frame.camera, options.num_threads);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+
+#include "resight/core/options.hpp"
 #include "resight/sensor/depth_edges.hpp"
 #include "resight/sensor/noise_model.hpp"
 #include "resight/sensor/organized_cloud.hpp"
@@ -8,13 +11,22 @@
 namespace resight {
 
 struct PrepareViewOptions {
-  ComputeNormalsOptions normals = {};
-  DepthEdgeOptions edges = {};
-  double max_depth_m = 0;  ///< Farther points are dropped from cloud and noise ("chop z"); 0 keeps all. The frame's
-                           ///< depth stays whole: what lies beyond is still evidence of free space, and no depth edge.
-  int num_threads = 1;     ///< Of all steps (normals.num_threads is not used). Same bits for any value >= 1.
-  void check() const;
+  ComputeNormalsOptions normals{};
+  DepthEdgeOptions edges{};
+  std::optional<double> max_depth_m{};
+  int num_threads = 1;  ///< Of all steps (normals.num_threads is not used). Same bits for any value >= 1.
+  void check() const { check_options("PrepareViewOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
+  v.group("normals", o.normals);
+  v.group("edges", o.edges);
+  v.field(
+      "max_depth_m", o.max_depth_m, positive(),
+      "Farther points are dropped from the point cloud. The depth image stays whole: beyond, it is still evidence of "
+      "free space. off: all points are kept.");
+  v.num_threads(o.num_threads);
+}
 
 /// A frame and the data that all stages share, computed once.
 struct PreparedView {

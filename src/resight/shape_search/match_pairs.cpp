@@ -47,8 +47,7 @@ std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> 
       if (!may_be_one_thing(in_model, in_scene)) continue;
       const auto pose = align(in_model, in_scene);
       if (!pose) continue;
-      if (const auto candidate = first_test(object, model, *pose, probe, options.coarse, options.min_coarse_score))
-        found.push_back(*candidate);
+      if (const auto candidate = first_test(object, model, *pose, probe)) found.push_back(*candidate);
     }
   return found;
 }

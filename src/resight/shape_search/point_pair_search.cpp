@@ -6,6 +6,7 @@
 namespace resight {
 namespace {
 
+constexpr int kPairsPerSeed = 20;  // More find little that other seeds do not.
 constexpr int kRings = 4;          // Partners are drawn within so many radii, so that small objects have their share:
 constexpr double kRingStep = 1.6;  // each so much smaller than the one before.
 
@@ -51,7 +52,7 @@ std::vector<PoseCandidate> PointPairSearch::from_seed(std::size_t seed) const {
   double radius_m = table_.max_length_m();
   for (int ring = 0; ring < kRings; ++ring, radius_m /= kRingStep) {
     keep_within(distances_sq, static_cast<float>(radius_m * radius_m), ring == 0, near);
-    for (int i = 0; i < options_.pairs_per_seed / kRings && !near.empty(); ++i) {
+    for (int i = 0; i < kPairsPerSeed / kRings && !near.empty(); ++i) {
       const auto other = static_cast<std::size_t>(near[rng.below(static_cast<std::uint32_t>(near.size()))]);
       if (other != seed)
         try_point_pair({scene_.points[seed], scene_.normals[seed], scene_.points[other], scene_.normals[other]}, rng,
@@ -84,7 +85,7 @@ void PointPairSearch::try_entry(const PointPairEntry& entry, const OrientedPoint
                                 const Eigen::Vector2f& first, const Eigen::Vector2f& second,
                                 std::vector<PoseCandidate>& found) const {
   const SampledModel& model = objects_[entry.object];
-  const float max_chroma = static_cast<float>(options_.coarse.max_chroma_difference);
+  const float max_chroma = static_cast<float>(CountSamplesOptions{}.max_chroma_difference);
   if (!model.chroma.empty() && std::max((model.chroma[entry.first] - first).squaredNorm(),
                                         (model.chroma[entry.second] - second).squaredNorm()) > max_chroma * max_chroma)
     return;
@@ -92,8 +93,7 @@ void PointPairSearch::try_entry(const PointPairEntry& entry, const OrientedPoint
       {model.points[entry.first], model.normals[entry.first], model.points[entry.second], model.normals[entry.second]},
       seen);
   if (!pose) return;
-  if (const auto candidate = first_test(entry.object, model, *pose, probe_, options_.coarse, options_.min_coarse_score))
-    found.push_back(*candidate);
+  if (const auto candidate = first_test(entry.object, model, *pose, probe_)) found.push_back(*candidate);
 }
 
 }  // namespace resight

@@ -14,13 +14,16 @@ struct PoseCandidate {
   Rigid3f camera_from_object{Rigid3{}};
 };
 
-/// The pose as a candidate if the first test does not give up on it and its score is at least `min_score`.
+/// Least score of the first test. 1: all samples are confirmed.
+inline constexpr double kMinCoarseScore = 0.2;
+
+/// The pose as a candidate if the first test does not give up on it and its score is high enough.
 [[nodiscard]] inline std::optional<PoseCandidate> first_test(int object, const SampledModel& model,
-                                                             const Rigid3f& camera_from_object, const PoseScorer& probe,
-                                                             const CountSamplesOptions& options, double min_score) {
-  const SampleCounts counts = probe.count(model, camera_from_object, options, min_score);
+                                                             const Rigid3f& camera_from_object,
+                                                             const PoseScorer& probe) {
+  const SampleCounts counts = probe.count(model, camera_from_object, {}, kMinCoarseScore);
   const float score = counts.score();
-  if (counts.gave_up || score < static_cast<float>(min_score)) return std::nullopt;
+  if (counts.gave_up || score < static_cast<float>(kMinCoarseScore)) return std::nullopt;
   return PoseCandidate{object, score, camera_from_object};
 }
 

@@ -11,6 +11,7 @@
 namespace resight {
 namespace {
 
+constexpr double kMaxPlane_m = 0.4;  // Points of larger planes (tables, walls) are not searched.
 constexpr double kSpacingStep = 1.15;
 constexpr int kMaxSpacingSteps = 40;     // 270 times the first.
 constexpr float kSimilarNormals = 0.3F;  // Cosine; below: the other side of a thin wall, or another face.
@@ -32,7 +33,7 @@ SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOpti
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];
-    if (plane < 0 || planes.planes[static_cast<std::size_t>(plane)].extent_m <= static_cast<float>(options.max_plane_m))
+    if (plane < 0 || planes.planes[static_cast<std::size_t>(plane)].extent_m <= static_cast<float>(kMaxPlane_m))
       kept.push_back(static_cast<int>(i));
   }
   return {select(cloud, kept), std::move(planes.planes)};
@@ -69,14 +70,6 @@ Eigen::Vector3f mean_normal(const PointCloud& surface, const KdTree& tree, int i
 }
 
 }  // namespace
-
-void SampleSceneOptions::check() const {
-  check_positive("SampleSceneOptions.spacing_m", spacing_m);
-  check_positive("SampleSceneOptions.max_depth_m", max_depth_m);
-  check_positive("SampleSceneOptions.max_plane_m", max_plane_m);
-  check_not_negative("SampleSceneOptions.min_edge_distance_px", min_edge_distance_px);
-  check_positive("SampleSceneOptions.num_threads", num_threads);
-}
 
 SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& options) {
   options.check();

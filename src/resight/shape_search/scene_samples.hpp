@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/segmentation/scene_planes.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -10,13 +11,20 @@
 namespace resight {
 
 struct SampleSceneOptions {
-  double spacing_m = 0.008;         ///< One point a voxel of this size.
-  double max_depth_m = 2.0;         ///< Normals of farther points say little.
-  double max_plane_m = 0.4;         ///< Points of planes whose extent is larger (tables, walls) are left out.
-  double min_edge_distance_px = 2;  ///< Nearer to a depth edge, normals are bent.
-  int num_threads = 1;              ///< Same bits for any value >= 1.
-  void check() const;
+  double spacing_m = 0.008;
+  double max_depth_m = 2.0;
+  double min_edge_distance_px = 2;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("SampleSceneOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, SampleSceneOptions& o) {
+  v.field("spacing_m", o.spacing_m, positive(), "One scene point per voxel of this size.");
+  v.field("max_depth_m", o.max_depth_m, positive(), "Farther points are not searched: their normals say little.");
+  v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
+          "Points nearer to a depth edge are not searched: normals are bent there. 0: all are.");
+  v.num_threads(o.num_threads);
+}
 
 /// A view thinned, with mean normals and colours. Camera frame.
 struct SceneSamples {

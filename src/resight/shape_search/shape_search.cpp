@@ -21,9 +21,16 @@
 namespace resight {
 namespace {
 
-constexpr double kMinLengthShare = 0.25;  // Of an object's diameter: shorter dipoles turn poses too freely...
-constexpr double kMaxLengthShare = 0.8;   // ...and longer ones are seldom seen whole.
-constexpr double kMaxLength_m = 1;        // Whatever a library says of its objects: the table grows with it.
+constexpr double kMinLengthShare = 0.25;    // Of an object's diameter: shorter dipoles turn poses too freely...
+constexpr double kMaxLengthShare = 0.8;     // ...and longer ones are seldom seen whole.
+constexpr double kMaxLength_m = 1;          // Whatever a library says of its objects: the table grows with it.
+constexpr int kMaxModelSamples = 300;       // Per object, on its surface.
+constexpr int kRefineIterations = 6;        // Of projective ICP.
+constexpr double kRefineDistance_m = 0.02;  // Largest distance of its pairs.
+constexpr double kMatchDistance_m = 0.015;  // Matches agree with a pose within this, as in V4R.
+constexpr int kMaxRotations = 8;            // Of those of a round shape, with most samples of the right chromaticity.
+constexpr double kSamePose_m = 0.015;       // Poses nearer than this (at the object's centre),
+constexpr double kSameRotation_rad = 0.21;  // and this (12 deg, over its symmetries), are one.
 constexpr double kMinExplainedShareOfSamples = 0.1;
 constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
 constexpr int kMaxPerPlace = 2;        // so many are left to the verification...
@@ -58,9 +65,8 @@ struct ShapeSearch::Impl {
     if (criteria.symmetry_step_rad)
       for (std::size_t o = 0; o < objects.size(); ++o)
         symmetry_motions[o] = shape_symmetry_motions(library.objects[o], *criteria.symmetry_step_rad);
-    parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
-      objects[o] = make_sampled_model(library.objects[o], options.max_model_samples);
-    });
+    parallel_for(objects.size(), options.num_threads,
+                 [&](std::size_t o) { objects[o] = make_sampled_model(library.objects[o], kMaxModelSamples); });
     std::vector<PointPairTable::Samples> samples;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);
@@ -80,8 +86,8 @@ struct ShapeSearch::Impl {
     for (std::size_t h = 0; h < lights.size(); ++h)
       if (votes[h] > 0)
         lights[h] = probe.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
-                                         camera_from_world * from_features[h].world_from_object,
-                                         options.refine_distance_m, criteria.appearance.light);
+                                         camera_from_world * from_features[h].world_from_object, kRefineDistance_m,
+                                         criteria.appearance.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes);
     std::vector<SampledModel> balanced = objects;
     for (SampledModel& model : balanced) set_white_balance(model, white_balance);
@@ -107,7 +113,7 @@ struct ShapeSearch::Impl {
       judged[o] = choose(score_fine(of_object[o], balanced[o], probe));
       if (matches.empty()) return;
       for (ShapeCandidate& c : judged[o])
-        c.matches = agreeing_matches(matches[o], c.camera_from_object, options.match_distance_m);
+        c.matches = agreeing_matches(matches[o], c.camera_from_object, kMatchDistance_m);
     });
     std::vector<ShapeCandidate> result;
     for (const auto& list : judged) result.insert(result.end(), list.begin(), list.end());
@@ -154,14 +160,14 @@ struct ShapeSearch::Impl {
   [[nodiscard]] std::vector<Rigid3> turns_of(std::size_t object, const Rigid3& pose, const SampledModel& balanced,
                                              const PoseScorer& probe) const {
     if (!is_round_in_shape(object)) return {pose};
-    CountSamplesOptions all = options.coarse;
+    CountSamplesOptions all{};
     all.max_samples = all.max_wrong = static_cast<int>(balanced.points.size());
     std::vector<std::pair<float, Rigid3>> scored;
     for (const Rigid3& turn : symmetry_motions[object])
       scored.emplace_back(probe.count(balanced, Rigid3f(pose * turn), all).score(), pose * turn);
     std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<Rigid3> best;
-    for (std::size_t t = 0; t < std::min(scored.size(), static_cast<std::size_t>(options.max_turns)); ++t)
+    for (std::size_t t = 0; t < std::min(scored.size(), static_cast<std::size_t>(kMaxRotations)); ++t)
       best.push_back(scored[t].second);
     return best;
   }
@@ -184,7 +190,7 @@ struct ShapeSearch::Impl {
       const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
       const SampledModel& model = objects[object];
-      const Rigid3 refined = probe.refine(model, start, options.refine_iterations, options.refine_distance_m);
+      const Rigid3 refined = probe.refine(model, start, kRefineIterations, kRefineDistance_m);
       const PoseFit least = least_fit(model);
       if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
       for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
@@ -222,7 +228,7 @@ struct ShapeSearch::Impl {
     return kept;
   }
 
-  [[nodiscard]] SamePlaceOptions same_place() const { return {options.same_place_m, options.same_rotation_rad}; }
+  [[nodiscard]] SamePlaceOptions same_place() const { return {kSamePose_m, kSameRotation_rad}; }
 
   const ModelLibrary& library;
   ShapeSearchOptions options;
@@ -231,30 +237,6 @@ struct ShapeSearch::Impl {
   std::vector<std::vector<Rigid3>> symmetry_motions;  // shape_symmetry_motions() of each.
   PointPairTable table;
 };
-
-void ShapeSearchOptions::check() const {
-  scene.check();
-  coarse.check();
-  check_positive("ShapeSearchOptions.max_model_samples", max_model_samples);
-  check_positive("ShapeSearchOptions.max_seeds", max_seeds);
-  check_not_negative("ShapeSearchOptions.pairs_per_seed", pairs_per_seed);
-  check_positive("ShapeSearchOptions.max_entries", max_entries);
-  check_in_range("ShapeSearchOptions.min_coarse_score", min_coarse_score, 0, 1);
-  check_not_negative("ShapeSearchOptions.max_matches", max_matches);
-  check_positive("ShapeSearchOptions.match_distance_m", match_distance_m);
-  check_not_negative("ShapeSearchOptions.max_refined", max_refined);
-  check_not_negative("ShapeSearchOptions.refine_iterations", refine_iterations);
-  check_positive("ShapeSearchOptions.refine_distance_m", refine_distance_m);
-  check_positive("ShapeSearchOptions.tolerance_m", tolerance_m);
-  check_in_range("ShapeSearchOptions.min_explained_share", min_explained_share, 0, 1);
-  check_in_range("ShapeSearchOptions.min_visible_share", min_visible_share, 0, 1);
-  check_positive("ShapeSearchOptions.max_turns", max_turns);
-  check_not_negative("ShapeSearchOptions.max_hypotheses", max_hypotheses);
-  check_in_range("ShapeSearchOptions.min_feature_share", min_feature_share, 0, 1);
-  check_not_negative("ShapeSearchOptions.same_place_m", same_place_m);
-  check_in_range("ShapeSearchOptions.same_rotation_rad", same_rotation_rad, 0, std::numbers::pi);
-  check_positive("ShapeSearchOptions.num_threads", num_threads);
-}
 
 SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options,
                        const Image<std::uint8_t>& explained)
@@ -286,8 +268,8 @@ std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<cons
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
     const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
     if (model.points.empty()) return;
-    const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object,
-                                          options.refine_iterations, options.refine_distance_m);
+    const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object, kRefineIterations,
+                                          kRefineDistance_m);
     fits[h] = view.probe.score_fine(model, pose, options.tolerance_m, impl_->criteria);
   });
   return fits;
@@ -296,9 +278,8 @@ std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<cons
 ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const {
   const ShapeSearchOptions& options = impl_->options;
   const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
-  const Rigid3 refined =
-      view.probe.refine(model, camera_from_object, options.refine_iterations, options.refine_distance_m);
-  return {view.probe.count(model, Rigid3f(camera_from_object), options.coarse),
+  const Rigid3 refined = view.probe.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
+  return {view.probe.count(model, Rigid3f(camera_from_object), {}),
           view.probe.score_fine(model, refined, options.tolerance_m, impl_->criteria)};
 }
 

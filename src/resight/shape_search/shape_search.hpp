@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/core/options.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -17,32 +18,50 @@ namespace resight {
 /// Values chosen on the validation seed of the benchmark (bench_shape_search).
 struct ShapeSearchOptions {
   bool enabled = false;
+  bool skip_planes = false;
   SampleSceneOptions scene{};
-  int max_model_samples = 300;      ///< Of the surface of each object.
-  int max_seeds = 1000;             ///< Scene points that dipoles start from.
-  int pairs_per_seed = 20;          ///< Dipoles from each.
-  int max_entries = 32;             ///< Of each object tried per dipole, drawn at random if its bin holds more; of what
-                                    ///< is turned a quarter.
-  CountSamplesOptions coarse{};     ///< First test of a pose.
-  double min_coarse_score = 0.2;    ///< Of 1: all samples confirmed.
-  int max_matches = 300;            ///< Of each object, the best, of which two fix a pose; 0: none.
-  double match_distance_m = 0.015;  ///< Matches nearer than this agree with a pose.
-  int max_refined = 120;            ///< Poses per object that are refined and judged, the best by the first test.
-  int refine_iterations = 6;        ///< Of projective ICP.
-  double refine_distance_m = 0.02;  ///< Pairs of it that are farther apart do not count.
-  double tolerance_m = 0.005;       ///< Of the depth when a refined pose is judged, beside three sigmas of the sensor.
-  double min_explained_share = 0.6;  ///< Of the samples that are not hidden.
-  double min_visible_share = 0.2;    ///< Of the samples that face the camera: neither hidden nor outside.
-  int max_turns = 8;                 ///< Of them so many are judged: those with most samples of the right hue.
-  int max_hypotheses = 3;            ///< Per object.
-  double min_feature_share = 0.4;    ///< Hypotheses from features that explain less of themselves in their own view
-                                     ///< are chance; 0 keeps all.
-  double same_place_m = 0.015;       ///< Poses nearer than this (at the object's centre)...
-  double same_rotation_rad = 0.21;   ///< ...and this (over its symmetries) are one.
+  int max_seeds = 1000;
+  int max_entries = 32;
+  int max_matches = 300;
+  int max_refined = 120;
+  double tolerance_m = 0.005;
+  double min_explained_share = 0.6;
+  double min_visible_share = 0.2;
+  int max_hypotheses = 3;
+  double min_feature_share = 0.4;
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
-  void check() const;
+  void check() const { check_options("ShapeSearchOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
+  v.field("enabled", o.enabled, "Objects are searched by shape as well as by features: for untextured ones.", "ours");
+  v.only_if(o.enabled, "enabled", "true", [&] {
+    v.field("skip_planes", o.skip_planes, "No keypoints of features on planes larger than the largest object.");
+    v.group("scene", o.scene);
+    v.field("max_seeds", o.max_seeds, at_least(1), "Scene points that oriented point pairs start from. More: slower.",
+            "Winkelbach et al. 2006");
+    v.field("max_entries", o.max_entries, at_least(1),
+            "Model pairs tried per object and scene pair, drawn at random if there are more (a quarter of them for "
+            "objects round in shape).");
+    v.field("max_matches", o.max_matches, at_least(0),
+            "Matches per object, the best, of which pairs also give poses. 0: none do.");
+    v.field("max_refined", o.max_refined, at_least(0), "Poses per object that are refined and scored, the best first.");
+    v.field("tolerance_m", o.tolerance_m, positive(),
+            "Tolerance of the depth when a refined pose is scored, plus three standard deviations of the sensor.");
+    v.field("min_explained_share", o.min_explained_share, between(0, 1),
+            "Least share of the samples that are not hidden which must be explained.");
+    v.field("min_visible_share", o.min_visible_share, between(0, 1),
+            "Least share of the samples facing the camera which must be in the image and not hidden.");
+    v.field("max_hypotheses", o.max_hypotheses, at_least(0), "Hypotheses per object and view.");
+    v.field(
+        "min_feature_share", o.min_feature_share, between(0, 1),
+        "Hypotheses from features that explain a smaller share of themselves in their own view are spurious and are "
+        "dropped. 0: none is.");
+  });
+  v.seed(o.seed);
+  v.num_threads(o.num_threads);
+}
 
 /// A view made ready for the search. It must outlive what is asked of it, and the PreparedView must outlive it.
 struct SearchView {

@@ -175,7 +175,7 @@ TEST(ShapeSearchOptions, ChecksItsFields) {
   options.max_seeds = 0;
   EXPECT_THROW(ShapeSearch(ModelLibrary{}, options), std::invalid_argument);
   options = {};
-  options.coarse.tolerance_m = 0;
+  options.scene.spacing_m = 0;
   EXPECT_THROW(ShapeSearch(ModelLibrary{}, options), std::invalid_argument);
 }
 

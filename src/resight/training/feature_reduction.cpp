@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/kd_tree.hpp"
 
@@ -90,11 +89,6 @@ FeatureSet average_groups(const FeatureSet& features, const std::vector<int>& gr
 }
 
 }  // namespace
-
-void FeatureMerging::check() const {
-  check_not_negative("FeatureMerging.max_distance_m", max_distance_m);
-  check_in_range("FeatureMerging.max_descriptor_distance", max_descriptor_distance, 0, 2);
-}
 
 FeatureSet merge_similar_features(const FeatureSet& features, const FeatureMerging& merging, int num_threads) {
   merging.check();

@@ -11,7 +11,6 @@
 #include <optional>
 #include <tuple>
 
-#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/training/internal/rotation_group.hpp"
 #include "resight/training/internal/self_overlap.hpp"
@@ -310,19 +309,6 @@ std::vector<Rigid3> find_discrete(const SelfOverlap& overlap, const Directions& 
 }
 
 }  // namespace
-
-void SymmetryOptions::check() const {
-  check_in_range("SymmetryOptions.min_agreement", min_agreement, 0.5, 1);
-  check_in_range("SymmetryOptions.min_close_agreement", min_close_agreement, 0, 1);
-  check_positive("SymmetryOptions.max_distance_m", max_distance_m);
-  check_in_range("SymmetryOptions.max_distance_share", max_distance_share, 0, 0.1);
-  check_in_range("SymmetryOptions.max_normal_angle_rad", max_normal_angle_rad, 0, kPi / 2);
-  check_in_range("SymmetryOptions.blur_share", blur_share, 0, 0.5);
-  check_positive("SymmetryOptions.max_brightness_difference", max_brightness_difference);
-  check_positive("SymmetryOptions.max_chroma_difference", max_chroma_difference);
-  check_in_range("SymmetryOptions.num_samples", num_samples, 100, 100000);
-  check_positive("SymmetryOptions.num_threads", num_threads);
-}
 
 ObjectSymmetries find_symmetries(const PointCloud& surface, const SymmetryOptions& options) {
   options.check();

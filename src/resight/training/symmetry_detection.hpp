@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <numbers>
+
+#include "resight/core/options.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/symmetry.hpp"
 
@@ -7,19 +10,38 @@ namespace resight {
 
 /// Criteria for a motion to count as a symmetry. All values are ours.
 struct SymmetryOptions {
-  double min_agreement = 0.97;        ///< Share of the surface that must come to lie on the surface, in like colour.
-  double min_close_agreement = 0.85;  ///< Share of it whose colour differs by half of the limits at most: faint prints.
-  double max_distance_m = 0.0015;     ///< Off the surface, along its normal: what a scan is good for.
-  double max_distance_share = 0.015;  ///< The same as a share of the diameter; the larger of both counts.
-  double max_normal_angle_rad = 0.7;  ///< Between the normals: 40 deg, as those of voxels beside an edge are mixed.
-  double blur_share = 0.04;           ///< Colours are means within this share of the diameter (and two voxels).
-  double max_brightness_difference =
-      0.2;                              ///< Of those means: Y' in [0, 1]. Wide, as scans hold the light of their day.
-  double max_chroma_difference = 0.08;  ///< Of those means: (Cb, Cr), each in [-0.5, 0.5].
-  int num_samples = 800;                ///< Points that are moved, evenly spread over the surface.
-  int num_threads = 1;                  ///< Same bits for any value >= 1.
-  void check() const;
+  double min_agreement = 0.97;
+  double min_close_agreement = 0.85;
+  double max_distance_m = 0.0015;
+  double max_distance_share = 0.015;
+  double max_normal_angle_rad = 0.7;
+  double blur_share = 0.04;
+  double max_brightness_difference = 0.2;
+  double max_chroma_difference = 0.08;
+  int num_samples = 800;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("SymmetryOptions", *this); }
 };
+
+inline void declare(OptionVisitor& v, SymmetryOptions& o) {
+  v.field("min_agreement", o.min_agreement, between(0.5, 1),
+          "Share of the surface that a symmetry motion must move onto the surface, with similar colour.");
+  v.field("min_close_agreement", o.min_close_agreement, between(0, 1),
+          "Share of it whose colours differ by at most half of the limits: faint texture.");
+  v.field("max_distance_m", o.max_distance_m, positive(), "Largest distance from the surface, along its normal.");
+  v.field("max_distance_share", o.max_distance_share, between(0, 0.1),
+          "The same as a share of the diameter; the larger of both counts.");
+  v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi / 2),
+          "Largest angle between the normals (40 deg: those of voxels at an edge are mixed).");
+  v.field("blur_share", o.blur_share, between(0, 0.5),
+          "Colours are means within this share of the diameter (and two voxels).");
+  v.field("max_brightness_difference", o.max_brightness_difference, positive(),
+          "Largest difference of mean Y' in [0, 1]. Wide, as scans include the light of their day.");
+  v.field("max_chroma_difference", o.max_chroma_difference, positive(),
+          "Largest difference of mean (Cb, Cr), each in [-0.5, 0.5].");
+  v.field("num_samples", o.num_samples, between(100, 100000), "Points that are moved, evenly spread over the surface.");
+  v.num_threads(o.num_threads);
+}
 
 /// Finds the motions that map an object onto itself in shape and colour (in shape alone if the surface has no colours):
 /// continuous axes, and rotations of orders 2 to 6, 8, 10 and 12 with all their products, so that

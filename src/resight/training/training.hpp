@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 
+#include "resight/core/options.hpp"
 #include "resight/core/result.hpp"
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
@@ -15,19 +16,33 @@
 namespace resight {
 
 struct TrainOptions {
-  SiftOptions sift;
+  SiftOptions sift{};
   ShotOptions shot{.min_surface_variation = 0.0};  ///< On an object every keypoint counts.
-  double surface_voxel_m = 0.003;                  ///< V4R voxelises models at 3 mm.
-  TurntableOptions turntable;                      ///< For meshes: the views they are ray-cast from.
-  double min_edge_distance_px = 2.0;               ///< Surface points nearer to a depth discontinuity are not used.
+  double surface_voxel_m = 0.003;
+  TurntableOptions turntable{};
+  double min_edge_distance_px = 2.0;
   FeatureMerging sift_merging{.max_distance_m = 0.005, .max_descriptor_distance = 0.4};
   FeatureMerging shot_merging{.max_distance_m = 0.007, .max_descriptor_distance = 0.4};
-  bool find_symmetries = true;  ///< Of objects whose source does not declare theirs.
-  SymmetryOptions symmetry;     ///< How; its num_threads does not count.
-  int num_threads = 1;          ///< Not part of the hash: the bytes do not depend on it.
-  void check() const;
+  bool find_symmetries = true;
+  SymmetryOptions symmetry{};
+  int num_threads = 1;  ///< Not part of the hash: the bytes do not depend on it.
+  void check() const { check_options("TrainOptions", *this); }
   [[nodiscard]] std::uint64_t hash() const;  ///< Of every field that changes the result, and of the format version.
 };
+
+inline void declare(OptionVisitor& v, TrainOptions& o) {
+  v.group("sift", o.sift);
+  v.group("shot", o.shot);
+  v.field("surface_voxel_m", o.surface_voxel_m, positive(), "Voxel of the models' surfaces.", "V4R");
+  v.group("turntable", o.turntable);
+  v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
+          "Surface points nearer to a depth edge of a training view are not used. 0: all are.");
+  v.group("sift_merging", o.sift_merging);
+  v.group("shot_merging", o.shot_merging);
+  v.field("find_symmetries", o.find_symmetries, "Of objects whose source does not declare theirs.");
+  v.group("symmetry", o.symmetry);
+  v.num_threads(o.num_threads);
+}
 
 /// Features of one object, before they are coded.
 struct ObjectFeatures {

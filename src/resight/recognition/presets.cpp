@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "resight/recognition/recognizer_config.hpp"
+
+namespace resight {
+namespace {
+
+// The paper's thresholds are the defaults of the stages; here stands what tells the presets apart, and what the paper
+// leaves open.
+
+void set_paper(RecognizerConfig& config) {
+  config.changes.detection.occlusion_test = OcclusionTest::kSphericalBins;
+  config.verify.refine.max_iterations = 0;
+  config.detections.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
+}
+
+void set_default_verification(VerifyOptions& verify) {
+  verify.support.max_distance_m = 0.01;  // Poses are refined.
+  verify.visibility.free_space = NewestViewFreeSpace{};
+  verify.visibility.arrival_share = 0.6;
+  verify.appearance.sigma_l = 0.45;                 // An object in shadow is darker than the fit has it,
+  verify.appearance.sigma_ab = 0.17;                // but not of another chromaticity.
+  verify.appearance.light.max_log_darkening = 1.2;  // Objects in a shelf
+  verify.appearance.light.max_log_shading = 1.2;    // are lit from one side.
+  verify.refine.symmetry_step_rad = 0.1745;         // 10 deg.
+  verify.clutter.weight = 6;
+  verify.clutter.rule = ContinuationClutter{.max_offset_m = 0.005, .texture_contrast = 2, .noise_sigmas = 3};
+  verify.planes->spacing_m = 0.01;
+  verify.acceptance = {.min_visible_share = 0.05,
+                       .min_explained_share = 0.5,     // Half of an object may lie in a hard shadow,
+                       .min_pattern_similarity = 0.5,  // but its texture stays its own,
+                       .min_newest_similarity = 0.4,   // whatever stood there before.
+                       .min_shared_texture = 0.08,
+                       .untextured = UntexturedOptions{},
+                       .require_unary_gain = true};
+}
+
+void set_default(RecognizerConfig& config) {
+  config.remember_objects = true;
+  config.poses.correct = true;
+  config.prepare.normals.window_radius_px = 4;  // At 1 m, normals of objects are off by 6 deg; by 20 with 2.
+  config.features.match.shot_neighbors = 3;
+  config.features.match.shot_index.num_components = 64;
+  config.features.match.shot_index.num_probes = 8;
+  config.features.match.shot_index.exact_below = 1024;  // A single object has thousands.
+  config.hypotheses.min_carried_share = 0.8;
+  config.shape.enabled = true;
+  config.shape.skip_planes = true;
+  config.shape.max_seeds = 600;
+  config.changes.detection.occlusion_test = OcclusionTest::kDepthImage;
+  config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
+  set_default_verification(config.verify);
+  config.detections.min_reported_share = 0.01;
+  config.detections.score = {.offset = -4.24,
+                             .gain_weight = 5.14,
+                             .correspondence_weight = 0.71,
+                             .visible_weight = 6.87,
+                             .known_weight = 0.83};
+  config.history.min_new_share = 0.01;
+  config.history.confirm_score = 0.7;
+  config.search.max_new_share = 0.003;  // 30 x 30 pixels.
+  config.search.place_interval = 4;
+}
+
+}  // namespace
+
+RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
+  RecognizerConfig config;
+  config.preset = name;
+  config.features.shot.max_keypoint_depth_m = 2.0;  // Beyond, normals are noise.
+  if (name == "default") {
+    set_default(config);
+  } else if (name == "mvr-chd" || name == "mvr") {
+    set_paper(config);
+    config.changes.enabled = name == "mvr-chd";
+  } else {
+    throw std::invalid_argument(fmt::format("unknown preset '{}' (there are mvr, mvr-chd, default)", name));
+  }
+  return config;
+}
+
+}  // namespace resight
