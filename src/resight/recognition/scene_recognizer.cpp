@@ -44,7 +44,7 @@ struct SceneRecognizer::Impl {
   SceneUpdate add_view(RgbdFrame frame, RecognitionTrace* trace);
   void add_to_scene(RgbdFrame frame, SceneUpdate& update);
   [[nodiscard]] Hypotheses search(SceneUpdate& update, RecognitionTrace* trace);
-  [[nodiscard]] const ViewHypotheses& generate(const PreparedView& view, int number);
+  [[nodiscard]] std::shared_ptr<const ViewHypotheses> generate(const PreparedView& view, int number);
   [[nodiscard]] Hypotheses merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] Hypotheses tracked_hypotheses() const;
   [[nodiscard]] Mask presence_of(const Hypotheses& hypotheses) const;
@@ -112,22 +112,22 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
 // The hypotheses of the current view alone, stored or new.
 auto SceneRecognizer::Impl::search(SceneUpdate& update, RecognitionTrace* trace) -> Hypotheses {
   const PreparedView& view = scene.window().back().cleared;
-  const ViewHypotheses* stored = source.find_stored(update.view);
-  const ViewHypotheses& found = stored != nullptr ? *stored : generate(view, update.view);
-  source.reserve_ids(found);
-  update.times.add(found.times);
-  update.left_out = found.left_out;
-  for (const auto& c : found.correspondences) update.counts.correspondences += static_cast<int>(c.size());
-  update.counts.generated = static_cast<int>(found.hypotheses.size());
+  std::shared_ptr<const ViewHypotheses> found = source.find_stored(update.view);
+  if (!found) found = generate(view, update.view);
+  source.reserve_ids(*found);
+  update.times.add(found->times);
+  update.left_out = found->left_out;
+  for (const auto& c : found->correspondences) update.counts.correspondences += static_cast<int>(c.size());
+  update.counts.generated = static_cast<int>(found->hypotheses.size());
   if (trace != nullptr) {
-    trace->sift = found.sift;
-    trace->shot = found.shot;
-    trace->correspondences = found.correspondences;
+    trace->sift = found->sift;
+    trace->shot = found->shot;
+    trace->correspondences = found->correspondences;
   }
-  return move_hypotheses(found, view.frame.world_from_camera);
+  return move_hypotheses(*found, view.frame.world_from_camera);
 }
 
-const ViewHypotheses& SceneRecognizer::Impl::generate(const PreparedView& view, int number) {
+std::shared_ptr<const ViewHypotheses> SceneRecognizer::Impl::generate(const PreparedView& view, int number) {
   StageTimes planning_times;
   Image<std::uint8_t> skipped;
   if (planner.skips_places()) {
@@ -136,8 +136,8 @@ const ViewHypotheses& SceneRecognizer::Impl::generate(const PreparedView& view, 
     const std::vector<TrackedObject> tracked = history.tracked_objects();
     skipped = planner.find_skipped_pixels(number, view.frame, tracked, present);
   }
-  const ViewHypotheses& made = source.generate(view, number, budget.search_deadline(), skipped, planning_times);
-  if (!made.left_out.empty()) planner.request_full_search();
+  auto made = source.generate(view, number, budget.search_deadline(), skipped, planning_times);
+  if (!made->left_out.empty()) planner.request_full_search();
   return made;
 }
 

@@ -16,12 +16,13 @@ class ViewHypothesisSource {
                        std::shared_ptr<ViewHypothesisStore> store);
 
   /// The stored hypotheses of a view; null if they must be generated.
-  [[nodiscard]] const ViewHypotheses* find_stored(int number) const { return store_ ? store_->find(number) : nullptr; }
+  [[nodiscard]] std::shared_ptr<const ViewHypotheses> find_stored(int number) const;
   /// Generates the hypotheses of a view, with ids above those of all views before, and stores them; parameters as in
-  /// ViewHypothesisGenerator::generate(). `planning_times` are added to the times of the result. The reference is valid
-  /// until the next call.
-  const ViewHypotheses& generate(const PreparedView& view, int number, const Deadline& deadline,
-                                 const Image<std::uint8_t>& skipped, const StageTimes& planning_times);
+  /// ViewHypothesisGenerator::generate(). `planning_times` are added to the times of the result.
+  [[nodiscard]] std::shared_ptr<const ViewHypotheses> generate(const PreparedView& view, int number,
+                                                               const Deadline& deadline,
+                                                               const Image<std::uint8_t>& skipped,
+                                                               const StageTimes& planning_times);
   /// Reserves the ids of hypotheses that are used; to be called for each view that is searched, stored or not.
   void reserve_ids(const ViewHypotheses& used) { next_id_ += used.hypotheses.size(); }
 
@@ -30,7 +31,6 @@ class ViewHypothesisSource {
   const RecognizerConfig& config_;
   std::shared_ptr<ViewHypothesisStore> store_;
   std::optional<ViewHypothesisGenerator> generator_;  // With a store: made when a view needs it.
-  ViewHypotheses made_;                               // Of the last view, without a store.
   std::uint64_t next_id_ = 0;
 };
 
