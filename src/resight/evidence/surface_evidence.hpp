@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,11 @@ enum class Evidence : std::uint8_t {
   kPresent,      ///< At the measured depth, within the margin.
   kSeenThrough,  ///< In front of the measured depth by more than the margin: the view sees free space there.
 };
+
+/// Whether the view says anything about the point itself.
+[[nodiscard]] constexpr bool is_observed(Evidence evidence) {
+  return evidence == Evidence::kPresent || evidence == Evidence::kSeenThrough;
+}
 
 /// Tolerance along z between a surface and the measured depth.
 struct DepthMargin {
@@ -54,6 +60,7 @@ struct SurfaceEvidenceOptions {
   DepthMargin margin{};
   int window_radius_px = 0;
   double min_viewing_cosine = 0.2;
+  std::optional<double> self_occlusion_spacing_m{};
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("SurfaceEvidenceOptions", *this); }
 };
@@ -64,12 +71,17 @@ inline void declare(OptionVisitor& v, SurfaceEvidenceOptions& o) {
           "The nearest return within this many rows and columns of the projection counts.");
   v.field("min_viewing_cosine", o.min_viewing_cosine, between(-1, 1),
           "Points with a normal seen at a more grazing angle (78 deg) are not observed.");
+  v.field(
+      "self_occlusion_spacing_m", o.self_occlusion_spacing_m, positive(),
+      "Spacing of the points of the surface. Points that the surface itself hides (SelfOcclusion) are occluded. off: "
+      "the surface hides nothing of itself.");
   v.num_threads(o.num_threads);
 }
 
 struct SurfaceEvidence {
   std::vector<Evidence> points;
-  std::array<int, 4> count{};  ///< By Evidence, of the points that face the camera (all points without normals).
+  std::vector<float> viewing_cosine;  ///< Per point: between normal and viewing ray; 1 without normals.
+  std::array<int, 4> count{};         ///< By Evidence, of the points that face the camera (all points without normals).
   [[nodiscard]] int num(Evidence evidence) const { return count[static_cast<std::size_t>(evidence)]; }
 };
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -154,6 +155,60 @@ TEST(ClassifySurface, ALargerWindowOnlyProtects) {  // More returns can only be 
     EXPECT_TRUE(narrow.points[i] != Evidence::kOccluded || wide.points[i] == Evidence::kOccluded);
     EXPECT_TRUE(narrow.points[i] != Evidence::kPresent || wide.points[i] != Evidence::kSeenThrough);
   }
+}
+
+TEST(ClassifySurface, ASurfaceHidesItselfIfAsked) {
+  // A board at 1 m and, behind its left half, another at 1.1 m; the wall is at 2 m.
+  const Image<float> wall(kCamera.width, kCamera.height, 2.0F);
+  Points points;
+  for (int i = -20; i <= 20; ++i)
+    for (int j = -20; j <= 20; ++j) {
+      points.emplace_back(0.005F * static_cast<float>(i), 0.005F * static_cast<float>(j), 1.0F);
+      points.emplace_back(0.005F * static_cast<float>(i - 20), 0.005F * static_cast<float>(j), 1.1F);
+    }
+  SurfaceEvidenceOptions options;
+  const auto classify = [&] {
+    return classify_surface({.points = points}, Rigid3::identity(), {kCamera, wall}, options);
+  };
+  const SurfaceEvidence open = classify();
+  EXPECT_EQ(open.num(Evidence::kSeenThrough), static_cast<int>(points.size()));
+  options.self_occlusion_spacing_m = 0.005;
+  const SurfaceEvidence hidden = classify();
+  int num_hidden = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool is_rear = points[i].z() > 1.05F;
+    const float x_on_front = points[i].x() / points[i].z();
+    EXPECT_TRUE(is_rear || hidden.points[i] == Evidence::kSeenThrough);
+    if (!is_rear || std::abs(x_on_front + 0.1F) < 0.05F || std::abs(points[i].y()) > 0.05F) continue;
+    const bool is_behind = x_on_front > -0.1F;
+    EXPECT_EQ(hidden.points[i], is_behind ? Evidence::kOccluded : Evidence::kSeenThrough);
+    num_hidden += is_behind ? 1 : 0;
+  }
+  EXPECT_GT(num_hidden, 50);
+  options.self_occlusion_spacing_m = -1;
+  EXPECT_THROW((void)classify(), std::invalid_argument);
+}
+
+TEST(ClassifySurface, SelfOcclusionOnlyTurnsObservedPointsToOccluded) {
+  const Image<float> depth_m = random_depth(21);
+  const Points points = random_points(4000, 0.4, 22);
+  const Points normals = random_normals(points.size(), 23);
+  const Rigid3 pose = Rigid3::from_translation({0, 0, 1.5});
+  const auto classify = [&](std::optional<double> spacing_m, int num_threads) {
+    return classify_surface({points, normals}, pose, {kCamera, depth_m},
+                            {.self_occlusion_spacing_m = spacing_m, .num_threads = num_threads});
+  };
+  const SurfaceEvidence open = classify({}, 1), hiding = classify(0.02, 1);
+  EXPECT_EQ(classify(0.02, 3).points, hiding.points);
+  int num_changed = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(open.viewing_cosine[i], hiding.viewing_cosine[i]);
+    if (open.points[i] == hiding.points[i]) continue;
+    ++num_changed;
+    EXPECT_TRUE(is_observed(open.points[i]));
+    EXPECT_EQ(hiding.points[i], Evidence::kOccluded);
+  }
+  EXPECT_GT(num_changed, 50);
 }
 
 TEST(ClassifySurface, AnyNumberOfThreads) {

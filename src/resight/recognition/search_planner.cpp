@@ -50,7 +50,7 @@ Image<std::uint8_t> SearchPlanner::find_skipped_pixels(int number, const RgbdFra
       skipped.push_back(tracked[i]);
       continue;
     }
-    if (!frame.camera.contains(frame.camera.project(center_in_camera)) || depth_m <= 0) continue;
+    if (!frame.camera.pixel_of(center_in_camera)) continue;
     PlaceSearch& search = search_of_track_[tracked[i].track];
     search.depth_m = search.view < tracked[i].since_view ? depth_m : std::min(search.depth_m, depth_m);
     search.view = number;

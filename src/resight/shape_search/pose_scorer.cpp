@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "resight/appearance/pattern_similarity.hpp"
-#include "resight/appearance/photometric_fit.hpp"
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/registration/point_to_plane.hpp"
+#include "resight/segmentation/surface_continuation.hpp"
 #include "resight/shape_search/scene_samples.hpp"
 #include "resight/shape_search/silhouette.hpp"
 
@@ -25,13 +25,10 @@ constexpr float kMinDepth_m = 0.05F;
 constexpr int kMinPairs = 15;
 constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of the samples: without holes.
 constexpr float kMaxContinuationOffset_m = 0.005F;
-constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
-constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
 constexpr float kMaxGain = 0.25F;  // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
 constexpr float kMinPlane_m = 0.1F;
 constexpr float kPlaneDistance_m = 0.01F;
 constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
-constexpr float kLargerThan = 1.2F;    // As the verification has it: a plane no larger may be the object's own face.
 const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
 // Mean distance to the nearest other sample.
@@ -81,8 +78,8 @@ float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<
 void CountSamplesOptions::check() const {
   check_positive("CountSamplesOptions.max_samples", max_samples);
   check_not_negative("CountSamplesOptions.max_wrong", max_wrong);
-  check_positive("CountSamplesOptions.tolerance_m", tolerance_m);
-  check_not_negative("CountSamplesOptions.tolerance_sigmas", tolerance_sigmas);
+  check_options("CountSamplesOptions.margin", margin);
+  check_positive("CountSamplesOptions.margin.base_m", margin.base_m);
   check_positive("CountSamplesOptions.max_chroma_difference", max_chroma_difference);
 }
 
@@ -125,7 +122,7 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
 Image<std::uint8_t> PoseScorer::off_larger_planes(float diameter_m) const {
   Image<std::uint8_t> mask(pixels_.width(), pixels_.height());
   for (std::size_t i = 0; i < mask.size(); ++i)
-    mask[i] = pixels_[i].plane_extent_m > kLargerThan * diameter_m ? 0 : 255;
+    mask[i] = is_larger_than_object(pixels_[i].plane_extent_m, diameter_m) ? 0 : 255;
   return mask;
 }
 
@@ -137,20 +134,19 @@ int PoseScorer::pixel_of(const Eigen::Vector3f& p) const {
   return static_cast<int>(lab_.index(static_cast<int>(u), static_cast<int>(v)));
 }
 
-float PoseScorer::tolerance_at(float z_m, double tolerance_m, double sigmas) const {
-  const double seen_z_m = std::max(kMinDepth_m, z_m);  // The centre may lie behind the camera.
-  return static_cast<float>(tolerance_m + sigmas * nguyen_noise(seen_z_m, 0, view_.frame.camera.fx).axial_m);
+float PoseScorer::margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
+                                   const DepthMargin& margin) const {
+  const float z_m = (camera_from_object * model.center).z();
+  return margin.at(std::max(kMinDepth_m, z_m), view_.frame.camera.fx);  // The centre may lie behind the camera.
 }
 
-// No branches in its loops: the compiler makes vector code of them.
+// classify_surface() for vector instructions: no branches in its loops, and one margin for all samples of a pose.
 SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_from_object,
                                const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
   const bool has_colors = !model.chroma.empty();
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
-  const float max_plane_m = kLargerThan * model.diameter_m;
-  const float tolerance =
-      tolerance_at((camera_from_object * model.center).z(), options.tolerance_m, options.tolerance_sigmas);
+  const float margin_m = margin_at_center(model, camera_from_object, options.margin);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const PosedBlock posed = project(model.blocks[b], camera_from_object);
     std::array<Pixel, SampleBlock::kSize> pixels;
@@ -160,12 +156,12 @@ SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_
       const Pixel& pixel = pixels[k];
       const float ahead_m = pixel.z_m - posed.samples.z[k];  // NaN: no comparison holds.
       const int measured = posed.faces[k] & posed.inside[k];
-      const int near = measured & int{std::abs(ahead_m) <= tolerance};
-      const int on_plane = int{pixel.plane_extent_m > max_plane_m};
+      const int near = measured & int{std::abs(ahead_m) <= margin_m};
+      const int on_plane = int{is_larger_than_object(pixel.plane_extent_m, model.diameter_m)};
       const int confirmed = near & ~on_plane;
       counts.facing += posed.faces[k];
-      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -tolerance});
-      counts.through += (measured & int{ahead_m > tolerance}) | (near & on_plane);
+      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
+      counts.through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
       counts.confirmed += confirmed;
       if (has_colors) counts.off_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
     }
@@ -258,20 +254,20 @@ Rigid3 PoseScorer::refine(const SampledModel& model, const Rigid3& camera_from_o
 }
 
 PoseScorer::Confirmed PoseScorer::confirm(const SampledModel& model, const Rigid3& camera_from_object,
-                                          double tolerance_m) const {
+                                          const DepthMargin& margin) const {
   const Rigid3f motion(camera_from_object);
-  const float tolerance = tolerance_at((motion * model.center).z(), tolerance_m, 3);
+  const float margin_m = margin_at_center(model, motion, margin);
   Confirmed confirmed;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const PosedBlock posed = project(model.blocks[b], motion);
     for (std::size_t k = 0; k < SampleBlock::kSize; ++k)
-      if (posed.faces[k] != 0) confirm_sample(model, b * SampleBlock::kSize + k, posed, k, tolerance, confirmed);
+      if (posed.faces[k] != 0) confirm_sample(model, b * SampleBlock::kSize + k, posed, k, margin_m, confirmed);
   }
   return confirmed;
 }
 
 void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
-                                float tolerance, Confirmed& confirmed) const {
+                                float margin_m, Confirmed& confirmed) const {
   ++confirmed.facing;
   if (posed.inside[k] == 0) {
     ++confirmed.hidden;
@@ -280,48 +276,38 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
   const auto at = static_cast<std::size_t>(posed.pixel[k]);
   confirmed.outline.emplace_back(posed.column[k], posed.row[k]);
   const Pixel& pixel = pixels_[at];
-  if (std::isnan(pixel.z_m)) return;
+  const Evidence evidence = compare_depth(posed.samples.z[k], pixel.z_m, margin_m);
+  if (evidence == Evidence::kUnobserved) return;
   const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
-  const float ahead_m = pixel.z_m - posed.samples.z[k];
-  if (ahead_m < -tolerance) {
+  if (evidence == Evidence::kOccluded) {
     ++confirmed.hidden;
-  } else if (ahead_m > tolerance || pixel.plane_extent_m > kLargerThan * model.diameter_m ||
+  } else if (evidence == Evidence::kSeenThrough || is_larger_than_object(pixel.plane_extent_m, model.diameter_m) ||
              oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
     ++confirmed.wrong;
   } else {
     confirmed.samples.push_back(static_cast<int>(sample));
     confirmed.pixels.push_back(at);
-    confirmed.normals.push_back(normal);
     if (model.linear_light.empty()) return;
-    confirmed.model_light.push_back(model.linear_light[sample]);
-    confirmed.scene_light.push_back(to_linear_light(view_.frame.color[at]));
+    confirmed.colors.model.push_back(model.linear_light[sample]);
+    confirmed.colors.scene.push_back(to_linear_light(view_.frame.color[at]));
+    confirmed.colors.normals.push_back(normal);
   }
 }
 
 PhotometricFit PoseScorer::fit_photometry(const SampledModel& model, const Rigid3& camera_from_object,
-                                          double tolerance_m, const PhotometricLimits& limits) const {
-  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
-  return resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals, limits);
+                                          const DepthMargin& margin, const PhotometricLimits& limits) const {
+  return resight::fit_photometry(confirm(model, camera_from_object, margin).colors, limits);
 }
 
 // Counts as explained only what is of like colour, too.
 void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const {
-  const PhotometricFit light = resight::fit_photometry(confirmed.model_light, confirmed.scene_light, confirmed.normals,
-                                                       criteria.appearance.light);
-  const ColorTolerance tolerance(criteria.appearance.sigma_l, criteria.appearance.sigma_ab);
-  const auto max_exponent = static_cast<float>(-std::log(criteria.min_weight));
+  const PhotometricFit light = resight::fit_photometry(confirmed.colors, criteria.appearance.light);
+  const std::vector<LabColor> expected = adapt_colors(confirmed.colors, light);
   std::vector<LabColor> seen;
-  std::vector<LabColor> expected;
-  seen.reserve(confirmed.samples.size());
-  expected.reserve(confirmed.samples.size());
-  fit.num_explained = 0;
-  for (std::size_t k = 0; k < confirmed.samples.size(); ++k) {
-    expected.push_back(to_lab(light(confirmed.model_light[k], confirmed.normals[k])));
-    seen.push_back(lab_[confirmed.pixels[k]]);
-    if (tolerance.exponent(expected[k], seen[k]) < max_exponent) ++fit.num_explained;
-  }
-  fit.pattern_similarity =
-      pattern_similarity(expected, seen, criteria.appearance.sigma_l / criteria.appearance.sigma_ab);
+  seen.reserve(confirmed.pixels.size());
+  for (const std::size_t pixel : confirmed.pixels) seen.push_back(lab_[pixel]);
+  fit.num_explained = count_color_inliers(expected, seen, criteria.min_weight, criteria.appearance);
+  fit.pattern_similarity = pattern_similarity(expected, seen, chroma_weight(criteria.appearance));
 }
 
 double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed,
@@ -333,13 +319,13 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
     const auto pixel = static_cast<int>(confirmed.pixels[k]);
     silhouette.set_known(Eigen::Vector2f(pixel % lab_.width(), pixel / lab_.width()), pixel);
   }
-  const ColorTolerance tolerance(criteria.appearance.sigma_l, criteria.appearance.sigma_ab);
+  const ColorTolerance tolerance = color_tolerance(criteria.appearance);
   const auto continues = [&](std::size_t from, std::size_t to) {
-    if (!view_.cloud.has_normal(from) || !view_.cloud.has_normal(to)) return false;
-    const Eigen::Vector3f normal = view_.cloud.normal(from);
-    return std::abs(normal.dot(view_.cloud.point(to) - view_.cloud.point(from))) < kMaxContinuationOffset_m &&
-           normal.dot(view_.cloud.normal(to)) > kMinContinuationDot &&
-           tolerance.exponent(lab_[from], lab_[to]) < kMaxContinuationExponent;
+    const OrganizedCloud& cloud = view_.cloud;
+    return cloud.has_normal(from) && cloud.has_normal(to) &&
+           continues_shape({cloud.point(from), cloud.normal(from)}, {cloud.point(to), cloud.normal(to)},
+                           kMaxContinuationOffset_m) &&
+           continues_color(lab_[from], lab_[to], tolerance);
   };
   int num_cells = 0;
   silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
@@ -362,18 +348,18 @@ PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
   return fit;
 }
 
-bool PoseScorer::fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
+bool PoseScorer::fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, const DepthMargin& margin,
                                const PoseFit& least) const {
-  return shape_fit(confirm(model, camera_from_object, tolerance_m)).reaches(least);
+  return shape_fit(confirm(model, camera_from_object, margin)).reaches(least);
 }
 
-PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
+PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_from_object, const DepthMargin& margin,
                                const MatchCriteria& criteria, const PoseFit& least) const {
-  const Confirmed confirmed = confirm(model, camera_from_object, tolerance_m);
+  const Confirmed confirmed = confirm(model, camera_from_object, margin);
   PoseFit fit = shape_fit(confirmed);
   if (confirmed.samples.empty() || !fit.reaches(least)) return fit;
   const double num_visible = fit.num_explained + confirmed.wrong;
-  if (!confirmed.model_light.empty()) compare_colors(confirmed, criteria, fit);
+  if (!confirmed.colors.empty()) compare_colors(confirmed, criteria, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;
   fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, criteria));

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "resight/appearance/lab_color.hpp"
+#include "resight/appearance/appearance_match.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/registration/point_to_plane.hpp"
@@ -41,10 +42,9 @@ struct SampledModel {
 [[nodiscard]] SampledModel make_sampled_model(const ObjectModel& model, int max_samples);
 
 struct CountSamplesOptions {
-  int max_samples = 40;                ///< That face the camera: counting stops with the block that has them.
-  int max_wrong = 5;                   ///< Beside a quarter of those seen so far: with more, counting stops.
-  double tolerance_m = 0.009;          ///< Of the depth, beside...
-  double tolerance_sigmas = 3;         ///< ...so many sigmas of the sensor.
+  int max_samples = 40;  ///< That face the camera: counting stops with the block that has them.
+  int max_wrong = 5;     ///< Beside a quarter of those seen so far: with more, counting stops.
+  DepthMargin margin{.base_m = 0.009, .noise_sigmas = 3};  ///< At the depth of the object's centre.
   double max_chroma_difference = 0.3;  ///< Of a* and b*, each over L* + 26: the light is not known yet.
   void check() const;
 };
@@ -108,23 +108,22 @@ class PoseScorer {
   /// The light on the object at a pose that is known to be about right (photometric_fit.hpp); its chroma is not
   /// limited.
   [[nodiscard]] PhotometricFit fit_photometry(const SampledModel& model, const Rigid3& camera_from_object,
-                                              double tolerance_m, const PhotometricLimits& limits) const;
+                                              const DepthMargin& margin, const PhotometricLimits& limits) const;
   /// Whether the last test, without colours and what goes on beyond the object, would reach `least`.
-  [[nodiscard]] bool fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                                   const PoseFit& least) const;
+  [[nodiscard]] bool fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object,
+                                   const DepthMargin& margin, const PoseFit& least) const;
   /// The last test: all samples, their colours in the light that fits them best (photometric_fit.hpp). What cannot
   /// reach `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
-  [[nodiscard]] PoseFit score_fine(const SampledModel& model, const Rigid3& camera_from_object, double tolerance_m,
-                                   const MatchCriteria& criteria, const PoseFit& least = kAnyFit) const;
+  [[nodiscard]] PoseFit score_fine(const SampledModel& model, const Rigid3& camera_from_object,
+                                   const DepthMargin& margin, const MatchCriteria& criteria,
+                                   const PoseFit& least = kAnyFit) const;
 
  private:
   // The samples of a pose that depth and normal confirm, and how many they do not.
   struct Confirmed {
     std::vector<int> samples;
     std::vector<std::size_t> pixels;
-    std::vector<Eigen::Vector3f> normals;      // Camera frame.
-    std::vector<Eigen::Vector3f> model_light;  // Empty if the model has no colours.
-    std::vector<Eigen::Vector3f> scene_light;
+    ColorPairs colors;                     // Empty if the model has no colours. Normals: camera frame.
     std::vector<Eigen::Vector2f> outline;  // Pixels of all that face the camera.
     int facing = 0;
     int hidden = 0;
@@ -143,14 +142,15 @@ class PoseScorer {
   [[nodiscard]] StepEquations linearize(const SampledModel& model, const Rigid3& camera_from_object,
                                         double max_distance_m) const;
   [[nodiscard]] Confirmed confirm(const SampledModel& model, const Rigid3& camera_from_object,
-                                  double tolerance_m) const;
+                                  const DepthMargin& margin) const;
   void confirm_sample(const SampledModel& model, std::size_t sample, const PosedBlock& posed, std::size_t k,
-                      float tolerance, Confirmed& confirmed) const;
+                      float margin_m, Confirmed& confirmed) const;
   [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
   void compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const;
   [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed,
                                         const MatchCriteria& criteria) const;
-  [[nodiscard]] float tolerance_at(float z_m, double tolerance_m, double sigmas) const;
+  [[nodiscard]] float margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
+                                       const DepthMargin& margin) const;
 
   // What the first test asks of a pixel, in one place.
   struct Pixel {

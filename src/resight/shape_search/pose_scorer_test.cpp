@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "resight/core/random.hpp"
 #include "resight/shape_search/scene_samples.hpp"
 #include "resight/shape_search/testing/box_on_table.hpp"
 
@@ -10,6 +13,8 @@ namespace resight {
 namespace {
 
 using namespace analytic;
+
+constexpr DepthMargin kMargin{.base_m = 0.008, .noise_sigmas = 3};
 
 TEST(SampleSurface, PointsAreApartAndNoMoreThanAllowed) {
   const BoxOnTable c;
@@ -80,7 +85,7 @@ TEST(PoseScorer, CountsWhatIsThereHiddenAndSeenThrough) {
     const SampleCounts counts = c.probe.count(c.samples, Rigid3f(behind), options);
     EXPECT_GT(counts.facing, 0);
     EXPECT_EQ(counts.hidden, counts.facing) << z;
-    EXPECT_EQ(c.probe.score_fine(c.samples, behind, 0.008, {}).num_explained, 0) << z;
+    EXPECT_EQ(c.probe.score_fine(c.samples, behind, kMargin, {}).num_explained, 0) << z;
   }
 
   options.max_wrong = 3;
@@ -89,6 +94,35 @@ TEST(PoseScorer, CountsWhatIsThereHiddenAndSeenThrough) {
   const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(near), options);
   EXPECT_TRUE(stopped.gave_up);
   EXPECT_LT(stopped.facing, 10);
+}
+
+TEST(PoseScorer, CountsLikeClassifySurface) {
+  const BoxOnTable c;
+  CountSamplesOptions options;
+  options.max_samples = options.max_wrong = 1000000;  // Counts all samples.
+  Rng rng(5);
+  const auto random = [&](double limit) {
+    return Eigen::Vector3d(rng.uniform(-limit, limit), rng.uniform(-limit, limit), rng.uniform(-limit, limit));
+  };
+  std::array<int, 4> sum{};
+  for (int trial = 0; trial < 60; ++trial) {
+    const Rigid3 pose = disturb(c.truth, random(0.06), random(1), rng.uniform(-0.6, 0.6));
+    const SampleCounts counts = c.probe.count(c.samples, Rigid3f(pose), options);
+    const float center_z_m = (Rigid3f(pose) * c.samples.center).z();
+    const SurfaceEvidence evidence = classify_surface(
+        {c.samples.points, c.samples.normals}, pose, {c.view.frame.camera, c.view.cloud.z},
+        {.margin = {.base_m = options.margin.at(center_z_m, c.view.frame.camera.fx), .noise_sigmas = 0},
+         .min_viewing_cosine = 0.25});
+    // One sample may round to another pixel in single precision.
+    EXPECT_NEAR(counts.facing, evidence.count[0] + evidence.count[1] + evidence.count[2] + evidence.count[3], 1);
+    EXPECT_NEAR(counts.confirmed, evidence.num(Evidence::kPresent), 1) << trial;
+    EXPECT_NEAR(counts.through, evidence.num(Evidence::kSeenThrough), 1) << trial;
+    EXPECT_NEAR(counts.hidden, evidence.num(Evidence::kOccluded), 1) << trial;
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += evidence.count[k];
+  }
+  EXPECT_GT(sum[static_cast<std::size_t>(Evidence::kOccluded)], 500);
+  EXPECT_GT(sum[static_cast<std::size_t>(Evidence::kPresent)], 500);
+  EXPECT_GT(sum[static_cast<std::size_t>(Evidence::kSeenThrough)], 500);
 }
 
 TEST(PoseScorer, RefinesARoughPose) {
@@ -109,7 +143,7 @@ TEST(PoseScorer, RefinesARoughPose) {
 TEST(PoseScorer, JudgesDepthAndColour) {
   const BoxOnTable c;
   const MatchCriteria colors;
-  const PoseFit right = c.probe.score_fine(c.samples, c.truth, 0.008, colors);
+  const PoseFit right = c.probe.score_fine(c.samples, c.truth, kMargin, colors);
   EXPECT_GT(right.explained_share, 0.85);
   EXPECT_GT(right.visible_share, 0.95);
   EXPECT_GT(right.pattern_similarity, 0.7);
@@ -117,12 +151,12 @@ TEST(PoseScorer, JudgesDepthAndColour) {
   Solid other = c.box;
   other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
   const PoseFit wrong_print =
-      c.probe.score_fine(make_sampled_model(make_model("other", other), 300), c.truth, 0.008, colors);
+      c.probe.score_fine(make_sampled_model(make_model("other", other), 300), c.truth, kMargin, colors);
   EXPECT_LT(wrong_print.explained_share, right.explained_share - 0.2);
 
   Rigid3 through = c.truth;
   through.translation *= 0.85;
-  EXPECT_LT(c.probe.score_fine(c.samples, through, 0.008, colors).explained_share, 0.3);
+  EXPECT_LT(c.probe.score_fine(c.samples, through, kMargin, colors).explained_share, 0.3);
 }
 
 TEST(PoseScorer, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
@@ -140,15 +174,15 @@ TEST(PoseScorer, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
 
 TEST(PoseScorer, JudgesToTheEndWhatReachesTheLeastFit) {
   const BoxOnTable c;
-  const PoseFit whole = c.probe.score_fine(c.samples, c.truth, 0.008, {});
-  const PoseFit judged = c.probe.score_fine(c.samples, c.truth, 0.008, {}, {.explained_share = 0.5});
+  const PoseFit whole = c.probe.score_fine(c.samples, c.truth, kMargin, {});
+  const PoseFit judged = c.probe.score_fine(c.samples, c.truth, kMargin, {}, {.explained_share = 0.5});
   EXPECT_EQ(judged.explained_share, whole.explained_share);
   EXPECT_EQ(judged.pattern_similarity, whole.pattern_similarity);
   Rigid3 off = c.truth;
   off.translation *= 0.85;
-  const PoseFit cut = c.probe.score_fine(c.samples, off, 0.008, {}, {.explained_share = 0.5});
+  const PoseFit cut = c.probe.score_fine(c.samples, off, kMargin, {}, {.explained_share = 0.5});
   EXPECT_FALSE(cut.reaches({.explained_share = 0.5}));
-  EXPECT_GE(cut.explained_share, c.probe.score_fine(c.samples, off, 0.008, {}).explained_share);
+  EXPECT_GE(cut.explained_share, c.probe.score_fine(c.samples, off, kMargin, {}).explained_share);
 }
 
 TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
@@ -166,7 +200,7 @@ TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
   const SampleCounts counts = probe.count(samples, Rigid3f(pose), {});
   EXPECT_TRUE(counts.gave_up);
   EXPECT_EQ(counts.confirmed, 0);
-  EXPECT_EQ(probe.score_fine(samples, pose, 0.008, {}).explained_share, 0);
+  EXPECT_EQ(probe.score_fine(samples, pose, kMargin, {}).explained_share, 0);
   // A plane no larger than the object may be its own face.
   std::vector<ScenePlane> small = scene.planes;
   for (ScenePlane& plane : small) plane.extent_m = 0.15F;
@@ -184,7 +218,7 @@ TEST(PoseScorer, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
   const auto explained = [&](const World& world) {
     const PreparedView view = prepare_view(render(world, circle_of_cameras(3)[0]).frame);
     const Rigid3 pose = view.frame.world_from_camera.inverse() * small.world_from_object;
-    return PoseScorer(view, {}, 1).score_fine(samples, pose, 0.008, {}).explained_share;
+    return PoseScorer(view, {}, 1).score_fine(samples, pose, kMargin, {}).explained_share;
   };
   EXPECT_GT(explained({.solids = {small}}), 0.85);
   EXPECT_GT(explained({.solids = {small, beside}}), 0.75);

@@ -32,6 +32,7 @@ constexpr int kMaxRotations = 8;            // Of those of a round shape, with m
 constexpr double kSamePose_m = 0.015;       // Poses nearer than this (at the object's centre),
 constexpr double kSameRotation_rad = 0.21;  // and this (12 deg, over its symmetries), are one.
 constexpr double kMinExplainedShareOfSamples = 0.1;
+constexpr double kMarginSigmas = 3;    // DepthMargin::noise_sigmas of the last test.
 constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
 constexpr int kMaxPerPlace = 2;        // so many are left to the verification...
 constexpr int kMaxRoundPerPlace = 1;   // ...which finds the turn of what is round by itself.
@@ -86,7 +87,8 @@ struct ShapeSearch::Impl {
     for (std::size_t h = 0; h < lights.size(); ++h)
       if (votes[h] > 0)
         lights[h] = probe.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
-                                         camera_from_world * from_features[h].world_from_object, kRefineDistance_m,
+                                         camera_from_world * from_features[h].world_from_object,
+                                         {.base_m = kRefineDistance_m, .noise_sigmas = kMarginSigmas},
                                          criteria.appearance.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes);
     std::vector<SampledModel> balanced = objects;
@@ -192,9 +194,9 @@ struct ShapeSearch::Impl {
       const SampledModel& model = objects[object];
       const Rigid3 refined = probe.refine(model, start, kRefineIterations, kRefineDistance_m);
       const PoseFit least = least_fit(model);
-      if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, options.tolerance_m, least)) continue;
+      if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, margin(), least)) continue;
       for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
-        const PoseFit fit = probe.score_fine(model, pose, options.tolerance_m, criteria, least);
+        const PoseFit fit = probe.score_fine(model, pose, margin(), criteria, least);
         if (!fit.reaches(least)) continue;
         const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
         judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
@@ -227,6 +229,8 @@ struct ShapeSearch::Impl {
     }
     return kept;
   }
+
+  [[nodiscard]] DepthMargin margin() const { return {.base_m = options.tolerance_m, .noise_sigmas = kMarginSigmas}; }
 
   [[nodiscard]] SamePlaceOptions same_place() const { return {kSamePose_m, kSameRotation_rad}; }
 
@@ -270,7 +274,7 @@ std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<cons
     if (model.points.empty()) return;
     const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object, kRefineIterations,
                                           kRefineDistance_m);
-    fits[h] = view.probe.score_fine(model, pose, options.tolerance_m, impl_->criteria);
+    fits[h] = view.probe.score_fine(model, pose, impl_->margin(), impl_->criteria);
   });
   return fits;
 }
@@ -280,7 +284,7 @@ ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, c
   const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
   const Rigid3 refined = view.probe.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
   return {view.probe.count(model, Rigid3f(camera_from_object), {}),
-          view.probe.score_fine(model, refined, options.tolerance_m, impl_->criteria)};
+          view.probe.score_fine(model, refined, impl_->margin(), impl_->criteria)};
 }
 
 }  // namespace resight

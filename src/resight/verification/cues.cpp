@@ -7,7 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "resight/appearance/pattern_similarity.hpp"
+#include "resight/appearance/appearance_match.hpp"
+#include "resight/segmentation/surface_continuation.hpp"
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/newest_view_appearance.hpp"
 #include "resight/verification/pose_refinement.hpp"
@@ -20,8 +21,6 @@ namespace {
 constexpr double kPlaneWeight = 0.8;  // How well a plane explains its points (V4R: 0.8, half of it with colour).
 constexpr float kMinWeight = 0.05F;
 constexpr float kWellExplained = 0.5F;
-constexpr float kMinContinuationDot = 0.9F;        // 26 deg: more is an edge.
-constexpr float kMaxContinuationExponent = 0.22F;  // Colours that explain each other (0.8).
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
 // 0.
@@ -40,7 +39,7 @@ struct CueComputer::Impl {
       : model_(model),
         scene_(scene),
         options_(options),
-        colors_(options.appearance.sigma_l, options.appearance.sigma_ab),
+        colors_(color_tolerance(options.appearance)),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
         use_color_(!model.linear_light.empty() && !scene.linear_light.empty()),
         look_(model, refined(world_from_object, correspondences, views, allowed), scene, views, allowed, options) {
@@ -69,7 +68,7 @@ struct CueComputer::Impl {
     for (const PointMatch& m : look_.nearest)
       explained.push_back({object_from_world * look_.local->point(static_cast<std::size_t>(m.local)),
                            look_.local_lab[static_cast<std::size_t>(m.local)]});
-    const Rigid3 turn = resolve_symmetry(model_, explained, options_.appearance.sigma_l / options_.appearance.sigma_ab);
+    const Rigid3 turn = resolve_symmetry(model_, explained, chroma_weight(options_.appearance));
     if (turn.rotation.isIdentity()) return;
     SceneAssociation turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
     if (turned.color_fit() > look_.color_fit()) look_ = std::move(turned);
@@ -85,14 +84,14 @@ struct CueComputer::Impl {
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
     cues_.state.assign(look_.points.size(), ModelPointState::kNotVisible);
     if (look_.local) {
-      adapt_colors(limit_chromaticity(look_.light, white_balance));
+      adapt_model_colors(limit_chromaticity(look_.light, white_balance));
       compare_patterns();
       if (newest_view_appearance_)
         cues_.evidence.newest_similarity = newest_view_appearance_->similarity(white_balance);
       weigh_matches(*look_.local);
       classify_model_points();
     }
-    fill_evidence(look_.visibility.sight.size());
+    fill_evidence(look_.visibility.evidence.size());
     cues_.evidence.verdict = judge_evidence(cues_.evidence, options_.acceptance);
     if (cues_.evidence.verdict == Verdict::kCost) add_costs(*look_.local);
     return std::move(cues_);
@@ -106,28 +105,30 @@ struct CueComputer::Impl {
   }
 
   // The model's colours under the light of the scene.
-  void adapt_colors(const PhotometricFit& light) {
+  void adapt_model_colors(const PhotometricFit& light) {
     if (!use_color_) return;
-    lab_.reserve(look_.visibility.visible.size());
-    for (const int i : look_.visibility.visible)
-      lab_.push_back(to_lab(light(model_.linear_light[i], normal_at(look_.normals, i))));
+    ColorPairs visible;
+    for (const int i : look_.visibility.visible) {
+      visible.model.push_back(model_.linear_light[i]);
+      if (!look_.normals.empty()) visible.normals.push_back(look_.normals[i]);
+    }
+    lab_ = adapt_colors(visible, light);
   }
 
   void compare_patterns() {
     if (!use_color_) return;
-    std::vector<LabColor> print;  // Of the model, in no light: what is plain has no contrast for being round.
+    std::vector<LabColor> own_colors;
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
     for (const PointMatch& m : look_.nearest) {
-      print.push_back(model_.lab[look_.visibility.visible[m.visible]]);
+      own_colors.push_back(model_.lab[look_.visibility.visible[m.visible]]);
       model_colors.push_back(lab_[m.visible]);
       scene_colors.push_back(look_.local_lab[m.local]);
     }
-    const double chroma_weight = options_.appearance.sigma_l / options_.appearance.sigma_ab;
-    const PatternMatch match = match_patterns(model_colors, scene_colors, chroma_weight);
+    const TextureMatch match = match_texture(own_colors, model_colors, scene_colors, options_.appearance);
     cues_.evidence.pattern_similarity = match.similarity;
-    cues_.evidence.texture_contrast = match_patterns(print, print, chroma_weight).shared_texture;
-    cues_.evidence.shared_texture = std::min(match.shared_texture, cues_.evidence.texture_contrast);
+    cues_.evidence.texture_contrast = match.texture_contrast;
+    cues_.evidence.shared_texture = match.shared_texture;
   }
 
   // -log of the colour similarity.
@@ -202,7 +203,7 @@ struct CueComputer::Impl {
   // A plane no larger than the object may be the object's own face.
   bool is_background(int scene_point) const {
     const int plane = scene_.plane[scene_point];
-    return plane >= 0 && scene_.planes[plane].extent_m > 1.2F * model_.diameter_m;
+    return plane >= 0 && is_larger_than_object(scene_.planes[plane].extent_m, model_.diameter_m);
   }
 
   void claim_scene_points(const LocalScene& local) {
@@ -221,13 +222,11 @@ struct CueComputer::Impl {
               [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
   }
 
-  // Whether the surface goes on from p to q: near p's tangent plane, of like normal and colour.
+  // Whether the surface continues from scene point p to q, in shape and colour.
   bool continues(int p, int q, const ContinuationClutter& rule) const {
-    const Eigen::Vector3f& normal = scene_.normals[p];
-    if (std::abs(normal.dot(scene_.points[q] - scene_.points[p])) > static_cast<float>(rule.max_offset_m) ||
-        normal.dot(scene_.normals[q]) < kMinContinuationDot)
-      return false;
-    return !use_color_ || colors_.exponent(scene_.lab[p], scene_.lab[q]) < kMaxContinuationExponent;
+    return continues_shape({scene_.points[p], scene_.normals[p]}, {scene_.points[q], scene_.normals[q]},
+                           static_cast<float>(rule.max_offset_m)) &&
+           (!use_color_ || continues_color(scene_.lab[p], scene_.lab[q], colors_));
   }
 
   // The same for whatever lies around, but only where the surface goes on.
@@ -300,7 +299,7 @@ struct CueComputer::Impl {
     const float clearance = static_cast<float>(options_.support.max_distance_m);
     std::vector<float> distances(look_.points.size());
     for (const ScenePlane& plane : scene_.planes) {
-      if (plane.extent_m <= 1.2F * model_.diameter_m) continue;
+      if (!is_larger_than_object(plane.extent_m, model_.diameter_m)) continue;
       std::ranges::transform(look_.points, distances.begin(), [&](const auto& p) { return plane.signed_distance(p); });
       const auto [lowest, highest] = std::ranges::minmax(distances);
       if (lowest >= -clearance || highest <= clearance) continue;
@@ -324,11 +323,11 @@ struct CueComputer::Impl {
     for (std::size_t view = 0; view < num_views; ++view) {
       int visible = 0;
       int explained = 0;
-      for (std::size_t i = 0; i < look_.visibility.sight[view].size(); ++i) {
-        const Sight sight = look_.visibility.sight[view][i];
-        if (sight == Sight::kHidden) continue;
+      for (std::size_t i = 0; i < look_.visibility.evidence[view].size(); ++i) {
+        const Evidence point = look_.visibility.evidence[view][i];
+        if (!is_observed(point)) continue;
         ++visible;
-        if (sight == Sight::kConsistent && cues_.state[i] == ModelPointState::kExplained) ++explained;
+        if (point == Evidence::kPresent && cues_.state[i] == ModelPointState::kExplained) ++explained;
       }
       if (visible == 0) continue;
       evidence.visible_share_per_view[view] = static_cast<float>(visible) / static_cast<float>(look_.points.size());

@@ -17,25 +17,6 @@ using namespace analytic;
 
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(FillSmallHoles, FillsSinglePixelsOnly) {
-  Image<float> depth(20, 20, 1.0F);
-  depth(5, 5) = kNan;
-  for (int v = 10; v < 14; ++v)
-    for (int u = 10; u < 14; ++u) depth(u, v) = kNan;
-  for (int v = 0; v < 20; ++v)
-    for (int u = 0; u < 6; ++u)
-      if (depth(u, v) == 1.0F && u == 4) depth(u, v) = 1.2F;
-  const Image<float> filled = fill_small_holes(depth);
-  EXPECT_EQ(filled(5, 5), 1.0F);
-  for (const int i : {10, 13})
-    for (int j = 11; j < 13; ++j) {
-      EXPECT_TRUE(std::isnan(filled(i, j)));
-      EXPECT_TRUE(std::isnan(filled(j, i)));
-    }
-  EXPECT_EQ(filled(10, 10), 1.0F);  // A hole's convex corner: five neighbours.
-  EXPECT_EQ(filled(0, 0), 1.0F);
-}
-
 struct SmallCase {
   Solid solid{Shape::kBox, {0.08, 0.06, 0.1}, checks({200, 50, 40}, {40, 50, 200}, 0.03), on_table(0, 0, 0.05, 0.3)};
   Solid occluder{Shape::kBox, {0.05, 0.05, 0.06}, plain({90, 90, 90}), on_table(0.12, 0, 0.03)};
@@ -61,15 +42,17 @@ struct SmallCase {
 };
 
 // What a view must see of a point of the box, by casting the ray to it.
-Sight expected_sight(const SmallCase& c, const Eigen::Vector3d& p, const Eigen::Vector3d& n, const PreparedView& view) {
+Evidence expected_evidence(const SmallCase& c, const Eigen::Vector3d& p, const Eigen::Vector3d& n,
+                           const PreparedView& view) {
   const Rigid3& world_from_camera = view.frame.world_from_camera;
   const Eigen::Vector3d in_camera = world_from_camera.inverse() * p;
-  if ((world_from_camera.translation - p).normalized().dot(n) < kMinFacing) return Sight::kHidden;
+  if ((world_from_camera.translation - p).normalized().dot(n) < kMinFacing) return Evidence::kUnobserved;
   const Eigen::Vector2d pixel = view.frame.camera.project(in_camera);
-  if (!view.frame.camera.contains(pixel)) return Sight::kHidden;
+  if (!view.frame.camera.contains(pixel)) return Evidence::kUnobserved;
   const float depth = view.cloud.z(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  if (std::isnan(depth) || in_camera.z() - depth > c.options.visibility.margin_m) return Sight::kHidden;
-  return depth - in_camera.z() > c.options.visibility.margin_m ? Sight::kSeenThrough : Sight::kConsistent;
+  if (std::isnan(depth)) return Evidence::kUnobserved;
+  if (in_camera.z() - depth > c.options.visibility.margin_m) return Evidence::kOccluded;
+  return depth - in_camera.z() > c.options.visibility.margin_m ? Evidence::kSeenThrough : Evidence::kPresent;
 }
 
 TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
@@ -81,17 +64,17 @@ TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
     const ModelVisibility found = find_visible_points(points, normals, c.depth_views, c.everywhere,
                                                       c.options.visibility, {.spacing_m = c.options.resolution_m});
     int wrong = 0;
-    std::array<int, 3> count{};
+    std::array<int, 4> count{};
     std::vector<std::uint8_t> visible(points.size(), 0);
     for (std::size_t v = 0; v < 3; ++v)
       for (std::size_t i = 0; i < points.size(); ++i) {
-        const Sight expected = expected_sight(c, points[i].cast<double>(), normals[i].cast<double>(), c.views[v]);
-        if (found.sight[v][i] != expected) ++wrong;
+        const Evidence expected = expected_evidence(c, points[i].cast<double>(), normals[i].cast<double>(), c.views[v]);
+        if (found.evidence[v][i] != expected) ++wrong;
         ++count[static_cast<std::size_t>(expected)];
-        if (found.sight[v][i] != Sight::kHidden) visible[i] = 1;
+        if (is_observed(found.evidence[v][i])) visible[i] = 1;
       }
-    EXPECT_GT(count[0], 500);
-    EXPECT_GT(count[1], 150);
+    EXPECT_GT(count[static_cast<std::size_t>(Evidence::kUnobserved)], 500);
+    EXPECT_GT(count[static_cast<std::size_t>(Evidence::kPresent)], 150);
     EXPECT_LT(wrong, 0.005 * static_cast<double>(3 * points.size()));  // Rounding at pixel borders, corner normals.
     EXPECT_EQ(static_cast<long>(found.visible.size()), std::count(visible.begin(), visible.end(), 1));
   }
@@ -118,13 +101,13 @@ TEST(FindVisiblePoints, AModelHidesItself) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f& p = points[i];
     if (p.z() < 0.85F) {
-      EXPECT_EQ(found.sight[0][i], Sight::kSeenThrough);
+      EXPECT_EQ(found.evidence[0][i], Evidence::kSeenThrough);
       continue;
     }
     const float x_on_front = p.x() * 0.8F / 0.9F;  // Where its ray meets the front board, whose edge is at 5 cm.
     if (std::abs(x_on_front - 0.05F) < 0.01F) continue;
-    (found.sight[0][i] == Sight::kHidden ? rear_hidden : rear_seen) += 1;
-    EXPECT_EQ(found.sight[0][i] == Sight::kHidden, x_on_front < 0.05F);
+    (found.evidence[0][i] == Evidence::kOccluded ? rear_hidden : rear_seen) += 1;
+    EXPECT_EQ(found.evidence[0][i] == Evidence::kOccluded, x_on_front < 0.05F);
   }
   EXPECT_GT(rear_seen, 100);
   EXPECT_GT(rear_hidden, 100);

@@ -8,8 +8,8 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
-#include "resight/geometry/symmetry.hpp"
 #include "resight/hypotheses/white_balance_weights.hpp"
+#include "resight/models/pose_distance.hpp"
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/cues.hpp"
 #include "resight/verification/selection_search.hpp"
@@ -108,10 +108,8 @@ void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary
     const auto same = std::find_if(kept.begin(), kept.end(), [&](int other) {
       const Rigid3& reference = evidence[other].world_from_object;
       if (hypotheses[other].object != hypotheses[h].object) return false;
-      const Rigid3 pose = nearest_symmetric_pose(evidence[h].world_from_object, reference, model.symmetries);
-      const Eigen::Vector3d center = model.center.cast<double>();
-      return (pose * center - reference * center).norm() < kMergeDistance_m &&
-             rotation_angle_rad(pose.rotation, reference.rotation) < kMergeRotation_rad;
+      const PoseDifference difference = compare_poses(evidence[h].world_from_object, reference, model);
+      return difference.center_distance_m < kMergeDistance_m && difference.rotation_rad < kMergeRotation_rad;
     });
     if (same == kept.end()) {
       kept.push_back(h);

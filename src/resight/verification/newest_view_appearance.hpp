@@ -20,9 +20,7 @@ class NewestViewAppearance {
 
  private:
   const VerifyOptions& options_;
-  std::vector<Eigen::Vector3f> model_light_;
-  std::vector<Eigen::Vector3f> seen_light_;
-  std::vector<Eigen::Vector3f> normals_;
+  ColorPairs colors_;
   PhotometricFit light_;
 };
 

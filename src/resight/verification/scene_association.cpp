@@ -29,7 +29,7 @@ float SceneAssociation::largest_depth_noise(std::span<const DepthView> views) co
   const Eigen::Vector3d center = world_from_object * model_->center.cast<double>().eval();
   double largest_m = 0;
   for (std::size_t v = 0; v < views.size(); ++v) {
-    if (std::ranges::find(visibility.sight[v], Sight::kConsistent) == visibility.sight[v].end()) continue;
+    if (std::ranges::find(visibility.evidence[v], Evidence::kPresent) == visibility.evidence[v].end()) continue;
     const double depth_m = (views[v].world_from_camera.inverse() * center).z();
     if (depth_m > 0) largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
   }
@@ -71,34 +71,29 @@ void SceneAssociation::fit_light_of_matches() {
     if (best != nullptr) nearest.push_back(*best);
   }
   if (local_lab.empty()) return;
-  std::vector<Eigen::Vector3f> model_light;
-  std::vector<Eigen::Vector3f> scene_light;
-  std::vector<Eigen::Vector3f> model_normals;
   for (const PointMatch& m : nearest) {
     const auto point = static_cast<std::size_t>(visibility.visible[static_cast<std::size_t>(m.visible)]);
-    model_light.push_back(model_->linear_light[point]);
-    scene_light.push_back(
+    nearest_colors.model.push_back(model_->linear_light[point]);
+    nearest_colors.scene.push_back(
         scene_->linear_light[static_cast<std::size_t>(local->scene_index(static_cast<std::size_t>(m.local)))]);
-    if (!normals.empty()) model_normals.push_back(normals[point]);
+    if (!normals.empty()) nearest_colors.normals.push_back(normals[point]);
   }
-  light = fit_photometry(model_light, scene_light, model_normals, options_->appearance.light);
+  light = fit_photometry(nearest_colors, options_->appearance.light);
 }
 
 double SceneAssociation::color_fit() const {
   if (nearest.empty() || local_lab.empty()) return 0;
-  const ColorTolerance tolerance(options_->appearance.sigma_l, options_->appearance.sigma_ab);
-  const PhotometricFit plain_light = limit_chromaticity(light, Eigen::Array3f::Zero());
-  std::vector<LabColor> model_colors;
-  std::vector<LabColor> scene_colors;
+  const ColorTolerance tolerance = color_tolerance(options_->appearance);
+  const std::vector<LabColor> expected =
+      adapt_colors(nearest_colors, limit_chromaticity(light, Eigen::Array3f::Zero()));
+  std::vector<LabColor> seen;
   double sum = 0;
-  for (const PointMatch& m : nearest) {
-    const auto i = static_cast<std::size_t>(visibility.visible[static_cast<std::size_t>(m.visible)]);
-    model_colors.push_back(to_lab(plain_light(model_->linear_light[i], normal_at(normals, i))));
-    scene_colors.push_back(local_lab[static_cast<std::size_t>(m.local)]);
-    sum += std::exp(-tolerance.exponent(model_colors.back(), scene_colors.back()));
+  for (std::size_t k = 0; k < nearest.size(); ++k) {
+    seen.push_back(local_lab[static_cast<std::size_t>(nearest[k].local)]);
+    sum += std::exp(-tolerance.exponent(expected[k], seen[k]));
   }
   return sum / static_cast<double>(visibility.visible.size()) +
-         pattern_similarity(model_colors, scene_colors, options_->appearance.sigma_l / options_->appearance.sigma_ab);
+         pattern_similarity(expected, seen, chroma_weight(options_->appearance));
 }
 
 double SceneAssociation::supported_share() const {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/appearance/photometric_fit.hpp"
+#include "resight/appearance/appearance_match.hpp"
 #include "resight/verification/local_scene.hpp"
 #include "resight/verification/scene_preparation.hpp"
 #include "resight/verification/verify_options.hpp"
@@ -18,12 +18,6 @@ inline constexpr double kMaxInlierAngle_rad = 1.0472;
 /// Model points seen at a more grazing angle than this (V4R: 60 deg) count with a tenth: depth is worst there.
 inline constexpr double kGrazingAngle_rad = 1.0472;
 inline constexpr double kGrazingWeight = 0.1;
-
-/// Zero, which no shading applies to, where there are no normals.
-[[nodiscard]] inline Eigen::Vector3f normal_at(const std::vector<Eigen::Vector3f>& normals, std::size_t i) {
-  if (normals.empty()) return Eigen::Vector3f::Zero();
-  return normals[i];
-}
 
 /// A visible model point and a scene point within the inlier distance.
 struct PointMatch {
@@ -64,6 +58,7 @@ class SceneAssociation {
   std::vector<LabColor> local_lab;             ///< Likewise.
   std::vector<PointMatch> matches;             ///< Those of one visible point stand side by side.
   std::vector<PointMatch> nearest;             ///< Of each visible point that has one of similar normal.
+  ColorPairs nearest_colors;                   ///< Of `nearest`; empty if model or scene has none.
   PhotometricFit light;                        ///< As the colours of this model alone would have it.
 
  private:

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/evidence/surface_evidence.hpp"
 #include "resight/verification/hypothesis_evidence.hpp"
 #include "resight/verification/visibility_options.hpp"
 
@@ -15,22 +16,10 @@ struct DepthView {
   Camera camera;
   Rigid3 world_from_camera;
   const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this; null if it has none.
-  Image<float> depth_m;                ///< Of the view's cloud; single missing pixels filled, see fill_small_holes().
+  Image<float> depth_m;                ///< Of the view's cloud; small holes filled (fill_small_holes()).
 };
-
-/// The depth with each missing pixel that has at least five of its eight neighbours replaced by their median. Larger
-/// holes stay: where nothing was measured, or was cleared as removed, there is no evidence.
-[[nodiscard]] Image<float> fill_small_holes(const Image<float>& depth_m);
 
 [[nodiscard]] std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads);
-
-/// How one view sees one model point.
-enum class Sight : std::uint8_t {
-  kHidden,  ///< Turned away, behind itself, outside the image, no depth there, or farther than the depth by more than
-            ///< the margin.
-  kConsistent,   ///< At the measured depth, give or take the margin.
-  kSeenThrough,  ///< The view looks through it: in front of the measured depth by more than the margin.
-};
 
 /// Points are not visible if they are seen at a more grazing angle: cosine between normal and viewing ray (84 deg).
 inline constexpr double kMinFacing = 0.1;
@@ -42,9 +31,10 @@ struct ModelSampling {
 };
 
 struct ModelVisibility {
-  std::vector<std::vector<Sight>>
-      sight;                 ///< Per view (empty where not allowed, and of before it came) and model point.
-  std::vector<int> visible;  ///< Points not hidden in at least one view, ascending.
+  /// Per view (empty where not allowed, and of before it came) and model point. Points that the model itself hides are
+  /// kOccluded.
+  std::vector<std::vector<Evidence>> evidence;
+  std::vector<int> visible;  ///< Points observed (is_observed()) in at least one view, ascending.
   std::vector<float>
       facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
   std::vector<std::uint8_t> seen_through;  ///< Per entry of `visible`: the newest of those views looks through it, or
