@@ -55,4 +55,8 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
   return detections;
 }
 
+void drop_unconfirmed(std::vector<Detection>& detections, double min_share) {
+  std::erase_if(detections, [&](const Detection& d) { return d.views.back().confirmed_share() < min_share; });
+}
+
 }  // namespace resight

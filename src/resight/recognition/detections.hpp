@@ -26,4 +26,7 @@ struct VerifiedHypotheses {
                                                      const HypothesisPool& pool, const ModelLibrary& library,
                                                      const RecognizerConfig& config);
 
+/// Drops the detections of which the current view itself confirms less than this share of the model's points.
+void drop_unconfirmed(std::vector<Detection>& detections, double min_share);
+
 }  // namespace resight

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/scene_recognizer.hpp"
 
-#include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "resight/history/object_history.hpp"
@@ -15,15 +13,6 @@
 #include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight {
-namespace {
-
-RecognizerConfig checked(RecognizerConfig config) {
-  config.check();
-  config.set_seed(config.run.seed);
-  return config;
-}
-
-}  // namespace
 
 struct SceneRecognizer::Impl {
   using Hypotheses = std::vector<Hypothesis>;
@@ -31,7 +20,7 @@ struct SceneRecognizer::Impl {
 
   Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> store, Clock clock)
       : library(models),
-        config(checked(std::move(settings))),
+        config(checked_and_seeded(std::move(settings))),
         corrector(correction_options(config)),
         scene(scene_options(config)),
         planner(make_search_planner(models, config)),
@@ -80,9 +69,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
   if (pool.is_tracked_object_rejected(verified.hypotheses, verified.evidence)) planner.request_search();
   pool.forget_refuted(verified.hypotheses, verified.evidence, config.hypotheses.min_carried_share);
-  std::erase_if(update.detections, [&](const Detection& d) {
-    return d.views.back().confirmed_share() < config.detections.min_reported_share;
-  });
+  drop_unconfirmed(update.detections, config.detections.min_reported_share);
   if (trace != nullptr) {
     trace->verified = std::move(verified.hypotheses);
     trace->evidence = std::move(verified.evidence);
@@ -169,10 +156,8 @@ auto SceneRecognizer::Impl::handle_removed(Hypotheses& hypotheses, SceneUpdate& 
   if (!config.changes.enabled) return {};
   const ScopedTimer timer(update.times, "presence");
   Mask present = presence_of(hypotheses);
-  if (config.changes.removed_hypotheses == RemovedHypotheses::kReverify)
-    reverify_removed(hypotheses.size(), present);
-  else
-    discard_removed(hypotheses, present);
+  const bool reverify = config.changes.removed_hypotheses == RemovedHypotheses::kReverify;
+  reverify ? reverify_removed(hypotheses.size(), present) : discard_removed(hypotheses, present);
   return present;
 }
 

@@ -3,6 +3,12 @@
 
 namespace resight {
 
+RecognizerConfig checked_and_seeded(RecognizerConfig config) {
+  config.check();
+  config.set_seed(config.run.seed);
+  return config;
+}
+
 DynamicSceneOptions scene_options(const RecognizerConfig& config) {
   return {.num_previous_views = config.num_previous_views,
           .detect_changes = config.changes.enabled,

@@ -6,6 +6,9 @@
 
 namespace resight {
 
+/// The config with its seeds set to RecognizerConfig::run.seed. Throws std::invalid_argument if it fails check().
+[[nodiscard]] RecognizerConfig checked_and_seeded(RecognizerConfig config);
+
 /// Options of single stages that depend on several settings of the recogniser.
 [[nodiscard]] DynamicSceneOptions scene_options(const RecognizerConfig& config);
 /// No correction for single views: they have nothing to be aligned to.
