@@ -5,7 +5,7 @@
 
 namespace resight {
 
-/// Weights of a logistic regression; all 0: 0.5 for any evidence. The weights of the presets (recognizer_config.cpp)
+/// Weights of a logistic regression; all 0: 0.5 for any evidence. The weights of the presets (presets.cpp)
 /// were fitted to their detections at K = 5 on two seeds of `dynamic-tabletop`; docs/results.md says how well they
 /// generalise. Those of `default` leave out the similarity of colours, which depends on the lighting.
 struct DetectionScoreOptions {
