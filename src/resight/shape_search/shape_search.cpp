@@ -280,7 +280,6 @@ std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<cons
 }
 
 ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const {
-  const ShapeSearchOptions& options = impl_->options;
   const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
   const Rigid3 refined = view.probe.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
   return {view.probe.count(model, Rigid3f(camera_from_object), {}),
