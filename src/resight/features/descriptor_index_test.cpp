@@ -173,7 +173,7 @@ TEST(DescriptorIndex, AnEmptySetFindsNothing) {
 TEST(DescriptorIndex, SameBytesOnAnyNumberOfThreads) {
   const auto data = make_clustered(12000, kDimension, 100, 0.6, 8);
   const auto queries = make_clustered(700, kDimension, 100, 0.6, 9);
-  for (const int num_components : {0, 12}) {
+  for (const std::optional<int> num_components : {std::optional<int>(), std::optional(12)}) {
     const auto run = [&](int num_threads) {
       return DescriptorIndex(data, kDimension,
                              {.exact_below = 0, .num_components = num_components, .num_threads = num_threads})
@@ -211,7 +211,7 @@ TEST(DescriptorIndex, CodesAreFoundLikeTheFloatsTheyStandFor) {
   for (int i = 0; i < kRows; ++i) rows.push_back(codes.data() + i * kDimension);
   const std::vector<float> queries = make_clustered(200, kDimension, 60, 0.3, 2);
   for (const int exact_below : {100, 10000})
-    for (const int components : {0, 8}) {
+    for (const std::optional<int> components : {std::optional<int>(), std::optional(8)}) {
       const DescriptorIndexOptions options{.exact_below = exact_below, .num_components = components};
       const auto expected = DescriptorIndex(decoded, kDimension, options).search(queries, 3);
       const DescriptorIndex index(DescriptorRows(rows, kDimension), options);

@@ -52,7 +52,7 @@ TEST(JoinTracks, AnotherObjectIsRefused) {
   const auto joined =
       join_tracks(follow_truly("duck", 60, false, {}), follow_truly("plain_box", 60, true, kOther), two_threads());
   ASSERT_FALSE(joined.ok());
-  EXPECT_THAT(joined.error().message, testing::HasSubstr("nothing in common of shape"));
+  EXPECT_THAT(joined.error().message, testing::HasSubstr("no common shape"));
 }
 
 }  // namespace

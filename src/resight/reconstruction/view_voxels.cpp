@@ -68,7 +68,8 @@ class Winners {
     voxels_.noise[slot] = noise;
     pixels_[slot] = static_cast<int>(pixel);
   }
-  void keep(std::size_t slot) {
+  /// Not inlined: a normal must round identically in reduce_to_voxels() and in update_voxels().
+  [[gnu::noinline]] void keep(std::size_t slot) {
     const auto i = static_cast<std::size_t>(pixels_[slot]);
     voxels_.cloud_in_world.points[slot] = point_in_world(world_from_camera_, view_.cloud, i);
     voxels_.cloud_in_world.normals[slot] = world_from_camera_.rotation * view_.cloud.normal(i);

@@ -34,7 +34,7 @@ TEST(CheckFrame, AcceptsAGoodFrameAndNamesWhatIsWrongOtherwise) {
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.world_from_camera.rotation *= 1.1; }), "pose"));
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.world_from_camera.translation.x() = kNan; }), "pose"));
   for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::infinity()})
-    EXPECT_TRUE(contains(message_after([&](RgbdFrame& f) { f.depth_m[17] = bad; }), "depth holds"));
+    EXPECT_TRUE(contains(message_after([&](RgbdFrame& f) { f.depth_m[17] = bad; }), "depth contains"));
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.camera.fx = 0; }), "view 'test'"));
 }
 

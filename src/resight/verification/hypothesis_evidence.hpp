@@ -19,7 +19,7 @@ enum class Verdict : std::uint8_t {
   kAccepted,
   kTooFewVisible,  ///< kMinVisiblePoints or acceptance.min_visible_share not reached: hidden, outside, or the mask
                    ///< allows no view.
-  kNoSupport,            ///< Less than acceptance.min_explained_share of the visible points is explained.
+  kNoSupport,      ///< Less than acceptance.min_explained_share of the visible points is explained.
   kDifferentAppearance,  ///< Less than acceptance.min_pattern_similarity, min_newest_similarity or min_shared_texture.
   kSuppressed,           ///< Pays off alone, but not beside `suppressed_by`.
   kCost,  ///< Costs more than it explains even alone (outliers, clutter, planes); what is plain, nearly as much.
