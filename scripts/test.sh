@@ -27,10 +27,14 @@ count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_
     "$log_dir/tests.log"
 }
 
-# Checks the joined translation units of the release build: each header is parsed once per dozen sources.
+# Checks the joined translation units of the release build, so that each header is parsed once per dozen sources. clang
+# reads neither the precompiled headers nor some warning options of GCC.
 run_clang_tidy() {
-  grep -o '"file": "[^"]*' build/ci/compile_commands.json | cut -d'"' -f4 | grep -E '/Unity/|/apps/|/examples/' |
-    xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/ci
+  mkdir -p build/tidy
+  sed -E 's# -Winvalid-pch| -include [^ ]*cmake_pch.hxx| -Werror| -Wno-(maybe|stringop|subobject)[a-z-]*##g' \
+    build/ci/compile_commands.json >build/tidy/compile_commands.json
+  grep -o '"file": "[^"]*' build/tidy/compile_commands.json | cut -d'"' -f4 | grep -E '/Unity/|/apps/|/examples/' |
+    xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/tidy
 }
 build_consumer() {
   rm -rf build/install build/consumer
