@@ -108,7 +108,10 @@ JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOpti
   std::vector<ObservedObject> observed;
   const bool join = options.library != nullptr && track.num_parts > 1;
   if (join || options.adjust_objects) observed = observe_with_progress(sequence, *options.library, options.num_threads);
-  if (join) track = join_by_objects(std::move(track), observed, *options.library, read_surfaces(sequence, track));
+  if (join) {
+    const auto surfaces = read_surfaces(sequence, track);
+    track = join_by_objects(std::move(track), observed, *options.library, surfaces);
+  }
   if (track.num_parts > 1 && track.num_parts == sequence.num_views())
     throw std::runtime_error("no two views could be joined: the relative poses of their cameras are unknown");
   warn_of_parts(track);

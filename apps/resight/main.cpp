@@ -261,8 +261,9 @@ void resight::app::print_warning(const std::string& what) {
   std::fprintf(stderr, "resight: warning: %s\n", what.c_str());
 }
 
-int main(int argc, char** argv) {
-  resight::keep_freed_memory();
+namespace {
+
+int run_program(int argc, char** argv) {
   CLI::App app(
       "resight recognises known objects in RGB-D views of a changing scene: which object is where, and what was\n"
       "added, moved or removed.");
@@ -292,9 +293,20 @@ int main(int argc, char** argv) {
       if (commands[i]->parsed()) runs[i]();
   } catch (const InputError& error) {
     return refuse(error.what());
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "resight: failed: %s\n", error.what());
-    return kExitFailed;
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  resight::keep_freed_memory();
+  try {
+    return run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "resight: failed: %s\n", error.what());
+  } catch (...) {
+    std::fprintf(stderr, "resight: failed for an unknown reason\n");
+  }
+  return kExitFailed;
 }

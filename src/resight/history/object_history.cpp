@@ -13,8 +13,8 @@ constexpr int kConfirmRemovalViews = 1;
 
 }  // namespace
 
-ObjectHistory::ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options)
-    : options_((options.check(), std::move(options))),
+ObjectHistory::ObjectHistory(const ModelLibrary& library, const ObjectHistoryOptions& options)
+    : options_((options.check(), options)),
       association_(library, options_.same_place_m, kSameTrackRotation_rad),
       memory_(library, options_.memory),
       tentative_(library) {}

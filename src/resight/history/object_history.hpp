@@ -56,7 +56,7 @@ struct HistoryUpdate {
 class ObjectHistory {
  public:
   /// `library` must outlive it. Throws std::invalid_argument for options that fail check().
-  explicit ObjectHistory(const ModelLibrary& library, ObjectHistoryOptions options = {});
+  explicit ObjectHistory(const ModelLibrary& library, const ObjectHistoryOptions& options = {});
 
   /// Takes over the observations of a view (numbers ascend) and returns their tracks and the events. An object at a new
   /// place is

@@ -33,7 +33,7 @@ void DynamicSceneOptions::check() const {
   integrate.check();
 }
 
-DynamicScene::DynamicScene(DynamicSceneOptions options) : options_(std::move(options)) { options_.check(); }
+DynamicScene::DynamicScene(const DynamicSceneOptions& options) : options_(options) { options_.check(); }
 
 ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
   // Psi_{k-1} is reconstructed from the last K views. With K = 0 there is nothing to compare with.

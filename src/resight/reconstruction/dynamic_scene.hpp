@@ -33,7 +33,7 @@ class DynamicScene {
   };
 
   /// Throws std::invalid_argument if the options are invalid.
-  explicit DynamicScene(DynamicSceneOptions options = {});
+  explicit DynamicScene(const DynamicSceneOptions& options = {});
 
   /// Processes the next view (same world frame): finds its changes against the current reconstruction, clears the
   /// removed points from all earlier views, drops views that leave the window, and reconstructs. Later views are not

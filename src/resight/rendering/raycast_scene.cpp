@@ -59,8 +59,8 @@ RTCScene build_mesh_scene(RTCDevice device, const TriangleMesh& mesh) {
                                            mesh.vertices.size());
   void* faces =
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(int), mesh.faces.size());
-  std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * 3 * sizeof(float));
-  std::memcpy(faces, mesh.faces.data(), mesh.faces.size() * 3 * sizeof(int));
+  std::memcpy(vertices, static_cast<const void*>(mesh.vertices.data()), mesh.vertices.size() * 3 * sizeof(float));
+  std::memcpy(faces, static_cast<const void*>(mesh.faces.data()), mesh.faces.size() * 3 * sizeof(int));
   rtcCommitGeometry(geometry);
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -113,11 +113,12 @@ RaycastScene& RaycastScene::operator=(RaycastScene&&) noexcept = default;
 int RaycastScene::add_mesh(std::shared_ptr<const TriangleMesh> mesh) {
   require(mesh != nullptr, "RaycastScene::add_mesh: the mesh is missing");
   check_mesh(*mesh);
-  MeshEntry entry{mesh, build_mesh_scene(impl_->device, *mesh), TexturePyramid({}), {}};
+  MeshEntry entry{nullptr, build_mesh_scene(impl_->device, *mesh), TexturePyramid({}), {}};
   if (mesh->has_texture()) {
     entry.texture = TexturePyramid(mesh->texture);
     for (const auto& f : mesh->faces) entry.texels_per_m.push_back(texel_density(*mesh, f));
   }
+  entry.mesh = std::move(mesh);
   impl_->meshes.push_back(std::move(entry));
   return static_cast<int>(impl_->meshes.size()) - 1;
 }

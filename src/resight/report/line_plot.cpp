@@ -120,8 +120,9 @@ class SvgPlot {
       is_down = true;
     }
     text_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"/>\n", path, color);
+    const auto row = index / 3;
     const double x = kLeft + static_cast<double>(index % 3) * 165;
-    const double y = kHeight - 26 + static_cast<double>(index / 3) * 16;
+    const double y = kHeight - 26 + static_cast<double>(row) * 16;
     line(x, y - 4, x + 18, y - 4, color);
     label(x + 24, y, "start", series.name);
   }

@@ -237,8 +237,8 @@ TriangleMesh make_prism_part(std::span<const Vector2d> polygon, double height, c
   TriangleMesh mesh;
   double along = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d a = polygon[i];
-    const Vector2d b = polygon[(i + 1) % polygon.size()];
+    const Vector2d& a = polygon[i];
+    const Vector2d& b = polygon[(i + 1) % polygon.size()];
     const double length = (b - a).norm();
     const PixelRect part{side.x + static_cast<int>(std::lround(along / perimeter * side.width)), side.y,
                          static_cast<int>(std::lround(length / perimeter * side.width)), side.height};

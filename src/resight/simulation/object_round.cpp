@@ -18,7 +18,7 @@ constexpr Rgb8 kSteel{188, 190, 195};
 using Profile = std::vector<Vector2d>;
 
 // A straight profile between two points with equal steps, which keeps triangles compact.
-Profile straight(Vector2d from, Vector2d to, int steps) {
+Profile straight(const Vector2d& from, const Vector2d& to, int steps) {
   Profile profile;
   for (int i = 0; i <= steps; ++i) profile.push_back(from + (to - from) * (static_cast<double>(i) / steps));
   return profile;

@@ -186,7 +186,8 @@ double SelfOverlap::share_of(const Rigid3& motion, int stride, const Limits& lim
                              double min_close) const {
   const Rigid3f moved(motion);
   const auto step = static_cast<std::size_t>(stride);
-  const auto count = static_cast<double>((samples_.size() + step - 1) / step);
+  const std::size_t num_compared = (samples_.size() + step - 1) / step;
+  const auto count = static_cast<double>(num_compared);
   int unlike = 0;
   int not_close = 0;
   for (std::size_t k = 0; k < samples_.size(); k += step) {

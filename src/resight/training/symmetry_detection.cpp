@@ -68,7 +68,7 @@ std::vector<Vector3d> half_sphere() {
 Directions find_directions(const Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
   const Vector3d moments = solver.eigenvalues().cwiseMax(1e-12);  // in ascending order
-  const Matrix3d axes = solver.eigenvectors();
+  const Matrix3d& axes = solver.eigenvectors();
   const bool low_alike = moments(0) > kAlike * moments(1);
   const bool high_alike = moments(1) > kAlike * moments(2);
   Directions directions;

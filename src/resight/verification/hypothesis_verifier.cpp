@@ -183,8 +183,8 @@ void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
 
 }  // namespace
 
-HypothesisVerifier::HypothesisVerifier(const ModelLibrary& library, VerifyOptions options)
-    : library_(library), options_(std::move(options)) {
+HypothesisVerifier::HypothesisVerifier(const ModelLibrary& library, const VerifyOptions& options)
+    : library_(library), options_(options) {
   options_.check();
 }
 

@@ -32,7 +32,7 @@ namespace resight {
 class HypothesisVerifier {
  public:
   /// `library` must outlive it, and stay as it is. Throws std::invalid_argument for bad options.
-  explicit HypothesisVerifier(const ModelLibrary& library, VerifyOptions options = {});
+  explicit HypothesisVerifier(const ModelLibrary& library, const VerifyOptions& options = {});
 
   /// As verify_hypotheses(), and throws as it does.
   [[nodiscard]] VerifyResult verify(std::span<const Hypothesis> hypotheses, const PointCloud& scene_in_world,
