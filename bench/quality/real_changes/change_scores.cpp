@@ -84,7 +84,8 @@ void score_region(const Region& region, Side side, const SideTruth& truth, SideS
 void score_unchanged_object(const Region& pixels, const ReportedChanges& reported, ChangeScore& score,
                             std::vector<Mistake>* mistakes) {
   if (pixels.size() < kMinObject_px) return;
-  const auto& [added, removed] = reported.masks;
+  const Mask& added = reported.masks[kAdded];
+  const Mask& removed = reported.masks[kRemoved];
   const auto is_called = [&](int pixel) { return added[pixel] != 0 || removed[pixel] != 0; };
   const auto num_called = static_cast<double>(std::ranges::count_if(pixels, is_called));
   const double share = num_called / static_cast<double>(pixels.size());

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "resight/io/images.hpp"
 
@@ -75,7 +77,7 @@ Result<void> write_sheet(const std::filesystem::path& file, std::span<const Imag
 
 Result<void> write_sheets(const std::filesystem::path& folder, const std::string& name,
                           std::span<const Image<Rgb8>> tiles) {
-  constexpr std::size_t kPerSheet = kColumns * kRows;
+  constexpr auto kPerSheet = std::size_t{kColumns} * std::size_t{kRows};
   for (std::size_t first = 0; first < tiles.size(); first += kPerSheet) {
     const auto of_sheet = tiles.subspan(first, std::min(kPerSheet, tiles.size() - first));
     const auto file = folder / fmt::format("{}_{:02}.png", name, first / kPerSheet + 1);
