@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/reconstruction/dynamic_scene.hpp"
+
+namespace resight::bench {
+
+/// Change detection view by view, with corrected camera poses as in SceneRecognizer.
+class ChangeRun {
+ public:
+  /// Changes are detected whatever the preset. Throws std::invalid_argument for a config that fails check().
+  explicit ChangeRun(const RecognizerConfig& config);
+
+  /// Changes of this view against the reconstruction from the views before it.
+  ChangeResult add_view(RgbdFrame frame);
+  /// The view that was added last, at its corrected pose.
+  [[nodiscard]] const RgbdFrame& frame() const { return scene_.window().back().raw; }
+  /// Depth of the removed points in the view that was added last, metres; NaN: nothing was removed from this pixel.
+  [[nodiscard]] Image<float> project_removed(const ChangeResult& changes) const;
+  [[nodiscard]] int num_corrected() const { return num_corrected_; }
+
+ private:
+  PrepareViewOptions prepare_;
+  double voxel_m_;
+  CameraCorrector corrector_;
+  DynamicScene scene_;
+  int num_corrected_ = 0;
+};
+
+}  // namespace resight::bench
