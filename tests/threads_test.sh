@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs each command that uses threads on a small scene, with two threads. Under ThreadSanitizer, a data race ends a command
-# with an error. Usage: threads_test.sh PATH_OF_RESIGHT
+# Runs each command that uses threads on a small scene, with two threads. Under ThreadSanitizer, a data race ends a
+# command with an error. Usage: threads_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
