@@ -13,7 +13,7 @@ namespace resight {
 /// directions of their normals; those that pass the first test. Two are enough, where a group that speaks for itself
 /// needs five: here the whole object speaks.
 [[nodiscard]] std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> matches, int object,
-                                                              const SampledModel& model, const PoseScorer& probe,
+                                                              const SampledModel& model, const PoseScorer& scorer,
                                                               const ShapeSearchOptions& options);
 
 /// The matches of SIFT that agree with a pose (scene_from_object): within a distance, each keypoint of model and scene

@@ -141,8 +141,8 @@ float PoseScorer::margin_at_center(const SampledModel& model, const Rigid3f& cam
 }
 
 // classify_surface() for vector instructions: no branches in its loops, and one margin for all samples of a pose.
-SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_from_object,
-                               const CountSamplesOptions& options, double min_score) const {
+SampleCounts PoseScorer::score_coarse(const SampledModel& model, const Rigid3f& camera_from_object,
+                                      const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
   const bool has_colors = !model.chroma.empty();
   const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
@@ -160,13 +160,13 @@ SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_
       const int on_plane = int{is_larger_than_object(pixel.plane_extent_m, model.diameter_m)};
       const int confirmed = near & ~on_plane;
       counts.facing += posed.faces[k];
-      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
-      counts.through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
+      counts.occluded += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
+      counts.seen_through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
       counts.confirmed += confirmed;
-      if (has_colors) counts.off_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
+      if (has_colors) counts.wrong_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
     }
     const float share_left = 1 - static_cast<float>(counts.facing) / static_cast<float>(options.max_samples);
-    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4 ||
+    counts.gave_up = counts.seen_through + counts.wrong_color > options.max_wrong + counts.facing / 4 ||
                      counts.score() < static_cast<float>(min_score) - kMaxGain * std::max(0.0F, share_left);
     if (counts.gave_up || counts.facing >= options.max_samples) break;
   }
@@ -270,7 +270,7 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
                                 float margin_m, Confirmed& confirmed) const {
   ++confirmed.facing;
   if (posed.inside[k] == 0) {
-    ++confirmed.hidden;
+    ++confirmed.occluded;
     return;
   }
   const auto at = static_cast<std::size_t>(posed.pixel[k]);
@@ -280,7 +280,7 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
   if (evidence == Evidence::kUnobserved) return;
   const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
   if (evidence == Evidence::kOccluded) {
-    ++confirmed.hidden;
+    ++confirmed.occluded;
   } else if (evidence == Evidence::kSeenThrough || is_larger_than_object(pixel.plane_extent_m, model.diameter_m) ||
              oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
     ++confirmed.wrong;
@@ -344,7 +344,7 @@ PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
   if (confirmed.samples.empty()) return fit;
   fit.num_explained = static_cast<int>(confirmed.samples.size());
   fit.explained_share = static_cast<double>(fit.num_explained) / (fit.num_explained + confirmed.wrong);
-  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  fit.visible_share = 1 - static_cast<double>(confirmed.occluded) / confirmed.facing;
   return fit;
 }
 

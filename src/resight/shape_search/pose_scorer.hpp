@@ -53,17 +53,17 @@ struct CountSamplesOptions {
 struct SampleCounts {
   int facing = 0;        ///< Turned to the camera; of these:
   int confirmed = 0;     ///< At the measured depth,
-  int off_color = 0;     ///< of which of another hue.
-  int through = 0;       ///< The camera looks through them, or a plane that is larger than the object lies there.
-  int hidden = 0;        ///< Behind what was measured, or outside the image.
+  int wrong_color = 0;   ///< of which of another hue.
+  int seen_through = 0;  ///< The camera looks through them, or a plane that is larger than the object lies there.
+  int occluded = 0;      ///< Behind what was measured, or outside the image.
   bool gave_up = false;  ///< Too many wrong (off_color, through), or a score too low: the rest was not counted.
   /// In [-1, 1): share of the samples that the view confirms, less what speaks against the pose. Hidden ones count
   /// little.
   [[nodiscard]] float score() const {
-    constexpr float kHiddenWeight = 0.4F;
+    constexpr float kOccludedWeight = 0.4F;
     constexpr float kPrior = 3;
-    return static_cast<float>(confirmed - off_color - through) /
-           (static_cast<float>(confirmed + through) + kHiddenWeight * static_cast<float>(hidden) + kPrior);
+    return static_cast<float>(confirmed - wrong_color - seen_through) /
+           (static_cast<float>(confirmed + seen_through) + kOccludedWeight * static_cast<float>(occluded) + kPrior);
   }
 };
 
@@ -100,8 +100,8 @@ class PoseScorer {
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
   /// The first test: quick, of rough poses. It gives up on those that will hardly reach `min_score`.
-  [[nodiscard]] SampleCounts count(const SampledModel& model, const Rigid3f& camera_from_object,
-                                   const CountSamplesOptions& options, double min_score = -1) const;
+  [[nodiscard]] SampleCounts score_coarse(const SampledModel& model, const Rigid3f& camera_from_object,
+                                          const CountSamplesOptions& options, double min_score = -1) const;
   /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
   [[nodiscard]] Rigid3 refine(const SampledModel& model, const Rigid3& camera_from_object, int max_iterations,
                               double max_distance_m) const;
@@ -126,7 +126,7 @@ class PoseScorer {
     ColorPairs colors;                     // Empty if the model has no colours. Normals: camera frame.
     std::vector<Eigen::Vector2f> outline;  // Pixels of all that face the camera.
     int facing = 0;
-    int hidden = 0;
+    int occluded = 0;
     int wrong = 0;
   };
   // Eight samples at a pose, and the pixels they fall into.
@@ -152,13 +152,13 @@ class PoseScorer {
   [[nodiscard]] float margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
                                        const DepthMargin& margin) const;
 
-  // What the first test asks of a pixel, in one place.
+  // What the coarse test reads of a pixel, contiguous in memory.
   struct Pixel {
     float z_m = 0;             // NaN: no return.
     float plane_extent_m = 0;  // Of the plane that it lies on; 0: none.
     Eigen::Vector2f chroma = Eigen::Vector2f::Zero();
   };
-  // And what the refinement asks of it.
+  // What the refinement reads of a pixel.
   struct OrientedPixel {
     float z_m = 0;
     float nx = 0, ny = 0, nz = 0;  // NaN: no normal.
@@ -172,7 +172,8 @@ class PoseScorer {
   float fx_, fy_, cx_, cy_;  // Of the camera; centres with half a pixel, so that truncation finds the pixel.
 };
 
-/// The samples' colours for the first test, under the white balance of the scene (PhotometricFit::chroma()).
+/// The chromaticities of the samples for the coarse test, under the white balance of the scene
+/// (PhotometricFit::chroma()).
 void set_white_balance(SampledModel& model, const Eigen::Array3f& white_balance);
 
 /// a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for the dark, whose hue is

@@ -50,9 +50,9 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
     v.field("tolerance_m", o.tolerance_m, positive(),
             "Tolerance of the depth when a refined pose is scored, plus three standard deviations of the sensor.");
     v.field("min_explained_share", o.min_explained_share, between(0, 1),
-            "Least share of the samples that are not hidden which must be explained.");
+            "Least share of the samples that are not occluded which must be explained.");
     v.field("min_visible_share", o.min_visible_share, between(0, 1),
-            "Least share of the samples facing the camera which must be in the image and not hidden.");
+            "Least share of the samples facing the camera which must be in the image and not occluded.");
     v.field("max_hypotheses", o.max_hypotheses, at_least(0), "Hypotheses per object and view.");
     v.field(
         "min_feature_share", o.min_feature_share, between(0, 1),
@@ -68,7 +68,7 @@ struct SearchView {
   /// Where `explained` (as large as the view; empty: nowhere) is not 0 nothing is searched, but poses are tried there.
   SearchView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
   SceneSamples samples;
-  PoseScorer probe;
+  PoseScorer scorer;
   double searched_share = 1;  ///< Of the samples: those not explained, and so many of the seeds.
 };
 
@@ -103,7 +103,8 @@ class ShapeSearch {
                                                    std::span<const Hypothesis> from_features = {}) const;
 
   /// How well each hypothesis (world frame) fits a view, once refined in it: a quick look before the verification.
-  [[nodiscard]] std::vector<PoseFit> look_at(const SearchView& view, std::span<const Hypothesis> hypotheses) const;
+  [[nodiscard]] std::vector<PoseFit> score_hypotheses(const SearchView& view,
+                                                      std::span<const Hypothesis> hypotheses) const;
 
   /// What the search would make of a pose: its first test, and the judgement once refined.
   struct Trial {

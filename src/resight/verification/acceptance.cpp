@@ -24,7 +24,7 @@ double min_explained_share(const HypothesisEvidence& evidence, const AcceptanceO
                    untextured_degree(evidence, *options.untextured));
 }
 
-bool looks_different(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+bool has_different_appearance(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   if (evidence.texture_contrast >= kTextureContrast &&
       evidence.shared_texture < options.min_shared_texture * evidence.texture_contrast)
     return true;
@@ -34,12 +34,12 @@ bool looks_different(const HypothesisEvidence& evidence, const AcceptanceOptions
 
 }  // namespace
 
-Verdict judge_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   if (evidence.num_visible < kMinVisiblePoints || evidence.visible_share < options.min_visible_share)
     return Verdict::kTooFewVisible;
   if (evidence.num_explained == 0 || evidence.explained_share < min_explained_share(evidence, options))
     return Verdict::kNoSupport;
-  return looks_different(evidence, options) ? Verdict::kDifferentAppearance : Verdict::kCost;
+  return has_different_appearance(evidence, options) ? Verdict::kDifferentAppearance : Verdict::kCost;
 }
 
 bool has_unary_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {

@@ -7,7 +7,7 @@
 
 namespace resight {
 
-/// A hypothesis needs as many visible model points as this to be judged at all. Fewer are no evidence.
+/// Least number of visible model points of a hypothesis: fewer are no evidence.
 inline constexpr int kMinVisiblePoints = 20;
 
 /// What is asked of a hypothesis that shares no texture with the scene, or is compared without colours: many things
@@ -66,7 +66,7 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
 }
 
 /// Whether the evidence is enough to ask for the costs (kCost), or else why not.
-[[nodiscard]] Verdict judge_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options);
+[[nodiscard]] Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options);
 
 /// Whether it may enter the selection: its verdict is kCost and, if required, it explains more than it costs (by
 /// UntexturedOptions::min_gain where it shares no texture).

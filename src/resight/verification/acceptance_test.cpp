@@ -35,11 +35,11 @@ Verdict judge(double HypothesisEvidence::*field, double value, double shared_tex
   HypothesisEvidence e = good_evidence();
   e.shared_texture = shared_texture;
   e.*field = value;
-  return judge_evidence(e, options());
+  return assess_evidence(e, options());
 }
 
 TEST(Acceptance, EachLimitHasItsVerdict) {
-  EXPECT_EQ(judge_evidence(good_evidence(), options()), Verdict::kCost);
+  EXPECT_EQ(assess_evidence(good_evidence(), options()), Verdict::kCost);
   EXPECT_EQ(judge(&HypothesisEvidence::visible_share, 0.09, 3), Verdict::kTooFewVisible);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.59, 3), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.61, 3), Verdict::kCost);
@@ -49,10 +49,10 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
   EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
   HypothesisEvidence few = good_evidence();
   few.num_visible = 19;
-  EXPECT_EQ(judge_evidence(few, options()), Verdict::kTooFewVisible);
+  EXPECT_EQ(assess_evidence(few, options()), Verdict::kTooFewVisible);
 }
 
-TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
+TEST(Acceptance, UntexturedObjectsNeedMore) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.79, 0), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.81, 0), Verdict::kCost);
   // Half as much more of what shares half the contrast.
@@ -60,13 +60,13 @@ TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.71, 0.5), Verdict::kCost);
 }
 
-TEST(Acceptance, APrintThatTheSceneDoesNotShareIsAnother) {
+TEST(Acceptance, TextureThatTheSceneDoesNotShareIsRejected) {
   EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
   EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
   EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
 }
 
-TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
+TEST(Acceptance, UntexturedObjectsMustGainAShareOfWhatTheyExplain) {
   HypothesisEvidence e = good_evidence();
   const auto pays = [&](double clutter, double shared_texture, const AcceptanceOptions& o) {
     e.clutter_cost = clutter;
@@ -85,14 +85,14 @@ TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
   EXPECT_FALSE(pays(0, 3, any));
 }
 
-TEST(Acceptance, WithoutPlainOptionsNothingMoreIsAsked) {
+TEST(Acceptance, WithoutUntexturedOptionsNothingMoreIsNeeded) {
   AcceptanceOptions o = options();
   o.untextured.reset();
   HypothesisEvidence e = good_evidence();
   e.shared_texture = 0;
   e.explained_share = 0.61;
   e.pattern_similarity = 0.51;
-  EXPECT_EQ(judge_evidence(e, o), Verdict::kCost);
+  EXPECT_EQ(assess_evidence(e, o), Verdict::kCost);
   e.clutter_cost = 445;
   EXPECT_TRUE(has_unary_gain(e, o));
 }

@@ -66,7 +66,7 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
   return allowed;
 }
 
-// First the light on the scene from all hypotheses, then what each of them looks like in it.
+// First the white balance of the scene from all hypotheses, then the cues of each under it.
 std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypotheses,
                                              const std::vector<PreparedModel>& models, const PreparedScene& scene,
                                              std::span<const DepthView> views, std::span<const std::uint8_t> present,
@@ -93,8 +93,8 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
   return visible;
 }
 
-// Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
-// stays. Which of them explains a few points more is chance.
+// Hypotheses of one object that refinement and symmetry motions have brought together are one: that with most
+// correspondences stays. Which of them explains a few points more is random.
 void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
                       std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
   if (options.refine.max_iterations == 0 && !options.refine.symmetry_step_rad) return;

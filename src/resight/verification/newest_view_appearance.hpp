@@ -12,8 +12,8 @@ namespace resight {
 /// stood there before, if what stands there now has the same shape.
 class NewestViewAppearance {
  public:
-  NewestViewAppearance(const PreparedModel& model, const SceneAssociation& look, std::span<const DepthView> views,
-                       const VerifyOptions& options);
+  NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,
+                       std::span<const DepthView> views, const VerifyOptions& options);
 
   /// pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;

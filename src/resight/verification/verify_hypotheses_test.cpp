@@ -99,7 +99,7 @@ TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
   }
 }
 
-TEST(VerifyHypotheses, TellsLookAlikesByColor) {
+TEST(VerifyHypotheses, DistinguishesTwinsByColor) {
   ModelLibrary library = make_library();
   Solid wrong = make_box();
   wrong.paint = checks({40, 160, 60}, {60, 60, 180}, 0.03);
@@ -212,7 +212,7 @@ TEST(VerifyHypotheses, FollowsAMovedObject) {
   EXPECT_LT(result.evidence[0].explained_share_per_view[3], 0.3);
 }
 
-TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
+TEST(VerifyHypotheses, NewerViewsThatSeeThroughOutweighStalePoints) {
   // The scene still holds the box's points (the change was missed), but two of three views look through it.
   const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
   const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
@@ -317,7 +317,7 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
 }
 
-TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
+TEST(VerifyHypotheses, ASimilarTextureRulesOutAPartOfSomethingLarger) {
   const auto evidence = [](const Paint& paint, std::optional<double> contrast) {
     const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, paint, on_table(0, 0, 0.04)};
     const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, paint, on_table(0, 0, 0.04)};
@@ -349,7 +349,7 @@ Solid printed_can() {
   return {Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0, 0, 0.06, 0.4)};
 }
 
-TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
+TEST(VerifyHypotheses, RotatesRoundObjectsToTheBestTexture) {
   const Solid can = printed_can();
   ModelLibrary library{.objects = {make_model("can", can)}};
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
@@ -368,7 +368,7 @@ TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
   EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
 }
 
-TEST(VerifyHypotheses, NoTurnToAWorseFit) {
+TEST(VerifyHypotheses, NoRotationToAWorseFit) {
   // In blue light the yellowish side looks as blue as the other; its print is its own.
   const auto painted = [](double blue) -> Paint {
     return [=](const Eigen::Vector3d& p) {
@@ -391,7 +391,7 @@ TEST(VerifyHypotheses, NoTurnToAWorseFit) {
   EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
-TEST(VerifyHypotheses, APlainCanIsNotTurned) {
+TEST(VerifyHypotheses, AnUntexturedCanIsNotRotated) {
   // Scan and scene each have stains of their own, of which some turn fits a little better.
   const auto stained = [](double frequency) -> Paint {
     return [=](const Eigen::Vector3d& p) {
@@ -434,7 +434,7 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   EXPECT_THAT(accepted(f.verify(small, library, {.clutter = kNoClutter, .planes = {}})), testing::ElementsAre(0));
 }
 
-TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
+TEST(VerifyHypotheses, ByDefaultNoTextureIsRejected) {
   // Black for white: the similarity is negative.
   const Rgb8 dark{80, 80, 80};
   const Rgb8 bright{200, 200, 200};
@@ -452,7 +452,7 @@ TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
   EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
 }
 
-TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
+TEST(VerifyHypotheses, TheNewestViewRejectsAnExchangedObject) {
   // A can stands where another stood, of the same shape: the scene keeps colours of both, the newest view shows one.
   const auto rings = [](Rgb8 even, Rgb8 odd) -> Paint {
     return [=](const Eigen::Vector3d& p) { return std::fmod(p.z() + 1, 0.04) < 0.02 ? even : odd; };
@@ -479,7 +479,7 @@ TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
   EXPECT_GT(before(0.4).newest_similarity, 0.8);
 }
 
-TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
+TEST(VerifyHypotheses, ADifferentTextureIsRejected) {
   // The same can, once striped and once in the stripes' mean colour.
   const auto striped = [](const Eigen::Vector3d& p) {
     return std::fmod(std::abs(p.z()), 0.02) < 0.01 ? Rgb8{200, 200, 200} : Rgb8{140, 140, 140};
