@@ -35,7 +35,7 @@ void run_recognize(const RecognizeArguments& arguments) {
     options.refine = arguments.poses == "refine";
     options.library = &library;
     options.num_threads = arguments.num_threads;
-    tracked.emplace(take_largest_part(*recorded, track_sequence(*recorded, options).track));
+    tracked.emplace(take_largest_component(*recorded, track_sequence(*recorded, options).track));
   }
   const Sequence& sequence = tracked ? *tracked : *recorded;
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads);

@@ -97,8 +97,9 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
     const double r = std::sqrt(1 - z * z);
     const Eigen::Quaterniond tilt =
         Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(r * std::cos(angle), r * std::sin(angle), z));
-    for (int t = 0; t < options.num_turns; ++t)
-      rotations.emplace_back(tilt * Eigen::AngleAxisd(2 * std::numbers::pi * t / options.num_turns, Vector3d::UnitZ()));
+    for (int t = 0; t < options.num_rotations; ++t)
+      rotations.emplace_back(tilt *
+                             Eigen::AngleAxisd(2 * std::numbers::pi * t / options.num_rotations, Vector3d::UnitZ()));
   }
   return rotations;
 }

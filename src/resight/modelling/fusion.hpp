@@ -17,7 +17,7 @@ struct FuseViewsOptions {
   double max_free_share = 1.0;        ///< More views, by weight, looked through a place than saw it: it is free.
   double color_from = 0.6;            ///< Of the views of a vertex, in order of brightness: the share that gives its
   double color_to = 0.9;              ///< colour. 0 and 1: the mean of all.
-  double min_part_share = 0.05;       ///< Of the largest part's faces; smaller loose parts are dropped.
+  double min_component_share = 0.05;  ///< Of the largest part's faces; smaller loose parts are dropped.
   int num_threads = 1;                ///< Same bits for any value >= 1.
   void check() const;
 };

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 // Two motions of the second recording's object frame into the first's count as one below these differences.
 constexpr double kSameShiftM = 0.02;
-constexpr double kSameTurnRad = 0.2;
+constexpr double kSameRotation_rad = 0.2;
 constexpr int kMaxWays = 4;           // Candidates that are tried on the model.
 constexpr int kMaxMatchedViews = 18;  // Per recording.
 constexpr int kRefineRounds = 3;
@@ -36,7 +36,8 @@ struct Way {
 };
 
 bool are_same_motion(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
-  return rotation_angle_rad(a.rotation, b.rotation) <= kSameTurnRad && (a * middle - b * middle).norm() <= kSameShiftM;
+  return rotation_angle_rad(a.rotation, b.rotation) <= kSameRotation_rad &&
+         (a * middle - b * middle).norm() <= kSameShiftM;
 }
 
 // About `count` indices, evenly spaced.

@@ -235,35 +235,35 @@ class RegionFinder {
   // The component nearest to the expected position of the object.
   [[nodiscard]] std::optional<Standing> find_standing(const SupportPlane& plane) const {
     std::optional<Standing> best;
-    for (const std::vector<int>& part : find_pixel_components(cloud_, mask_above(plane), 2, options_.max_jump_m)) {
-      if (static_cast<int>(part.size()) < options_.min_pixels) continue;
-      const std::optional<Standing> standing = describe_standing(plane, part);
+    for (const std::vector<int>& component : find_pixel_components(cloud_, mask_above(plane), 2, options_.max_jump_m)) {
+      if (static_cast<int>(component.size()) < options_.min_pixels) continue;
+      const std::optional<Standing> standing = describe_standing(plane, component);
       if (standing && (!best || standing->image_distance_px < best->image_distance_px)) best = standing;
     }
     return best;
   }
 
   [[nodiscard]] std::optional<Standing> describe_standing(const SupportPlane& plane,
-                                                          const std::vector<int>& part) const {
+                                                          const std::vector<int>& component) const {
     const Vector3d axis_u = plane.normal.unitOrthogonal();
     const Vector3d axis_v = plane.normal.cross(axis_u);
     Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
     Vector2d high = -low;
     Vector2d pixel = Vector2d::Zero();
     double top_m = 0;
-    for (const int i : part) {
+    for (const int i : component) {
       const Vector3d p = cloud_.point(static_cast<std::size_t>(i)).cast<double>();
       const Vector2d uv(axis_u.dot(p), axis_v.dot(p));
       const double height_m = plane.height_m(p);
       low = low.cwiseMin(uv);
       high = high.cwiseMax(uv);
       top_m = std::max(top_m, height_m);
-      pixel += Vector2d(i % cloud_.width(), i / cloud_.width()) / static_cast<double>(part.size());
+      pixel += Vector2d(i % cloud_.width(), i / cloud_.width()) / static_cast<double>(component.size());
     }
     const auto on_plane = [&](const Vector2d& uv) -> Vector3d {
       return uv.x() * axis_u + uv.y() * axis_v + plane.offset_m * plane.normal;
     };
-    if (top_m < options_.min_object_height_m || !is_founded(plane, part)) return std::nullopt;
+    if (top_m < options_.min_object_height_m || !is_founded(plane, component)) return std::nullopt;
     Standing standing;
     standing.region.plane = plane;
     standing.region.foot = on_plane(0.5 * (low + high));
@@ -284,9 +284,9 @@ class RegionFinder {
 
   // Whether the plane continues beside the foot of the object, as far as visible. The lid of an object, which may carry
   // something too, rarely does. The foot is the lowest point of each image column.
-  [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& part) const {
+  [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& component) const {
     std::vector<int> lowest(static_cast<std::size_t>(cloud_.width()), -1);
-    for (const int i : part)
+    for (const int i : component)
       if (plane.height_m(cloud_.point(static_cast<std::size_t>(i)).cast<double>()) <= kFootHeightM)
         lowest[i % cloud_.width()] = std::max(lowest[i % cloud_.width()], i);
     const Vector3d ahead = (-plane.normal.cross(Vector3d::UnitZ()).cross(plane.normal)).normalized();

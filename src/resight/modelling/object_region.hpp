@@ -65,10 +65,10 @@ struct ObjectRegionOptions {
 
 /// All values are ours.
 struct SegmentObjectOptions {
-  double min_height_m = 0.005;   ///< Above the support: beyond the noise of its points.
-  double max_jump_m = 0.06;      ///< Between neighbouring points of one object: parts of it may overhang.
-  int max_gap_px = 4;            ///< Between neighbouring points of one object: slanted parts give no return.
-  double min_part_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
+  double min_height_m = 0.005;        ///< Above the support: beyond the noise of its points.
+  double max_jump_m = 0.06;           ///< Between neighbouring points of one object: parts of it may overhang.
+  int max_gap_px = 4;                 ///< Between neighbouring points of one object: slanted parts give no return.
+  double min_component_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
   void check() const;
 };
 

@@ -18,7 +18,7 @@ constexpr int kCropMarginPx = 24;
 constexpr int kMinWidthPx = 320;  // So that all views have the same number of levels.
 // The model may not move an approximately aligned view farther than this; it would have slid along a symmetry.
 constexpr double kMaxShiftM = 0.015;
-constexpr double kMaxTurnRad = 0.12;
+constexpr double kMaxRotation_rad = 0.12;
 
 // Neutral lighting, because the mesh has the observed colours.
 Lighting flat_light() {
@@ -121,10 +121,10 @@ void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions&
       const AlignedView aligned =
           model.align(make_alignment_view(prepared, options.view, &part.mask), camera, before, true);
       const Rigid3 step = before.inverse() * aligned.world_from_camera;
-      const double turn_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
+      const double rotation_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
       // Rotation and translation of the camera are coupled; the displacement of the object's surface counts.
       const Eigen::Vector3d object = before.inverse().translation;
-      if (aligned.overlap < options.min_overlap || turn_rad > kMaxTurnRad ||
+      if (aligned.overlap < options.min_overlap || rotation_rad > kMaxRotation_rad ||
           (step * object - object).norm() > kMaxShiftM)
         return;
       views[i].frame.world_from_camera = aligned.world_from_camera;

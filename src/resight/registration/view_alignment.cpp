@@ -292,8 +292,8 @@ void AlignViewOptions::check() const {
   check_positive("num_threads", num_threads);
 }
 
-AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
-                            const Rigid3& world_from_camera, const AlignViewOptions& options) {
+AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                               const Rigid3& world_from_camera, const AlignViewOptions& options) {
   options.check();
   check_targets(view, targets);
   const Samples samples = draw_samples(view.levels[0], options.max_samples);
@@ -323,7 +323,7 @@ AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarge
     const Samples samples = draw_samples(view.levels[l], options.max_samples);
     pose = align_level(samples, targets, l, world_from_camera, pose, gate_m, options);
   }
-  return judge_alignment(view, targets, pose, options);
+  return evaluate_alignment(view, targets, pose, options);
 }
 
 }  // namespace resight

@@ -53,7 +53,7 @@ struct AlignedView {
                                      const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 
 /// Evaluates a pose without moving it: all fields of AlignedView at the finest level.
-[[nodiscard]] AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
-                                          const Rigid3& world_from_camera, const AlignViewOptions& options = {});
+[[nodiscard]] AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                                             const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 
 }  // namespace resight
