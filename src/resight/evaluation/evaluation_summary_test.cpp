@@ -56,7 +56,7 @@ TEST(EvaluatedRun, ComesBackToTheBit) {
   EXPECT_EQ(back->events.delays, run.events.delays);
 }
 
-TEST(EvaluatedRun, DamageIsToldInOneLine) {
+TEST(EvaluatedRun, DamageIsReportedInOneLine) {
   std::string text = format_run(make_run("a", "mvr", 3));
   std::string high_score = text;
   high_score.replace(high_score.find("\"score\":0.5"), 11, "\"score\":1.5");
