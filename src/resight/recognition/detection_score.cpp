@@ -19,7 +19,7 @@ double detection_score(const HypothesisEvidence& evidence, bool is_tracked, cons
   const double log_odds = options.offset + options.gain_weight * gain_of(evidence) +
                           options.correspondence_weight * std::log1p(evidence.num_correspondences) +
                           options.fit_weight * evidence.fit + options.visible_weight * evidence.visible_share +
-                          (is_tracked ? options.known_weight : 0);
+                          (is_tracked ? options.tracked_weight : 0);
   return 1 / (1 + std::exp(-log_odds));
 }
 

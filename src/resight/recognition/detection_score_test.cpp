@@ -27,7 +27,7 @@ constexpr DetectionScoreOptions kSome{.offset = -4,
                                       .correspondence_weight = 0.7,
                                       .fit_weight = 2,
                                       .visible_weight = 6,
-                                      .known_weight = 0.8};
+                                      .tracked_weight = 0.8};
 
 TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * 0.3;

@@ -58,7 +58,7 @@ void set_default(RecognizerConfig& config) {
                              .gain_weight = 5.14,
                              .correspondence_weight = 0.71,
                              .visible_weight = 6.87,
-                             .known_weight = 0.83};
+                             .tracked_weight = 0.83};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.
