@@ -520,7 +520,7 @@ fs::path CommandLineFolder::root_;
 class CommandLineResults : public CommandLineFolder {};
 class CommandLine : public CommandLineFolder, public testing::WithParamInterface<Row> {};
 
-TEST_P(CommandLine, TellsWhatIsWrong) {
+TEST_P(CommandLine, NamesWhatIsWrong) {
   const Row& row = GetParam();
   row.spoil(folder_);
   if (HasFatalFailure()) return;

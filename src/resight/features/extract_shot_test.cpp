@@ -48,7 +48,7 @@ TEST(ExtractShot, SamplesThePointNearestToTheCenterOfEachCube) {
   }
 }
 
-TEST(ExtractShot, DescribesOverTheThinnedSurface) {
+TEST(ExtractShot, DescribesTheDownsampledSurface) {
   const PreparedView view = prepare_view(test::make_wavy_frame(2));
   const FeatureSet features = extract_shot(view, kKeepFlat);
   ASSERT_GT(features.size(), 1000U);

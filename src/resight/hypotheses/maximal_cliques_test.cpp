@@ -86,7 +86,7 @@ void bron_kerbosch(const BitGraph& graph, std::vector<int>& clique, std::vector<
   }
 }
 
-TEST(FindCliques, EqualsThePlainRecursionOnLargerGraphs) {
+TEST(FindCliques, EqualsTheSimpleRecursionOnLargerGraphs) {
   Rng rng(28);
   for (const double density : {0.3, 0.5, 0.7}) {
     const BitGraph graph = random_graph(rng, density < 0.6 ? 70 : 35, density);
