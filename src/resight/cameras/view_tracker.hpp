@@ -12,17 +12,18 @@
 namespace resight {
 
 struct TrackViewsOptions {
-  double keyframe_shift_m = 0.15;      ///< A view so far from the last keyframe...
-  double keyframe_rotation_rad = 0.2;  ///< ...or so much turned is a keyframe.
+  double keyframe_shift_m = 0.15;      ///< A view this far from the last keyframe becomes one.
+  double keyframe_rotation_rad = 0.2;  ///< Or rotated by this.
   int num_targets = 3;                 ///< Keyframes that a view is aligned to.
-  double max_step_m = 0.02;            ///< A camera that moves by less from view to view...
-  double max_step_rad = 0.03;          ///< ...is followed without features.
-  double min_overlap = 0.2;            ///< Two views are joined by no less.
+  double max_step_m = 0.02;            ///< Below this step (with max_step_rad), no features are needed.
+  double max_step_rad = 0.03;          ///< See max_step_m.
+  double min_overlap = 0.2;            ///< Least overlap of two joined views.
   double min_followed_overlap = 0.5;   ///< The same without features.
-  double max_seen_through = 0.15;      ///< More of a view in front of what the other sees: a wrong pose.
-  double min_correlation = 0.3;        ///< Of brightness, where there is print.
-  double max_edge_error_sq = 60;       ///< Edges that fit worse after the adjustment are dropped.
-  int max_feature_pairs = 3000;        ///< Pairs of keyframes that are matched by features to close loops.
+  /// Above this share of points in front of the other view's surface, a pose is wrong.
+  double max_seen_through = 0.15;
+  double min_correlation = 0.3;   ///< Least brightness correlation, where there is texture.
+  double max_edge_error_sq = 60;  ///< Edges that fit worse after the adjustment are dropped.
+  int max_feature_pairs = 3000;   ///< Pairs of keyframes that are matched by features to close loops.
   SiftOptions sift{.root_sift = true};
   MatchViewsOptions match;
   AlignmentViewOptions view;

@@ -32,8 +32,8 @@ inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
       "Two correspondences are consistent if the distances of their model points and of their scene points differ by "
       "less.",
       "V4R");
-  v.field("max_dot_difference", o.max_dot_difference, positive(), "...and the dot products of their normals by less.",
-          "V4R");
+  v.field("max_dot_difference", o.max_dot_difference, positive(),
+          "Largest difference of the dot products of their normals.", "V4R");
   v.field("min_distance_m", o.min_distance_m, at_least(0),
           "Pairs of points nearer to each other do not constrain a pose.");
   v.field("min_group_size", o.min_group_size, at_least(3), "Smaller groups of consistent correspondences are dropped.",
@@ -50,7 +50,7 @@ inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
           "Of two groups nearer than this (at the middle of their points), only the larger is kept. 0: both are (V4R).",
           "ours");
   v.field("merge_rotation_rad", o.merge_rotation_rad, between(0, std::numbers::pi),
-          "...if the angle between their rotations is smaller. 0: both are kept (V4R).", "ours");
+          "Largest angle between two groups that are merged. 0: both are kept (V4R).", "ours");
   v.group("pose", o.pose);
 }
 

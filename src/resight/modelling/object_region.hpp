@@ -43,12 +43,14 @@ struct ObjectRegionOptions {
   double max_height_m = 0.45;
   double min_object_height_m = 0.012;
   double max_turntable_height_m = 0.08;  ///< Above what it stands on.
-  double min_turntable_share = 0.15;     ///< Of the circle around what stands on the table that is seen of its top.
-  double max_jump_m = 0.06;              ///< Between neighbouring points of one object: parts of it may overhang.
-  int min_pixels = 300;                  ///< Of the object.
-  double min_margin_m = 0.02;            ///< Of the support around the foot of what stands on it, ..
-  double min_margin_share = 0.85;        ///< .. in this share of the directions that are not hidden.
-  double same_place_px = 60;  ///< Things on two supports are one if they are as near to the middle, give or take.
+  /// Least share of the circle around the object at which the turntable's top is visible.
+  double min_turntable_share = 0.15;
+  double max_jump_m = 0.06;        ///< Between neighbouring points of one object: parts of it may overhang.
+  int min_pixels = 300;            ///< Of the object.
+  double min_margin_m = 0.02;      ///< Width of the support that must be visible around the foot,
+  double min_margin_share = 0.85;  ///< in this share of the unoccluded directions.
+  /// Objects on two supports are the same if their distances to the middle differ by less.
+  double same_place_px = 60;
   double max_support_shift_m = 0.10;  ///< Of the support from the one of the view before, where there is one.
   int num_hypotheses = 300;           ///< Of the random search (RANSAC) for the dominant plane.
   std::uint64_t seed = 1;

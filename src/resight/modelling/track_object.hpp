@@ -31,7 +31,7 @@ struct TrackObjectOptions {
   double min_overlap = 0.4;        ///< Of a view with those before: less, and the object is lost.
   double max_seen_through =
       0.25;                      ///< Of a view's points, in front of what the views before show: more, and it is lost.
-  double min_correlation = 0.2;  ///< Of brightness with them, where there is print: less, and it is lost.
+  double min_correlation = 0.2;  ///< Of brightness with them, where there is texture: less, and it is lost.
   double max_edge_angle_rad = 0.6;  ///< Between the directions of two views that are joined by an edge.
   double min_still_share = 0.8;    ///< Of the pixels beside the object that do not change when the camera stands still.
   int num_refinements = 2;         ///< Rounds of: fuse all views, align each to the whole.

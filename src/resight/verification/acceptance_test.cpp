@@ -63,7 +63,7 @@ TEST(Acceptance, UntexturedObjectsNeedMore) {
 TEST(Acceptance, TextureThatTheSceneDoesNotShareIsRejected) {
   EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
   EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
+  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no texture to share.
 }
 
 TEST(Acceptance, UntexturedObjectsMustGainAShareOfWhatTheyExplain) {
@@ -73,7 +73,7 @@ TEST(Acceptance, UntexturedObjectsMustGainAShareOfWhatTheyExplain) {
     e.shared_texture = shared_texture;
     return has_unary_gain(e, o);
   };
-  // 500 explained, 50 of outliers: plain things may cost 350 more, printed ones 450.
+  // 500 explained, 50 of outliers: untextured objects may cost 350 more, textured ones 450.
   EXPECT_TRUE(pays(345, 0, options()));
   EXPECT_FALSE(pays(355, 0, options()));
   EXPECT_TRUE(pays(445, 1, options()));

@@ -16,7 +16,7 @@ using test::make_plate;
 using test::plate_at;
 using test::see_nothing;
 
-// Stripes, fields and a corner: no turn or mirror image of the print is like it.
+// Stripes, fields and a corner: no rotation or mirror image of the texture is like it.
 Rgb8 print_at(double x, double y) {
   if (x > 0.04 && y > 0.02) return {250, 240, 60};
   if (y < -0.05) return {30, 40, 160};

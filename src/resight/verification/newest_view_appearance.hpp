@@ -8,8 +8,8 @@
 
 namespace resight {
 
-/// A model's colours beside those of the newest view that sees enough of it: a reconstruction keeps the colours of what
-/// stood there before, if what stands there now has the same shape.
+/// Compares a model's colours with those of the newest view that sees enough of it. The reconstruction may still hold
+/// the colours of a former object of the same shape.
 class NewestViewAppearance {
  public:
   NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,

@@ -113,7 +113,7 @@ TEST(VerifyHypotheses, DistinguishesTwinsByColor) {
     const VerifyResult result = f.verify(both, library);
     EXPECT_THAT(accepted(result), testing::ElementsAre(1)) << "brightness " << brightness;
     EXPECT_GT(result.evidence[1].fit, result.evidence[0].fit + 0.2);
-    // Even without a rival, and accepted when colour is not looked at.
+    // Even without a competitor; accepted without colours.
     EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
     EXPECT_THAT(accepted(f.verify({both[0]}, library, {.appearance = {.use_color = false}})), testing::ElementsAre(0));
   }
@@ -213,7 +213,7 @@ TEST(VerifyHypotheses, FollowsAMovedObject) {
 }
 
 TEST(VerifyHypotheses, NewerViewsThatSeeThroughOutweighStalePoints) {
-  // The scene still holds the box's points (the change was missed), but two of three views look through it.
+  // The scene still holds the box's points (the change was missed), but two of three views see through it.
   const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
   const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
   const std::vector<PreparedView> views = {render(one_box(), cameras[0]), render({}, cameras[1]),
@@ -235,12 +235,12 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
     return !accepted(verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options))
                 .empty();
   };
-  // Two older views look through the place of what has just come.
+  // Two older views see through the place of an object that has just come.
   const std::vector<PreparedView> came = {render({}, cameras[0]), render({}, cameras[1]),
                                           render(one_box(), cameras[2])};
   EXPECT_TRUE(accepts(came, newest));
   EXPECT_FALSE(accepts(came, {}));
-  // Two older views still show what the newest looks through.
+  // Two older views still show what the newest sees through.
   const std::vector<PreparedView> gone = {render(one_box(), cameras[0]), render(one_box(), cameras[1]),
                                           render({}, cameras[2])};
   EXPECT_FALSE(accepts(gone, newest));
@@ -248,7 +248,7 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
 }
 
 TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
-  // They look through what the newest view cannot see: the far sides of the box.
+  // They see through what the newest view cannot see: the far sides of the box.
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
   const std::vector<Rigid3> cameras = circle_of_cameras(3);
   const auto evidence = [&](const std::vector<World>& worlds, std::optional<double> arrival_share) {
@@ -263,7 +263,7 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   EXPECT_EQ(came.visible_share_per_view[0], 0);
   EXPECT_EQ(came.visible_share_per_view[1], 0);
   EXPECT_EQ(evidence({{}, {}, one_box()}, std::nullopt).verdict, Verdict::kNoSupport);
-  // What came and went: the newest view looks through it, and nothing excuses that.
+  // What came and went: the newest view sees through it, and nothing excuses that.
   const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
   EXPECT_FALSE(gone.accepted);
   EXPECT_GT(gone.visible_share_per_view[2], 0.1);
@@ -369,7 +369,7 @@ TEST(VerifyHypotheses, RotatesRoundObjectsToTheBestTexture) {
 }
 
 TEST(VerifyHypotheses, NoRotationToAWorseFit) {
-  // In blue light the yellowish side looks as blue as the other; its print is its own.
+  // In blue light the yellowish side looks as blue as the other; its texture is its own.
   const auto painted = [](double blue) -> Paint {
     return [=](const Eigen::Vector3d& p) {
       const bool front = p.x() > 0;
