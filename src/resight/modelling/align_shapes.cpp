@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kSameFitM = 0.01;
+constexpr double kSameFit_m = 0.01;
 
 // A surface with its search tree and some sample points.
 struct Shape {
@@ -107,7 +107,7 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
 bool are_one(const ShapeFit& a, const ShapeFit& b, const Shape& moving) {
   return std::ranges::all_of(moving.samples, [&](std::size_t s) {
     const Vector3d p = moving.points[s].cast<double>();
-    return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFitM;
+    return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFit_m;
   });
 }
 

@@ -20,11 +20,11 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 // Around the mask: pixels of the background give free space in front of it.
-constexpr int kMarginPx = 12;
+constexpr int kMargin_px = 12;
 // Normals give only the incidence here, so smooth ones are preferable.
-constexpr int kNormalRadiusPx = 3;
+constexpr int kNormalRadius_px = 3;
 // A view observes a vertex if the pixel shows a point this near.
-constexpr float kSamePointM = 0.004F;
+constexpr float kSamePoint_m = 0.004F;
 
 // Inverse variance across the surface, in 1/mm^2, times the viewing cosine.
 double point_weight(const PreparedView& view, std::size_t i, double cosine) {
@@ -34,12 +34,12 @@ double point_weight(const PreparedView& view, std::size_t i, double cosine) {
 }
 
 FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& options) {
-  TrainingView part = crop_to_object(whole, kMarginPx);
+  TrainingView part = crop_to_object(whole, kMargin_px);
   FusionView result;
   if (part.mask.empty()) return result;
   result.camera_from_object = part.frame.world_from_camera.inverse();
   PrepareViewOptions prepare;
-  prepare.normals.window_radius_px = kNormalRadiusPx;
+  prepare.normals.window_radius_px = kNormalRadius_px;
   PreparedView view = prepare_view(std::move(part.frame), prepare);
   result.camera = view.frame.camera;
   result.weight = Image<float>(result.camera.width, result.camera.height, 0.0F);
@@ -108,7 +108,7 @@ class VertexPainter {
     const std::optional<Pixel> pixel = view.camera.pixel_at(position_px);
     if (!pixel || view.weight(pixel->u, pixel->v) <= 0) return {};
     const auto [u, v] = *pixel;
-    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return {};
+    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePoint_m)) return {};
     const double cosine = static_cast<double>(-(camera_from_object_[k].rotation * normal).dot(p.normalized()));
     if (cosine < 0.2) return {};
     return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, position_px)};

@@ -16,18 +16,18 @@ namespace {
 using Eigen::Vector3d;
 
 // Two motions of the second recording's object frame into the first's count as one below these differences.
-constexpr double kSameShiftM = 0.02;
+constexpr double kSameShift_m = 0.02;
 constexpr double kSameRotation_rad = 0.2;
 constexpr int kMaxWays = 4;           // Candidates that are tried on the model.
 constexpr int kMaxMatchedViews = 18;  // Per recording.
-constexpr int kRefineRounds = 3;
+constexpr int kRefineRounds = 3;      // Each aligns the views and takes the medoid of the motions.
 // Below this number of keypoints, shape alone decides.
 constexpr std::size_t kFewKeypoints = 40;  // Median per view.
-constexpr double kMinAgreement = 0.25;
-constexpr double kMaxContradicted = 0.06;
-constexpr std::size_t kVertexStep = 13;
+constexpr double kMinAgreement = 0.25;     // Least ShapeFit::agreement of an alignment by shape.
+constexpr double kMaxContradicted = 0.06;  // Largest share of either surface in the free space of the other.
+constexpr std::size_t kVertexStep = 13;    // Every 13th vertex is tested, for speed.
 // A point contradicts a view if it lies this far in front of the observed surface.
-constexpr float kFreeM = 0.008F;
+constexpr float kFree_m = 0.008F;
 
 struct Way {
   Rigid3 first_from_second;
@@ -37,7 +37,7 @@ struct Way {
 
 bool are_same_motion(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
   return rotation_angle_rad(a.rotation, b.rotation) <= kSameRotation_rad &&
-         (a * middle - b * middle).norm() <= kSameShiftM;
+         (a * middle - b * middle).norm() <= kSameShift_m;
 }
 
 // About `count` indices, evenly spaced.
@@ -117,7 +117,7 @@ class TrackJoiner {
         const float depth_m = frame.depth_m(pixel->u, pixel->v);
         if (std::isnan(depth_m)) continue;
         ++seen;
-        before += p.z() < depth_m - kFreeM;
+        before += p.z() < depth_m - kFree_m;
       }
     }
     return seen == 0 ? 0 : static_cast<double>(before) / static_cast<double>(seen);

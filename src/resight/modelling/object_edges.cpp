@@ -15,12 +15,12 @@ namespace {
 using Eigen::Vector3d;
 
 // Residual error of the sensor's bias between any two views, independent of the number of agreeing pixels.
-constexpr double kFloorSigmaM = 0.0007;
-constexpr double kFloorSigmaRad = 0.003;
+constexpr double kFloorSigma_m = 0.0007;
+constexpr double kFloorSigma_rad = 0.003;
 constexpr int kPixelStep = 9;  // Sampling step on the surface on which errors are measured.
 
 TwistMatrix edge_information(const TwistMatrix& information) {
-  return limit_information(information, 1, kFloorSigmaRad, kFloorSigmaM);
+  return limit_information(information, 1, kFloorSigma_rad, kFloorSigma_m);
 }
 
 TwistMatrix match_information(const TrackObjectOptions& options) {

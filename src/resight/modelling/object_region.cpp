@@ -21,12 +21,12 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSampleStepPx = 4;  // Of the points in which planes are searched.
+constexpr int kSampleStep_px = 4;  // Of the points in which planes are searched.
 // Largest distance between the three points of a plane hypothesis, in rows and columns.
-constexpr int kTripleRadiusPx = 60;
-constexpr double kHeightBinM = 0.004;  // Bin size of the histogram of heights.
-constexpr double kFootHeightM = 0.03;  // Lower points belong to the foot of the object.
-constexpr double kMarginReachM = 0.03;
+constexpr int kTripleRadius_px = 60;
+constexpr double kHeightBin_m = 0.004;  // Bin size of the histogram of heights.
+constexpr double kFootHeight_m = 0.03;  // Lower points belong to the foot of the object.
+constexpr double kMarginReach_m = 0.03;
 // Share of the points beside the foot that must be visible; the object occludes the others.
 constexpr double kMinSeenShare = 0.15;
 constexpr int kRefits = 4;
@@ -73,8 +73,8 @@ class RegionFinder {
     target_px_ = Vector2d(0.5 * camera.width, 0.5 * camera.height);
     if (previous != nullptr)
       target_px_ = camera.project(previous->foot + 0.5 * previous->height_m * previous->plane.normal);
-    for (int v = 0; v < cloud_.height(); v += kSampleStepPx)
-      for (int u = 0; u < cloud_.width(); u += kSampleStepPx) {
+    for (int v = 0; v < cloud_.height(); v += kSampleStep_px)
+      for (int u = 0; u < cloud_.width(); u += kSampleStep_px) {
         const std::size_t i = cloud_.z.index(u, v);
         if (!cloud_.has_point(i) || cloud_.z[i] > options.max_depth_m) continue;
         samples_.push_back({cloud_.point(i).cast<double>(), 1});
@@ -95,7 +95,7 @@ class RegionFinder {
   [[nodiscard]] double pixel_area_m2(const Vector3d& p, const Vector3d& normal) const {
     const double slant = std::max(0.1, std::abs(normal.dot(p.normalized())));
     const Camera& camera = view_.frame.camera;
-    return kSampleStepPx * kSampleStepPx * p.squaredNorm() / (camera.fx * camera.fy * slant);
+    return kSampleStep_px * kSampleStep_px * p.squaredNorm() / (camera.fx * camera.fy * slant);
   }
 
   [[nodiscard]] bool looks_down_on(const Vector3d& normal) const {
@@ -144,8 +144,8 @@ class RegionFinder {
     std::array<Vector3d, 3> corners;
     corners[0] = cloud_.point(first).cast<double>();
     for (int k = 1; k < 3; ++k) {
-      const int u = first % cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadiusPx)) - kTripleRadiusPx;
-      const int v = first / cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadiusPx)) - kTripleRadiusPx;
+      const int u = first % cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadius_px)) - kTripleRadius_px;
+      const int v = first / cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadius_px)) - kTripleRadius_px;
       if (!cloud_.z.contains(u, v) || !cloud_.has_point(cloud_.z.index(u, v))) return std::nullopt;
       corners[k] = cloud_.point(cloud_.z.index(u, v)).cast<double>();
     }
@@ -190,17 +190,17 @@ class RegionFinder {
 
   // Level surfaces of sufficient area, from bottom to top: peaks of the histogram of heights.
   std::vector<SupportPlane> find_level_planes(const SupportPlane& dominant) {
-    const int below = static_cast<int>(options_.max_height_m / kHeightBinM);
+    const int below = static_cast<int>(options_.max_height_m / kHeightBin_m);
     std::vector<double> area(static_cast<std::size_t>(2 * below + 1), 0.0);
     for (const Sample& s : samples_) {
-      const int bin = static_cast<int>(std::lround(dominant.height_m(s.point) / kHeightBinM)) + below;
+      const int bin = static_cast<int>(std::lround(dominant.height_m(s.point) / kHeightBin_m)) + below;
       if (bin >= 0 && bin < static_cast<int>(area.size())) area[bin] += s.weight;
     }
     std::vector<SupportPlane> planes;
     for (std::size_t bin = 1; bin + 1 < area.size(); ++bin) {
       if (area[bin] < area[bin - 1] || area[bin] <= area[bin + 1]) continue;
       if (area[bin - 1] + area[bin] + area[bin + 1] < options_.min_support_area_m2) continue;
-      const SupportPlane level{dominant.normal, dominant.offset_m + (static_cast<int>(bin) - below) * kHeightBinM};
+      const SupportPlane level{dominant.normal, dominant.offset_m + (static_cast<int>(bin) - below) * kHeightBin_m};
       planes.push_back(refit_level(level, dominant));
     }
     return planes;
@@ -270,7 +270,7 @@ class RegionFinder {
     standing.region.radius_m = 0.5 * (high - low).norm() * 1.3 + 0.03;
     standing.region.height_m = 1.2 * top_m + 0.02;
     standing.reach_m = 0.5 * (high - low).maxCoeff();
-    standing.margin_area_m2 = margin_area(plane, standing.region.foot, standing.reach_m + kMarginReachM);
+    standing.margin_area_m2 = margin_area(plane, standing.region.foot, standing.reach_m + kMarginReach_m);
     standing.image_distance_px = (pixel - target_px_).norm();
     return standing;
   }
@@ -287,7 +287,7 @@ class RegionFinder {
   [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& component) const {
     std::vector<int> lowest(static_cast<std::size_t>(cloud_.width()), -1);
     for (const int i : component)
-      if (plane.height_m(cloud_.point(static_cast<std::size_t>(i)).cast<double>()) <= kFootHeightM)
+      if (plane.height_m(cloud_.point(static_cast<std::size_t>(i)).cast<double>()) <= kFootHeight_m)
         lowest[i % cloud_.width()] = std::max(lowest[i % cloud_.width()], i);
     const Vector3d ahead = (-plane.normal.cross(Vector3d::UnitZ()).cross(plane.normal)).normalized();
     const Vector3d aside = ahead.cross(plane.normal);

@@ -14,10 +14,10 @@
 namespace resight {
 namespace {
 
-constexpr int kCropMarginPx = 24;
-constexpr int kMinWidthPx = 320;  // So that all views have the same number of levels.
+constexpr int kCropMargin_px = 24;
+constexpr int kMinWidth_px = 320;  // So that all views have the same number of levels.
 // The model may not move an approximately aligned view farther than this; it would have slid along a symmetry.
-constexpr double kMaxShiftM = 0.015;
+constexpr double kMaxShift_m = 0.015;
 constexpr double kMaxRotation_rad = 0.12;
 
 // Neutral lighting, because the mesh has the observed colours.
@@ -46,11 +46,11 @@ void drop_insides(const RaycastScene& scene, const Camera& camera, const Rigid3&
 
 TrainingView crop_for_tracking(const TrainingView& view) {
   TrainingView part;
-  int margin_px = kCropMarginPx;
+  int margin_px = kCropMargin_px;
   do {
     part = crop_to_object(view, margin_px);
-    margin_px += kCropMarginPx;
-  } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidthPx, view.mask.width()));
+    margin_px += kCropMargin_px;
+  } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidth_px, view.mask.width()));
   return part;
 }
 
@@ -125,7 +125,7 @@ void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions&
       // Rotation and translation of the camera are coupled; the displacement of the object's surface counts.
       const Eigen::Vector3d object = before.inverse().translation;
       if (aligned.overlap < options.min_overlap || rotation_rad > kMaxRotation_rad ||
-          (step * object - object).norm() > kMaxShiftM)
+          (step * object - object).norm() > kMaxShift_m)
         return;
       views[i].frame.world_from_camera = aligned.world_from_camera;
     });

@@ -12,10 +12,10 @@ namespace {
 
 // A surface seen from a direction that differs more (15 deg) is searched again.
 constexpr double kMaxRotation_rad = 0.26;
-constexpr double kMaxDepth_m = 2.0;  // Surfaces farther away do not count: nothing is recognised there.
-constexpr std::size_t kRememberedViews = 4;
-constexpr int kPixelStep = 4;
-constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, measurements of the same surface vary.
+constexpr double kMaxDepth_m = 2.0;          // Surfaces farther away do not count: nothing is recognised there.
+constexpr std::size_t kRememberedViews = 4;  // Searched views that a surface is compared with; bounds time and memory.
+constexpr int kPixelStep = 4;                // Every fourth row and column is tested, for speed.
+constexpr float kMinEdgeDistance_px = 3;     // Nearer to depth edges, measurements of the same surface vary.
 constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As in change detection.
 
 // Whether one of the pixels around has the depth of the point.

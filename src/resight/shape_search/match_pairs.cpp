@@ -12,9 +12,9 @@
 namespace resight {
 namespace {
 
-constexpr float kMinLength_m = 0.012F;  // Shorter pairs leave the rotation too uncertain.
-constexpr float kMaxLengthDifference_m = 0.008F;
-constexpr float kMaxCosineDifference = 0.3F;  // Of normals with each other and with the line.
+constexpr float kMinLength_m = 0.012F;            // Shorter pairs leave the rotation too uncertain.
+constexpr float kMaxLengthDifference_m = 0.008F;  // Two keypoints are off by a few millimetres each.
+constexpr float kMaxCosineDifference = 0.3F;      // Of normals with each other and with the line.
 
 bool may_be_one_thing(const OrientedPointPair& model, const OrientedPointPair& scene) {
   const Eigen::Vector3f model_line = model.p2 - model.p1;

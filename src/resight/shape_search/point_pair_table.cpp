@@ -12,7 +12,7 @@
 namespace resight {
 namespace {
 
-constexpr double kDistanceBin_m = 0.01;
+constexpr double kDistanceBin_m = 0.01;     // A few times the depth noise at 1 m.
 constexpr std::uint32_t kAngleBins = 10;    // Of 0 to 180 deg.
 constexpr std::uint32_t kTorsionBins = 20;  // Of 360 deg.
 constexpr float kFlatCosine = 0.26F;        // 15 deg.

@@ -17,18 +17,18 @@
 namespace resight {
 namespace {
 
-constexpr double kSpacingShare = 0.05;
-constexpr double kMinSpacing_m = 0.005;
-constexpr float kMinFacing = 0.25F;    // Cosine between normal and viewing ray: steeper ones are measured badly.
-constexpr float kMinNormalDot = 0.5F;  // 60 deg.
-constexpr float kMinDepth_m = 0.05F;
-constexpr int kMinPairs = 15;
-constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of the samples: without holes.
-constexpr float kMaxContinuationOffset_m = 0.005F;
-constexpr float kMaxGain = 0.25F;  // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
-constexpr float kMinPlane_m = 0.1F;
-constexpr float kPlaneDistance_m = 0.01F;
-constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
+constexpr double kSpacingShare = 0.05;   // Of the diameter; grows until max_samples suffice.
+constexpr double kMinSpacing_m = 0.005;  // The resolution of verification.
+constexpr float kMinFacing = 0.25F;      // Cosine between normal and viewing ray: steeper ones are measured badly.
+constexpr float kMinNormalDot = 0.5F;    // 60 deg, as kMaxInlierAngle_rad of verification.
+constexpr float kMinDepth_m = 0.05F;     // Nearer points are beside or behind the camera.
+constexpr int kMinPairs = 15;            // Fewer hold six unknowns too weakly.
+constexpr float kCellSpacings = 1.5F;    // Cells of a silhouette, in spacings of the samples: without holes.
+constexpr float kMaxContinuationOffset_m = 0.005F;  // As ContinuationClutter::max_offset_m of verification.
+constexpr float kMaxGain = 0.25F;    // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
+constexpr float kMinPlane_m = 0.1F;  // Smaller planes may be faces of any object.
+constexpr float kPlaneDistance_m = 0.01F;  // As PlaneOptions::max_distance_m of verification.
+constexpr float kMinPlaneDot = 0.87F;      // 30 deg: normals of single pixels are noisy.
 const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
 // Mean distance to the nearest other sample.

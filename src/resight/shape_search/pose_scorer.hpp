@@ -58,8 +58,8 @@ struct SampleCounts {
   bool gave_up = false;  ///< Stopped early: too many wrong samples, or too low a score.
   /// In [-1, 1): confirmed minus contradicting samples, as a share. Occluded samples count little.
   [[nodiscard]] float score() const {
-    constexpr float kOccludedWeight = 0.4F;
-    constexpr float kPrior = 3;
+    constexpr float kOccludedWeight = 0.4F;  // Occlusion neither confirms nor contradicts, but is often a wrong pose.
+    constexpr float kPrior = 3;              // Samples: few of them give no high score.
     return static_cast<float>(confirmed - wrong_color - seen_through) /
            (static_cast<float>(confirmed + seen_through) + kOccludedWeight * static_cast<float>(occluded) + kPrior);
   }

@@ -31,11 +31,11 @@ constexpr double kMatchDistance_m = 0.015;  // Matches agree with a pose within 
 constexpr int kMaxRotations = 8;            // Of those of a round shape, with most samples of the right chromaticity.
 constexpr double kSamePose_m = 0.015;       // Poses nearer than this (at the object's centre),
 constexpr double kSameRotation_rad = 0.21;  // and this (12 deg, over its symmetries), are one.
-constexpr double kMinExplainedShareOfSamples = 0.1;
-constexpr double kMarginSigmas = 3;    // DepthMargin::noise_sigmas of the fine test.
-constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object differ only in rotation.
-constexpr int kMaxPerPlace = 2;        // Poses per place that are left to verification.
-constexpr int kMaxRoundPerPlace = 1;   // Verification finds the rotation of round objects by itself.
+constexpr double kMinExplainedShareOfSamples = 0.1;  // Less of the surface fits too many places.
+constexpr double kMarginSigmas = 3;                  // DepthMargin::noise_sigmas of the fine test.
+constexpr double kSamePlace_m = 0.03;                // Within this, poses of one object differ only in rotation.
+constexpr int kMaxPerPlace = 2;                      // Poses per place that are left to verification.
+constexpr int kMaxRoundPerPlace = 1;                 // Verification finds the rotation of round objects by itself.
 
 constexpr int kAlikeEntries = 4;  // Of round objects, this many entries differ by a rotation only: fewer are tried.
 
@@ -148,7 +148,7 @@ struct ShapeSearch::Impl {
 
   // A few symmetry motions are found one by one. Of many, a pair of points hardly ever gives the right one.
   [[nodiscard]] bool is_round_in_shape(std::size_t object) const {
-    constexpr std::size_t kMany = 12;
+    constexpr std::size_t kMany = 12;  // As MatchCriteria::symmetry_step_rad says.
     return symmetry_motions[object].size() > kMany;
   }
 

@@ -27,18 +27,18 @@ using Axes = std::vector<RotationAxis>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGoldenAngle_rad = 2.399963;  // no two of its multiples are the same rotation
-constexpr int kContinuousTurns = 16;
-constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not half of the object
-constexpr double kAlike = 0.8;           // principal moments with a larger quotient do not distinguish their axes
-constexpr int kCircleDirections = 36;
-constexpr int kSphereDirections = 800;        // half of them are tried, 7 deg apart
-constexpr double kDirectionError_rad = 0.07;  // largest error of the nearest tested direction
-constexpr double kMinRoughShare = 0.8;
-constexpr double kMinSeparation_rad = 0.12;  // of candidates; closer ones converge to the same axis
-constexpr std::size_t kMaxRefined = 24;      // candidates per order; an icosahedron has 15 axes of half turns
+constexpr int kContinuousTurns = 16;           // multiples of kGoldenAngle_rad that must all be symmetries
+constexpr double kMaxMeanNormal = 0.35;        // a scan may lack the underside, but not half of the object
+constexpr double kAlike = 0.8;                 // principal moments with a larger quotient do not distinguish their axes
+constexpr int kCircleDirections = 36;          // 5 deg apart
+constexpr int kSphereDirections = 800;         // half of them are tried, 7 deg apart
+constexpr double kDirectionError_rad = 0.07;   // largest error of the nearest tested direction
+constexpr double kMinRoughShare = 0.8;         // candidates with a smaller share of overlap are not refined
+constexpr double kMinSeparation_rad = 0.12;    // of candidates; closer ones converge to the same axis
+constexpr std::size_t kMaxRefined = 24;        // candidates per order; an icosahedron has 15 axes of half turns
 constexpr std::array kOrders = {12, 10, 8, 6, 5, 4, 3, 2};
-constexpr double kMinGain = 0.02;
-constexpr double kSameAxis_rad = 0.17;
+constexpr double kMinGain = 0.02;       // of the share, beyond noise: see is_of_order()
+constexpr double kSameAxis_rad = 0.17;  // 10 deg: closer axes are one
 constexpr std::array<double, 3> kSpinAngles_rad = {kGoldenAngle_rad, 2 * kGoldenAngle_rad, 3 * kGoldenAngle_rad};
 
 bool is_usable(const PointCloud& surface) {

@@ -18,9 +18,9 @@
 namespace resight {
 namespace {
 
-constexpr double kPlaneWeight = 0.8;  // How well a plane explains its points (V4R: 0.8, half of it with colour).
-constexpr float kMinWeight = 0.05F;
-constexpr float kWellExplained = 0.5F;
+constexpr double kPlaneWeight = 0.8;    // How well a plane explains its points (V4R: 0.8, half of it with colour).
+constexpr float kMinWeight = 0.05F;     // Smaller weights are dropped, for speed.
+constexpr float kWellExplained = 0.5F;  // Weight from which a scene point is a start of a continuing surface.
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
 // 0.

@@ -9,8 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr std::ptrdiff_t kMinPointsInView = 50;
-constexpr double kMinShare = 0.1;
+constexpr std::ptrdiff_t kMinPointsInView = 50;  // Fewer colours do not determine a pattern.
+constexpr double kMinShare = 0.1;  // Of the visible points: a small rest may lie at the rim of an occluder.
 
 // The newest view in which enough of what is visible of the model is at the measured depth, or -1.
 int find_newest(const ModelVisibility& visibility) {

@@ -11,8 +11,8 @@
 namespace resight {
 namespace {
 
-constexpr double kBlock_m = 0.06;
-constexpr float kCropCube_m = 0.1F;
+constexpr double kBlock_m = 0.06;    // Granularity of the lookup of surroundings: affects speed only.
+constexpr float kCropCube_m = 0.1F;  // Coarse: the cubes of all hypotheses are listed.
 
 PointCloud keep_finite(const PointCloud& cloud) {
   std::vector<int> finite;

@@ -7,13 +7,13 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMaxComparedPoints = 150;
-constexpr std::size_t kMinComparedPoints = 20;
+constexpr std::size_t kMaxComparedPoints = 150;  // Every n-th point is compared beyond, for speed.
+constexpr std::size_t kMinComparedPoints = 20;   // Fewer colours do not determine a pattern.
 constexpr double kMinSimilarityGain = 0.05;  // Of the likeness: noise alone does not rotate a pose that texture found.
 
 // Textures whose mean chromaticities differ are not alike, however well their patterns agree.
 double likeness(std::span<const LabColor> model, std::span<const LabColor> scene, double chroma_weight) {
-  constexpr double kChromaticityWeight = 8;
+  constexpr double kChromaticityWeight = 8;  // A difference of 0.08 (10 of a* or b*) costs as much as the least gain.
   double da = 0;
   double db = 0;
   for (std::size_t i = 0; i < model.size(); ++i) {
