@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "resight/core/check.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 
 namespace resight {
 namespace {
@@ -14,8 +15,8 @@ namespace {
 bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const ObjectModel& model) {
   const Eigen::Vector3d center = world_from_object * model.center.cast<double>().eval();
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * center;
-  const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
-  return pixel && frame.depth_m(pixel->u, pixel->v) >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
+  const float depth_m = nearest_depth(p.cast<float>(), {frame.camera, frame.depth_m}, 0);
+  return depth_m >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
 }
 
 }  // namespace

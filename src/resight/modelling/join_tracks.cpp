@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "resight/core/parallel.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 #include "resight/modelling/internal/align_shapes.hpp"
 #include "resight/modelling/internal/object_edges.hpp"
 
@@ -27,7 +28,7 @@ constexpr double kMinAgreement = 0.25;     // Least ShapeFit::agreement of an al
 constexpr double kMaxContradicted = 0.06;  // Largest share of either surface in the free space of the other.
 constexpr std::size_t kVertexStep = 13;    // Every 13th vertex is tested, for speed.
 // A point contradicts a view if it lies this far in front of the observed surface.
-constexpr float kFree_m = 0.008F;
+constexpr double kFree_m = 0.008;
 
 struct Way {
   Rigid3 first_from_second;
@@ -106,21 +107,19 @@ class TrackJoiner {
   // Share of the surface's points in front of what the views observe there, over some of the views.
   [[nodiscard]] double contradicted_share(const TriangleMesh& mesh, const Rigid3& views_from_mesh,
                                           const std::vector<TrainingView>& views) const {
-    std::size_t before = 0, seen = 0;
+    std::vector<Eigen::Vector3f> sampled;
+    for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) sampled.push_back(mesh.vertices[k]);
+    const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = kFree_m, .noise_sigmas = 0}};
+    int before = 0, seen = 0;
     for (const int v : choose_evenly(views.size(), options_.num_join_views)) {
       const RgbdFrame& frame = views[v].frame;
-      const Rigid3 camera_from_mesh = frame.world_from_camera.inverse() * views_from_mesh;
-      for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) {
-        const Vector3d p = camera_from_mesh * mesh.vertices[k].cast<double>().eval();
-        const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
-        if (!pixel) continue;
-        const float depth_m = frame.depth_m(pixel->u, pixel->v);
-        if (std::isnan(depth_m)) continue;
-        ++seen;
-        before += p.z() < depth_m - kFree_m;
-      }
+      const SurfaceEvidence evidence =
+          classify_surface({.points = sampled}, frame.world_from_camera.inverse() * views_from_mesh,
+                           {frame.camera, frame.depth_m}, evidence_options);
+      before += evidence.num(Evidence::kSeenThrough);
+      seen += static_cast<int>(sampled.size()) - evidence.num(Evidence::kUnobserved);
     }
-    return seen == 0 ? 0 : static_cast<double>(before) / static_cast<double>(seen);
+    return seen == 0 ? 0 : static_cast<double>(before) / seen;
   }
 
   // Matches features between views of both recordings. Matches with similar motions are added up.

@@ -127,7 +127,7 @@ class LevelTarget {
         gate_m_(static_cast<float>(gate_m)),
         min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))) {}
 
-  enum class Outcome { kNothing, kPair, kHidden, kInFront };
+  enum class Outcome { kNothing, kPair, kOccluded, kSeenThrough };
 
   Outcome add(const Samples& samples, std::size_t s, Sums& sums) const {
     const Eigen::Vector3f p = samples.points[s];
@@ -152,8 +152,8 @@ class LevelTarget {
         return Outcome::kPair;
       }
     }
-    if (offset.z() > kMaxPairDistance * gate) return Outcome::kHidden;
-    return offset.z() < -kMaxPairDistance * gate ? Outcome::kInFront : Outcome::kNothing;
+    if (offset.z() > kMaxPairDistance * gate) return Outcome::kOccluded;
+    return offset.z() < -kMaxPairDistance * gate ? Outcome::kSeenThrough : Outcome::kNothing;
   }
 
  private:
@@ -205,8 +205,8 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
       for (const LevelTarget& target : seen) {
         const LevelTarget::Outcome outcome = target.add(samples, s, sums);
         pair |= outcome == LevelTarget::Outcome::kPair;
-        hidden |= outcome == LevelTarget::Outcome::kHidden;
-        in_front |= outcome == LevelTarget::Outcome::kInFront;
+        hidden |= outcome == LevelTarget::Outcome::kOccluded;
+        in_front |= outcome == LevelTarget::Outcome::kSeenThrough;
       }
       sums.num_matched += pair;
       sums.num_seen_through += in_front && !pair && !hidden;

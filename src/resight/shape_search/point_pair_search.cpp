@@ -85,9 +85,9 @@ void PointPairSearch::try_entry(const PointPairEntry& entry, const OrientedPoint
                                 const Eigen::Vector2f& first, const Eigen::Vector2f& second,
                                 std::vector<PoseCandidate>& found) const {
   const SampledModel& model = objects_[entry.object];
-  const float max_chroma = static_cast<float>(CountSamplesOptions{}.max_chroma_difference);
-  if (!model.chroma.empty() && std::max((model.chroma[entry.first] - first).squaredNorm(),
-                                        (model.chroma[entry.second] - second).squaredNorm()) > max_chroma * max_chroma)
+  const float max_difference = static_cast<float>(CountSamplesOptions{}.max_chroma_difference);
+  if (!model.chroma.empty() && !(is_similar_chroma(model.chroma[entry.first], first, max_difference) &&
+                                 is_similar_chroma(model.chroma[entry.second], second, max_difference)))
     return;
   const auto pose = align(
       {model.points[entry.first], model.normals[entry.first], model.points[entry.second], model.normals[entry.second]},

@@ -145,7 +145,7 @@ SampleCounts PoseScorer::score_coarse(const SampledModel& model, const Rigid3f& 
                                       const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
   const bool has_colors = !model.chroma.empty();
-  const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
+  const float max_chroma_difference = static_cast<float>(options.max_chroma_difference);
   const float margin_m = margin_at_center(model, camera_from_object, options.margin);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const PosedBlock posed = project(model.blocks[b], camera_from_object);
@@ -163,7 +163,8 @@ SampleCounts PoseScorer::score_coarse(const SampledModel& model, const Rigid3f& 
       counts.occluded += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
       counts.seen_through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
       counts.confirmed += confirmed;
-      if (has_colors) counts.wrong_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
+      if (has_colors)
+        counts.wrong_color += confirmed & int{!is_similar_chroma(chroma[k], pixel.chroma, max_chroma_difference)};
     }
     const float share_left = 1 - static_cast<float>(counts.facing) / static_cast<float>(options.max_samples);
     counts.gave_up = counts.seen_through + counts.wrong_color > options.max_wrong + counts.facing / 4 ||

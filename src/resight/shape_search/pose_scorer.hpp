@@ -182,4 +182,9 @@ void set_white_balance(SampledModel& model, const Eigen::Array3f& white_balance)
   return {scale * color.a, scale * color.b};
 }
 
+/// Whether two chroma() differ by at most this.
+[[nodiscard]] inline bool is_similar_chroma(const Eigen::Vector2f& a, const Eigen::Vector2f& b, float max_difference) {
+  return (a - b).squaredNorm() <= max_difference * max_difference;
+}
+
 }  // namespace resight
