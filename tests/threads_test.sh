@@ -27,6 +27,7 @@ for preset in mvr-chd default; do
   grep -q cereal_blue $preset/detections.json || fail "$preset did not recognise the cereal box"
 done
 run changes --sequence data/test/000001 --out changes
+run evaluate --models models.resight --dataset data --presets default -k 1 --out results
 run track --sequence data/test/000001 --models models.resight --out poses.txt
 
 ((failures == 0)) && echo "threads: all as expected"

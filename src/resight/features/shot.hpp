@@ -14,7 +14,7 @@ struct ShotOptions {
   double support_radius_m = 0.04;
   double support_voxel_m = 0.005;
   double min_surface_variation = 0.01;
-  std::optional<double> max_keypoint_depth_m{};
+  std::optional<double> max_keypoint_depth_m = 2.0;
   int min_neighbors = 10;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("ShotOptions", *this); }
@@ -30,7 +30,7 @@ inline void declare(OptionVisitor& v, ShotOptions& o) {
           "Keypoints on flatter surface are dropped: smallest eigenvalue of the support over the sum of all, without "
           "the variance of the sensor noise. 0: all are kept.");
   v.field("max_keypoint_depth_m", o.max_keypoint_depth_m, positive(),
-          "No keypoints of a view farther away. off: no limit.", "later V4R: 1.8");
+          "No keypoints of a view farther away: normals are noise there. off: no limit.", "later V4R: 1.8");
   v.field("min_neighbors", o.min_neighbors, between(3, 1e9), "Keypoints with fewer support points are not described.");
   v.num_threads(o.num_threads);
 }

@@ -70,7 +70,6 @@ void set_default(RecognizerConfig& config) {
 RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
-  config.features.shot.max_keypoint_depth_m = 2.0;  // Beyond, normals are noise.
   if (name == "default") {
     set_default(config);
   } else if (name == "mvr-chd" || name == "mvr") {

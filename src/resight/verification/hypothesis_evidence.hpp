@@ -65,11 +65,6 @@ struct HypothesisEvidence {
 struct VerifyResult {
   std::vector<HypothesisEvidence> evidence;  ///< One per hypothesis.
   double cost = 0;                           ///< Of the chosen set; the empty set costs 0.
-  int num_moves = 0;                         ///< Accepted moves of the local search.
-  int num_planes = 0;  ///< Found around the hypotheses: farther parts of the scene are not looked at.
-  int num_segments = 0;
-  int num_components = 0;  ///< Sets of hypotheses that share no scene point and no voxel: chosen independently.
-  bool is_optimal = true;  ///< Every component was solved exactly.
 };
 
 }  // namespace resight

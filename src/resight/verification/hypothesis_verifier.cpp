@@ -176,9 +176,6 @@ void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
   const SearchSelectionResult found = search_selection(problem, options.selection, options.seed);
   explain_choice(problem, found, candidates, result.evidence);
   result.cost = from_fixed(found.cost);
-  result.num_moves = found.num_moves;
-  result.num_components = found.num_components;
-  result.is_optimal = found.is_optimal;
 }
 
 }  // namespace
@@ -209,8 +206,6 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   prepare_models(hypotheses);
   const PreparedScene scene =
       prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models_, options_)), options_);
-  result.num_planes = static_cast<int>(scene.planes.size());
-  result.num_segments = scene.num_segments;
   std::vector<HypothesisCues> cues = compute_all_cues(hypotheses, models_, scene, depth_views, present, options_);
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
