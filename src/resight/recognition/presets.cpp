@@ -13,7 +13,7 @@ namespace {
 
 void set_paper(RecognizerConfig& config) {
   config.changes.detection.occlusion_test = OcclusionTest::kSphericalBins;
-  config.verify.refine.max_iterations = 0;
+  config.verify.refine.max_iterations.reset();
   config.detections.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
 }
 

@@ -54,7 +54,7 @@ struct CueComputer::Impl {
   // A hypothesis is moved onto the scene before it is assessed.
   Rigid3 refined(const Rigid3& pose, std::span<const Correspondence> correspondences, std::span<const DepthView> views,
                  std::span<const std::uint8_t> allowed) const {
-    if (options_.refine.max_iterations == 0) return pose;
+    if (!options_.refine.max_iterations) return pose;
     return refine_pose_on_scene(model_, pose, find_roughly_visible(model_, pose, views, allowed, options_),
                                 correspondences, scene_, options_.refine);
   }

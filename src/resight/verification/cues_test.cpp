@@ -152,7 +152,7 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
 TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
   c.options.planes.reset();
-  c.options.refine.max_iterations = 0;
+  c.options.refine.max_iterations.reset();
   c.options.appearance.light = {0, 0, 0, 0};
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :

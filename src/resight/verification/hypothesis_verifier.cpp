@@ -97,7 +97,7 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
 // correspondences stays. Which of them explains a few points more is random.
 void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
                       std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
-  if (options.refine.max_iterations == 0 && !options.refine.symmetry_step_rad) return;
+  if (!options.refine.max_iterations && !options.refine.symmetry_step_rad) return;
   std::vector<int> by_support = candidates;
   std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
     return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();

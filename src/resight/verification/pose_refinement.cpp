@@ -51,8 +51,8 @@ class Refiner {
     const Surroundings local = surroundings(start);
     std::vector<int> partners(points_.size(), -1);
     Rigid3 pose = start;
-    (void)iterate(start, local, kCoarseStride, options_.max_iterations, partners, pose);
-    const int num_fine = std::min(kFineIterations, options_.max_iterations);
+    (void)iterate(start, local, kCoarseStride, *options_.max_iterations, partners, pose);
+    const int num_fine = std::min(kFineIterations, *options_.max_iterations);
     return iterate(start, local, 1, num_fine, partners, pose) ? pose : start;
   }
 
@@ -171,7 +171,7 @@ Rigid3 refine_pose_on_scene(const PreparedModel& model, const Rigid3& world_from
                             std::span<const Correspondence> correspondences, const PreparedScene& scene,
                             const RefinePoseOptions& options) {
   options.check();
-  if (options.max_iterations == 0 || !has_enough(model, visible, scene)) return world_from_object;
+  if (!options.max_iterations || !has_enough(model, visible, scene)) return world_from_object;
   return Refiner(model, visible, correspondences, scene, options).run(world_from_object);
 }
 

@@ -280,7 +280,7 @@ TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
     for (std::size_t i = 0; i < f.scene.size(); ++i) scene.points[i] += 0.0035F * static_cast<float>(i % 5) * towards;
     const ContinuationClutter rule{.noise_sigmas = noise_sigmas};
     const VerifyOptions options{.support = {.max_distance_m = 0.01},
-                                .refine = {.max_iterations = 0},
+                                .refine = {.max_iterations = std::nullopt},
                                 .clutter = {.weight = 6, .rule = rule},
                                 .planes = {}};
     const std::vector<VerificationView> refs = references(f.views);
@@ -323,7 +323,8 @@ TEST(VerifyHypotheses, ASimilarTextureRulesOutAPartOfSomethingLarger) {
     const ModelLibrary library{.objects = {make_model("small", small)}};
     const Fixture f({.solids = {board}}, circle_of_cameras(4));
     const ContinuationClutter rule{.texture_contrast = contrast};
-    const VerifyOptions options{.refine = {.max_iterations = 0}, .clutter = {.weight = 6, .rule = rule}, .planes = {}};
+    const VerifyOptions options{
+        .refine = {.max_iterations = std::nullopt}, .clutter = {.weight = 6, .rule = rule}, .planes = {}};
     return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
   };
   const Paint yellow = plain({180, 170, 60});
