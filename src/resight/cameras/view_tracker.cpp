@@ -102,8 +102,8 @@ std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int component, con
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     if (component_of(keyframes[k]) != component) continue;
     const Rigid3& other = pose_of(keyframes[k]);
-    const double distance = (other.translation - pose.translation).norm() / options.keyframe_shift_m +
-                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe_rotation_rad;
+    const double distance = (other.translation - pose.translation).norm() / options.keyframe.shift_m +
+                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe.rotation_rad;
     order.emplace_back(distance, k);
   }
   std::ranges::sort(order);
@@ -121,8 +121,8 @@ std::vector<AlignmentTarget> ViewTracker::Impl::targets_of(const std::vector<std
 
 bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
   return aligned.num_pairs > 0 && aligned.overlap >= min_overlap &&
-         aligned.seen_through <= options.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
-         !(aligned.brightness_correlation < options.min_correlation);
+         aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
+         !(aligned.brightness_correlation < options.plausible.min_correlation);
 }
 
 // Tracks the camera from the last view, once from the same pose and once at constant velocity.
@@ -139,9 +139,9 @@ std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
     Join join{static_cast<int>(near.front()), align_view(view, targets_of(near), start, options.align)};
     join.information = join.aligned.information;
     const Rigid3 step = start.inverse() * join.aligned.world_from_camera;
-    const bool small = step.translation.norm() < options.max_step_m &&
-                       rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.max_step_rad;
-    if (!small || !is_plausible(join.aligned, options.min_followed_overlap)) continue;
+    const bool small = step.translation.norm() < options.follow.max_step_m &&
+                       rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.follow.max_step_rad;
+    if (!small || !is_plausible(join.aligned, options.follow.min_overlap)) continue;
     if (sigma_of(join.information).maxCoeff() > kMaxOpenSigma) continue;
     if (!best || join.score() > best->score()) best = std::move(join);
   }
@@ -160,9 +160,10 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
   Join join{static_cast<int>(keyframe), align_view(view, targets, pose_of(k) * match->a_from_b, align),
             match->num_inliers};
   join.information = join.aligned.information + feature_information();
-  if (!is_plausible(join.aligned, options.min_overlap)) return std::nullopt;
+  if (!is_plausible(join.aligned, options.plausible.min_overlap)) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&view, join.aligned.world_from_camera}};
-  if (!is_plausible(evaluate_alignment(k.alignment, back, pose_of(k), align), options.min_overlap)) return std::nullopt;
+  if (!is_plausible(evaluate_alignment(k.alignment, back, pose_of(k), align), options.plausible.min_overlap))
+    return std::nullopt;
   return join;
 }
 
@@ -186,8 +187,8 @@ bool ViewTracker::Impl::is_keyframe(const Join& join) const {
   const Rigid3& pose = join.aligned.world_from_camera;
   const int component = component_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
   const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(component, pose).front()]);
-  return (nearest.translation - pose.translation).norm() > options.keyframe_shift_m ||
-         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe_rotation_rad;
+  return (nearest.translation - pose.translation).norm() > options.keyframe.shift_m ||
+         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe.rotation_rad;
 }
 
 // Adds edges to the keyframe of the join and to neighbouring keyframes with enough overlap.
@@ -200,7 +201,7 @@ void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, cons
     if (static_cast<int>(k) == join.keyframe) continue;
     const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
     const AlignedView aligned = align_view(alignment, target, pose, near);
-    if (!is_plausible(aligned, options.min_overlap)) continue;
+    if (!is_plausible(aligned, options.plausible.min_overlap)) continue;
     edges.push_back({keyframes[k].view, view, pose_of(keyframes[k]).inverse() * aligned.world_from_camera,
                      edge_information(aligned.information)});
   }
@@ -289,7 +290,7 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
   align.num_threads = 1;  // Pairs are measured in parallel.
   if (component_of(a) == component_of(b) && evaluate_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
     const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
-    if (is_plausible(aligned, options.min_overlap)) best = aligned;
+    if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
   }
   if (!best && match) {
     if (const std::optional<ViewMatch> found = match_views(a.features, b.features, options.match)) {
@@ -297,12 +298,13 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
       align.prior_sigma_rad = kFeatureSigma_rad;
       const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
       information += feature_information();
-      if (is_plausible(aligned, options.min_overlap)) best = aligned;
+      if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
     }
   }
   if (!best) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
-  if (!is_plausible(evaluate_alignment(a.alignment, back, pose_of(a), align), options.min_overlap)) return std::nullopt;
+  if (!is_plausible(evaluate_alignment(a.alignment, back, pose_of(a), align), options.plausible.min_overlap))
+    return std::nullopt;
   return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
                   edge_information(best->information + information)};
 }
@@ -387,15 +389,13 @@ CameraTrack ViewTracker::Impl::finish() {
 }
 
 void TrackViewsOptions::check() const {
-  check_positive("keyframe_shift_m", keyframe_shift_m);
-  check_positive("keyframe_rotation_rad", keyframe_rotation_rad);
+  check_positive("keyframe.shift_m", keyframe.shift_m);
+  check_positive("keyframe.rotation_rad", keyframe.rotation_rad);
   check_positive("num_targets", num_targets);
-  check_positive("max_step_m", max_step_m);
-  check_positive("max_step_rad", max_step_rad);
-  check_in_range("min_overlap", min_overlap, 0, 1);
-  check_in_range("min_followed_overlap", min_followed_overlap, 0, 1);
-  check_in_range("max_seen_through", max_seen_through, 0, 1);
-  check_in_range("min_correlation", min_correlation, -1, 1);
+  check_positive("follow.max_step_m", follow.max_step_m);
+  check_positive("follow.max_step_rad", follow.max_step_rad);
+  plausible.check();
+  check_in_range("follow.min_overlap", follow.min_overlap, 0, 1);
   check_positive("max_edge_error_sq", max_edge_error_sq);
   check_not_negative("max_feature_pairs", max_feature_pairs);
   sift.check();

@@ -5,23 +5,31 @@
 #include <vector>
 
 #include "resight/cameras/match_views.hpp"
+#include "resight/cameras/plausibility.hpp"
 #include "resight/cameras/pose_graph.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 
+/// A view this far from the last keyframe becomes one.
+struct KeyframeOptions {
+  double shift_m = 0.15;
+  double rotation_rad = 0.2;  ///< Or rotated by this.
+};
+
+/// A view that follows its predecessor closely is aligned to it without features.
+struct FollowOptions {
+  double max_step_m = 0.02;  ///< Largest step of a camera that is followed.
+  double max_step_rad = 0.03;
+  double min_overlap = 0.5;  ///< Least overlap of a view that is followed.
+};
+
 struct TrackViewsOptions {
-  double keyframe_shift_m = 0.15;      ///< A view this far from the last keyframe becomes one.
-  double keyframe_rotation_rad = 0.2;  ///< Or rotated by this.
-  int num_targets = 3;                 ///< Keyframes that a view is aligned to.
-  double max_step_m = 0.02;            ///< Below this step (with max_step_rad), no features are needed.
-  double max_step_rad = 0.03;          ///< See max_step_m.
-  double min_overlap = 0.2;            ///< Least overlap of two joined views.
-  double min_followed_overlap = 0.5;   ///< The same without features.
-  /// Above this share of points in front of the other view's surface, a pose is wrong.
-  double max_seen_through = 0.15;
-  double min_correlation = 0.3;   ///< Least brightness correlation, where there is texture.
+  KeyframeOptions keyframe;
+  FollowOptions follow;
+  PlausibilityOptions plausible{.min_overlap = 0.2, .max_seen_through = 0.15, .min_correlation = 0.3};
+  int num_targets = 3;            ///< Keyframes that a view is aligned to.
   double max_edge_error_sq = 60;  ///< Edges that fit worse after the adjustment are dropped.
   int max_feature_pairs = 3000;   ///< Pairs of keyframes that are matched by features to close loops.
   SiftOptions sift{.root_sift = true};

@@ -171,7 +171,7 @@ TEST(ViewTracker, ImagesOfOtherSizesStandAlone) {
 
 TEST(ViewTracker, BadOptionsAreRefused) {
   TrackViewsOptions options;
-  options.min_overlap = -1;
+  options.plausible.min_overlap = -1;
   EXPECT_THROW(ViewTracker{options}, std::invalid_argument);
   EXPECT_EQ(ViewTracker().finish().num_components, 0);
 }

@@ -65,10 +65,11 @@ class TrackJoiner {
   // Joins by features, or by shape if features give no result.
   Result<Rigid3> find() {
     const std::vector<Way> matched = find_ways();
-    if (const std::optional<Rigid3> best = choose(matched, options_.min_correlation)) return *best;
+    if (const std::optional<Rigid3> best = choose(matched, options_.plausible.min_correlation)) return *best;
     const bool has_texture = num_keypoints_ >= kFewKeypoints;
     const std::vector<Way> shaped = find_ways_by_shape();
-    if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.min_correlation : -1)) return *best;
+    if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.plausible.min_correlation : -1))
+      return *best;
     return Error{fmt::format(
         "the recordings cannot be joined: {} matches at best, {}", matched.empty() ? 0 : matched.front().num_matches,
         shaped.empty() ? "no common shape" : "and no alignment by shape that the texture supports")};
@@ -82,7 +83,7 @@ class TrackJoiner {
     if (!model_) return best;
     for (const Way& way : ways) {
       const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
-      if (likeness < min_likeness || overlap < options_.min_join_overlap) continue;
+      if (likeness < min_likeness || overlap < options_.join.min_overlap) continue;
       if (best && score + way.shape_score <= best_score) continue;
       best = pose;
       best_score = score + way.shape_score;
@@ -111,7 +112,7 @@ class TrackJoiner {
     for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) sampled.push_back(mesh.vertices[k]);
     const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = kFree_m, .noise_sigmas = 0}};
     int before = 0, seen = 0;
-    for (const int v : choose_evenly(views.size(), options_.num_join_views)) {
+    for (const int v : choose_evenly(views.size(), options_.join.num_views)) {
       const RgbdFrame& frame = views[v].frame;
       const SurfaceEvidence evidence =
           classify_surface({.points = sampled}, frame.world_from_camera.inverse() * views_from_mesh,
@@ -133,7 +134,7 @@ class TrackJoiner {
     parallel_for(found.size(), options_.num_threads, [&](std::size_t k) {
       const std::size_t i = k / b.size();
       const std::size_t j = k % b.size();
-      const std::optional<ViewMatch> match = match_views(a[i].features, b[j].features, options_.match);
+      const std::optional<ViewMatch> match = match_views(a[i].features, b[j].features, options_.features.match);
       if (!match) return;
       found[k] = Way{first_[of_first[i]].frame.world_from_camera * match->a_from_b *
                          second_[of_second[j]].frame.world_from_camera.inverse(),
@@ -181,7 +182,7 @@ class TrackJoiner {
   Refined refine(Rigid3 way) {
     Refined refined;
     for (int round = 0; round < kRefineRounds; ++round) {
-      const std::vector<int> chosen = choose_evenly(second_.size(), options_.num_join_views);
+      const std::vector<int> chosen = choose_evenly(second_.size(), options_.join.num_views);
       std::vector<AlignedView> aligned(chosen.size());
       parallel_for(chosen.size(), options_.num_threads, [&](std::size_t k) { aligned[k] = align(chosen[k], way); });
       refined = {way, 0, 0, 0};
@@ -195,7 +196,7 @@ class TrackJoiner {
         refined.score +=
             (std::min(a.overlap, 0.3) - 2 * a.seen_through + 2 * likeness) / static_cast<double>(chosen.size());
         refined.likeness += likeness / static_cast<double>(chosen.size());
-        if (a.overlap >= options_.min_join_overlap)
+        if (a.overlap >= options_.join.min_overlap)
           ways.push_back({a.world_from_camera * second_[chosen[k]].frame.world_from_camera.inverse(), a.num_pairs});
       }
       if (ways.empty()) break;

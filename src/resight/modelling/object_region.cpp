@@ -123,8 +123,8 @@ class RegionFinder {
   // support.
   [[nodiscard]] bool is_turntable(const Standing& higher, const Standing& lower) const {
     const double step_m = higher.region.plane.offset_m - lower.region.plane.offset_m;
-    return step_m > 0 && step_m <= options_.max_turntable_height_m &&
-           higher.margin_area_m2 >= options_.min_turntable_share * std::numbers::pi * lower.reach_m * lower.reach_m;
+    return step_m > 0 && step_m <= options_.turntable.max_height_m &&
+           higher.margin_area_m2 >= options_.turntable.min_share * std::numbers::pi * lower.reach_m * lower.reach_m;
   }
 
   [[nodiscard]] double shift_m(const Standing& standing) const {
@@ -300,14 +300,14 @@ class RegionFinder {
       const Vector3d foot = p - plane.height_m(p) * plane.normal;
       for (int k = -2; k <= 2; ++k) {  // Towards the camera and to both sides.
         const double angle_rad = k * std::numbers::pi / 4;
-        const int found =
-            look_for(plane, foot + options_.min_margin_m * (std::cos(angle_rad) * ahead + std::sin(angle_rad) * aside));
+        const int found = look_for(
+            plane, foot + options_.margin.width_m * (std::cos(angle_rad) * ahead + std::sin(angle_rad) * aside));
         seen += found > 0;
         missing += found < 0;
         ++asked;
       }
     }
-    return seen >= options_.min_margin_share * (seen + missing) && seen >= kMinSeenShare * asked && seen > 0;
+    return seen >= options_.margin.min_share * (seen + missing) && seen >= kMinSeenShare * asked && seen > 0;
   }
 
   // 1 if the plane is visible at a point of it, -1 if it is missing there, 0 if the place is occluded or unknown.
@@ -350,10 +350,10 @@ void ObjectRegionOptions::check() const {
   check_positive("ObjectRegionOptions.max_jump_m", max_jump_m);
   check_positive("ObjectRegionOptions.min_pixels", min_pixels);
   check_positive("ObjectRegionOptions.min_object_height_m", min_object_height_m);
-  check_not_negative("ObjectRegionOptions.max_turntable_height_m", max_turntable_height_m);
-  check_in_range("ObjectRegionOptions.min_turntable_share", min_turntable_share, 0, 1);
-  check_positive("ObjectRegionOptions.min_margin_m", min_margin_m);
-  check_in_range("ObjectRegionOptions.min_margin_share", min_margin_share, 0, 1);
+  check_not_negative("ObjectRegionOptions.turntable.max_height_m", turntable.max_height_m);
+  check_in_range("ObjectRegionOptions.turntable.min_share", turntable.min_share, 0, 1);
+  check_positive("ObjectRegionOptions.margin.width_m", margin.width_m);
+  check_in_range("ObjectRegionOptions.margin.min_share", margin.min_share, 0, 1);
   check_positive("ObjectRegionOptions.same_place_px", same_place_px);
   check_positive("ObjectRegionOptions.max_support_shift_m", max_support_shift_m);
   check_in_range("ObjectRegionOptions.num_hypotheses", num_hypotheses, 1, 1000000);

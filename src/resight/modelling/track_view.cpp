@@ -58,7 +58,7 @@ TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& op
   TrainingView part = crop_for_tracking(view);
   const PreparedView prepared = prepare_view(std::move(part.frame));
   return {make_alignment_view(prepared, options.view, &part.mask),
-          ViewFeatures(extract_sift(prepared, options.sift, &part.mask))};
+          ViewFeatures(extract_sift(prepared, options.features.sift, &part.mask))};
 }
 
 std::vector<TrackView> make_track_views(std::span<const TrainingView> views, std::span<const int> chosen,
@@ -99,8 +99,8 @@ AlignedView ModelTarget::align(const AlignmentView& view, const Camera& camera, 
   AlignViewOptions align = impl_->options.align;
   align.num_threads = 1;
   if (is_known) {
-    align.prior_sigma_m = impl_->options.match_sigma_m;
-    align.prior_sigma_rad = impl_->options.match_sigma_rad;
+    align.prior_sigma_m = impl_->options.features.sigma_m;
+    align.prior_sigma_rad = impl_->options.features.sigma_rad;
   }
   return align_view(view, targets, object_from_camera, align);
 }
@@ -124,7 +124,7 @@ void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions&
       const double rotation_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
       // Rotation and translation of the camera are coupled; the displacement of the object's surface counts.
       const Eigen::Vector3d object = before.inverse().translation;
-      if (aligned.overlap < options.min_overlap || rotation_rad > kMaxRotation_rad ||
+      if (aligned.overlap < options.plausible.min_overlap || rotation_rad > kMaxRotation_rad ||
           (step * object - object).norm() > kMaxShift_m)
         return;
       views[i].frame.world_from_camera = aligned.world_from_camera;

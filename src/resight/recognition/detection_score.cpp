@@ -9,8 +9,8 @@ namespace {
 
 // 1: costs nothing. What is accepted beside others may cost more than it explains alone.
 double gain_of(const HypothesisEvidence& evidence) {
-  if (evidence.explained_scene <= 0) return 0;
-  return std::clamp(-evidence.unary_cost / evidence.explained_scene, -1.0, 1.0);
+  if (evidence.costs.explained_scene <= 0) return 0;
+  return std::clamp(-evidence.costs.unary / evidence.costs.explained_scene, -1.0, 1.0);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ struct CueComputer::Impl {
       adapt_model_colors(limit_chromaticity(association_.light, white_balance));
       compare_patterns();
       if (newest_view_appearance_)
-        cues_.evidence.newest_similarity = newest_view_appearance_->similarity(white_balance);
+        cues_.evidence.appearance.newest_similarity = newest_view_appearance_->similarity(white_balance);
       weigh_matches(*association_.local);
       classify_model_points();
     }
@@ -127,9 +127,9 @@ struct CueComputer::Impl {
       scene_colors.push_back(association_.local_lab[m.local]);
     }
     const TextureMatch match = match_texture(own_colors, model_colors, scene_colors, options_.appearance);
-    cues_.evidence.pattern_similarity = match.similarity;
-    cues_.evidence.texture_contrast = match.texture_contrast;
-    cues_.evidence.shared_texture = match.shared_texture;
+    cues_.evidence.appearance.pattern_similarity = match.similarity;
+    cues_.evidence.appearance.texture_contrast = match.texture_contrast;
+    cues_.evidence.appearance.shared_texture = match.shared_texture;
   }
 
   // -log of the colour similarity.
@@ -192,7 +192,7 @@ struct CueComputer::Impl {
         sum_explained += weight;
         sum_fit += weight * fit;
       } else {
-        cues_.evidence.outlier_cost += options_.selection.outlier_weight * weight;
+        cues_.evidence.costs.outlier += options_.selection.outlier_weight * weight;
       }
       cues_.state[association_.visibility.visible[v]] =
           explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
@@ -215,10 +215,10 @@ struct CueComputer::Impl {
       const float weight = scene_weight_[q];
       if (weight < kMinWeight) continue;
       if (is_background(local.scene_index(q))) {
-        cues_.evidence.plane_cost += std::min<double>(weight, plane_weight);
+        cues_.evidence.costs.plane += std::min<double>(weight, plane_weight);
       } else {
         cues_.explained.push_back({local.scene_index(q), weight});
-        cues_.evidence.explained_scene += weight;
+        cues_.evidence.costs.explained_scene += weight;
       }
     }
     std::sort(cues_.explained.begin(), cues_.explained.end(),
@@ -243,7 +243,8 @@ struct CueComputer::Impl {
                                   return !goes_on;
                                 });
     if (!goes_on) return 0;
-    const double texture = rule.texture_contrast ? cues_.evidence.shared_texture / *rule.texture_contrast : 0;
+    const double texture =
+        rule.texture_contrast ? cues_.evidence.appearance.shared_texture / *rule.texture_contrast : 0;
     return static_cast<float>(options_.clutter.weight / (1 + texture * texture));
   }
 
@@ -291,7 +292,7 @@ struct CueComputer::Impl {
                                                    : segment_weight(local, q, *segments);
       if (weight < kMinWeight) continue;
       cues_.clutter.push_back({local.scene_index(q), weight});
-      cues_.evidence.clutter_cost += weight;
+      cues_.evidence.costs.clutter += weight;
     }
     std::sort(cues_.clutter.begin(), cues_.clutter.end(),
               [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
@@ -313,7 +314,7 @@ struct CueComputer::Impl {
         if (std::abs(distances[i]) <= clearance || !plane.covers(association_.points[i])) continue;
         ++(distances[i] > 0 ? above : below);
       }
-      cues_.evidence.plane_cost += std::min(above, below);
+      cues_.evidence.costs.plane += std::min(above, below);
     }
   }
 

@@ -202,7 +202,7 @@ TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
     if (q.weight == 1.0F && c.scene.points[q.point].z() > 0.05F) ++same_segment;
   }
   EXPECT_GT(same_segment, 150);
-  EXPECT_GT(cues.evidence.clutter_cost, 150);
+  EXPECT_GT(cues.evidence.costs.clutter, 150);
 }
 
 }  // namespace

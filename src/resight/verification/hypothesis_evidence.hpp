@@ -28,8 +28,27 @@ enum class Verdict : std::uint8_t {
 /// Short lower-case name for reports.
 [[nodiscard]] const char* to_string(Verdict verdict);
 
-/// Evidence for and against one hypothesis. Costs (except outlier_cost) and explained_scene are computed only for
-/// hypotheses with enough support and the right appearance.
+/// How the colours of model and scene agree.
+struct AppearanceEvidence {
+  double pattern_similarity = 1;  ///< pattern_similarity() of the colours of model and scene.
+  /// The same with the colours of the newest view that sees enough of the model; 1 if not compared.
+  double newest_similarity = 1;
+  double shared_texture = 0;    ///< PatternMatch::shared_texture, at most texture_contrast.
+  double texture_contrast = 0;  ///< Texture of the visible model itself, in even light.
+};
+
+/// The terms of the selection. All but `outlier` are computed only for hypotheses with enough support and the right
+/// appearance.
+struct HypothesisCosts {
+  double explained_scene = 0;  ///< Gain: sum of the weights of the explained scene points, without those of a plane.
+  double outlier = 0;          ///< Visible model points that are not explained.
+  double clutter = 0;          ///< Unexplained scene points beside the explained ones (ClutterOptions).
+  double plane = 0;            ///< Points of planes that it claims, and model points on the far side of a plane.
+  /// Cost of the set with this hypothesis alone. Negative: unary gain. 0 if rejected earlier.
+  double unary = 0;
+};
+
+/// Evidence for and against one hypothesis.
 struct HypothesisEvidence {
   bool accepted = false;
   Rigid3 world_from_object;  ///< The verified pose: refined, then rotated by symmetry.
@@ -40,23 +59,14 @@ struct HypothesisEvidence {
   int num_visible = 0;          ///< Model points visible in at least one allowed view.
   int num_explained = 0;        ///< Of these, inliers.
   int num_correspondences = 0;  ///< Of the hypothesis, within support.max_distance_m at the pose.
-  double explained_scene = 0;   ///< Sum of weights of the scene points it explains, without those of a plane.
-  double outlier_cost = 0;
   /// One per view; 0 where the presence mask excludes it, and before the arrival (visibility.arrival_share).
   std::vector<float> visible_share_per_view;
   /// Explained share of the points visible in that view; points that it sees through are not explained.
   std::vector<float> explained_share_per_view;
   /// Inliers / visible points, grazing ones count a tenth: what acceptance.min_explained_share tests.
   double explained_share = 0;
-  double pattern_similarity = 1;  ///< Of the model's colours and the scene's (pattern_similarity.hpp).
-  double shared_texture = 0;      ///< PatternMatch::shared_texture, at most texture_contrast.
-  double texture_contrast = 0;    ///< Texture of the visible model itself, in even light.
-  /// The same with the colours of the newest view that sees enough of the model; 1 if not compared.
-  double newest_similarity = 1;
-  double clutter_cost = 0;  ///< Of unexplained scene points beside the explained ones (ClutterOptions).
-  double plane_cost = 0;    ///< Points of planes that it claims, and model points on the far side of a plane.
-  /// Cost of the set with this hypothesis alone. Negative: unary gain. 0 if rejected earlier.
-  double unary_cost = 0;
+  AppearanceEvidence appearance;
+  HypothesisCosts costs;
   Verdict verdict = Verdict::kTooFewVisible;
   PoseUncertainty uncertainty;  ///< Of accepted ones.
   int suppressed_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.

@@ -116,7 +116,7 @@ void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary
     } else {
       evidence[h].verdict = Verdict::kSuppressed;
       evidence[h].suppressed_by = *same;
-      evidence[h].unary_cost = unary_cost(evidence[h]);
+      evidence[h].costs.unary = unary_cost(evidence[h]);
     }
   }
   std::sort(kept.begin(), kept.end());
@@ -150,7 +150,7 @@ void explain_choice(const SelectionProblem& problem, const SearchSelectionResult
     for (const int c : component) {
       HypothesisEvidence& e = evidence[candidates[c]];
       const FixedCost change = none.change_if_switched(c);
-      e.unary_cost = from_fixed(change);
+      e.costs.unary = from_fixed(change);
       e.accepted = found.active[c] != 0;
       e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
       if (e.accepted || change >= 0) continue;

@@ -89,11 +89,11 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
       const HypothesisEvidence& b = parallel.evidence[i];
       EXPECT_EQ(a.verdict, b.verdict);
       EXPECT_EQ(a.suppressed_by, b.suppressed_by);
-      for (const auto field :
-           {&HypothesisEvidence::fit, &HypothesisEvidence::visible_share, &HypothesisEvidence::explained_scene,
-            &HypothesisEvidence::outlier_cost, &HypothesisEvidence::clutter_cost, &HypothesisEvidence::plane_cost,
-            &HypothesisEvidence::unary_cost})
+      for (const auto field : {&HypothesisEvidence::fit, &HypothesisEvidence::visible_share})
         EXPECT_EQ(std::memcmp(&(a.*field), &(b.*field), sizeof(double)), 0);
+      for (const auto field : {&HypothesisCosts::explained_scene, &HypothesisCosts::outlier, &HypothesisCosts::clutter,
+                               &HypothesisCosts::plane, &HypothesisCosts::unary})
+        EXPECT_EQ(std::memcmp(&(a.costs.*field), &(b.costs.*field), sizeof(double)), 0);
       EXPECT_EQ(a.explained_share_per_view, b.explained_share_per_view);
     }
   }

@@ -93,7 +93,7 @@ TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
       if (i == winner) continue;
       EXPECT_EQ(result.evidence[i].verdict, Verdict::kSuppressed);
       EXPECT_EQ(result.evidence[i].suppressed_by, winner);
-      EXPECT_LT(result.evidence[i].unary_cost, 0);
+      EXPECT_LT(result.evidence[i].costs.unary, 0);
     }
   }
 }
@@ -169,7 +169,7 @@ TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
   EXPECT_THAT(accepted(result), testing::IsEmpty());
   EXPECT_GT(result.evidence[0].fit, 0.7);  // Its sides count as visible down to the margin.
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
-  EXPECT_GT(result.evidence[0].plane_cost, 100);
+  EXPECT_GT(result.evidence[0].costs.plane, 100);
   // The planes are what rejects it.
   EXPECT_FALSE(accepted(f.verify(hypotheses, library, {.clutter = kNoClutter, .planes = {}})).empty());
 }
@@ -179,8 +179,8 @@ TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
   const VerifyResult result =
       f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
                make_library(), {.acceptance = {.min_explained_share = 0.1}});
-  EXPECT_LT(result.evidence[0].plane_cost, 60);
-  EXPECT_GT(result.evidence[1].plane_cost, 300);
+  EXPECT_LT(result.evidence[0].costs.plane, 60);
+  EXPECT_GT(result.evidence[1].costs.plane, 300);
   EXPECT_THAT(accepted(result), testing::ElementsAre(0));
 }
 
@@ -285,7 +285,7 @@ TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
                                 .planes = {}};
     const std::vector<VerificationView> refs = references(f.views);
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, pose)};
-    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].clutter_cost;
+    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].costs.clutter;
   };
   EXPECT_GT(clutter(2.2, 0), 100);
   EXPECT_LT(clutter(2.2, 3), 0.2 * clutter(2.2, 0));
@@ -303,8 +303,8 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
     const Fixture f(world, circle_of_cameras(4));
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
     const HypothesisEvidence e = f.verify(hypotheses, library, options).evidence[0];
-    EXPECT_GT(e.explained_scene, 100);
-    return e.clutter_cost / e.explained_scene;
+    EXPECT_GT(e.costs.explained_scene, 100);
+    return e.costs.clutter / e.costs.explained_scene;
   };
   // Alone, and beside a lower box and one of another colour that touch it.
   EXPECT_LT(clutter({.solids = {small}}, small.world_from_object), 0.2);
@@ -328,16 +328,17 @@ TEST(VerifyHypotheses, ASimilarTextureRulesOutAPartOfSomethingLarger) {
     return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
   };
   const Paint yellow = plain({180, 170, 60});
-  const double full = evidence(yellow, std::nullopt).clutter_cost;
+  const double full = evidence(yellow, std::nullopt).costs.clutter;
   EXPECT_GT(full, 100);
-  EXPECT_LT(evidence(yellow, 0.5).shared_texture, 0.01);
-  EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
+  EXPECT_LT(evidence(yellow, 0.5).appearance.shared_texture, 0.01);
+  EXPECT_NEAR(evidence(yellow, 0.5).costs.clutter, full, 1e-3 * full);
   const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
-  const double full_of_printed = evidence(printed, std::nullopt).clutter_cost;
+  const double full_of_printed = evidence(printed, std::nullopt).costs.clutter;
   EXPECT_GT(full_of_printed, 100);
   const HypothesisEvidence e = evidence(printed, 0.5);
-  EXPECT_GT(e.shared_texture, 0.5);
-  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_texture / 0.5, 2)), 1e-2 * full_of_printed);
+  EXPECT_GT(e.appearance.shared_texture, 0.5);
+  EXPECT_NEAR(e.costs.clutter, full_of_printed / (1 + std::pow(e.appearance.shared_texture / 0.5, 2)),
+              1e-2 * full_of_printed);
 }
 
 // Painted all round, so that each turn looks different.
@@ -423,11 +424,11 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   // The crate's faces are planes, larger than the small box.
   const VerifyResult with_planes = f.verify(both, library);
   EXPECT_THAT(accepted(with_planes), testing::ElementsAre(0));
-  EXPECT_GT(with_planes.evidence[1].plane_cost, 50);
+  EXPECT_GT(with_planes.evidence[1].costs.plane, 50);
   const VerifyResult segments_only = f.verify(both, library, {.planes = {}});
   EXPECT_THAT(accepted(segments_only), testing::ElementsAre(0));
-  EXPECT_GT(segments_only.evidence[1].clutter_cost, 200);
-  EXPECT_LT(segments_only.evidence[0].clutter_cost, 50);
+  EXPECT_GT(segments_only.evidence[1].costs.clutter, 200);
+  EXPECT_LT(segments_only.evidence[0].costs.clutter, 50);
   // Also without the rival, and it is the clutter cue that does it.
   const std::vector<Hypothesis> small = {both[1]};
   EXPECT_THAT(accepted(f.verify(small, library, {.planes = {}})), testing::IsEmpty());
@@ -447,7 +448,7 @@ TEST(VerifyHypotheses, ByDefaultNoTextureIsRejected) {
   const HypothesisEvidence evidence =
       f.verify(negative, library, {.appearance = {.light = {0, 0, 0, 0.08}}, .acceptance = {.min_explained_share = 0}})
           .evidence[0];
-  EXPECT_LT(evidence.pattern_similarity, 0);
+  EXPECT_LT(evidence.appearance.pattern_similarity, 0);
   EXPECT_GT(evidence.num_explained, 0);
   EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
 }
@@ -471,12 +472,12 @@ TEST(VerifyHypotheses, TheNewestViewRejectsAnExchangedObject) {
     return f.verify(hypotheses, library, {.acceptance = {.min_newest_similarity = min_newest_similarity}}).evidence[0];
   };
   EXPECT_TRUE(before(-1).accepted);
-  EXPECT_GT(before(-1).pattern_similarity, 0.8);
+  EXPECT_GT(before(-1).appearance.pattern_similarity, 0.8);
   EXPECT_EQ(before(0.4).verdict, Verdict::kDifferentAppearance);
-  EXPECT_LT(before(0.4).newest_similarity, 0.2);
+  EXPECT_LT(before(0.4).appearance.newest_similarity, 0.2);
   f.views.pop_back();
   EXPECT_TRUE(before(0.4).accepted) << "no view shows another";
-  EXPECT_GT(before(0.4).newest_similarity, 0.8);
+  EXPECT_GT(before(0.4).appearance.newest_similarity, 0.8);
 }
 
 TEST(VerifyHypotheses, ADifferentTextureIsRejected) {
@@ -496,7 +497,7 @@ TEST(VerifyHypotheses, ADifferentTextureIsRejected) {
   const VerifyResult result = f.verify(either, library, options);
   EXPECT_THAT(accepted(result), testing::ElementsAre(1));
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kDifferentAppearance);
-  EXPECT_LT(result.evidence[0].pattern_similarity, result.evidence[1].pattern_similarity - 0.2);
+  EXPECT_LT(result.evidence[0].appearance.pattern_similarity, result.evidence[1].appearance.pattern_similarity - 0.2);
 }
 
 }  // namespace
