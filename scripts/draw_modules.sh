@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Draws docs/images/modules.svg from the declared dependencies of the modules. Dependencies that others imply are left out.
+# Draws docs/images/modules.svg from the declared dependencies of the modules, without those that others imply.
 # Needs Debian's package graphviz. Usage: draw_modules.sh [--check]: only compare the edges with those of the picture
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

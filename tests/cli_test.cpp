@@ -279,6 +279,8 @@ const Row kRows[] = {
     {"NegativeSeed", kNothing, "recognize --models models.resight --sequence views --out out --seed -1", 2, "seed"},
     {"NegativeDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms -1", 2,
      "deadline-ms"},
+    {"ZeroDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms 0", 2,
+     "deadline-ms"},
     {"SeedThatIsTooLarge", kNothing, "demo --out out --seed 99999999999999999999", 2, "seed"},
     {"UnknownFormat", kNothing, "convert views out --to png", 2, "png .*bop"},
     {"UnknownScene", kNothing, "simulate --preset nonsense --out out", 2, "nonsense"},
@@ -518,7 +520,7 @@ fs::path CommandLineFolder::root_;
 class CommandLineResults : public CommandLineFolder {};
 class CommandLine : public CommandLineFolder, public testing::WithParamInterface<Row> {};
 
-TEST_P(CommandLine, TellsWhatIsWrong) {
+TEST_P(CommandLine, NamesWhatIsWrong) {
   const Row& row = GetParam();
   row.spoil(folder_);
   if (HasFatalFailure()) return;

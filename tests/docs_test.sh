@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The documents name what exists: tests and files of docs/paper-to-code.md, links between documents, and the C++ of the README,
-# each line of which must stand in examples/, and the options of the program. Usage: docs_test.sh SOURCE_DIR [PROGRAM]
+# The documents name what exists: tests and files of docs/paper-to-code.md, links between documents, options of settings
+# files, each line of C++ of the README in examples/, and in docs/options.md the options of the program.
+# Usage: docs_test.sh SOURCE_DIR [PROGRAM]
 set -uo pipefail
 cd "$1"
 failures=0
@@ -30,6 +31,12 @@ for document in README.md CONTRIBUTING.md docs/*.md; do
     [[ -e $(dirname "$document")/$link ]] || missing "$document links to a file that is not there: $link"
   done < <(awk '/^```/ { code = !code; next } !code' "$document" | tr '\n' ' ' | grep -oE '\]\([^)#]+\)' | sed 's/^](//; s/)$//' | grep -v '^http')
 done
+
+while read -r key; do  # options of settings files
+  checked=$((checked + 1)); p=${key//./\\.}; p=${p//\*/[a-z_0-9.]*}
+  grep -qE "^(\| \`$p\`|## \`\[$p\]\`)" docs/options.md || missing "a document names an option that is not there: $key"
+done < <(grep -hoE '`(poses|prepare|features|hypotheses|shape|changes|integrate|verify|detections|history|search|run|attention|match|removal|cluster|sift|shot)\.[a-z_.*0-9]+' README.md CHANGELOG.md CONTRIBUTING.md docs/*.md |
+  tr -d '`' | grep -vE '\.(json|csv|png|ply|cpp|hpp|toml)$|^poses\.txt' | sort -u)
 
 while read -r line; do
   [[ -z $line ]] && continue

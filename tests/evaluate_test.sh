@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# `resight evaluate` from end to end, on two small sequences: parts of the work merge to the same bytes as all of it, what
-# is finished is not computed again, and a lost part is named. Usage: evaluate_test.sh PATH_OF_RESIGHT
+# `resight evaluate` from end to end, on two small sequences: shards merge to the same bytes as one run, finished runs
+# are not computed again, and a missing run is named. Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"

@@ -100,7 +100,7 @@ std::string describe_loss(std::size_t view, const GroundTruthObject& truth, cons
   if (loss.best) text << ", best " << 1e3 * loss.best->center_distance_m << " mm " << loss.best->rotation_rad << " rad";
   if (loss.evidence)
     text << ", " << to_string(loss.evidence->verdict) << ", explained " << loss.evidence->explained_share
-         << ", unary cost " << loss.evidence->unary_cost;
+         << ", unary cost " << loss.evidence->costs.unary;
   text << "\n";
   return text.str();
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs each command that uses threads on a small scene, with two threads. Under ThreadSanitizer, a data race ends a command
-# with an error. Usage: threads_test.sh PATH_OF_RESIGHT
+# Runs each command that uses threads on a small scene, with two threads. Under ThreadSanitizer, a data race ends a
+# command with an error. Usage: threads_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
@@ -27,6 +27,7 @@ for preset in mvr-chd default; do
   grep -q cereal_blue $preset/detections.json || fail "$preset did not recognise the cereal box"
 done
 run changes --sequence data/test/000001 --out changes
+run evaluate --models models.resight --dataset data --presets default -k 1 --out results
 run track --sequence data/test/000001 --models models.resight --out poses.txt
 
 ((failures == 0)) && echo "threads: all as expected"

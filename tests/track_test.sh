@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# `resight track` from end to end, on a small walk: the poses are right, an interrupted run ends with the same bytes, the
-# cloud and the static objects are written. Usage: track_test.sh PATH_OF_RESIGHT
+# `resight track` from end to end, on a small walk: the poses are right, an interrupted run ends with the same bytes,
+# and the cloud and the static objects are written. Usage: track_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"

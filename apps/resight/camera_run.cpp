@@ -17,7 +17,7 @@ namespace resight::app {
 namespace {
 
 std::string describe(const TrackedView& view) {
-  std::string text = fmt::format("{}: component {}, overlap {:.2f}", view.name, view.part, view.overlap);
+  std::string text = fmt::format("{}: component {}, overlap {:.2f}", view.name, view.component, view.overlap);
   if (view.num_matches >= 0) text += fmt::format(", {} matches", view.num_matches);
   return text;
 }
@@ -81,11 +81,11 @@ CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& op
 // Surfaces of up to eight evenly spaced views per component: enough to detect contradictions between components.
 std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraTrack& track) {
   constexpr std::size_t kViewsOfPart = 8;
-  std::vector<std::vector<int>> of_part(static_cast<std::size_t>(track.num_parts));
+  std::vector<std::vector<int>> of_component(static_cast<std::size_t>(track.num_components));
   for (std::size_t v = 0; v < track.views.size(); ++v)
-    of_part[static_cast<std::size_t>(track.views[v].part)].push_back(static_cast<int>(v));
+    of_component[static_cast<std::size_t>(track.views[v].component)].push_back(static_cast<int>(v));
   std::vector<AlignmentView> surfaces(track.views.size());
-  for (const std::vector<int>& views : of_part)
+  for (const std::vector<int>& views : of_component)
     for (std::size_t k = 0; k < std::min(views.size(), kViewsOfPart); ++k) {
       const int v = views[k * views.size() / std::min(views.size(), kViewsOfPart)];
       surfaces[static_cast<std::size_t>(v)] = make_alignment_view(prepare_view(value_or_throw(sequence.read_view(v))));
@@ -93,10 +93,10 @@ std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraT
   return surfaces;
 }
 
-void warn_of_parts(const CameraTrack& track) {
+void warn_of_components(const CameraTrack& track) {
   std::string left_out;
   for (const TrackedView& view : track.views)
-    if (view.part != 0) left_out += fmt::format(" {} (component {})", view.name, view.part);
+    if (view.component != 0) left_out += fmt::format(" {} (component {})", view.name, view.component);
   if (!left_out.empty())
     print_warning("these views could not be joined to the others and have no pose in their frame:" + left_out);
 }
@@ -106,24 +106,24 @@ void warn_of_parts(const CameraTrack& track) {
 JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options) {
   CameraTrack track = track_views(sequence, options);
   std::vector<ObservedObject> observed;
-  const bool join = options.library != nullptr && track.num_parts > 1;
+  const bool join = options.library != nullptr && track.num_components > 1;
   if (join || options.adjust_objects) observed = observe_with_progress(sequence, *options.library, options.num_threads);
   if (join) {
     const auto surfaces = read_surfaces(sequence, track);
     track = join_by_objects(std::move(track), observed, *options.library, surfaces);
   }
-  if (track.num_parts > 1 && track.num_parts == sequence.num_views())
+  if (track.num_components > 1 && track.num_components == sequence.num_views())
     throw std::runtime_error("no two views could be joined: the relative poses of their cameras are unknown");
-  warn_of_parts(track);
+  warn_of_components(track);
   if (!options.adjust_objects) return {std::move(track), {}};
   return adjust_jointly(std::move(track), observed, *options.library);
 }
 
-PosedSequence take_largest_part(const Sequence& sequence, const CameraTrack& track) {
+PosedSequence take_largest_component(const Sequence& sequence, const CameraTrack& track) {
   std::vector<int> views;
   std::vector<Rigid3> poses;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
-    if (track.views[v].part != 0) continue;
+    if (track.views[v].component != 0) continue;
     views.push_back(static_cast<int>(v));
     poses.push_back(track.views[v].world_from_camera);
   }

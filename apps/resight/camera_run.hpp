@@ -23,6 +23,6 @@ struct TrackSequenceOptions {
 [[nodiscard]] JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options);
 
 /// Views of the largest component, with their poses. `sequence` must outlive the result.
-[[nodiscard]] PosedSequence take_largest_part(const Sequence& sequence, const CameraTrack& track);
+[[nodiscard]] PosedSequence take_largest_component(const Sequence& sequence, const CameraTrack& track);
 
 }  // namespace resight::app

@@ -150,8 +150,8 @@ class Evaluation {
     for (const ConfigurationSummary& c : summarize_runs(runs))
       fmt::print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
                  format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),
-                 format_share(c.strict_score.f_score()), c.num_ghosts, c.ghosts_per_change(),
-                 c.times.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
+                 format_share(c.strict_score.f_score()), c.ghosts.num_detections, c.ghosts.per_former_place(),
+                 c.times.stages.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
     fmt::print("\ntables: {}\n", (arguments_.out / "tables.md").string());
   }
 

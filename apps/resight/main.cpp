@@ -96,11 +96,10 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
       ->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results [run.seed: 1]")
       ->check(kSeeds);
   command
-      ->add_option(
-          "--deadline-ms", a.deadline_ms,
-          "Time limit per view; a view returns its best result so far, which depends on the machine [default: 0, "
-          "no limit]")
-      ->check(CLI::NonNegativeNumber);
+      ->add_option("--deadline-ms", a.deadline_ms,
+                   "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
+                   "no limit]")
+      ->check(CLI::PositiveNumber);
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }

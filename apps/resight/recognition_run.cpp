@@ -7,27 +7,12 @@
 
 #include "progress.hpp"
 #include "resight/core/timing.hpp"
-#include "resight/evaluation/ghosts.hpp"
+#include "resight/evaluation/change_truth.hpp"
 #include "resight/io/settings_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 
 namespace resight::app {
 namespace {
-
-// Ground truth of all views and the former places derived from it; empty without ground truth.
-struct SequenceTruth {
-  std::vector<TruthView> views;
-  std::vector<FormerPlace> former_places;
-};
-
-SequenceTruth read_truth(const Sequence& sequence, const ModelLibrary& library) {
-  SequenceTruth truth;
-  if (!sequence.has_ground_truth()) return truth;
-  for (int v = 0; v < sequence.num_views(); ++v)
-    truth.views.push_back({value_or_throw(sequence.read_pose(v)), value_or_throw(sequence.read_ground_truth(v))});
-  truth.former_places = find_former_places(truth.views, library);
-  return truth;
-}
 
 std::string describe(const SceneUpdate& update) {
   std::string text = fmt::format("{}: {} objects", update.view_name, update.detections.size());
@@ -49,7 +34,7 @@ RecognizerConfig make_config(const std::string& preset, const std::optional<std:
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
                           int num_threads) {
-  const SequenceTruth truth = read_truth(sequence, library);
+  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library, {}, {}));
   ReportRun run;
   run.preset = config.preset;
   run.version = RESIGHT_VERSION;

@@ -35,7 +35,7 @@ void run_recognize(const RecognizeArguments& arguments) {
     options.refine = arguments.poses == "refine";
     options.library = &library;
     options.num_threads = arguments.num_threads;
-    tracked.emplace(take_largest_part(*recorded, track_sequence(*recorded, options).track));
+    tracked.emplace(take_largest_component(*recorded, track_sequence(*recorded, options).track));
   }
   const Sequence& sequence = tracked ? *tracked : *recorded;
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads);
@@ -47,7 +47,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   const RunSummary summary = summarize(run);
   fmt::print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views,
              summary.num_detections, summary.num_events, summary.median_view_wall_s);
-  if (summary.num_judged_views > 0)
+  if (summary.num_scored_views > 0)
     fmt::print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
                format_share(summary.score.recall()), summary.num_ghosts);
   fmt::print("report: {}\n", (arguments.out / "report.html").string());

@@ -16,27 +16,27 @@ namespace {
 
 constexpr double kDegPerRad = 57.29577951308232;
 
-std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int part) {
+std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int component) {
   std::vector<TrajectoryPose> poses;
   for (const TrackedView& view : track.views)
-    if (view.part == part) poses.push_back({view.name, view.world_from_camera});
+    if (view.component == component) poses.push_back({view.name, view.world_from_camera});
   return poses;
 }
 
-// poses.txt, poses_part1.txt, ...
-std::filesystem::path file_of_part(const std::filesystem::path& out, int part) {
-  if (part == 0) return out;
-  return out.parent_path() / fmt::format("{}_part{}{}", out.stem().string(), part, out.extension().string());
+// poses.txt, poses_component1.txt, ...
+std::filesystem::path file_of_component(const std::filesystem::path& out, int component) {
+  if (component == 0) return out;
+  return out.parent_path() / fmt::format("{}_component{}{}", out.stem().string(), component, out.extension().string());
 }
 
-void write_parts(const TrackArguments& arguments, const CameraTrack& track) {
-  for (int part = 0; part < track.num_parts; ++part) {
-    const std::vector<TrajectoryPose> poses = poses_of(track, part);
+void write_components(const TrackArguments& arguments, const CameraTrack& track) {
+  for (int component = 0; component < track.num_components; ++component) {
+    const std::vector<TrajectoryPose> poses = poses_of(track, component);
     std::string comment = fmt::format("world_from_camera of {} of {} views of {}", poses.size(), track.views.size(),
                                       arguments.sequence.string());
-    if (track.num_parts > 1)
-      comment += fmt::format("; component {} of {}, each in its own frame", part, track.num_parts);
-    value_or_throw(write_tum_trajectory(file_of_part(arguments.out, part), poses, comment));
+    if (track.num_components > 1)
+      comment += fmt::format("; component {} of {}, each in its own frame", component, track.num_components);
+    value_or_throw(write_tum_trajectory(file_of_component(arguments.out, component), poses, comment));
   }
 }
 
@@ -45,9 +45,11 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
                    const ModelLibrary& library) {
   std::string text =
       fmt::format("# static objects in {}, adjusted jointly with the cameras\n", arguments.sequence.string());
-  text += "# part tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object, frame of the part)\n";
+  text +=
+      "# component tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object, frame of the "
+      "component)\n";
   for (const StaticObject& object : objects)
-    text += fmt::format("{} {} {} {} {} {}\n", object.part, format_tum_pose(object.world_from_object),
+    text += fmt::format("{} {} {} {} {} {}\n", object.component, format_tum_pose(object.world_from_object),
                         object.views.size(), track.views[static_cast<std::size_t>(object.views.front())].name,
                         track.views[static_cast<std::size_t>(object.views.back())].name,
                         library.objects[static_cast<std::size_t>(object.object)].name);
@@ -60,7 +62,7 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
 void print_error(const Sequence& recorded, const CameraTrack& track) {
   std::vector<Rigid3> given, found;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
-    if (track.views[v].part != 0) continue;
+    if (track.views[v].component != 0) continue;
     given.push_back(value_or_throw(recorded.read_pose(static_cast<int>(v))));
     found.push_back(track.views[v].world_from_camera);
   }
@@ -89,9 +91,9 @@ void run_track(const TrackArguments& arguments) {
                                                            .sequence_folder = arguments.sequence,
                                                            .adjust_objects = library.has_value(),
                                                            .num_threads = arguments.num_threads});
-  write_parts(arguments, track);
+  write_components(arguments, track);
   if (library) write_objects(arguments, track, objects, *library);
-  const PosedSequence posed = take_largest_part(*sequence, track);
+  const PosedSequence posed = take_largest_component(*sequence, track);
   fmt::print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(),
              track.edges.size(), track.num_loops, arguments.out.string());
   if (sequence->has_poses()) print_error(*sequence, track);

@@ -7,6 +7,7 @@
 #include "resight/changes/change_detector.hpp"
 #include "resight/changes/difference.hpp"
 #include "resight/changes/view_difference.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "stages.hpp"
 
@@ -33,9 +34,8 @@ struct DifferenceContest {
 };
 
 bool is_seen_through(const Eigen::Vector3f& p_in_world, const PreparedView& by) {
-  const Eigen::Vector3d p = by.frame.world_from_camera.inverse() * p_in_world.cast<double>().eval();
-  const std::optional<Pixel> pixel = by.frame.camera.pixel_of(p);
-  return pixel && by.cloud.z(pixel->u, pixel->v) > static_cast<float>(p.z()) + kSeenThrough_m;  // False for NaN.
+  const Eigen::Vector3f p = (by.frame.world_from_camera.inverse() * p_in_world.cast<double>().eval()).cast<float>();
+  return nearest_depth(p, {by.frame.camera, by.cloud.z}, 0) > p.z() + kSeenThrough_m;  // False for NaN.
 }
 
 Side make_side(const PreparedView& own, const ViewTruth& truth, const PreparedView& other) {

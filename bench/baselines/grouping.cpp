@@ -60,13 +60,13 @@ void compare_grouping(const StageInput& input) {
   const GroupCorrespondencesOptions& options = input.config.hypotheses.generate.grouping;
   const auto consistency_m = static_cast<float>(options.max_distance_difference_m);
   const ShotOptions& shot = input.config.features.shot;
-  const PointCloud surface = voxel_downsample(to_point_cloud(input.view.cloud, nullptr, true), shot.support_voxel_m);
+  const PointCloud surface = voxel_downsample(to_point_cloud(input.view.cloud, nullptr, true), *shot.support_voxel_m);
   const auto by_consistency = [&](const Pairs& pairs, const ObjectModel&) {
     return pcl_peers::group_correspondences(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,
                                             consistency_m, options.min_group_size);
   };
   const auto by_votes = [&](const Pairs& pairs, const ObjectModel& model) {
-    const PointCloud downsampled = voxel_downsample(model.surface, shot.support_voxel_m);
+    const PointCloud downsampled = voxel_downsample(model.surface, *shot.support_voxel_m);
     return pcl_peers::group_by_votes(to_plain(pairs.model), to_plain(pairs.scene), pairs.distances,
                                      to_plain(downsampled.points), to_plain(surface.points),
                                      static_cast<float>(shot.support_radius_m), consistency_m, options.min_group_size);

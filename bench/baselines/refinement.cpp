@@ -104,7 +104,7 @@ double refine_peer(const RefinementContest& contest, pcl_peers::IcpKind kind, st
   const RefinePoseOptions& options = contest.input.config.verify.refine;
   const auto result =
       pcl_peers::refine_poses({to_plain(contest.scene.points), to_plain(contest.scene.normals)}, contest.tasks, kind,
-                              static_cast<float>(options.max_distance_m), options.max_iterations);
+                              static_cast<float>(options.max_distance_m), *options.max_iterations);
   refined.clear();
   for (const pcl_peers::Pose& pose : result.value) refined.push_back(from_plain(pose));
   return result.cpu_s;

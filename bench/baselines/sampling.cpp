@@ -66,8 +66,8 @@ void compare_keypoints(const Points& surface, double spacing_m) {
 void compare_sampling(const StageInput& input) {
   PointCloud cloud;
   cloud.points = to_point_cloud(input.view.cloud, nullptr, false).points;
-  compare_thinning(cloud, input.config.features.shot.support_voxel_m);
-  compare_keypoints(voxel_downsample(cloud, input.config.features.shot.support_voxel_m).points,
+  compare_thinning(cloud, *input.config.features.shot.support_voxel_m);
+  compare_keypoints(voxel_downsample(cloud, *input.config.features.shot.support_voxel_m).points,
                     input.config.features.shot.keypoint_spacing_m);
 }
 

@@ -33,7 +33,7 @@ ShotTask make_task(const PreparedView& view, const ShotOptions& options, int nor
   OrganizedCloud cloud = view.cloud;
   compute_normals(cloud, {.window_radius_px = normals_radius_px});
   ShotTask task;
-  task.support = voxel_downsample(to_point_cloud(cloud, nullptr, true), options.support_voxel_m);
+  task.support = voxel_downsample(to_point_cloud(cloud, nullptr, true), *options.support_voxel_m);
   task.keypoints.points = features.points;
   task.keypoints.normals = features.normals;
   task.world_from_camera = view.frame.world_from_camera;

@@ -31,7 +31,7 @@ BENCHMARK(Sift)->Unit(benchmark::kMillisecond);
 void ShotPerKeypoint(benchmark::State& state) {
   ShotOptions options{.support_radius_m = static_cast<double>(state.range(0)) / 1000, .min_surface_variation = 0};
   const FeatureSet all = extract_shot(view(), options);
-  const PointCloud support = voxel_downsample(to_point_cloud(view().cloud, nullptr, true), options.support_voxel_m);
+  const PointCloud support = voxel_downsample(to_point_cloud(view().cloud, nullptr, true), *options.support_voxel_m);
   PointCloud keypoints;
   keypoints.points = all.points;
   keypoints.normals = all.normals;

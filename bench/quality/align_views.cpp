@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
       const ScopedTimer timer(times, "align");
       after = align_view(now.view, targets, given, options);
     }
-    before = judge_alignment(now.view, targets, given, options);
-    const AlignedView at_truth = judge_alignment(now.view, targets, truth, options);
+    before = evaluate_alignment(now.view, targets, given, options);
+    const AlignedView at_truth = evaluate_alignment(now.view, targets, truth, options);
     const Rigid3 off = truth.inverse() * after.world_from_camera;
     if (!past.empty()) {
       errors_mm.push_back(1000 * off.translation.norm());

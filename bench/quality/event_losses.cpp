@@ -77,13 +77,13 @@ struct Replay {
 };
 
 Replay replay(const Sequence& sequence, const Json& run, const ModelLibrary& library, const std::string& preset,
-              ChangeVisibilityFinder& sights) {
+              ChangeVisibilityFinder& visibilities) {
   Replay replay;
   ObjectHistory history(library, preset_or_exit(preset).history);
   std::vector<std::vector<ObjectEvent>> events;
   for (int v = 0; v < sequence.num_views(); ++v) {
     RgbdFrame frame = value_or_exit(sequence.read_view(v));
-    sights.add_view(frame);
+    visibilities.add_view(frame);
     const Json& view = run.at("views").at(static_cast<std::size_t>(v));
     frame.world_from_camera = pose_of(view.at("world_from_camera"));
     std::vector<Detection> detections;
@@ -111,16 +111,17 @@ void print_missed(const SeenChange& c, const Replay& replay, const ModelLibrary&
     return views_with(c.object, pose, first, first + kViews, replay.detections, library);
   };
   fmt::print(" | present until {} free until {} departure seen {} arrival seen {} | there:{} /{} here:{} /{}\n",
-             c.sight.last_there_view, c.sight.last_free_view, c.sight.before_view, c.sight.after_view,
-             views(c.world_from_object_before, c.view - kViews), views(c.world_from_object_before, c.view),
-             views(c.world_from_object_after, c.view - kViews), views(c.world_from_object_after, c.view));
+             c.visibility.last_there_view, c.visibility.last_free_view, c.visibility.before_view,
+             c.visibility.after_view, views(c.world_from_object_before, c.view - kViews),
+             views(c.world_from_object_before, c.view), views(c.world_from_object_after, c.view - kViews),
+             views(c.world_from_object_after, c.view));
 }
 
 void print_losses(const Replay& replay, const std::vector<TrueChange>& changes,
-                  const std::vector<ChangeVisibility>& sights, const ModelLibrary& library) {
+                  const std::vector<ChangeVisibility>& visibilities, const ModelLibrary& library) {
   std::vector<SeenChange> truths;
   for (std::size_t i = 0; i < changes.size(); ++i)
-    if (changes[i].known && library.find(changes[i].object) >= 0) truths.push_back({changes[i], sights[i]});
+    if (changes[i].known && library.find(changes[i].object) >= 0) truths.push_back({changes[i], visibilities[i]});
   std::ranges::stable_sort(truths, {}, &SeenChange::view);
   const MatchDetectionsOptions options;
   const ChangeMatcher matcher(library, options);
@@ -135,10 +136,10 @@ void print_losses(const Replay& replay, const std::vector<TrueChange>& changes,
     const ReportedChange& report = replay.reported[r];
     print("wrong ", report.view, report.kind, report.object, report.world_from_object_before,
           report.world_from_object_after);
-    const EventScore alone = score_events(changes, sights, std::span(&report, 1), library);
+    const EventScore alone = score_events(changes, visibilities, std::span(&report, 1), library);
     fmt::print(" | departure {} arrival {}\n", alone.departures.true_positives, alone.arrivals.true_positives);
   }
-  const RecognitionScore score = score_events(changes, sights, replay.reported, library).events;
+  const RecognitionScore score = score_events(changes, visibilities, replay.reported, library).events;
   fmt::print("reported {} wrong {} missed {}\n", score.true_positives, score.false_positives, score.false_negatives);
 }
 
@@ -150,11 +151,11 @@ int main(int argc, char** argv) {
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argv[4], ""));
   if (!truth.changes) exit_with(fmt::format("no changes in {}", argv[4]));
-  ChangeVisibilityFinder sights(library, truth);
+  ChangeVisibilityFinder visibilities(library, truth);
   try {
     std::ifstream file(argv[3]);
-    const Replay run = replay(*sequence, Json::parse(file), library, argc > 5 ? argv[5] : "default", sights);
-    print_losses(run, *truth.changes, sights.sights(), library);
+    const Replay run = replay(*sequence, Json::parse(file), library, argc > 5 ? argv[5] : "default", visibilities);
+    print_losses(run, *truth.changes, visibilities.visibilities(), library);
   } catch (const Json::exception& error) {
     exit_with(fmt::format("{}: {}", argv[3], error.what()));
   }

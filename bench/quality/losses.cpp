@@ -30,9 +30,9 @@ void print_evidence(const HypothesisEvidence& e) {
       "{:.0f} plane "
       "{:.0f} unary "
       "{:.0f}\n",
-      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.pattern_similarity, e.shared_texture,
-      e.texture_contrast, e.newest_similarity, e.num_correspondences, e.explained_scene, e.outlier_cost, e.clutter_cost,
-      e.plane_cost, e.unary_cost);
+      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.appearance.pattern_similarity,
+      e.appearance.shared_texture, e.appearance.texture_contrast, e.appearance.newest_similarity, e.num_correspondences,
+      e.costs.explained_scene, e.costs.outlier, e.costs.clutter, e.costs.plane, e.costs.unary);
   if (e.accepted) return;
   fmt::print("    visible and explained per view:");
   for (std::size_t v = 0; v < e.visible_share_per_view.size(); ++v)

@@ -19,6 +19,7 @@
 #include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
+#include "resight/registration/point_to_plane.hpp"
 #include "resight/registration/twist.hpp"
 
 namespace {
@@ -91,19 +92,16 @@ Rigid3 fit_to_truth(const TriangleMesh& mesh, const TriangleMesh& truth, Rigid3 
   const PointCloud surface = sample_visible_surface(truth, 0.0015);
   const KdTree tree(surface.points);
   for (int round = 0; round < 15; ++round) {
-    Eigen::Matrix<double, 6, 6> h = Eigen::Matrix<double, 6, 6>::Identity() * 1e-6;
-    Twist g = Twist::Zero();
+    NormalEquations equations{.matrix = 1e-6 * Matrix6::Identity()};
     for (std::size_t i = 0; i < mesh.vertices.size(); i += 7) {
       const Eigen::Vector3d p = truth_from_model * mesh.vertices[i].cast<double>().eval();
       const PointNeighbor nearest = tree.nearest(p.cast<float>());
       if (nearest.distance_sq > 0.01F * 0.01F) continue;
       const Eigen::Vector3d normal = surface.normals[nearest.index].cast<double>();
-      Twist j;
-      j << p.cross(normal), normal;
-      h += j * j.transpose();
-      g += j * normal.dot(p - surface.points[nearest.index].cast<double>());
+      const Eigen::Vector3d offset = surface.points[nearest.index].cast<double>() - p;
+      equations.add_row(point_to_plane_row(p, normal), normal.dot(offset));
     }
-    truth_from_model = from_twist(-h.ldlt().solve(g)) * truth_from_model;
+    truth_from_model = from_twist(equations.matrix.ldlt().solve(equations.right)) * truth_from_model;
   }
   return truth_from_model;
 }

@@ -75,9 +75,9 @@ int main(int argc, char** argv) {
       const ConfigurationSummary s = summarize_runs(std::span(&run, 1)).front();
       fmt::print("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {} | {} | {} | {} | {:.0f} % | {:.1f}, {:.0f} |\n", preset,
                  change.name, s.score.precision(), s.score.recall(), s.score.f_score(), s.score.true_positives,
-                 s.score.false_positives, s.score.false_negatives, s.num_ghosts,
-                 100.0 * s.counts.clustered / std::max(1, s.counts.merged), cpu_ms(s.times, "cluster", s.num_views),
-                 cpu_ms(s.times, "verification", s.num_views));
+                 s.score.false_positives, s.score.false_negatives, s.ghosts.num_detections,
+                 100.0 * s.counts.clustered / std::max(1, s.counts.merged),
+                 cpu_ms(s.times.stages, "cluster", s.num_views), cpu_ms(s.times.stages, "verification", s.num_views));
       std::fflush(stdout);
     }
   return 0;

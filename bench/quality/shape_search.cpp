@@ -79,10 +79,11 @@ int main(int argc, char** argv) {
       }
       const auto trial = search.score_pose(searched, object, truth.camera_from_object);
       fmt::print(
-          "view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} off {} through {} hidden | explained {:.2f} of "
+          "view {:2} {:14} vis {:.2f} {} | {} facing {} confirmed {} wrong color {} seen through {} occluded | "
+          "explained {:.2f} of "
           "{:.2f} pattern {:.2f} |{}\n",
           v, truth.object, truth.visible_share, hit ? "found" : "LOST ", trial.coarse.facing, trial.coarse.confirmed,
-          trial.coarse.off_color, trial.coarse.through, trial.coarse.hidden, trial.fit.explained_share,
+          trial.coarse.wrong_color, trial.coarse.seen_through, trial.coarse.occluded, trial.fit.explained_share,
           trial.fit.visible_share, trial.fit.pattern_similarity, line);
     }
   }

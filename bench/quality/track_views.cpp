@@ -28,7 +28,7 @@ void print_error(const char* name, std::span<const Rigid3> truth, std::span<cons
              1000 * e.rms_m, 1000 * e.max_m, kDegPerRad * e.mean_rad, kDegPerRad * e.max_rad);
 }
 
-struct Sight {
+struct Observation {
   int view = 0;
   int object = -1;
   Rigid3 camera_from_object;
@@ -36,17 +36,18 @@ struct Sight {
 
 // Compares with the nearest true object of the same name. Objects farther than 5 cm are no errors of the pose.
 void print_object_error(const char* name, const Sequence& sequence, const ModelLibrary& library,
-                        const std::vector<Sight>& sights) {
+                        const std::vector<Observation>& observations) {
   std::vector<double> errors_m, errors_rad;
-  for (const Sight& sight : sights) {
-    const ObjectModel& model = library.objects[static_cast<std::size_t>(sight.object)];
-    for (const GroundTruthObject& truth : value_or_exit(sequence.read_ground_truth(sight.view))) {
+  for (const Observation& observation : observations) {
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(observation.object)];
+    for (const GroundTruthObject& truth : value_or_exit(sequence.read_ground_truth(observation.view))) {
       const Rigid3& true_pose = truth.camera_from_object;
       const Eigen::Vector3d center = model.center.cast<double>();
-      const double off = (true_pose * center - sight.camera_from_object * center).norm();
+      const double off = (true_pose * center - observation.camera_from_object * center).norm();
       if (truth.object != model.name || off > 0.05) continue;
       errors_m.push_back(off);
-      errors_rad.push_back(symmetric_rotation_distance_rad(true_pose, sight.camera_from_object, model.symmetries));
+      errors_rad.push_back(
+          symmetric_rotation_distance_rad(true_pose, observation.camera_from_object, model.symmetries));
     }
   }
   if (errors_m.empty()) return;
@@ -63,7 +64,7 @@ void print_object_error(const char* name, const Sequence& sequence, const ModelL
 void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& library, const CameraTrack& track,
                             std::span<const Rigid3> truth) {
   const std::vector<ObservedObject> observed = value_or_exit(observe_objects(sequence, library, 2));
-  std::vector<Sight> before, after;
+  std::vector<Observation> before, after;
   const auto [adjusted, objects] = adjust_jointly(track, observed, library);
   for (const StaticObject& object : objects)
     for (const int v : object.views) {
@@ -98,7 +99,7 @@ int main(int argc, char** argv) {
     truth.push_back(view.frame.world_from_camera);
     const ScopedTimer timer(times, "track");
     const TrackedView t = tracker.add_view(view);
-    fmt::print("{} component {} {} matches {} overlap {:.2f} sigma {:.1f} mm {:.2f} deg\n", t.name, t.part,
+    fmt::print("{} component {} {} matches {} overlap {:.2f} sigma {:.1f} mm {:.2f} deg\n", t.name, t.component,
                t.is_keyframe ? "key" : "   ", t.num_matches, t.overlap, 1000 * t.sigma.tail<3>().maxCoeff(),
                kDegPerRad * t.sigma.head<3>().maxCoeff());
   }
@@ -107,17 +108,17 @@ int main(int argc, char** argv) {
     const ScopedTimer timer(times, "finish");
     track = tracker.finish();
   }
-  for (int part = 0; part < track.num_parts; ++part) {
-    std::vector<Rigid3> of_part, true_of_part;
+  for (int component = 0; component < track.num_components; ++component) {
+    std::vector<Rigid3> of_component, true_of_component;
     for (std::size_t v = 0; v < truth.size(); ++v) {
-      if (track.views[v].part != part) continue;
-      of_part.push_back(track.views[v].world_from_camera);
-      true_of_part.push_back(truth[v]);
+      if (track.views[v].component != component) continue;
+      of_component.push_back(track.views[v].world_from_camera);
+      true_of_component.push_back(truth[v]);
     }
-    print_error(fmt::format("part {}", part).c_str(), true_of_part, of_part);
-    const Rigid3 moved = find_trajectory_error(true_of_part, of_part).reference_from_estimate;
-    for (std::size_t v = 0; v < of_part.size(); ++v)
-      fmt::print(" {:.0f}", 1000 * ((moved * of_part[v]).translation - true_of_part[v].translation).norm());
+    print_error(fmt::format("component {}", component).c_str(), true_of_component, of_component);
+    const Rigid3 moved = find_trajectory_error(true_of_component, of_component).reference_from_estimate;
+    for (std::size_t v = 0; v < of_component.size(); ++v)
+      fmt::print(" {:.0f}", 1000 * ((moved * of_component[v]).translation - true_of_component[v].translation).norm());
     fmt::print(" mm\n");
   }
   fmt::print("{} edges, {} loops; ", track.edges.size(), track.num_loops);

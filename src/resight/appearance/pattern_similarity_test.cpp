@@ -32,22 +32,22 @@ TEST(PatternSimilarity, ExposureDoesNotCount) {
   EXPECT_NEAR(pattern_similarity(pattern, brighter(pattern, -0.5F), 2), 1, 1e-5);
 }
 
-TEST(PatternSimilarity, UnrelatedPrintsAreUnlike) {
+TEST(PatternSimilarity, UnrelatedTexturesDiffer) {
   EXPECT_LT(pattern_similarity(texture(1, 0.8), texture(2, 0.8), 2), 0.15);
 }
 
-TEST(PatternSimilarity, APrintIsUnlikeAPlainSurfaceEitherWayRound) {
+TEST(PatternSimilarity, TextureDiffersFromNoTextureBothWays) {
   const auto pattern = texture(1, 0.8);
   const std::vector<LabColor> uniform(pattern.size(), LabColor{0.1F, 0, 0});
   EXPECT_LT(pattern_similarity(pattern, uniform, 2), 0.2);
   EXPECT_DOUBLE_EQ(pattern_similarity(uniform, pattern, 2), pattern_similarity(pattern, uniform, 2));
 }
 
-TEST(PatternSimilarity, PlainSurfacesAreAlikeDespiteNoise) {
+TEST(PatternSimilarity, UntexturedSurfacesAgreeDespiteNoise) {
   EXPECT_GT(pattern_similarity(texture(1, 0.1), texture(2, 0.1), 2), 0.8);
 }
 
-TEST(PatternSimilarity, AFadedPrintIsLessAlikeTheMoreItFades) {
+TEST(PatternSimilarity, SimilarityFallsAsTextureFades) {
   const auto pattern = texture(1, 0.8);
   double last = 1;
   for (const double contrast : {0.6, 0.4, 0.2}) {
@@ -57,7 +57,7 @@ TEST(PatternSimilarity, AFadedPrintIsLessAlikeTheMoreItFades) {
   }
 }
 
-TEST(MatchPatterns, OnlyPrintsThatAreAlikeShareContrast) {
+TEST(MatchPatterns, OnlySimilarTexturesShareContrast) {
   const auto pattern = texture(1, 0.8);
   const std::vector<LabColor> uniform(pattern.size(), LabColor{0.1F, 0, 0});
   const PatternMatch alike = match_patterns(pattern, brighter(pattern, 0.2F), 2);

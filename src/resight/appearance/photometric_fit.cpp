@@ -10,16 +10,16 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMinPairs = 10;
-constexpr int kMaxPairs = 400;
-constexpr int kIterations = 5;
+constexpr std::size_t kMinPairs = 10;  // Fewer do not determine gain, offset and shading.
+constexpr int kMaxPairs = 400;         // Beyond, every n-th pair is used: the size of arrays on the stack.
+constexpr int kIterations = 5;         // Of reweighted least squares.
 // Scale of the Cauchy weight, in square roots of light. It reduces the influence of texture that does not fit.
 constexpr float kScale = 0.15F;
 constexpr float kDark = 0.05F;  // Dark pairs weigh more, as in perception; this value limits their weight.
 // Share of the total weight. Without it, nearly equal normals would determine the shading.
 constexpr float kShadingPrior = 0.05F;
-constexpr float kMinGain = 0.05F;
-constexpr double kVotesForNone = 20;
+constexpr float kMinGain = 0.05F;     // Keeps the logarithm of the gain finite for black pairs.
+constexpr double kVotesForNone = 20;  // Votes for a neutral white balance: a few correspondences alone do not shift it.
 constexpr float kDim = 0.1F;  // The vote of a fit with this dimmest_light counts a quarter; see trust_in_chroma().
 
 template <int kColumns>

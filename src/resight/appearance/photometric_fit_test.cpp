@@ -42,7 +42,7 @@ double rms_error(const PhotometricFit& fit, const Pairs& pairs) {
   return std::sqrt(sum / static_cast<double>(pairs.model.size()));
 }
 
-TEST(FitPhotometry, FindsExposureWhiteBalanceVeilAndShading) {
+TEST(FitPhotometry, FindsExposureWhiteBalanceOffsetAndShading) {
   const Pairs pairs = make_pairs(kLamp, 300);
   EXPECT_LT(rms_error(fit_photometry(pairs.model, pairs.scene, pairs.normals, {}), pairs), 0.05);
 }

@@ -17,8 +17,8 @@ constexpr double kSameWayM = 0.01;
 
 // A possible relative pose of two components.
 struct Candidate {
-  int part_a = 0;
-  int part_b = 0;
+  int component_a = 0;
+  int component_b = 0;
   Rigid3 a_from_b;  // Between the frames of the components.
   std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
   double surface_score = 0;
@@ -60,7 +60,7 @@ class PartJoiner {
       for (const ObjectPlace& place_b : in_b) {
         if (place_a.object != place_b.object) continue;
         for (const Rigid3& symmetry : enumerate_symmetries(model(place_a).symmetries)) {
-          Candidate found{a, b, place_a.part_from_object * symmetry * place_b.part_from_object.inverse(), {}};
+          Candidate found{a, b, place_a.component_from_object * symmetry * place_b.component_from_object.inverse(), {}};
           found.agreed = find_agreed(in_a, in_b, found.a_from_b);
           if (static_cast<int>(found.agreed.size()) < options_.min_objects) continue;
           found.a_from_b = fit(found);
@@ -91,7 +91,7 @@ class PartJoiner {
     for (int k = 0; k < 4; ++k) {
       Eigen::Vector3d p = model(place).center.cast<double>();
       if (k > 0) p[k - 1] += 0.5 * model(place).diameter_m;
-      points[static_cast<std::size_t>(k)] = place.part_from_object * p;
+      points[static_cast<std::size_t>(k)] = place.component_from_object * p;
     }
     return points;
   }
@@ -101,8 +101,8 @@ class PartJoiner {
     std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
     for (const ObjectPlace& a : in_a) {
       const auto b = std::ranges::find_if(in_b, [&](const ObjectPlace& p) {
-        return p.object == a.object &&
-               is_same_place(model(a), a.part_from_object, a_from_b * p.part_from_object, options_.same_place);
+        return p.object == a.object && is_same_place(model(a), a.component_from_object,
+                                                     a_from_b * p.component_from_object, options_.same_place);
       });
       if (b != in_b.end()) agreed.emplace_back(&a, &*b);
     }
@@ -114,18 +114,18 @@ class PartJoiner {
     std::vector<Eigen::Vector3f> in_a, in_b;
     for (const auto& [a, b] : candidate.agreed) {
       ObjectPlace turned = *a;
-      turned.part_from_object =
-          nearest_symmetric_pose(a->part_from_object, candidate.a_from_b * b->part_from_object, model(*a).symmetries);
+      turned.component_from_object = nearest_symmetric_pose(
+          a->component_from_object, candidate.a_from_b * b->component_from_object, model(*a).symmetries);
       for (const Eigen::Vector3d& p : axes_of(turned)) in_a.push_back(p.cast<float>());
       for (const Eigen::Vector3d& p : axes_of(*b)) in_b.push_back(p.cast<float>());
     }
     return fit_rigid(in_b, in_a).value_or(candidate.a_from_b);
   }
 
-  [[nodiscard]] std::vector<AlignmentTarget> targets_of(int part) const {
+  [[nodiscard]] std::vector<AlignmentTarget> targets_of(int component) const {
     std::vector<AlignmentTarget> targets;
     for (std::size_t v = 0; v < views_.size(); ++v)
-      if (track_.views[v].part == part && !views_[v].levels.empty())
+      if (track_.views[v].component == component && !views_[v].levels.empty())
         targets.push_back({&views_[v], track_.views[v].world_from_camera});
     return targets;
   }
@@ -133,7 +133,7 @@ class PartJoiner {
   // Overlap minus free-space violations of each component's views in the other. None if the components contradict each
   // other.
   [[nodiscard]] std::optional<double> compare_surfaces(const Candidate& candidate) const {
-    const std::vector<AlignmentTarget> a = targets_of(candidate.part_a), b = targets_of(candidate.part_b);
+    const std::vector<AlignmentTarget> a = targets_of(candidate.component_a), b = targets_of(candidate.component_b);
     if (a.empty() || b.empty()) return 0;
     const AlignedView b_in_a = judge(b, a, candidate.a_from_b), a_in_b = judge(a, b, candidate.a_from_b.inverse());
     if (std::max(b_in_a.seen_through, a_in_b.seen_through) > options_.max_seen_through) return std::nullopt;
@@ -146,7 +146,7 @@ class PartJoiner {
     AlignedView mean;
     for (const AlignmentTarget& view : views) {
       const AlignedView one =
-          judge_alignment(*view.view, targets, targets_from_views * view.world_from_camera, options_.align);
+          evaluate_alignment(*view.view, targets, targets_from_views * view.world_from_camera, options_.align);
       mean.overlap += one.overlap / static_cast<double>(views.size());
       mean.seen_through += one.seen_through / static_cast<double>(views.size());
     }
@@ -159,16 +159,16 @@ class PartJoiner {
   const JoinByObjectsOptions& options_;
 };
 
-std::span<const ObjectPlace> places_of(const std::vector<ObjectPlace>& places, int part) {
-  const auto begin = std::ranges::lower_bound(places, part, {}, &ObjectPlace::part);
-  const auto end = std::ranges::upper_bound(places, part, {}, &ObjectPlace::part);
+std::span<const ObjectPlace> places_of(const std::vector<ObjectPlace>& places, int component) {
+  const auto begin = std::ranges::lower_bound(places, component, {}, &ObjectPlace::component);
+  const auto end = std::ranges::upper_bound(places, component, {}, &ObjectPlace::component);
   return {begin, end};
 }
 
 std::optional<Candidate> find_best_join(const CameraTrack& track, const std::vector<ObjectPlace>& places,
                                         const PartJoiner& joiner) {
   std::optional<Candidate> best;
-  for (int b = 0; b < track.num_parts; ++b)
+  for (int b = 0; b < track.num_components; ++b)
     for (int a = 0; a < b; ++a) {
       std::optional<Candidate> found = joiner.join(a, b, places_of(places, a), places_of(places, b));
       if (found && (!best || PartJoiner::is_better(*found, *best))) best = std::move(found);
@@ -177,28 +177,28 @@ std::optional<Candidate> find_best_join(const CameraTrack& track, const std::vec
 }
 
 // Moves component b into the frame of a and adds an edge that holds it there.
-void merge_parts(CameraTrack& track, const Candidate& join, int view_a, int view_b,
-                 const JoinByObjectsOptions& options) {
+void merge_components(CameraTrack& track, const Candidate& join, int view_a, int view_b,
+                      const JoinByObjectsOptions& options) {
   for (TrackedView& view : track.views)
-    if (view.part == join.part_b) view.world_from_camera = join.a_from_b * view.world_from_camera;
+    if (view.component == join.component_b) view.world_from_camera = join.a_from_b * view.world_from_camera;
   track.edges.push_back(
       {view_a, view_b,
        track.views[static_cast<std::size_t>(view_a)].world_from_camera.inverse() *
            track.views[static_cast<std::size_t>(view_b)].world_from_camera,
        static_cast<double>(join.agreed.size()) * twist_information(options.sigma_rad, options.sigma_m)});
-  const std::vector<int> parts = find_connected_parts(track.views.size(), track.edges);
-  track.num_parts = 0;
+  const std::vector<int> components = find_connected_components(track.views.size(), track.edges);
+  track.num_components = 0;
   for (std::size_t v = 0; v < track.views.size(); ++v) {
-    track.views[v].part = parts[v];
-    track.num_parts = std::max(track.num_parts, parts[v] + 1);
+    track.views[v].component = components[v];
+    track.num_components = std::max(track.num_components, components[v] + 1);
   }
 }
 
 // Expresses the poses of each component in the frame of its first view.
 void put_first_views_at_origin(CameraTrack& track) {
-  std::vector<std::optional<Rigid3>> first_from_world(static_cast<std::size_t>(track.num_parts));
+  std::vector<std::optional<Rigid3>> first_from_world(static_cast<std::size_t>(track.num_components));
   for (TrackedView& view : track.views) {
-    std::optional<Rigid3>& first = first_from_world[static_cast<std::size_t>(view.part)];
+    std::optional<Rigid3>& first = first_from_world[static_cast<std::size_t>(view.component)];
     const bool is_first = !first;
     if (is_first) first = view.world_from_camera.inverse();
     view.world_from_camera = is_first ? Rigid3::identity() : *first * view.world_from_camera;
@@ -226,8 +226,8 @@ CameraTrack join_by_objects(CameraTrack track, std::span<const ObservedObject> o
     const std::optional<Candidate> join = find_best_join(track, places, PartJoiner(track, library, views, options));
     if (!join) break;
     const auto& [a, b] = join->agreed.front();
-    merge_parts(track, *join, observed[static_cast<std::size_t>(a->observations.front())].view,
-                observed[static_cast<std::size_t>(b->observations.front())].view, options);
+    merge_components(track, *join, observed[static_cast<std::size_t>(a->observations.front())].view,
+                     observed[static_cast<std::size_t>(b->observations.front())].view, options);
   }
   put_first_views_at_origin(track);
   return track;

@@ -9,10 +9,11 @@ namespace resight {
 
 struct JoinByObjectsOptions {
   SamePlaceOptions same_place;
-  int min_objects = 2;             ///< That must agree on how two parts lie: one may have moved between them.
-  int max_candidates = 16;         ///< Ways to join two parts whose surfaces are compared.
-  double max_seen_through = 0.15;  ///< More of the one part's points in front of what the other sees: a wrong way.
-  double sigma_m = 0.004;          ///< Of a recognised pose.
+  int min_objects = 2;      ///< Objects that must agree on the relative pose of two components; one may have moved.
+  int max_candidates = 16;  ///< Candidate poses whose surfaces are compared.
+  /// Above this share of points in front of the other component's surface, a pose is wrong.
+  double max_seen_through = 0.15;
+  double sigma_m = 0.004;  ///< Of a recognised pose.
   double sigma_rad = 0.035;
   AlignViewOptions align;  ///< What counts as overlap and as seen through.
   void check() const;

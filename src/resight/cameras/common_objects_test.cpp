@@ -33,13 +33,13 @@ struct TwoSides {
       world_from_camera.push_back(test::look_at_point({0.2 * (v % 3) - 0.2, v < 3 ? -0.9 : 1.1, 0.6}, {0, 0.1, 0}));
       const Rigid3& first = world_from_camera[v < 3 ? 0 : 3];
       TrackedView view;
-      view.part = v / 3;
+      view.component = v / 3;
       view.world_from_camera = first.inverse() * world_from_camera.back();
       track.views.push_back(view);
       if (v % 3 != 0)
         track.edges.push_back({v < 3 ? 0 : 3, v, view.world_from_camera, Eigen::Matrix<double, 6, 6>::Identity()});
     }
-    track.num_parts = 2;
+    track.num_components = 2;
   }
 
   // As recognition would report them: slightly off, and rotated by any symmetry motion.
@@ -66,7 +66,7 @@ TEST(CommonObjects, JoinViewsThatDoNotOverlap) {
   TwoSides s;
   s.see_all({0, 1, 2});
   const CameraTrack joined = join_by_objects(s.track, s.observed, s.library);
-  ASSERT_EQ(joined.num_parts, 1);
+  ASSERT_EQ(joined.num_components, 1);
   EXPECT_LT(s.error_m(joined), 0.02);
   EXPECT_LT(
       test::turn_rad(joined.views[4].world_from_camera, s.world_from_camera[0].inverse() * s.world_from_camera[4]),
@@ -79,18 +79,18 @@ TEST(CommonObjects, TwoAreEnough) {
   TwoSides s;
   s.see_all({0, 2});
   const CameraTrack joined = join_by_objects(s.track, s.observed, s.library);
-  ASSERT_EQ(joined.num_parts, 1);
+  ASSERT_EQ(joined.num_components, 1);
   EXPECT_LT(s.error_m(joined), 0.02);
 }
 
 TEST(CommonObjects, OneIsNot) {
   TwoSides s;
   s.see_all({0});
-  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 2);
-  EXPECT_EQ(join_by_objects(s.track, {}, s.library).num_parts, 2);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_components, 2);
+  EXPECT_EQ(join_by_objects(s.track, {}, s.library).num_components, 2);
 }
 
-TEST(CommonObjects, OneThatHasMovedIsOutvoted) {
+TEST(CommonObjects, OneThatHasMovedIsIgnored) {
   TwoSides s;
   for (int v = 0; v < 6; ++v) {
     Rigid3 moved = s.world_from_object[0];
@@ -100,11 +100,11 @@ TEST(CommonObjects, OneThatHasMovedIsOutvoted) {
     s.see(v, 2, s.world_from_object[2]);
   }
   const CameraTrack joined = join_by_objects(s.track, s.observed, s.library);
-  ASSERT_EQ(joined.num_parts, 1);
+  ASSERT_EQ(joined.num_components, 1);
   EXPECT_LT(s.error_m(joined), 0.02);
 }
 
-TEST(CommonObjects, AllMovedApartJoinNothing) {
+TEST(CommonObjects, ObjectsThatHaveAllMovedJoinNothing) {
   TwoSides s;
   for (int v = 0; v < 6; ++v)
     for (int o = 0; o < 3; ++o) {
@@ -112,7 +112,7 @@ TEST(CommonObjects, AllMovedApartJoinNothing) {
       if (v >= 3) moved = moved * Rigid3{Rigid3::from_axis_angle({1, 0, 0}, 0.5 + o).rotation, {0.1 * o, 0.05, 0}};
       s.see(v, o, moved);
     }
-  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 2);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_components, 2);
 }
 
 // Objects of one kind may be confused; only the surfaces show that the room is not rotated by 180 deg.
@@ -126,7 +126,7 @@ TEST(CommonObjects, SurfacesDecideBetweenWaysThatObjectsLeaveOpen) {
                          test::look_at_point({0.9, -0.4, 0.5}, {0.1, 0.4, 0.1})};
   std::vector<AlignmentView> surfaces;
   for (int v = 0; v < 2; ++v) {
-    s.track.views[static_cast<std::size_t>(v)].part = v;
+    s.track.views[static_cast<std::size_t>(v)].component = v;
     s.track.views[static_cast<std::size_t>(v)].world_from_camera = Rigid3::identity();
     const Rigid3& camera = s.world_from_camera[static_cast<std::size_t>(v)];
     surfaces.push_back(make_alignment_view(prepare_view(test::render_ball_scene({}, camera, 0.001))));
@@ -135,15 +135,15 @@ TEST(CommonObjects, SurfacesDecideBetweenWaysThatObjectsLeaveOpen) {
   }
   const Rigid3 truth = s.world_from_camera[0].inverse() * s.world_from_camera[1];
   const CameraTrack joined = join_by_objects(s.track, s.observed, s.library, surfaces);
-  ASSERT_EQ(joined.num_parts, 1);
+  ASSERT_EQ(joined.num_components, 1);
   EXPECT_LT(test::shift_m(joined.views[1].world_from_camera, truth), 0.001);
   // The wrong candidate alone does not join.
   s.library.objects[0].symmetries.discrete.clear();
   for (std::size_t o = 2; o < 4; ++o)
     s.observed[o].camera_from_object =
         s.observed[o].camera_from_object * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159265);
-  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_parts, 1);
-  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library, surfaces).num_parts, 2);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_components, 1);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library, surfaces).num_components, 2);
 }
 
 TEST(CommonObjects, WhatDoesNotExistIsRefused) {

@@ -48,16 +48,16 @@ JointAdjustment adjust_jointly(CameraTrack track, std::span<const ObservedObject
     if (static_cast<int>(place.observations.size()) < options.min_observations) continue;
     const ObjectModel& model = library.objects[static_cast<std::size_t>(place.object)];
     const TwistMatrix information = observation_information(model, options);
-    StaticObject object{place.object, place.part, place.part_from_object, {}};
+    StaticObject object{place.object, place.component, place.component_from_object, {}};
     for (const int i : place.observations) {
       const ObservedObject& o = observed[static_cast<std::size_t>(i)];
       const Rigid3& camera = nodes[static_cast<std::size_t>(o.view)];
       const Rigid3 seen =
-          nearest_symmetric_pose(camera * o.camera_from_object, place.part_from_object, model.symmetries);
+          nearest_symmetric_pose(camera * o.camera_from_object, place.component_from_object, model.symmetries);
       edges.push_back({o.view, static_cast<int>(nodes.size()), camera.inverse() * seen, information});
       object.views.push_back(o.view);
     }
-    nodes.push_back(place.part_from_object);
+    nodes.push_back(place.component_from_object);
     objects.push_back(std::move(object));
   }
   const PoseGraph graph = adjust_pose_graph(std::move(nodes), edges, options.graph);

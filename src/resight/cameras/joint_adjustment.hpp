@@ -20,7 +20,7 @@ struct AdjustJointlyOptions {
 struct StaticObject {
   int object = -1;  ///< Index into the ModelLibrary.
   /// Connected component of the track.
-  int part = 0;
+  int component = 0;
   Rigid3 world_from_object;  ///< In the frame of the component.
   std::vector<int> views;    ///< Views that observed it at this pose.
 };

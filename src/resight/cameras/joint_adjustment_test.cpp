@@ -42,7 +42,7 @@ struct Table {
       track.views[static_cast<std::size_t>(v)].world_from_camera =
           track.views[static_cast<std::size_t>(v) - 1].world_from_camera * track.edges.back().a_from_b;
     }
-    track.num_parts = 1;
+    track.num_components = 1;
   }
 
   [[nodiscard]] Rigid3 truth(int view) const {
@@ -105,7 +105,7 @@ TEST(JointAdjustment, AnObjectThatMovesStandsAtTwoPlaces) {
   EXPECT_LT(t.mean_error_m(together.track), 0.01);
 }
 
-TEST(JointAdjustment, OneSightHasNoSay) {
+TEST(JointAdjustment, OneObservationIsIgnored) {
   Table t;
   t.see(3, 0);
   const JointAdjustment together = adjust_jointly(t.track, t.observed, t.library);
@@ -114,7 +114,7 @@ TEST(JointAdjustment, OneSightHasNoSay) {
 }
 
 // A camera that orbits a solid of revolution always observes the same; the other information decides.
-TEST(JointAdjustment, TheTurnOfATurnedSolidHasNoSay) {
+TEST(JointAdjustment, RotationAboutASymmetryAxisIsIgnored) {
   Table t;
   const Rigid3 world_from_object = t.world_from_camera[0].inverse() * t.world_from_object[1];
   const auto around = Rigid3::from_translation({0, 0.02, 0}) * Rigid3::from_axis_angle({0, 0, 1}, 0.1) *

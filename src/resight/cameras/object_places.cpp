@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-Rigid3 part_from_object(const CameraTrack& track, const ObservedObject& o) {
+Rigid3 component_from_object(const CameraTrack& track, const ObservedObject& o) {
   return track.views[static_cast<std::size_t>(o.view)].world_from_camera * o.camera_from_object;
 }
 
@@ -19,10 +19,10 @@ Rigid3 find_medoid(const CameraTrack& track, std::span<const ObservedObject> obs
   Rigid3 best;
   double least = std::numeric_limits<double>::infinity();
   for (const int i : place.observations) {
-    const Rigid3 pose = part_from_object(track, observed[static_cast<std::size_t>(i)]);
+    const Rigid3 pose = component_from_object(track, observed[static_cast<std::size_t>(i)]);
     double sum = 0;
     for (const int j : place.observations)
-      sum += (pose * center - part_from_object(track, observed[static_cast<std::size_t>(j)]) * center).norm();
+      sum += (pose * center - component_from_object(track, observed[static_cast<std::size_t>(j)]) * center).norm();
     if (sum >= least) continue;
     least = sum;
     best = pose;
@@ -43,20 +43,21 @@ std::vector<ObjectPlace> find_places(const CameraTrack& track, std::span<const O
   for (std::size_t i = 0; i < observed.size(); ++i) {
     const ObservedObject& o = observed[i];
     const ObjectModel& model = library.objects[static_cast<std::size_t>(o.object)];
-    const int part = track.views[static_cast<std::size_t>(o.view)].part;
-    const Rigid3 pose = part_from_object(track, o);
+    const int component = track.views[static_cast<std::size_t>(o.view)].component;
+    const Rigid3 pose = component_from_object(track, o);
     const auto place = std::ranges::find_if(places, [&](const ObjectPlace& p) {
-      return p.object == o.object && p.part == part && is_same_place(model, p.part_from_object, pose, options);
+      return p.object == o.object && p.component == component &&
+             is_same_place(model, p.component_from_object, pose, options);
     });
     if (place != places.end())
       place->observations.push_back(static_cast<int>(i));
     else
-      places.push_back({o.object, part, pose, {static_cast<int>(i)}});
+      places.push_back({o.object, component, pose, {static_cast<int>(i)}});
   }
   for (ObjectPlace& place : places)
-    place.part_from_object = find_medoid(track, observed, place,
-                                         library.objects[static_cast<std::size_t>(place.object)].center.cast<double>());
-  std::ranges::stable_sort(places, {}, &ObjectPlace::part);
+    place.component_from_object = find_medoid(
+        track, observed, place, library.objects[static_cast<std::size_t>(place.object)].center.cast<double>());
+  std::ranges::stable_sort(places, {}, &ObjectPlace::component);
   return places;
 }
 

@@ -12,8 +12,8 @@ namespace resight {
 /// A place at which views of one component observe an object.
 struct ObjectPlace {
   int object = -1;
-  int part = 0;
-  Rigid3 part_from_object;        ///< Pose of the medoid of the observations.
+  int component = 0;
+  Rigid3 component_from_object;   ///< Pose of the medoid of the observations.
   std::vector<int> observations;  ///< Ascending indices of the input; the view of the first represents the place.
 };
 

@@ -94,16 +94,16 @@ PoseGraph adjust_pose_graph(std::vector<Rigid3> world_from_node, std::span<const
                              options.loss_scale > 0 ? new ceres::CauchyLoss(options.loss_scale) : nullptr,
                              parameters[static_cast<std::size_t>(edge.a)].data(),
                              parameters[static_cast<std::size_t>(edge.b)].data());
-  const std::vector<int> parts = find_connected_parts(world_from_node.size(), edges);
-  std::vector<bool> has_anchor(parts.size(), false);
+  const std::vector<int> components = find_connected_components(world_from_node.size(), edges);
+  std::vector<bool> has_anchor(components.size(), false);
   for (std::size_t n = 0; n < parameters.size(); ++n) {
     double* block = parameters[n].data();
     if (!problem.HasParameterBlock(block)) continue;
     problem.SetManifold(block,
                         new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>());
-    const auto part = static_cast<std::size_t>(parts[n]);
-    if (!has_anchor[part]) problem.SetParameterBlockConstant(block);
-    has_anchor[part] = true;
+    const auto component = static_cast<std::size_t>(components[n]);
+    if (!has_anchor[component]) problem.SetParameterBlockConstant(block);
+    has_anchor[component] = true;
   }
   if (!edges.empty()) {
     ceres::Solver::Options solver;
@@ -121,7 +121,7 @@ PoseGraph adjust_pose_graph(std::vector<Rigid3> world_from_node, std::span<const
   return {std::move(world_from_node), std::move(errors)};
 }
 
-std::vector<int> find_connected_parts(std::size_t num_nodes, std::span<const PoseEdge> edges) {
+std::vector<int> find_connected_components(std::size_t num_nodes, std::span<const PoseEdge> edges) {
   check_edges(num_nodes, edges);
   std::vector<int> root(num_nodes);
   std::iota(root.begin(), root.end(), 0);
@@ -141,10 +141,10 @@ std::vector<int> find_connected_parts(std::size_t num_nodes, std::span<const Pos
   std::ranges::stable_sort(roots, std::greater<>(), [&](int r) { return sizes[static_cast<std::size_t>(r)]; });
   std::vector<int> number(num_nodes, 0);
   for (std::size_t p = 0; p < roots.size(); ++p) number[static_cast<std::size_t>(roots[p])] = static_cast<int>(p);
-  std::vector<int> parts;
+  std::vector<int> components;
   for (std::size_t n = 0; n < num_nodes; ++n)
-    parts.push_back(number[static_cast<std::size_t>(find_root(static_cast<int>(n)))]);
-  return parts;
+    components.push_back(number[static_cast<std::size_t>(find_root(static_cast<int>(n)))]);
+  return components;
 }
 
 }  // namespace resight

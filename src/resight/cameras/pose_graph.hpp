@@ -37,6 +37,6 @@ struct PoseGraph {
 
 /// Connected component of each node, sorted by size: 0 is the component with the most nodes (ties: the one with the
 /// first node). Throws std::invalid_argument like adjust_pose_graph().
-[[nodiscard]] std::vector<int> find_connected_parts(std::size_t num_nodes, std::span<const PoseEdge> edges);
+[[nodiscard]] std::vector<int> find_connected_components(std::size_t num_nodes, std::span<const PoseEdge> edges);
 
 }  // namespace resight

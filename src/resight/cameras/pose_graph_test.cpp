@@ -89,8 +89,8 @@ TEST(PoseGraph, PartsKeepTheirPlace) {
   const PoseGraph graph = adjust_pose_graph(ring.start, edges);
   EXPECT_EQ(graph.world_from_node[4].matrix(), ring.start[4].matrix());
   EXPECT_EQ(graph.world_from_node[9].matrix(), ring.start[9].matrix());
-  const std::vector<int> parts = find_connected_parts(10, edges);
-  EXPECT_EQ(parts, (std::vector<int>{1, 1, 2, 3, 0, 0, 0, 4, 5, 6}));
+  const std::vector<int> components = find_connected_components(10, edges);
+  EXPECT_EQ(components, (std::vector<int>{1, 1, 2, 3, 0, 0, 0, 4, 5, 6}));
 }
 
 TEST(PoseGraph, NothingToDo) {
@@ -103,7 +103,7 @@ TEST(PoseGraph, BadEdgesAreRefused) {
   for (const auto& [a, b] : std::vector<std::pair<int, int>>{{0, 2}, {-1, 0}, {1, 1}}) {
     const std::vector<PoseEdge> edges{{a, b, {}, Eigen::Matrix<double, 6, 6>::Identity()}};
     EXPECT_THROW((void)adjust_pose_graph(poses, edges), std::invalid_argument);
-    EXPECT_THROW((void)find_connected_parts(2, edges), std::invalid_argument);
+    EXPECT_THROW((void)find_connected_components(2, edges), std::invalid_argument);
   }
 }
 

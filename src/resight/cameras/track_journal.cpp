@@ -49,7 +49,7 @@ std::string to_line(const TrackerStep& step) {
         {{"a", e.a}, {"b", e.b}, {"a_from_b", pose_json(e.a_from_b)}, {"information", to_json(e.information)}});
   const ordered_json line{{"name", v.name},
                           {"world_from_camera", pose_json(v.world_from_camera)},
-                          {"part", v.part},
+                          {"component", v.component},
                           {"is_keyframe", v.is_keyframe},
                           {"num_matches", v.num_matches},
                           {"overlap", v.overlap},
@@ -65,7 +65,7 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
     TrackerStep step;
     step.view.name = values.at("name").get<std::string>();
     step.view.world_from_camera = read_pose(values.at("world_from_camera"));
-    step.view.part = values.at("part").get<int>();
+    step.view.component = values.at("component").get<int>();
     step.view.is_keyframe = values.at("is_keyframe").get<bool>();
     step.view.num_matches = values.at("num_matches").get<int>();
     step.view.overlap = values.at("overlap").get<double>();
@@ -76,7 +76,7 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
       if (edge.a < 0 || edge.a >= view || edge.b != view) return std::nullopt;
       step.edges.push_back(edge);
     }
-    if (step.view.part < 0 || step.view.part > view) return std::nullopt;
+    if (step.view.component < 0 || step.view.component > view) return std::nullopt;
     return step;
   } catch (const ordered_json::exception&) {
     return std::nullopt;

@@ -73,9 +73,9 @@ struct ViewTracker::Impl {
   [[nodiscard]] const Rigid3& pose_of(const Keyframe& k) const {
     return views[static_cast<std::size_t>(k.view)].world_from_camera;
   }
-  [[nodiscard]] int part_of(const Keyframe& k) const { return views[static_cast<std::size_t>(k.view)].part; }
+  [[nodiscard]] int component_of(const Keyframe& k) const { return views[static_cast<std::size_t>(k.view)].component; }
 
-  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int part, const Rigid3& pose) const;
+  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int component, const Rigid3& pose) const;
   [[nodiscard]] std::vector<AlignmentTarget> targets_of(const std::vector<std::size_t>& chosen) const;
   [[nodiscard]] bool is_plausible(const AlignedView& aligned, double min_overlap) const;
   [[nodiscard]] std::optional<Join> follow(const AlignmentView& view) const;
@@ -97,13 +97,13 @@ struct ViewTracker::Impl {
 };
 
 // Keyframes of the component with the most similar viewpoints, nearest first.
-std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int part, const Rigid3& pose) const {
+std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int component, const Rigid3& pose) const {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    if (part_of(keyframes[k]) != part) continue;
+    if (component_of(keyframes[k]) != component) continue;
     const Rigid3& other = pose_of(keyframes[k]);
-    const double distance = (other.translation - pose.translation).norm() / options.keyframe_shift_m +
-                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe_turn_rad;
+    const double distance = (other.translation - pose.translation).norm() / options.keyframe.shift_m +
+                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe.rotation_rad;
     order.emplace_back(distance, k);
   }
   std::ranges::sort(order);
@@ -121,27 +121,27 @@ std::vector<AlignmentTarget> ViewTracker::Impl::targets_of(const std::vector<std
 
 bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
   return aligned.num_pairs > 0 && aligned.overlap >= min_overlap &&
-         aligned.seen_through <= options.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
-         !(aligned.brightness_correlation < options.min_correlation);
+         aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
+         !(aligned.brightness_correlation < options.plausible.min_correlation);
 }
 
 // Tracks the camera from the last view, once from the same pose and once at constant velocity.
 std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
   const TrackedView& last = views.back();
   std::vector<Rigid3> starts{last.world_from_camera};
-  if (views.size() > 1 && views[views.size() - 2].part == last.part)
+  if (views.size() > 1 && views[views.size() - 2].component == last.component)
     starts.push_back(last.world_from_camera *
                      (views[views.size() - 2].world_from_camera.inverse() * last.world_from_camera));
   std::optional<Join> best;
-  const std::vector<std::size_t> near = nearest_keyframes(last.part, last.world_from_camera);
+  const std::vector<std::size_t> near = nearest_keyframes(last.component, last.world_from_camera);
   if (near.empty()) return best;
   for (const Rigid3& start : starts) {
     Join join{static_cast<int>(near.front()), align_view(view, targets_of(near), start, options.align)};
     join.information = join.aligned.information;
     const Rigid3 step = start.inverse() * join.aligned.world_from_camera;
-    const bool small = step.translation.norm() < options.max_step_m &&
-                       rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.max_step_rad;
-    if (!small || !is_plausible(join.aligned, options.min_followed_overlap)) continue;
+    const bool small = step.translation.norm() < options.follow.max_step_m &&
+                       rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.follow.max_step_rad;
+    if (!small || !is_plausible(join.aligned, options.follow.min_overlap)) continue;
     if (sigma_of(join.information).maxCoeff() > kMaxOpenSigma) continue;
     if (!best || join.score() > best->score()) best = std::move(join);
   }
@@ -160,9 +160,10 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
   Join join{static_cast<int>(keyframe), align_view(view, targets, pose_of(k) * match->a_from_b, align),
             match->num_inliers};
   join.information = join.aligned.information + feature_information();
-  if (!is_plausible(join.aligned, options.min_overlap)) return std::nullopt;
+  if (!is_plausible(join.aligned, options.plausible.min_overlap)) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&view, join.aligned.world_from_camera}};
-  if (!is_plausible(judge_alignment(k.alignment, back, pose_of(k), align), options.min_overlap)) return std::nullopt;
+  if (!is_plausible(evaluate_alignment(k.alignment, back, pose_of(k), align), options.plausible.min_overlap))
+    return std::nullopt;
   return join;
 }
 
@@ -184,10 +185,10 @@ std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& vie
 
 bool ViewTracker::Impl::is_keyframe(const Join& join) const {
   const Rigid3& pose = join.aligned.world_from_camera;
-  const int part = part_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
-  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(part, pose).front()]);
-  return (nearest.translation - pose.translation).norm() > options.keyframe_shift_m ||
-         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe_turn_rad;
+  const int component = component_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
+  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(component, pose).front()]);
+  return (nearest.translation - pose.translation).norm() > options.keyframe.shift_m ||
+         rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe.rotation_rad;
 }
 
 // Adds edges to the keyframe of the join and to neighbouring keyframes with enough overlap.
@@ -196,11 +197,11 @@ void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, cons
   const Keyframe& first = keyframes[static_cast<std::size_t>(join.keyframe)];
   AlignViewOptions near = options.align;
   near.num_levels = 1;
-  for (const std::size_t k : nearest_keyframes(part_of(first), pose)) {
+  for (const std::size_t k : nearest_keyframes(component_of(first), pose)) {
     if (static_cast<int>(k) == join.keyframe) continue;
     const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
     const AlignedView aligned = align_view(alignment, target, pose, near);
-    if (!is_plausible(aligned, options.min_overlap)) continue;
+    if (!is_plausible(aligned, options.plausible.min_overlap)) continue;
     edges.push_back({keyframes[k].view, view, pose_of(keyframes[k]).inverse() * aligned.world_from_camera,
                      edge_information(aligned.information)});
   }
@@ -212,7 +213,7 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   const int number = static_cast<int>(views.size());
   TrackedView tracked;
   tracked.name = view.frame.name;
-  tracked.part = number;
+  tracked.component = number;
   tracked.is_keyframe = can_align(alignment);
   if (!tracked.is_keyframe) {
     views.push_back(tracked);
@@ -227,7 +228,7 @@ TrackedView ViewTracker::Impl::add_view(const PreparedView& view, const Image<st
   }
   if (join) {
     tracked.world_from_camera = join->aligned.world_from_camera;
-    tracked.part = part_of(keyframes[static_cast<std::size_t>(join->keyframe)]);
+    tracked.component = component_of(keyframes[static_cast<std::size_t>(join->keyframe)]);
     tracked.is_keyframe = is_keyframe(*join);
     tracked.num_matches = join->num_matches;
     tracked.overlap = join->aligned.overlap;
@@ -265,7 +266,7 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   TrackedView tracked;
   tracked.name = view.frame.name;
   tracked.world_from_camera = view.frame.world_from_camera;
-  tracked.part = first_given ? views[*first_given].part : number;
+  tracked.component = first_given ? views[*first_given].component : number;
   AlignmentView alignment = make_alignment_view(view, options.view);
   tracked.is_keyframe = can_align(alignment);
   if (first_given) {
@@ -287,9 +288,9 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
   TwistMatrix information = TwistMatrix::Zero();
   AlignViewOptions align = options.align;
   align.num_threads = 1;  // Pairs are measured in parallel.
-  if (part_of(a) == part_of(b) && judge_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
+  if (component_of(a) == component_of(b) && evaluate_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
     const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
-    if (is_plausible(aligned, options.min_overlap)) best = aligned;
+    if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
   }
   if (!best && match) {
     if (const std::optional<ViewMatch> found = match_views(a.features, b.features, options.match)) {
@@ -297,12 +298,13 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
       align.prior_sigma_rad = kFeatureSigma_rad;
       const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
       information += feature_information();
-      if (is_plausible(aligned, options.min_overlap)) best = aligned;
+      if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
     }
   }
   if (!best) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
-  if (!is_plausible(judge_alignment(a.alignment, back, pose_of(a), align), options.min_overlap)) return std::nullopt;
+  if (!is_plausible(evaluate_alignment(a.alignment, back, pose_of(a), align), options.plausible.min_overlap))
+    return std::nullopt;
   return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
                   edge_information(best->information + information)};
 }
@@ -330,17 +332,17 @@ void ViewTracker::Impl::adjust() {
   std::vector<Rigid3> poses;
   for (const TrackedView& view : views) poses.push_back(view.world_from_camera);
   // Newly joined components start from the first edge between them.
-  std::vector<int> parts;
-  for (const TrackedView& view : views) parts.push_back(view.part);
+  std::vector<int> components;
+  for (const TrackedView& view : views) components.push_back(view.component);
   for (const PoseEdge& e : edges) {
-    const int keep = parts[static_cast<std::size_t>(e.a)], move = parts[static_cast<std::size_t>(e.b)];
+    const int keep = components[static_cast<std::size_t>(e.a)], move = components[static_cast<std::size_t>(e.b)];
     if (keep == move) continue;
     const Rigid3 keep_from_move =
         poses[static_cast<std::size_t>(e.a)] * e.a_from_b * poses[static_cast<std::size_t>(e.b)].inverse();
     for (std::size_t v = 0; v < poses.size(); ++v) {
-      if (parts[v] != move) continue;
+      if (components[v] != move) continue;
       poses[v] = keep_from_move * poses[v];
-      parts[v] = keep;
+      components[v] = keep;
     }
   }
   for (bool again = true; again;) {
@@ -352,10 +354,10 @@ void ViewTracker::Impl::adjust() {
     again = kept.size() < edges.size();
     edges = std::move(kept);
   }
-  parts = find_connected_parts(views.size(), edges);
+  components = find_connected_components(views.size(), edges);
   for (std::size_t v = 0; v < views.size(); ++v) {
     views[v].world_from_camera = poses[v];
-    views[v].part = parts[v];
+    views[v].component = components[v];
   }
 }
 
@@ -369,14 +371,14 @@ CameraTrack ViewTracker::Impl::finish() {
   track.edges = edges;
   std::vector<std::optional<Rigid3>> first_from_world;
   for (TrackedView& view : track.views) {
-    const auto part = static_cast<std::size_t>(view.part);
-    if (first_from_world.size() <= part) first_from_world.resize(part + 1);
-    if (!first_from_world[part])
-      first_from_world[part] = first_given ? Rigid3::identity() : view.world_from_camera.inverse();
-    view.world_from_camera = *first_from_world[part] * view.world_from_camera;
+    const auto component = static_cast<std::size_t>(view.component);
+    if (first_from_world.size() <= component) first_from_world.resize(component + 1);
+    if (!first_from_world[component])
+      first_from_world[component] = first_given ? Rigid3::identity() : view.world_from_camera.inverse();
+    view.world_from_camera = *first_from_world[component] * view.world_from_camera;
     view.world_from_camera.rotation = nearest_rotation(view.world_from_camera.rotation);
   }
-  track.num_parts = static_cast<int>(first_from_world.size());
+  track.num_components = static_cast<int>(first_from_world.size());
   for (const PoseEdge& e : edges) {
     int between = 0;  // Number of keyframes.
     for (int v = std::min(e.a, e.b) + 1; v < std::max(e.a, e.b); ++v)
@@ -387,15 +389,13 @@ CameraTrack ViewTracker::Impl::finish() {
 }
 
 void TrackViewsOptions::check() const {
-  check_positive("keyframe_shift_m", keyframe_shift_m);
-  check_positive("keyframe_turn_rad", keyframe_turn_rad);
+  check_positive("keyframe.shift_m", keyframe.shift_m);
+  check_positive("keyframe.rotation_rad", keyframe.rotation_rad);
   check_positive("num_targets", num_targets);
-  check_positive("max_step_m", max_step_m);
-  check_positive("max_step_rad", max_step_rad);
-  check_in_range("min_overlap", min_overlap, 0, 1);
-  check_in_range("min_followed_overlap", min_followed_overlap, 0, 1);
-  check_in_range("max_seen_through", max_seen_through, 0, 1);
-  check_in_range("min_correlation", min_correlation, -1, 1);
+  check_positive("follow.max_step_m", follow.max_step_m);
+  check_positive("follow.max_step_rad", follow.max_step_rad);
+  plausible.check();
+  check_in_range("follow.min_overlap", follow.min_overlap, 0, 1);
   check_positive("max_edge_error_sq", max_edge_error_sq);
   check_not_negative("max_feature_pairs", max_feature_pairs);
   sift.check();

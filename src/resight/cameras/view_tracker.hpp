@@ -5,24 +5,33 @@
 #include <vector>
 
 #include "resight/cameras/match_views.hpp"
+#include "resight/cameras/plausibility.hpp"
 #include "resight/cameras/pose_graph.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 
+/// A view this far from the last keyframe becomes one.
+struct KeyframeOptions {
+  double shift_m = 0.15;
+  double rotation_rad = 0.2;  ///< Or rotated by this.
+};
+
+/// A view that follows its predecessor closely is aligned to it without features.
+struct FollowOptions {
+  double max_step_m = 0.02;  ///< Largest step of a camera that is followed.
+  double max_step_rad = 0.03;
+  double min_overlap = 0.5;  ///< Least overlap of a view that is followed.
+};
+
 struct TrackViewsOptions {
-  double keyframe_shift_m = 0.15;     ///< A view so far from the last keyframe...
-  double keyframe_turn_rad = 0.2;     ///< ...or so much turned is a keyframe.
-  int num_targets = 3;                ///< Keyframes that a view is aligned to.
-  double max_step_m = 0.02;           ///< A camera that moves by less from view to view...
-  double max_step_rad = 0.03;         ///< ...is followed without features.
-  double min_overlap = 0.2;           ///< Two views are joined by no less.
-  double min_followed_overlap = 0.5;  ///< The same without features.
-  double max_seen_through = 0.15;     ///< More of a view in front of what the other sees: a wrong pose.
-  double min_correlation = 0.3;       ///< Of brightness, where there is print.
-  double max_edge_error_sq = 60;      ///< Edges that fit worse after the adjustment are dropped.
-  int max_feature_pairs = 3000;       ///< Pairs of keyframes that are matched by features to close loops.
+  KeyframeOptions keyframe;
+  FollowOptions follow;
+  PlausibilityOptions plausible{.min_overlap = 0.2, .max_seen_through = 0.15, .min_correlation = 0.3};
+  int num_targets = 3;            ///< Keyframes that a view is aligned to.
+  double max_edge_error_sq = 60;  ///< Edges that fit worse after the adjustment are dropped.
+  int max_feature_pairs = 3000;   ///< Pairs of keyframes that are matched by features to close loops.
   SiftOptions sift{.root_sift = true};
   MatchViewsOptions match;
   AlignmentViewOptions view;
@@ -40,7 +49,7 @@ struct TrackedView {
   /// In the frame of its component: that of the component's first view, or the given world frame.
   Rigid3 world_from_camera;
   /// Connected component; views of different components could not be joined. After finish(), 0 has the most views.
-  int part = 0;
+  int component = 0;
   bool is_keyframe = false;
   /// Feature matches that agree with the keyframe it was joined to; -1 = none were needed.
   int num_matches = -1;
@@ -60,7 +69,7 @@ struct CameraTrack {
   std::vector<TrackedView> views;
   std::vector<PoseEdge> edges;  ///< Edges between views that fit the final poses.
   /// Number of connected components.
-  int num_parts = 0;
+  int num_components = 0;
   /// Edges that span at least num_targets keyframes.
   int num_loops = 0;
 };

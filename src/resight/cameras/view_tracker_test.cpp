@@ -56,10 +56,10 @@ TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
     scene.has_ball = v < 6;
     truth.push_back(walk(v, kViews));
     const TrackedView tracked = tracker.add_view(see(scene, truth.back(), v));
-    EXPECT_EQ(tracked.part, 0) << v;
+    EXPECT_EQ(tracked.component, 0) << v;
   }
   const CameraTrack track = tracker.finish();
-  ASSERT_EQ(track.num_parts, 1);
+  ASSERT_EQ(track.num_components, 1);
   const TrajectoryError error = find_trajectory_error(truth, poses_of(track));
   EXPECT_LT(error.max_m, 0.005);
   EXPECT_LT(error.max_rad, 0.006);
@@ -78,13 +78,13 @@ TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {
   tracker.add_view(prepare_view(blind));
   for (int v = 3; v < 5; ++v) tracker.add_view(see({}, walk(v, 9), v));
   const CameraTrack track = tracker.finish();
-  std::vector<int> parts;
-  for (const TrackedView& view : track.views) parts.push_back(view.part);
-  EXPECT_EQ(parts, (std::vector<int>{0, 0, 0, 1, 0, 0}));
-  EXPECT_EQ(track.num_parts, 2);
+  std::vector<int> components;
+  for (const TrackedView& view : track.views) components.push_back(view.component);
+  EXPECT_EQ(components, (std::vector<int>{0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(track.num_components, 2);
 }
 
-TEST(ViewTracker, APlainFloorIsNoPlace) {
+TEST(ViewTracker, AnUntexturedFloorIsNoPlace) {
   // An untextured floor does not determine a position: two views from different places are not joined.
   BallScene bare;
   bare.textured = false;
@@ -92,7 +92,7 @@ TEST(ViewTracker, APlainFloorIsNoPlace) {
   ViewTracker tracker;
   tracker.add_view(see(bare, test::look_at_point({0, -0.5, 0.9}, {0, -0.2, 0}), 1));
   const TrackedView second = tracker.add_view(see(bare, test::look_at_point({0.3, -0.5, 0.9}, {0.3, -0.2, 0}), 2));
-  EXPECT_EQ(second.part, 1);
+  EXPECT_EQ(second.component, 1);
 }
 
 TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
@@ -115,7 +115,7 @@ TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
     tracker.add_view(view, &mask);
   }
   const CameraTrack track = tracker.finish();
-  ASSERT_EQ(track.num_parts, 1);
+  ASSERT_EQ(track.num_components, 1);
   EXPECT_LT(find_trajectory_error(truth, poses_of(track)).max_m, 0.004);
 }
 
@@ -164,16 +164,16 @@ TEST(ViewTracker, ImagesOfOtherSizesStandAlone) {
   tracker.add_view(prepare_view(tiny));
   tracker.add_view(see({}, walk(1, 9), 1));
   const CameraTrack track = tracker.finish();
-  ASSERT_EQ(track.num_parts, 3);
-  EXPECT_EQ(track.views[1].part, 0);
-  EXPECT_EQ(track.views[3].part, 0);
+  ASSERT_EQ(track.num_components, 3);
+  EXPECT_EQ(track.views[1].component, 0);
+  EXPECT_EQ(track.views[3].component, 0);
 }
 
 TEST(ViewTracker, BadOptionsAreRefused) {
   TrackViewsOptions options;
-  options.min_overlap = -1;
+  options.plausible.min_overlap = -1;
   EXPECT_THROW(ViewTracker{options}, std::invalid_argument);
-  EXPECT_EQ(ViewTracker().finish().num_parts, 0);
+  EXPECT_EQ(ViewTracker().finish().num_components, 0);
 }
 
 }  // namespace

@@ -3,9 +3,6 @@
 
 namespace resight {
 
-/// No options struct has more.
-inline constexpr int kMaxOptionFields = 15;
-
 /// The number of fields of an aggregate: as many pairs of braces as it can be initialised with.
 template <typename T>
 consteval int num_fields() {

@@ -96,7 +96,7 @@ TEST(NumFields, CountsTheFieldsOfAggregates) {
   EXPECT_EQ(num_fields<Cart>(), 6);
 }
 
-TEST(OptionVisitor, TellsOfFieldsThatAreNotDeclared) {
+TEST(OptionVisitor, ReportsFieldsThatAreNotDeclared) {
   EXPECT_EQ(num_missing_fields<Cart>(), 0);
   EXPECT_EQ(num_missing_fields<Cart>({.spare = Wheel{.tyre = Hard{}}}), 0);
   EXPECT_EQ(num_missing_fields<Forgetful>(), 1);

@@ -28,7 +28,7 @@ TEST(Result, HoldsAnError) {
   EXPECT_EQ(result.error().message, "'x': not a digit");
 }
 
-TEST(Result, TellsTheErrorWhenItsMissingValueIsAskedFor) {
+TEST(Result, ThrowsTheErrorWhenTheValueIsMissing) {
   Result<int> result = parse_digit('x');
   EXPECT_THAT([&] { (void)result.value(); },
               testing::ThrowsMessage<std::logic_error>(testing::HasSubstr("'x': not a digit")));

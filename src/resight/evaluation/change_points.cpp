@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 
 namespace resight {
 namespace {
@@ -21,8 +22,7 @@ double ratio(long part, long whole) {
 // Measured depth minus the depth of the point, along z; NaN without measurement.
 double depth_behind(const RgbdFrame& frame, const Eigen::Vector3d& p_in_world) {
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * p_in_world;
-  const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
-  return pixel ? frame.depth_m(pixel->u, pixel->v) - p.z() : kNotANumber;
+  return nearest_depth(p.cast<float>(), {frame.camera, frame.depth_m}, 0) - p.z();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "resight/core/check.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 
 namespace resight {
 namespace {
@@ -14,8 +15,8 @@ namespace {
 bool looks_at(const RgbdFrame& frame, const Rigid3& world_from_object, const ObjectModel& model) {
   const Eigen::Vector3d center = world_from_object * model.center.cast<double>().eval();
   const Eigen::Vector3d p = frame.world_from_camera.inverse() * center;
-  const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
-  return pixel && frame.depth_m(pixel->u, pixel->v) >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
+  const float depth_m = nearest_depth(p.cast<float>(), {frame.camera, frame.depth_m}, 0);
+  return depth_m >= p.z() - 0.5 * model.diameter_m;  // False for NaN.
 }
 
 }  // namespace
@@ -24,30 +25,30 @@ ChangeVisibilityFinder::ChangeVisibilityFinder(const ModelLibrary& library, cons
                                                const MatchDetectionsOptions& options)
     : library_(library), truth_(truth), options_(options) {
   require(truth.changes.has_value(), "ChangeVisibilityFinder: the truth has no changes");
-  sights_.resize(truth.changes->size(), {-1, -1, -1, -1});
+  visibilities_.resize(truth.changes->size(), {-1, -1, -1, -1});
   for (const TrueChange& change : *truth.changes) stands_since_.push_back(find_arrival_before(change));
 }
 
 void ChangeVisibilityFinder::add_view(const RgbdFrame& frame) {
-  for (std::size_t i = 0; i < sights_.size(); ++i) {
+  for (std::size_t i = 0; i < visibilities_.size(); ++i) {
     const TrueChange& change = (*truth_.changes)[i];
     const int object = library_.find(change.object);
     if (object < 0 || !change.known) continue;
     const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
     const std::optional<Rigid3>& before = change.world_from_object_before;
     const std::optional<Rigid3>& after = change.world_from_object_after;
-    ChangeVisibility& sight = sights_[i];
+    ChangeVisibility& visibility = visibilities_[i];
     if (change.view > view_) {
       if (before && view_ >= stands_since_[i] && shows(frame, change.object, *before, model))
-        sight.last_there_view = view_;
+        visibility.last_there_view = view_;
       if (after && looks_at(frame, *after, model) && !shows(frame, change.object, *after, model))
-        sight.last_free_view = view_;
+        visibility.last_free_view = view_;
       continue;
     }
-    if (before && sight.before_view < 0 && looks_at(frame, *before, model) &&
+    if (before && visibility.before_view < 0 && looks_at(frame, *before, model) &&
         !shows(frame, change.object, *before, model))
-      sight.before_view = view_;
-    if (after && sight.after_view < 0 && shows(frame, change.object, *after, model)) sight.after_view = view_;
+      visibility.before_view = view_;
+    if (after && visibility.after_view < 0 && shows(frame, change.object, *after, model)) visibility.after_view = view_;
   }
   ++view_;
 }

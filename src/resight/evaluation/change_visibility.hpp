@@ -29,7 +29,7 @@ class ChangeVisibilityFinder {
   ChangeVisibilityFinder(const ModelLibrary& library, const SequenceTruth& truth,
                          const MatchDetectionsOptions& options = {});
   void add_view(const RgbdFrame& frame);
-  [[nodiscard]] const std::vector<ChangeVisibility>& sights() const { return sights_; }
+  [[nodiscard]] const std::vector<ChangeVisibility>& visibilities() const { return visibilities_; }
 
  private:
   [[nodiscard]] bool shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
@@ -39,7 +39,7 @@ class ChangeVisibilityFinder {
   const ModelLibrary& library_;
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
-  std::vector<ChangeVisibility> sights_;
+  std::vector<ChangeVisibility> visibilities_;
   std::vector<int> stands_since_;  // Per change: the first view with the object at the place it leaves.
   int view_ = 0;
 };

@@ -51,20 +51,20 @@ TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
   truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // Still occluded.
   truth.views[3].objects = {mug_at(0.3, 0.5)};
   ChangeVisibilityFinder finder(library, truth);
-  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
-  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_there_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_free_view, -1);
   finder.add_view(frame_with_wall(2.0F));  // Before the change.
-  EXPECT_EQ(finder.sights()[0].before_view, -1);
-  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
-  EXPECT_EQ(finder.sights()[0].last_free_view, 0);
+  EXPECT_EQ(finder.visibilities()[0].before_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_there_view, 0);
+  EXPECT_EQ(finder.visibilities()[0].last_free_view, 0);
   finder.add_view(frame_with_wall(0.7F));  // The place is occluded.
-  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].before_view, -1);
   finder.add_view(frame_with_wall(2.0F));
-  EXPECT_EQ(finder.sights()[0].before_view, 2);
-  EXPECT_EQ(finder.sights()[0].after_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].before_view, 2);
+  EXPECT_EQ(finder.visibilities()[0].after_view, -1);
   finder.add_view(frame_with_wall(std::numeric_limits<float>::quiet_NaN()));
-  EXPECT_EQ(finder.sights()[0].before_view, 2);
-  EXPECT_EQ(finder.sights()[0].after_view, 3);
+  EXPECT_EQ(finder.visibilities()[0].before_view, 2);
+  EXPECT_EQ(finder.visibilities()[0].after_view, 3);
 }
 
 // The mug was visible there, left, and returned unobserved: no view can show its second departure.
@@ -79,8 +79,8 @@ TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   truth.views[2].objects = truth.views[3].objects = {mug_at(0, 0.02)};
   ChangeVisibilityFinder finder(library, truth);
   for (int v = 0; v < 5; ++v) finder.add_view(frame_with_wall(2.0F));
-  EXPECT_EQ(finder.sights()[0].last_there_view, 0);
-  EXPECT_EQ(finder.sights()[2].last_there_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_there_view, 0);
+  EXPECT_EQ(finder.visibilities()[2].last_there_view, -1);
 }
 
 // Another mug is at the new place before, and at the former place after the change: no view shows either place without
@@ -92,8 +92,8 @@ TEST(ChangeVisibilityFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
   truth.views[1].objects = {mug_at(0, 0.5)};
   ChangeVisibilityFinder finder(library, truth);
   for (int v = 0; v < 2; ++v) finder.add_view(frame_with_wall(2.0F));
-  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
-  EXPECT_EQ(finder.sights()[0].before_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_free_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].before_view, -1);
 }
 
 TEST(ChangeVisibilityFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
@@ -102,8 +102,8 @@ TEST(ChangeVisibilityFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
   truth.views[0].objects = {mug_at(0, 0.02)};
   ChangeVisibilityFinder finder(library, truth);
   finder.add_view(frame_with_wall(0.7F));
-  EXPECT_EQ(finder.sights()[0].last_there_view, -1);
-  EXPECT_EQ(finder.sights()[0].last_free_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_there_view, -1);
+  EXPECT_EQ(finder.visibilities()[0].last_free_view, -1);
 }
 
 }  // namespace

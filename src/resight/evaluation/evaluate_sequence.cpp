@@ -36,7 +36,7 @@ class SequenceEvaluator {
     run_.has_changes = has_changes_;
     if (!has_changes_) return;
     points_.emplace(library, truth, config.num_previous_views);
-    sights_.emplace(library, truth, options.match);
+    visibilities_.emplace(library, truth, options.match);
   }
 
   void add_view(const RgbdFrame& frame, const SceneUpdate& update, const RecognitionTrace& trace) {
@@ -49,15 +49,15 @@ class SequenceEvaluator {
     view.times = update.times;
     if (options_.find_losses) find_losses(truth, update.world_from_camera, trace, view);
     if (points_) view.points = points_->add_view(frame, update.changes.removed_in_world, update.changes.novel_in_world);
-    if (sights_) sights_->add_view(frame);
+    if (visibilities_) visibilities_->add_view(frame);
     run_.views.push_back(std::move(view));
     if (options_.progress) options_.progress(number, run_.views.back());
   }
 
   EvaluatedRun finish(const std::vector<std::vector<ObjectEvent>>& events) {
-    if (sights_)
-      run_.events =
-          score_events(*truth_.changes, sights_->sights(), reported_changes(events), library_, options_.match);
+    if (visibilities_)
+      run_.events = score_events(*truth_.changes, visibilities_->visibilities(), reported_changes(events), library_,
+                                 options_.match);
     return std::move(run_);
   }
 
@@ -92,7 +92,7 @@ class SequenceEvaluator {
   const EvaluateSequenceOptions& options_;
   bool has_changes_;
   std::optional<ChangePointScorer> points_;
-  std::optional<ChangeVisibilityFinder> sights_;
+  std::optional<ChangeVisibilityFinder> visibilities_;
   EvaluatedRun run_;
 };
 

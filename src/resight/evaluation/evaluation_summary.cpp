@@ -32,23 +32,23 @@ class Summarizer {
     summary_.preset = first.preset;
     summary_.num_previous_views = first.num_previous_views;
     summary_.is_clustered = first.is_clustered;
-    summary_.by_visible_share.resize(kBins.size() + 1);
+    summary_.found.by_visible_share.resize(kBins.size() + 1);
   }
 
   void add(const EvaluatedRun& run) {
     ++summary_.num_sequences;
-    summary_.num_ghosts += run.num_ghosts();
-    summary_.num_former_places += run.num_former_places;
-    summary_.has_changes |= run.has_changes;
-    summary_.events += run.events;
+    summary_.ghosts.num_detections += run.num_ghosts();
+    summary_.ghosts.num_former_places += run.num_former_places;
+    summary_.changes.are_scored |= run.has_changes;
+    summary_.changes.events += run.events;
     for (std::size_t v = 0; v < run.views.size(); ++v) add_view(v, run.views[v]);
   }
 
   ConfigurationSummary finish() {
-    summary_.center_error_m = error_quantiles(std::move(center_errors_m_));
-    summary_.rotation_error_rad = error_quantiles(std::move(rotation_errors_rad_));
+    summary_.errors.center_m = error_quantiles(std::move(center_errors_m_));
+    summary_.errors.rotation_rad = error_quantiles(std::move(rotation_errors_rad_));
     for (std::size_t v = 0; v < wall_s_.size(); ++v)
-      summary_.mean_view_wall_s.push_back(wall_s_[v] / num_with_view_[v]);
+      summary_.times.mean_view_wall_s.push_back(wall_s_[v] / num_with_view_[v]);
     return std::move(summary_);
   }
 
@@ -62,9 +62,9 @@ class Summarizer {
     summary_.counts.merged += view.counts.merged;
     summary_.counts.clustered += view.counts.clustered;
     summary_.counts.accepted += view.counts.accepted;
-    summary_.points.removed += view.points.removed;
-    summary_.points.novel += view.points.novel;
-    summary_.times.add(view.times);
+    summary_.changes.points.removed += view.points.removed;
+    summary_.changes.points.novel += view.points.novel;
+    summary_.times.stages.add(view.times);
     if (wall_s_.size() <= number) {
       wall_s_.resize(number + 1);
       num_with_view_.resize(number + 1);
@@ -77,16 +77,17 @@ class Summarizer {
       if (d.verdict == DetectionVerdict::kIgnored) continue;
       const bool is_right = d.verdict == DetectionVerdict::kCorrect;
       summary_.reliability.add(d.score, is_right);
-      if (!is_right) ++summary_.by_object[d.object].false_positives;
+      if (!is_right) ++summary_.found.by_object[d.object].false_positives;
     }
   }
 
   void add_truth(const EvaluatedTruth& t) {
-    for (FoundCount* count : {&summary_.by_object[t.object], &summary_.by_visible_share[bin_of(t.visible_share)]}) {
+    for (FoundCount* count :
+         {&summary_.found.by_object[t.object], &summary_.found.by_visible_share[bin_of(t.visible_share)]}) {
       ++(t.found ? count->found : count->missed);
       if (!t.lost_at.empty()) ++count->lost_at[t.lost_at];
     }
-    if (!t.lost_at.empty()) ++summary_.lost_at[t.lost_at];
+    if (!t.lost_at.empty()) ++summary_.found.lost_at[t.lost_at];
     if (!t.found) return;
     center_errors_m_.push_back(t.center_error_m);
     rotation_errors_rad_.push_back(t.rotation_error_rad);
@@ -112,8 +113,8 @@ ErrorQuantiles error_quantiles(std::vector<double> values) {
   return {static_cast<int>(values.size()), nearest_rank(values, 0.5), nearest_rank(values, 0.95)};
 }
 
-double ConfigurationSummary::ghosts_per_change() const {
-  return num_former_places == 0 ? kUndefined : static_cast<double>(num_ghosts) / num_former_places;
+double GhostSummary::per_former_place() const {
+  return num_former_places == 0 ? kUndefined : static_cast<double>(num_detections) / num_former_places;
 }
 
 std::vector<ConfigurationSummary> summarize_runs(std::span<const EvaluatedRun> runs) {

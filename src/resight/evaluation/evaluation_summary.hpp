@@ -27,6 +27,42 @@ struct ErrorQuantiles {
 /// Nearest-rank quantiles: the p-quantile of n values is the ceil(p n)-th smallest.
 [[nodiscard]] ErrorQuantiles error_quantiles(std::vector<double> values);
 
+/// Errors of the true positives within the loose limits.
+struct PoseErrorSummary {
+  ErrorQuantiles center_m;
+  ErrorQuantiles rotation_rad;
+};
+
+/// Ghosts, summed over the sequences.
+struct GhostSummary {
+  int num_detections = 0;
+  int num_former_places = 0;
+  /// Ghost detections per former place: the number of views in which an object is still reported at a place it has left
+  /// (paper, Fig. 5).
+  [[nodiscard]] double per_former_place() const;
+};
+
+/// Changes, summed over the sequences with true changes.
+struct ChangeSummary {
+  bool are_scored = false;  ///< With change detection and true changes.
+  ChangePointScores points;
+  EventScore events;
+};
+
+/// Found and missed objects.
+struct FoundSummary {
+  std::map<std::string, FoundCount> by_object;
+  /// Bins of visible_share_bins(); the last one is for unknown shares.
+  std::vector<FoundCount> by_visible_share;
+  std::map<std::string, int> lost_at;
+};
+
+struct TimeSummary {
+  StageTimes stages;  ///< Sums over the views.
+  /// Per view number, mean over the sequences (paper, Fig. 7).
+  std::vector<double> mean_view_wall_s;
+};
+
 /// Summary of one configuration over all sequences of an evaluation.
 struct ConfigurationSummary {
   std::string preset;
@@ -36,26 +72,13 @@ struct ConfigurationSummary {
   int num_views = 0;
   RecognitionScore score;         ///< Within 5 cm and 30 deg.
   RecognitionScore strict_score;  ///< Within 1 cm and 10 deg.
-  ErrorQuantiles center_error_m;  ///< Of the true positives within the loose limits.
-  ErrorQuantiles rotation_error_rad;
+  PoseErrorSummary errors;
   Reliability reliability;  ///< Of the scores of all detections that are not ignored.
-  int num_ghosts = 0;
-  int num_former_places = 0;  ///< Former places, summed over the sequences.
-  HypothesisCounts counts;    ///< Sums over the views.
-  bool has_changes = false;
-  ChangePointScores points;
-  EventScore events;
-  std::map<std::string, FoundCount> by_object;
-  /// Bins of visible_share_bins(); the last one is for unknown shares.
-  std::vector<FoundCount> by_visible_share;
-  std::map<std::string, int> lost_at;
-  StageTimes times;  ///< Sums over the views.
-  /// Per view number, mean over the sequences (paper, Fig. 7).
-  std::vector<double> mean_view_wall_s;
-
-  /// Ghost detections per former place: the number of views in which an object is still reported at a place it has left
-  /// (paper, Fig. 5).
-  [[nodiscard]] double ghosts_per_change() const;
+  GhostSummary ghosts;
+  HypothesisCounts counts;  ///< Sums over the views.
+  ChangeSummary changes;
+  FoundSummary found;
+  TimeSummary times;
 };
 
 /// Lower bounds of the bins of the visible share.

@@ -56,7 +56,7 @@ TEST(EvaluatedRun, ComesBackToTheBit) {
   EXPECT_EQ(back->events.delays, run.events.delays);
 }
 
-TEST(EvaluatedRun, DamageIsToldInOneLine) {
+TEST(EvaluatedRun, DamageIsReportedInOneLine) {
   std::string text = format_run(make_run("a", "mvr", 3));
   std::string high_score = text;
   high_score.replace(high_score.find("\"score\":0.5"), 11, "\"score\":1.5");
@@ -82,19 +82,19 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_EQ(c.score, (RecognitionScore{2, 2, 9}));
   EXPECT_NEAR(c.reliability.calibration_error(), (0.5 + 0.25) / 2, 1e-12) << "right at 0.5, and a ghost at 0.25";
   EXPECT_DOUBLE_EQ(c.score.recall(), 2.0 / 11);
-  EXPECT_EQ(c.num_ghosts, 3);
-  EXPECT_DOUBLE_EQ(c.ghosts_per_change(), 0.75);
+  EXPECT_EQ(c.ghosts.num_detections, 3);
+  EXPECT_DOUBLE_EQ(c.ghosts.per_former_place(), 0.75);
   EXPECT_EQ(c.counts.merged, 60);
-  EXPECT_EQ(c.events.events, (RecognitionScore{2, 4, 6}));
-  EXPECT_DOUBLE_EQ(c.points.removed.recall(), 0.5);
-  EXPECT_EQ(c.by_object.at("mug").found, 3);
-  EXPECT_EQ(c.by_object.at("soup").missed, 3);
-  EXPECT_EQ(c.by_object.at("soup").false_positives, 3);
-  EXPECT_EQ(c.lost_at.at("rejected"), 3);
-  EXPECT_EQ(c.by_visible_share[4].found, 3);       // 0.8 to 1
-  EXPECT_EQ(c.by_visible_share.back().missed, 3);  // Unknown.
-  ASSERT_EQ(c.mean_view_wall_s.size(), 2U);
-  EXPECT_DOUBLE_EQ(c.mean_view_wall_s[1], 0.25);
+  EXPECT_EQ(c.changes.events.events, (RecognitionScore{2, 4, 6}));
+  EXPECT_DOUBLE_EQ(c.changes.points.removed.recall(), 0.5);
+  EXPECT_EQ(c.found.by_object.at("mug").found, 3);
+  EXPECT_EQ(c.found.by_object.at("soup").missed, 3);
+  EXPECT_EQ(c.found.by_object.at("soup").false_positives, 3);
+  EXPECT_EQ(c.found.lost_at.at("rejected"), 3);
+  EXPECT_EQ(c.found.by_visible_share[4].found, 3);       // 0.8 to 1
+  EXPECT_EQ(c.found.by_visible_share.back().missed, 3);  // Unknown.
+  ASSERT_EQ(c.times.mean_view_wall_s.size(), 2U);
+  EXPECT_DOUBLE_EQ(c.times.mean_view_wall_s[1], 0.25);
 }
 
 TEST(SummarizeRuns, TheOrderOfSequencesDoesNotMatter) {
@@ -102,7 +102,7 @@ TEST(SummarizeRuns, TheOrderOfSequencesDoesNotMatter) {
   other.events.delays = {9};
   const auto forth = summarize_runs(std::vector{make_run("a", "mvr", 3), other});
   const auto back = summarize_runs(std::vector{other, make_run("a", "mvr", 3)});
-  EXPECT_EQ(forth[0].events.delays, back[0].events.delays);
+  EXPECT_EQ(forth[0].changes.events.delays, back[0].changes.events.delays);
 }
 
 TEST(ErrorQuantiles, NearestRank) {

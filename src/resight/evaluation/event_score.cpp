@@ -13,7 +13,7 @@ struct Half {
   int view = 0;
   std::string object;
   Rigid3 world_from_object;
-  bool known_by_sight = true;
+  bool is_observed = true;
 };
 
 // Uncounted truths are neither hit nor miss, and reports of them are ignored. Calls hit(truth, report) for each counted
@@ -46,7 +46,7 @@ RecognitionScore score_halves(const std::vector<Half>& truths, const std::vector
       [&](const Half& t, const Half& r) {
         return t.object == r.object && matcher.same_place(t.object, t.world_from_object, r.world_from_object);
       },
-      [](const Half& t) { return t.known_by_sight; }, [](const Half&, const Half&) {});
+      [](const Half& t) { return t.is_observed; }, [](const Half&, const Half&) {});
 }
 
 }  // namespace
@@ -59,16 +59,16 @@ EventScore& EventScore::operator+=(const EventScore& other) {
   return *this;
 }
 
-EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> sights,
+EventScore score_events(std::span<const TrueChange> changes, std::span<const ChangeVisibility> visibilities,
                         std::span<const ReportedChange> reported, const ModelLibrary& library,
                         const MatchDetectionsOptions& options) {
-  require(changes.size() == sights.size(), "score_events: sights must have one entry per change");
+  require(changes.size() == visibilities.size(), "score_events: visibilities must have one entry per change");
   std::vector<SeenChange> truths;
   std::vector<Half> true_departures, true_arrivals, departures, arrivals;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const TrueChange& c = changes[i];
     if (!c.known || library.find(c.object) < 0) continue;
-    truths.push_back({c, sights[i]});
+    truths.push_back({c, visibilities[i]});
     if (c.world_from_object_before)
       true_departures.push_back({c.view, c.object, *c.world_from_object_before, truths.back().shows_departure()});
     if (c.world_from_object_after)

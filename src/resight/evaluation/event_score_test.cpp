@@ -23,9 +23,9 @@ const TrueChange kMove{4, Kind::kMoved, "mug", true, at(0), at(0.3)};
 const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, at(-0.3), std::nullopt};
 const ChangeVisibility kAtOnce{4, 5, 3, 3};
 
-EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeVisibility>& sights,
+EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeVisibility>& visibilities,
                  const std::vector<ReportedChange>& reported) {
-  return score_events(truth, sights, reported, make_library());
+  return score_events(truth, visibilities, reported, make_library());
 }
 
 TEST(EventScore, RightKindPlacesAndTime) {
@@ -37,7 +37,7 @@ TEST(EventScore, RightKindPlacesAndTime) {
   EXPECT_EQ(s.delays, (std::vector<int>{0, 2}));  // Per event: the removal at once, the move two views after view 5.
 }
 
-TEST(EventScore, AMoveToldAsRemovalAndAdditionHasItsPlacesRight) {
+TEST(EventScore, AMoveReportedAsRemovalAndAdditionHasItsPlacesRight) {
   const EventScore s =
       score({kMove}, {kAtOnce}, {{4, Kind::kRemoved, "mug", at(0), {}}, {5, Kind::kAdded, "mug", {}, at(0.3)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 2, 1}));

@@ -123,7 +123,7 @@ TEST(FindFormerPlaces, AGapIsNoDeparture) {
   EXPECT_EQ(places[0].last_view, 0);
 }
 
-TEST(FindFormerPlaces, TwoOfAKindAreToldApart) {
+TEST(FindFormerPlaces, TwoOfAKindAreDistinguished) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}, {"mug", 0.3}}), view_at(0, {{"mug", 0.3}}),
                                         view_at(0, {{"mug", 0.3}})};
   const auto places = find_former_places(views, make_library());

@@ -81,7 +81,7 @@ TEST(ScoreView, ASecondDetectionOfOneObjectIsWrong) {
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kFalsePositive);
 }
 
-TEST(ScoreView, TurnsAboutASymmetryAxisAreFree) {
+TEST(ScoreView, RotationsAboutASymmetryAxisAreFree) {
   EXPECT_EQ(score({object("can", at(0))}, {{"can", turned(at(0), 137), 1}}).strict_score, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({object("mug", at(0))}, {{"mug", turned(at(0), 137), 1}}).score, (RecognitionScore{0, 1, 1}));
 }
@@ -114,7 +114,7 @@ TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
 }
 
 // The Kinect covers +-0.61 m at a distance of 1 m.
-TEST(ScoreView, WhatLiesOutsideOfTheImageIsNotJudged) {
+TEST(ScoreView, ObjectsOutsideTheImageAreNotScored) {
   const EvaluatedView view =
       score({object("mug", at(0))}, {{"mug", at(0), 1}, {"soup", at(0.7), 1}, {"can", at(0.5), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));

@@ -9,8 +9,8 @@ namespace {
 
 // A single move at some time between two views is consistent with all views.
 bool may_be_one_move(const SeenChange& left, const SeenChange& came) {
-  return std::max(left.sight.last_there_view, came.sight.last_free_view) <
-         std::min(left.sight.before_view, came.sight.after_view);
+  return std::max(left.visibility.last_there_view, came.visibility.last_free_view) <
+         std::min(left.visibility.before_view, came.visibility.after_view);
 }
 
 SeenChange join(const SeenChange& left, const SeenChange& came) {
@@ -18,8 +18,8 @@ SeenChange join(const SeenChange& left, const SeenChange& came) {
   move.view = std::max(left.view, came.view);
   move.kind = ObjectEventKind::kMoved;
   move.world_from_object_after = came.world_from_object_after;
-  move.sight.after_view = came.sight.after_view;
-  move.sight.last_free_view = came.sight.last_free_view;
+  move.visibility.after_view = came.visibility.after_view;
+  move.visibility.last_free_view = came.visibility.last_free_view;
   return move;
 }
 
@@ -37,7 +37,7 @@ void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChan
   if (left.kind == ObjectEventKind::kMoved) {
     SeenChange arrival = left.arrival();
     if (left.shows_arrival())  // It was not at the new place while it was visible at the former one.
-      arrival.sight.last_free_view = std::max(arrival.sight.last_free_view, left.sight.last_there_view);
+      arrival.visibility.last_free_view = std::max(arrival.visibility.last_free_view, left.visibility.last_there_view);
     insert_by_view(arrival, truths);
   }
   if (came.kind == ObjectEventKind::kMoved) insert_by_view(came.departure(), truths);
@@ -66,11 +66,11 @@ bool retell_one(const ReportedChange& report, const std::vector<char>& used, con
 }  // namespace
 
 bool SeenChange::shows_departure() const {
-  return world_from_object_before && sight.last_there_view >= 0 && sight.before_view >= 0;
+  return world_from_object_before && visibility.last_there_view >= 0 && visibility.before_view >= 0;
 }
 
 bool SeenChange::shows_arrival() const {
-  return world_from_object_after && sight.after_view >= 0 && (sight.last_free_view >= 0 || shows_departure());
+  return world_from_object_after && visibility.after_view >= 0 && (visibility.last_free_view >= 0 || shows_departure());
 }
 
 SeenChange SeenChange::departure() const {
@@ -90,7 +90,7 @@ SeenChange SeenChange::arrival() const {
 }
 
 int SeenChange::known_since() const {
-  return std::max(shows_departure() ? sight.before_view : -1, shows_arrival() ? sight.after_view : -1);
+  return std::max(shows_departure() ? visibility.before_view : -1, shows_arrival() ? visibility.after_view : -1);
 }
 
 bool ChangeMatcher::same_place(const std::string& object, const std::optional<Rigid3>& a,

@@ -20,7 +20,7 @@ struct ReportedChange {
 
 /// A true change, and what the views show of it.
 struct SeenChange : TrueChange {
-  ChangeVisibility sight;
+  ChangeVisibility visibility;
   /// Whether the views show the object at its former place, and later the place without it.
   [[nodiscard]] bool shows_departure() const;
   /// Whether the views show the arrival. An object at a place that was not observed before may have been there all

@@ -24,14 +24,14 @@ class SeenChangesTest : public ::testing::Test {
   void add(int view, Kind kind, std::optional<Rigid3> before, std::optional<Rigid3> after,
            const std::string& object = "mug") {
     changes_.push_back({view, kind, object, true, before, after});
-    sights_.push_back({before ? view : -1, after ? view : -1, before ? view - 1 : -1, after ? view - 1 : -1});
+    visibilities_.push_back({before ? view : -1, after ? view : -1, before ? view - 1 : -1, after ? view - 1 : -1});
   }
   RecognitionScore score(const std::vector<ReportedChange>& reported) {
-    return score_events(changes_, sights_, reported, library_).events;
+    return score_events(changes_, visibilities_, reported, library_).events;
   }
   ModelLibrary library_;
   std::vector<TrueChange> changes_;
-  std::vector<ChangeVisibility> sights_;
+  std::vector<ChangeVisibility> visibilities_;
 };
 
 TEST_F(SeenChangesTest, WhichOfTwoThatLeftCameNobodyCanSee) {
@@ -57,15 +57,15 @@ TEST_F(SeenChangesTest, RemovedAndAddedIsAMoveUnlessAViewShowsBothPlacesFree) {
   add(8, Kind::kAdded, std::nullopt, kB);
   const std::vector<ReportedChange> as_move = {{9, Kind::kMoved, "mug", kA, kB}};
   EXPECT_EQ(score(as_move), (RecognitionScore{0, 1, 2})) << "kA is free from view 5 on, kB until view 7";
-  sights_[0].before_view = 9;  // The former place is observed later.
+  visibilities_[0].before_view = 9;  // The former place is observed later.
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({{9, Kind::kRemoved, "mug", kA, {}}, {9, Kind::kAdded, "mug", {}, kB}}), (RecognitionScore{2, 0, 0}))
       << "as it happened";
   EXPECT_EQ(score({{7, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{0, 1, 2})) << "before it arrived";
-  sights_[0].before_view = 8;
+  visibilities_[0].before_view = 8;
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0}));
-  sights_[1].last_free_view = 4;
-  sights_[0].before_view = 5;
+  visibilities_[1].last_free_view = 4;
+  visibilities_[0].before_view = 5;
   EXPECT_EQ(score(as_move), (RecognitionScore{1, 0, 0})) << "the new place was not observed after view 4";
 }
 
@@ -73,15 +73,15 @@ TEST_F(SeenChangesTest, WhatIsThereBeforeTheOtherLeavesIsAnother) {
   add(5, Kind::kAdded, std::nullopt, kB);
   add(8, Kind::kRemoved, kA, std::nullopt);
   EXPECT_EQ(score({{8, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{0, 1, 2}));
-  sights_[1].last_there_view = 3;  // It has not been observed at kA since.
+  visibilities_[1].last_there_view = 3;  // It has not been observed at kA since.
   EXPECT_EQ(score({{8, Kind::kMoved, "mug", kA, kB}}), (RecognitionScore{1, 0, 0}));
 }
 
 TEST_F(SeenChangesTest, AStopThatNoViewShowsIsLeftOut) {
   add(3, Kind::kMoved, kA, kB);
   add(6, Kind::kMoved, kB, kC);
-  sights_[0] = {7, -1, 2, 1};  // kA is observed free at view 7; the object is never observed at kB.
-  sights_[1] = {7, 7, -1, 2};
+  visibilities_[0] = {7, -1, 2, 1};  // kA is observed free at view 7; the object is never observed at kB.
+  visibilities_[1] = {7, 7, -1, 2};
   EXPECT_EQ(score({{7, Kind::kMoved, "mug", kA, kC}}), (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({}), (RecognitionScore{0, 0, 2}));
 }
@@ -97,7 +97,7 @@ TEST_F(SeenChangesTest, WithoutAReportTheChangesAreAsTheyWere) {
   add(5, Kind::kMoved, kA, kB);
   add(5, Kind::kRemoved, kC, std::nullopt);
   std::vector<SeenChange> truths;
-  for (std::size_t i = 0; i < changes_.size(); ++i) truths.push_back({changes_[i], sights_[i]});
+  for (std::size_t i = 0; i < changes_.size(); ++i) truths.push_back({changes_[i], visibilities_[i]});
   const MatchDetectionsOptions options;
   const auto reported = reconcile_with_reports(truths, {}, ChangeMatcher(library_, options));
   ASSERT_EQ(reported.size(), 2U);

@@ -79,7 +79,7 @@ TEST(DescriptorCode, RefusesWhatHasNoCode) {
   EXPECT_TRUE(encode_descriptors({}, 0).empty());
 }
 
-TEST(DescriptorCode, TellsRowsOfZeros) {
+TEST(DescriptorCode, RecognisesRowsOfZeros) {
   EXPECT_FALSE(has_zero_row(std::vector<std::uint8_t>{0, 1, 255, 0}, 2));
   EXPECT_TRUE(has_zero_row(std::vector<std::uint8_t>{0, 1, 0, 0}, 2));
   EXPECT_FALSE(has_zero_row({}, 128));

@@ -30,7 +30,7 @@ float distance_to_center(const Eigen::Vector3f& p, double size_m) {
 TEST(ExtractShot, SamplesThePointNearestToTheCenterOfEachCube) {
   const PreparedView view = prepare_view(test::make_wavy_frame(1));
   ShotOptions options = kKeepFlat;
-  options.support_voxel_m = 0;  // the surface consists of the measured points
+  options.support_voxel_m.reset();  // the surface consists of the measured points
   options.support_radius_m = 0.02;
   const FeatureSet features = extract_shot(view, options);
   std::map<std::tuple<int, int, int>, float> nearest;
@@ -48,11 +48,11 @@ TEST(ExtractShot, SamplesThePointNearestToTheCenterOfEachCube) {
   }
 }
 
-TEST(ExtractShot, DescribesOverTheThinnedSurface) {
+TEST(ExtractShot, DescribesTheDownsampledSurface) {
   const PreparedView view = prepare_view(test::make_wavy_frame(2));
   const FeatureSet features = extract_shot(view, kKeepFlat);
   ASSERT_GT(features.size(), 1000U);
-  const PointCloud support = voxel_downsample(to_point_cloud(view.cloud, nullptr, true), kKeepFlat.support_voxel_m);
+  const PointCloud support = voxel_downsample(to_point_cloud(view.cloud, nullptr, true), *kKeepFlat.support_voxel_m);
   PointCloud keypoints;
   keypoints.points = features.points;
   keypoints.normals = features.normals;

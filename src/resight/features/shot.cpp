@@ -76,7 +76,7 @@ PointCloud support_of_view(const PreparedView& view, const ShotOptions& options,
       if ((*mask)[pixels[i]] != 0) inside.push_back(static_cast<int>(i));
     surface = select(surface, inside);
   }
-  return options.support_voxel_m > 0 ? voxel_downsample(surface, options.support_voxel_m) : surface;
+  return options.support_voxel_m ? voxel_downsample(surface, *options.support_voxel_m) : surface;
 }
 
 FeatureSet describe(const PointCloud& support, const PointCloud& keypoints, std::span<const double> noise_variance_sq_m,

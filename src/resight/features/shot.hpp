@@ -12,9 +12,9 @@ namespace resight {
 struct ShotOptions {
   double keypoint_spacing_m = 0.01;
   double support_radius_m = 0.04;
-  double support_voxel_m = 0.005;
+  std::optional<double> support_voxel_m = 0.005;
   double min_surface_variation = 0.01;
-  std::optional<double> max_keypoint_depth_m{};
+  std::optional<double> max_keypoint_depth_m = 2.0;
   int min_neighbors = 10;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("ShotOptions", *this); }
@@ -24,13 +24,13 @@ inline void declare(OptionVisitor& v, ShotOptions& o) {
   v.field("keypoint_spacing_m", o.keypoint_spacing_m, positive(), "Spacing of the keypoints (uniform sampling).",
           "paper; V4R");
   v.field("support_radius_m", o.support_radius_m, positive(), "Radius of the surface that is described.", "V4R");
-  v.field("support_voxel_m", o.support_voxel_m, at_least(0),
-          "The surface is downsampled to this before description. 0: every pixel is used.");
+  v.field("support_voxel_m", o.support_voxel_m, positive(),
+          "The surface is downsampled to this before description. off: every pixel is used.");
   v.field("min_surface_variation", o.min_surface_variation, between(0, 1.0 / 3),
           "Keypoints on flatter surface are dropped: smallest eigenvalue of the support over the sum of all, without "
           "the variance of the sensor noise. 0: all are kept.");
   v.field("max_keypoint_depth_m", o.max_keypoint_depth_m, positive(),
-          "No keypoints of a view farther away. off: no limit.", "later V4R: 1.8");
+          "No keypoints of a view farther away: normals are noise there. off: no limit.", "later V4R: 1.8");
   v.field("min_neighbors", o.min_neighbors, between(3, 1e9), "Keypoints with fewer support points are not described.");
   v.num_threads(o.num_threads);
 }

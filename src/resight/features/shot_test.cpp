@@ -190,7 +190,7 @@ TEST(DescribeShot, DoesNotChangeUnderRigidMotion) {
   EXPECT_GE(num_equal, static_cast<int>(before.size()) * 97 / 100);
 }
 
-TEST(DescribeShot, TellsPlacesApart) {
+TEST(DescribeShot, DistinguishesPlaces) {
   const PointCloud support = bumpy_object(4000, 3);
   const PointCloud resampled = bumpy_object(4000, 4);
   const PointCloud keypoints = every_nth(support, 20);

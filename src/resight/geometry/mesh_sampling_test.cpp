@@ -95,7 +95,7 @@ TEST(SampleSurface, SmallTrianglesGetTheirShare) {
   EXPECT_NEAR(static_cast<double>(cloud.size()), 640, 1);
 }
 
-TEST(SampleSurface, TurnsAMeshThatIsInsideOut) {
+TEST(SampleSurface, FlipsAMeshThatIsInsideOut) {
   TriangleMesh mesh = make_cylinder(0.03F);
   for (auto& f : mesh.faces) std::swap(f[1], f[2]);
   const PointCloud cloud = sample_surface(mesh, 1e5);

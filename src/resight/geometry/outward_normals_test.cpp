@@ -90,7 +90,7 @@ TEST(OutwardNormals, OfASphereBoxAndCup) {
   EXPECT_GT(agreement(cup, estimate_outward_normals(cup.points), 30), 0.95);
 }
 
-TEST(OutwardNormals, NoiseDoesNotTurnThem) {
+TEST(OutwardNormals, NoiseDoesNotFlipThem) {
   Surface box = make_box(0.002);
   Rng rng(2);
   for (Eigen::Vector3f& p : box.points)
@@ -121,7 +121,7 @@ TEST(OutwardNormals, FewPointsAndBadOptions) {
   EXPECT_THROW((void)estimate_outward_normals(two, {.num_neighbors = 2}), std::invalid_argument);
 }
 
-TEST(TurnOutwards, FlipsWhatLooksInwardsAsAWhole) {
+TEST(TurnOutwards, FlipsNormalsThatPointInwards) {
   Surface cup = make_cup(0.004);
   std::vector<Eigen::Vector3f> normals = cup.normals;
   EXPECT_FALSE(turn_outwards(cup.points, normals));

@@ -58,7 +58,7 @@ TEST(PointCloud, AppendRefusesOtherAttributes) {
   EXPECT_THROW(without.append(with), std::invalid_argument);
 }
 
-TEST(PointCloud, TransformMovesPointsAndOnlyTurnsNormals) {
+TEST(PointCloud, TransformMovesPointsAndOnlyRotatesNormals) {
   const PointCloud cloud = random_cloud(50, 5);
   Rigid3 motion = Rigid3::from_axis_angle({1, 2, 3}, 0.7);
   motion.translation = {1, 2, 3};

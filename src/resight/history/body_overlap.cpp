@@ -9,7 +9,7 @@ namespace {
 
 // Sampled on the way from the centre (0) to each point of the surface (1).
 constexpr std::array kDepths = {0.3F, 0.6F, 0.9F};
-constexpr std::size_t kMaxSurfacePoints = 300;
+constexpr std::size_t kMaxSurfacePoints = 300;  // Every n-th point is used beyond: the share is only compared with 0.5.
 
 }  // namespace
 

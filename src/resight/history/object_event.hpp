@@ -24,7 +24,7 @@ enum class ObjectEventKind : std::uint8_t {
 
 /// An event that a later one supersedes: the object removed here is found elsewhere, so it has moved, or the pose of an
 /// arrival is corrected.
-struct ReplacedEvent {
+struct SupersededEvent {
   ObjectEventKind kind = ObjectEventKind::kRemoved;  ///< kRemoved, kAdded or kMoved.
   int track = -1;
   int view = 0;
@@ -39,7 +39,7 @@ struct ObjectEvent {
   std::optional<Rigid3> world_from_object_before;  ///< kMoved, kRemoved, kStillThere, kNotSeen.
   std::optional<Rigid3> world_from_object_after;   ///< kFound, kAdded, kMoved, kStillThere.
   double confidence = 0;                           ///< In [0, 1].
-  std::optional<ReplacedEvent> supersedes{};       ///< kMoved, kAdded and kStillThere only.
+  std::optional<SupersededEvent> supersedes{};     ///< kMoved, kAdded and kStillThere only.
 };
 
 /// Drops each event that a later one supersedes, given the events of each view of a run.

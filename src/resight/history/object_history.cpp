@@ -149,9 +149,9 @@ void ObjectHistory::join(Track& left, Track& added, View& view) {
   // The move replaces the events of this view; if one of them corrected the arrival, the move supersedes the arrival as
   // it was reported before.
   const ObjectEvent& arrival = *added.arrival;
-  const ReplacedEvent superseded = arrival.view == view.view && arrival.supersedes
-                                       ? *arrival.supersedes
-                                       : ReplacedEvent{ObjectEventKind::kAdded, added.id, arrival.view};
+  const SupersededEvent superseded = arrival.view == view.view && arrival.supersedes
+                                         ? *arrival.supersedes
+                                         : SupersededEvent{ObjectEventKind::kAdded, added.id, arrival.view};
   std::vector<ObjectEvent>& events = view.update.events;
   std::erase_if(events, [&](const ObjectEvent& e) { return e.track == added.id; });
   std::ranges::replace(view.update.tracks, added.id, left.id);

@@ -81,7 +81,7 @@ void ObjectHistory::place_new(std::size_t observation, View& view) {
 // place of that track.
 Track* ObjectHistory::find_previous_track(const ObjectObservation& observed, int since_view,
                                           std::optional<int> last_free_view, View& view, ObjectEvent& event) {
-  constexpr double kOutOfSightConfidence = 0.5;
+  constexpr double kOutOfSightConfidence = 0.5;  // No view has seen the former place free.
   const auto report_move = [&](const Track& from, double confidence) {
     event.kind = ObjectEventKind::kMoved;
     event.world_from_object_before = from.world_from_object;

@@ -120,12 +120,6 @@ int BitGraph::degree(int vertex) const {
   return count;
 }
 
-std::size_t BitGraph::num_edges() const {
-  std::size_t twice = 0;
-  for (const std::uint64_t word : bits_) twice += static_cast<std::size_t>(std::popcount(word));
-  return twice / 2;
-}
-
 void BitGraph::add_edge(int a, int b) {
   const auto set = [&](int from, int to) {
     bits_[static_cast<std::size_t>(from) * static_cast<std::size_t>(num_words_) + static_cast<std::size_t>(to) / 64] |=

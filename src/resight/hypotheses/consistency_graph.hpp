@@ -24,7 +24,6 @@ class BitGraph {
     return (row(a)[static_cast<std::size_t>(b) / 64] >> (static_cast<unsigned>(b) % 64) & 1U) != 0;
   }
   [[nodiscard]] int degree(int vertex) const;
-  [[nodiscard]] std::size_t num_edges() const;
   void add_edge(int a, int b);
   /// Induced subgraph of the given vertices, numbered in the given order.
   [[nodiscard]] BitGraph subgraph(std::span<const int> vertices) const;

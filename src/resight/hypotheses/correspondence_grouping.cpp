@@ -66,7 +66,7 @@ class GroupCollector {
 
  private:
   [[nodiscard]] bool is_explained(const std::vector<int>& members) const {
-    if (options_.merge_distance_m <= 0 || options_.merge_rotation_rad <= 0) return false;
+    if (!options_.merge_distance_m) return false;
     return std::any_of(agrees_.begin(), agrees_.end(), [&](const std::vector<std::uint8_t>& agrees) {
       int num_free = 0;
       for (const int i : members) num_free += agrees[static_cast<std::size_t>(i)] == 0 ? 1 : 0;
@@ -130,7 +130,7 @@ class GroupCollector {
     return std::any_of(accepted_.begin(), accepted_.end(), [&](const Candidate& other) {
       const Rigid3& other_pose = other.estimate.scene_from_model;
       const Eigen::Vector3d offset = pose * candidate.middle_in_object - other_pose * candidate.middle_in_object;
-      return offset.norm() < options_.merge_distance_m &&
+      return offset.norm() < *options_.merge_distance_m &&
              rotation_angle_rad(pose.rotation, other_pose.rotation) < options_.merge_rotation_rad;
     });
   }

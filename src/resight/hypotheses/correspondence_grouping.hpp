@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct GroupCorrespondencesOptions {
   int max_poses = 500;
   int max_uses = 3;
   bool expand_groups = true;
-  double merge_distance_m = 0.015;
+  std::optional<double> merge_distance_m = 0.015;
   double merge_rotation_rad = 0.174533;
   EstimatePoseOptions pose{};
   void check() const { check_options("GroupCorrespondencesOptions", *this); }
@@ -32,8 +33,8 @@ inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
       "Two correspondences are consistent if the distances of their model points and of their scene points differ by "
       "less.",
       "V4R");
-  v.field("max_dot_difference", o.max_dot_difference, positive(), "...and the dot products of their normals by less.",
-          "V4R");
+  v.field("max_dot_difference", o.max_dot_difference, positive(),
+          "Largest difference of the dot products of their normals.", "V4R");
   v.field("min_distance_m", o.min_distance_m, at_least(0),
           "Pairs of points nearer to each other do not constrain a pose.");
   v.field("min_group_size", o.min_group_size, at_least(3), "Smaller groups of consistent correspondences are dropped.",
@@ -46,11 +47,14 @@ inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
   v.field("max_uses", o.max_uses, at_least(1), "A correspondence may be part of at most this many groups.", "V4R");
   v.field("expand_groups", o.expand_groups, "A group also takes all other correspondences that agree with its pose.",
           "ours");
-  v.field("merge_distance_m", o.merge_distance_m, at_least(0),
-          "Of two groups nearer than this (at the middle of their points), only the larger is kept. 0: both are (V4R).",
-          "ours");
-  v.field("merge_rotation_rad", o.merge_rotation_rad, between(0, std::numbers::pi),
-          "...if the angle between their rotations is smaller. 0: both are kept (V4R).", "ours");
+  v.field(
+      "merge_distance_m", o.merge_distance_m, positive(),
+      "Of two groups nearer than this (at the middle of their points), only the larger is kept. off: both are (V4R).",
+      "ours");
+  v.only_if(o.merge_distance_m.has_value(), "merge_distance_m", "a number", [&] {
+    v.field("merge_rotation_rad", o.merge_rotation_rad, between(0, std::numbers::pi),
+            "Largest angle between two groups that are merged.", "ours");
+  });
   v.group("pose", o.pose);
 }
 

@@ -21,6 +21,12 @@ BitGraph random_graph(Rng& rng, int n, double density) {
   return graph;
 }
 
+std::size_t count_edges(const BitGraph& graph) {
+  std::size_t twice = 0;
+  for (int v = 0; v < graph.num_vertices(); ++v) twice += static_cast<std::size_t>(graph.degree(v));
+  return twice / 2;
+}
+
 bool is_clique(const BitGraph& graph, const std::vector<int>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i)
     for (std::size_t j = i + 1; j < vertices.size(); ++j)
@@ -86,7 +92,7 @@ void bron_kerbosch(const BitGraph& graph, std::vector<int>& clique, std::vector<
   }
 }
 
-TEST(FindCliques, EqualsThePlainRecursionOnLargerGraphs) {
+TEST(FindCliques, EqualsTheSimpleRecursionOnLargerGraphs) {
   Rng rng(28);
   for (const double density : {0.3, 0.5, 0.7}) {
     const BitGraph graph = random_graph(rng, density < 0.6 ? 70 : 35, density);
@@ -203,16 +209,16 @@ TEST(ConsistencyGraph, EqualsTheDefinition) {
     }
   }
   EXPECT_GT(num_edges, 1000U);
-  EXPECT_EQ(graph.num_edges() * 2, num_edges);
+  EXPECT_EQ(count_edges(graph) * 2, num_edges);
 }
 
 TEST(ConsistencyGraph, UnknownFeaturesAreSharedWithNone) {
   testing::Problem problem =
       testing::make_problem({.num_correspondences = 10, .inliers_per_instance = 10, .noise_m = 0, .seed = 26});
-  const std::size_t num_edges = build_consistency_graph(problem.correspondences, {}).num_edges();
+  const std::size_t num_edges = count_edges(build_consistency_graph(problem.correspondences, {}));
   EXPECT_GT(num_edges, 20U);
   for (auto& c : problem.correspondences) c.model_feature = c.scene_feature = -1;
-  EXPECT_EQ(build_consistency_graph(problem.correspondences, {}).num_edges(), num_edges);
+  EXPECT_EQ(count_edges(build_consistency_graph(problem.correspondences, {})), num_edges);
 }
 
 TEST(BitGraph, SubgraphKeepsTheEdges) {
@@ -221,7 +227,7 @@ TEST(BitGraph, SubgraphKeepsTheEdges) {
   std::vector<int> vertices;
   for (int v = 129; v >= 0; v -= 2) vertices.push_back(v);
   const BitGraph sub = graph.subgraph(vertices);
-  ASSERT_GT(sub.num_edges(), 50U);
+  ASSERT_GT(count_edges(sub), 50U);
   for (std::size_t i = 0; i < vertices.size(); ++i)
     for (std::size_t j = 0; j < vertices.size(); ++j)
       if (i != j) {

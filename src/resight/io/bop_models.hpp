@@ -30,9 +30,6 @@ class BopModelsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Writes all models at once. Models with bop_id 0 get the smallest free ids, in order.
-[[nodiscard]] Result<void> write_bop_models(const std::filesystem::path& dataset, std::span<const ModelSource> models);
-
 /// Replaces each 0 by the smallest free id. Fails if an id occurs twice or is negative.
 [[nodiscard]] Result<std::vector<int>> assign_bop_ids(std::span<const int> ids);
 

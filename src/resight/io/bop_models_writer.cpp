@@ -113,18 +113,6 @@ Result<void> BopModelsWriter::finish() {
   return state_->models.commit();
 }
 
-Result<void> write_bop_models(const std::filesystem::path& dataset, std::span<const ModelSource> models) {
-  std::vector<int> wanted;
-  for (const ModelSource& model : models) wanted.push_back(model.bop_id);
-  const auto ids = assign_bop_ids(wanted);
-  if (!ids) return io::file_error(dataset, ids.error().message);
-  const auto writer = BopModelsWriter::create(dataset);
-  if (!writer) return writer.error();
-  for (std::size_t i = 0; i < models.size(); ++i)
-    if (const auto done = (*writer)->write_model(models[i], (*ids)[i]); !done) return done;
-  return (*writer)->finish();
-}
-
 Result<std::vector<int>> assign_bop_ids(std::span<const int> ids) {
   std::set<int> taken;
   for (const int id : ids)

@@ -160,7 +160,12 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
   Rng rng(3);
   models[0].symmetries.discrete = {io::random_pose(rng)};
   models[0].symmetries.continuous = {{Eigen::Vector3d(0, 0.6, 0.8), Eigen::Vector3d(0.01, 0, 0)}};
-  ASSERT_TRUE(write_bop_models(directory / "set", models).ok());
+  const auto ids = assign_bop_ids(std::vector<int>{models[0].bop_id, models[1].bop_id});
+  ASSERT_TRUE(ids.ok());
+  const auto writer = BopModelsWriter::create(directory / "set");
+  ASSERT_TRUE(writer.ok());
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_TRUE((*writer)->write_model(models[i], (*ids)[i]).ok());
+  ASSERT_TRUE((*writer)->finish().ok());
   const auto found = find_models({directory / "set"});
   ASSERT_TRUE(found.ok()) << found.error().message;
   ASSERT_EQ(found->size(), 2U);
@@ -183,7 +188,7 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
   const auto info = nlohmann::json::parse(io::read_text(directory / "set/models/models_info.json"));
   EXPECT_NEAR(info["2"]["diameter"].get<double>(), 1000 * std::sqrt(0.06), 1e-3);
   EXPECT_NEAR(info["2"]["size_y"].get<double>(), 200, 1e-3);
-  EXPECT_THAT(write_bop_models(directory / "set", models).error().message, HasSubstr("exists already"));
+  EXPECT_THAT(BopModelsWriter::create(directory / "set").error().message, HasSubstr("exists already"));
 }
 
 TEST(BopModels, IdsAreFilledUp) {

@@ -53,7 +53,7 @@ TEST(ToFrame, NoPointsGiveTheKinectCamera) {
   EXPECT_EQ(count_valid(frame->depth_m), 0U);
 }
 
-TEST(ToFrame, BackwardCloudsAreTurnedAndStayInPlace) {
+TEST(ToFrame, BackwardCloudsAreRotatedAndStayInPlace) {
   const RgbdFrame frame = io::random_frame("view", 8);
   PcdCloud cloud = to_pcd_cloud(frame);
   cloud.camera.reset();

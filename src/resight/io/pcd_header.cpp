@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxFields = 1000;
 constexpr int kMaxCount = 65536;
+constexpr std::size_t kHeaderBytes = 64 * 1024;
 
 class PcdHeaderParser {
  public:
@@ -176,6 +178,12 @@ const PcdField* PcdHeader::find(std::string_view name) const {
 
 Result<PcdHeader> parse_pcd_header(std::string_view bytes, std::string_view name) {
   return PcdHeaderParser(name).parse(bytes);
+}
+
+Result<PcdHeader> read_pcd_header(const std::filesystem::path& file) {
+  const auto bytes = read_file_start(file, kHeaderBytes);
+  if (!bytes) return bytes.error();
+  return parse_pcd_header(*bytes, file.string());
 }
 
 }  // namespace resight::io

@@ -17,7 +17,6 @@ namespace {
 using io::PcdField;
 using io::PcdHeader;
 
-constexpr std::size_t kHeaderBytes = 64 * 1024;
 /// LZF expands a block by a factor of at most 264 / 3. A header that claims a larger one is wrong.
 constexpr std::size_t kMaxLzfRatio = 100;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -206,9 +205,7 @@ Result<PcdCloud> read_pcd(const std::filesystem::path& file) {
 }
 
 Result<PcdSize> read_pcd_size(const std::filesystem::path& file) {
-  const auto bytes = io::read_file_start(file, kHeaderBytes);
-  if (!bytes) return bytes.error();
-  const auto header = io::parse_pcd_header(*bytes, file.string());
+  const auto header = io::read_pcd_header(file);
   if (!header) return header.error();
   return PcdSize{header->width, header->height};
 }

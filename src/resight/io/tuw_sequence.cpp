@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/pcd_header.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/organized_pcd.hpp"
@@ -29,6 +30,14 @@ class TuwSequence final : public Sequence {
     frame->name = names_[view];
     if (const auto done = check_frame(*frame); !done) return file_error(files_[view], done.error().message);
     return frame;
+  }
+
+  // Views that we wrote have their camera and z forward, so the header is enough. Others may be rotated (to_frame()).
+  [[nodiscard]] Result<Rigid3> read_pose(int view) const override {
+    const auto header = read_pcd_header(files_.at(view));
+    if (!header) return header.error();
+    if (header->camera) return header->viewpoint;
+    return Sequence::read_pose(view);
   }
 
   [[nodiscard]] bool has_ground_truth() const override {

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kSameFitM = 0.01;
+constexpr double kSameFit_m = 0.01;
 
 // A surface with its search tree and some sample points.
 struct Shape {
@@ -97,8 +97,9 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
     const double r = std::sqrt(1 - z * z);
     const Eigen::Quaterniond tilt =
         Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(r * std::cos(angle), r * std::sin(angle), z));
-    for (int t = 0; t < options.num_turns; ++t)
-      rotations.emplace_back(tilt * Eigen::AngleAxisd(2 * std::numbers::pi * t / options.num_turns, Vector3d::UnitZ()));
+    for (int t = 0; t < options.num_rotations; ++t)
+      rotations.emplace_back(tilt *
+                             Eigen::AngleAxisd(2 * std::numbers::pi * t / options.num_rotations, Vector3d::UnitZ()));
   }
   return rotations;
 }
@@ -106,7 +107,7 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
 bool are_one(const ShapeFit& a, const ShapeFit& b, const Shape& moving) {
   return std::ranges::all_of(moving.samples, [&](std::size_t s) {
     const Vector3d p = moving.points[s].cast<double>();
-    return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFitM;
+    return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFit_m;
   });
 }
 

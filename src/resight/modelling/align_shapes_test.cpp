@@ -22,7 +22,7 @@ TriangleMesh part_of(const std::string& object, double from_m, double to_m, cons
   return part;
 }
 
-TEST(AlignShapes, PutsPartsOfAPlainObjectTogether) {
+TEST(AlignShapes, JoinsPartsOfAnUntexturedObject) {
   const TriangleMesh upper = part_of("duck", 0.02, 1, Rigid3::identity());
   const Rigid3 moved{Rigid3::from_axis_angle({1, 0.2, 0.1}, 2.9).rotation, {0.05, -0.03, 0.1}};
   const TriangleMesh lower = part_of("duck", -1, 0.08, moved);
@@ -39,7 +39,7 @@ TEST(AlignShapes, PutsPartsOfAPlainObjectTogether) {
 TEST(AlignShapes, AnyNumberOfThreads) {
   const TriangleMesh a = part_of("toy_car", -1, 1, Rigid3::identity());
   const TriangleMesh b = part_of("toy_car", -1, 1, {Rigid3::from_axis_angle({0, 1, 1}, 1).rotation, {0.1, 0, 0}});
-  AlignShapesOptions options{.num_directions = 20, .num_turns = 6, .num_samples = 100};
+  AlignShapesOptions options{.num_directions = 20, .num_rotations = 6, .num_samples = 100};
   const std::vector<ShapeFit> one = align_shapes(a, b, options);
   options.num_threads = 3;
   const std::vector<ShapeFit> three = align_shapes(a, b, options);

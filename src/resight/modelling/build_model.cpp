@@ -16,10 +16,10 @@
 namespace resight {
 namespace {
 
-constexpr double kThinM = 0.005;
+constexpr double kThin_m = 0.005;
 // Samples of the mesh per point of the cloud.
 constexpr double kSamplesPerPoint = 4;
-constexpr int kCropMarginPx = 10;
+constexpr int kCropMargin_px = 10;
 
 double degrees(double rad) { return rad * 180 / std::numbers::pi; }
 
@@ -27,14 +27,14 @@ PointCloud make_cloud(const TriangleMesh& mesh, double spacing_m) {
   return voxel_downsample(sample_surface(mesh, kSamplesPerPoint / (spacing_m * spacing_m)), spacing_m);
 }
 
-// Share of points with an oppositely oriented point less than kThinM behind them.
+// Share of points with an oppositely oriented point less than kThin_m behind them.
 double measure_thin_share(const PointCloud& cloud) {
   if (cloud.empty()) return 0;
   const KdTree tree(cloud.points);
   std::vector<PointNeighbor> neighbors;
   std::size_t thin = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    tree.within(cloud.points[i], kThinM, neighbors);
+    tree.within(cloud.points[i], kThin_m, neighbors);
     thin += std::ranges::any_of(neighbors, [&](const PointNeighbor& n) {
       return cloud.normals[n.index].dot(cloud.normals[i]) < -0.7F &&
              (cloud.points[n.index] - cloud.points[i]).dot(cloud.normals[i]) < 0;
@@ -81,7 +81,7 @@ double count_keypoints(std::span<const TrainingView> views, std::span<const int>
   if (key_views.empty()) return 0;
   std::vector<double> counts(key_views.size());
   parallel_for(key_views.size(), options.num_threads, [&](std::size_t k) {
-    TrainingView part = crop_to_object(views[key_views[k]], kCropMarginPx);
+    TrainingView part = crop_to_object(views[key_views[k]], kCropMargin_px);
     if (part.mask.empty()) return;
     counts[k] = static_cast<double>(extract_sift(prepare_view(std::move(part.frame)), options.sift, &part.mask).size());
   });
@@ -105,7 +105,7 @@ std::vector<std::string> find_troubles(const ModelReport& r, const BuildModelOpt
         fmt::format("shiny, dark or transparent: {:.0f} % of its pixels have no depth", 100 * r.no_return_share));
   if (r.thin_share > o.max_thin_share)
     troubles.push_back(
-        fmt::format("thin: {:.0f} % of its surface is less than {:.0f} mm thick", 100 * r.thin_share, 1000 * kThinM));
+        fmt::format("thin: {:.0f} % of its surface is less than {:.0f} mm thick", 100 * r.thin_share, 1000 * kThin_m));
   if (r.holes.open_share > o.max_open_share)
     troubles.push_back(fmt::format("holes: {:.0f} % of its surface was not observed; record it from another side too",
                                    100 * r.holes.open_share));

@@ -71,7 +71,7 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
   fs::remove_all(folder.parent_path());
 }
 
-TEST(BuildModel, TellsWhatWillBeHard) {
+TEST(BuildModel, WarnsOfWhatWillBeHard) {
   // An untextured can from one side: no texture, an open bottom, symmetric.
   const auto build = build_model(scan("plain_can", false), two_threads());
   ASSERT_TRUE(build.ok()) << build.error().message;

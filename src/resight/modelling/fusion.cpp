@@ -20,11 +20,11 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 // Around the mask: pixels of the background give free space in front of it.
-constexpr int kMarginPx = 12;
+constexpr int kMargin_px = 12;
 // Normals give only the incidence here, so smooth ones are preferable.
-constexpr int kNormalRadiusPx = 3;
+constexpr int kNormalRadius_px = 3;
 // A view observes a vertex if the pixel shows a point this near.
-constexpr float kSamePointM = 0.004F;
+constexpr float kSamePoint_m = 0.004F;
 
 // Inverse variance across the surface, in 1/mm^2, times the viewing cosine.
 double point_weight(const PreparedView& view, std::size_t i, double cosine) {
@@ -34,12 +34,12 @@ double point_weight(const PreparedView& view, std::size_t i, double cosine) {
 }
 
 FusionView make_fusion_view(const TrainingView& whole, const FuseViewsOptions& options) {
-  TrainingView part = crop_to_object(whole, kMarginPx);
+  TrainingView part = crop_to_object(whole, kMargin_px);
   FusionView result;
   if (part.mask.empty()) return result;
   result.camera_from_object = part.frame.world_from_camera.inverse();
   PrepareViewOptions prepare;
-  prepare.normals.window_radius_px = kNormalRadiusPx;
+  prepare.normals.window_radius_px = kNormalRadius_px;
   PreparedView view = prepare_view(std::move(part.frame), prepare);
   result.camera = view.frame.camera;
   result.weight = Image<float>(result.camera.width, result.camera.height, 0.0F);
@@ -70,25 +70,25 @@ class VertexPainter {
     for (const FusionView& view : views) camera_from_object_.emplace_back(view.camera_from_object);
   }
 
-  struct Look {
+  struct Observation {
     double weight = 0;
     Vector3d color = Vector3d::Zero();
   };
 
   // `looks` is overwritten; it is passed in to reuse its memory.
-  [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal, std::vector<Look>& looks) const {
-    looks.clear();
+  [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal, std::vector<Observation>& observations) const {
+    observations.clear();
     double total = 0;
     for (std::size_t k = 0; k < views_.size(); ++k)
-      if (const Look l = look(k, p, normal); l.weight > 0) {
-        looks.push_back(l);
+      if (const Observation l = observe(k, p, normal); l.weight > 0) {
+        observations.push_back(l);
         total += l.weight;
       }
-    if (looks.empty()) return {128, 128, 128};
-    std::ranges::stable_sort(looks, {}, [](const Look& l) { return l.color.sum(); });
+    if (observations.empty()) return {128, 128, 128};
+    std::ranges::stable_sort(observations, {}, [](const Observation& l) { return l.color.sum(); });
     Vector3d sum = Vector3d::Zero();
     double before = 0;
-    for (const Look& l : looks) {
+    for (const Observation& l : observations) {
       const double after = before + l.weight;
       const double used = std::min(after, to_ * total) - std::max(before, from_ * total);
       if (used > 0) sum += used / ((to_ - from_) * total) * l.color;
@@ -100,7 +100,7 @@ class VertexPainter {
 
  private:
   // Observation of the point in view k; weight 0 = none.
-  [[nodiscard]] Look look(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal) const {
+  [[nodiscard]] Observation observe(std::size_t k, const Vector3f& p_in_object, const Vector3f& normal) const {
     const FusionView& view = views_[k];
     const Vector3f p = camera_from_object_[k] * p_in_object;
     if (view.depth_m.empty() || p.z() <= 0) return {};
@@ -108,7 +108,7 @@ class VertexPainter {
     const std::optional<Pixel> pixel = view.camera.pixel_at(position_px);
     if (!pixel || view.weight(pixel->u, pixel->v) <= 0) return {};
     const auto [u, v] = *pixel;
-    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePointM)) return {};
+    if (!(std::abs(view.depth_m(u, v) - p.z()) * view.slope(u, v) < kSamePoint_m)) return {};
     const double cosine = static_cast<double>(-(camera_from_object_[k].rotation * normal).dot(p.normalized()));
     if (cosine < 0.2) return {};
     return {std::pow(cosine, 4) / static_cast<double>(p.z() * p.z()), sample(view.color, position_px)};
@@ -140,8 +140,9 @@ void paint(TriangleMesh& mesh, std::span<const FusionView> views, const FuseView
   const VertexPainter painter(views, options);
   mesh.colors.resize(mesh.vertices.size());
   parallel_for_blocks(mesh.vertices.size(), 1024, options.num_threads, [&](std::size_t begin, std::size_t end) {
-    std::vector<VertexPainter::Look> looks;
-    for (std::size_t i = begin; i < end; ++i) mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i], looks);
+    std::vector<VertexPainter::Observation> observations;
+    for (std::size_t i = begin; i < end; ++i)
+      mesh.colors[i] = painter.color(mesh.vertices[i], mesh.normals[i], observations);
   });
 }
 
@@ -156,7 +157,7 @@ void FuseViewsOptions::check() const {
   check_not_negative("FuseViewsOptions.max_free_share", max_free_share);
   check_in_range("FuseViewsOptions.color_from", color_from, 0, 0.99);
   check_in_range("FuseViewsOptions.color_to", color_to, color_from + 0.01, 1);
-  check_in_range("FuseViewsOptions.min_part_share", min_part_share, 0, 1);
+  check_in_range("FuseViewsOptions.min_component_share", min_component_share, 0, 1);
   check_in_range("FuseViewsOptions.num_threads", num_threads, 1, 4096);
 }
 
@@ -173,7 +174,7 @@ TriangleMesh fuse_views(std::span<const TrainingView> views, const FuseViewsOpti
   integrate_views(volume, seen, options.num_threads);
   TriangleMesh mesh = extract_surface_nets(volume, {.min_weight = static_cast<float>(options.min_weight),
                                                     .max_free_share = static_cast<float>(options.max_free_share)});
-  mesh = keep_large_parts(mesh, options.min_part_share);
+  mesh = keep_large_parts(mesh, options.min_component_share);
   compute_vertex_normals(mesh);
   paint(mesh, seen, options);
   return mesh;

@@ -14,10 +14,11 @@ struct FuseViewsOptions {
   double min_edge_distance_px = 2.0;  ///< Points nearer to a depth discontinuity are mixtures with the background.
   double max_incidence_rad = 1.3;     ///< Surface slanted more (75 deg) is not used.
   double min_weight = 0.4;            ///< Of what is surface, in 1/mm^2: one good point at 0.8 m.
-  double max_free_share = 1.0;        ///< More views, by weight, looked through a place than saw it: it is free.
+  /// A place is free if the weight of the views that see through it exceeds this multiple of that of those that see it.
+  double max_free_share = 1.0;
   double color_from = 0.6;            ///< Of the views of a vertex, in order of brightness: the share that gives its
   double color_to = 0.9;              ///< colour. 0 and 1: the mean of all.
-  double min_part_share = 0.05;       ///< Of the largest part's faces; smaller loose parts are dropped.
+  double min_component_share = 0.05;  ///< Of the largest part's faces; smaller loose parts are dropped.
   int num_threads = 1;                ///< Same bits for any value >= 1.
   void check() const;
 };

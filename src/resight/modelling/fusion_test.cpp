@@ -79,7 +79,7 @@ TEST(FuseViews, ColoursAreThoseOfTheBestLight) {
   for (const Rgb8 c : fuse_views(views, options).colors) EXPECT_NEAR(c.g, 121, 3);
 }
 
-TEST(FuseViews, WhatAnotherViewLooksThroughIsCutAway) {
+TEST(FuseViews, WhatAnotherViewSeesThroughIsCutAway) {
   std::vector<TrainingView> views = look_at_ball(0.06);
   // A blob beside the ball, in one view only.
   for (int v = 110; v < 130; ++v)
@@ -92,7 +92,7 @@ TEST(FuseViews, WhatAnotherViewLooksThroughIsCutAway) {
   };
   FuseViewsOptions options;
   options.voxel_m = 0.002;
-  options.min_part_share = 0;
+  options.min_component_share = 0;
   EXPECT_LT(farthest(fuse_views(views, options)), 0.062);
   options.max_free_share = 1e9;
   EXPECT_GT(farthest(fuse_views(views, options)), 0.08);

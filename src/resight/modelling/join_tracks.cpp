@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "resight/core/parallel.hpp"
+#include "resight/evidence/surface_evidence.hpp"
 #include "resight/modelling/internal/align_shapes.hpp"
 #include "resight/modelling/internal/object_edges.hpp"
 
@@ -16,18 +17,18 @@ namespace {
 using Eigen::Vector3d;
 
 // Two motions of the second recording's object frame into the first's count as one below these differences.
-constexpr double kSameShiftM = 0.02;
-constexpr double kSameTurnRad = 0.2;
+constexpr double kSameShift_m = 0.02;
+constexpr double kSameRotation_rad = 0.2;
 constexpr int kMaxWays = 4;           // Candidates that are tried on the model.
 constexpr int kMaxMatchedViews = 18;  // Per recording.
-constexpr int kRefineRounds = 3;
+constexpr int kRefineRounds = 3;      // Each aligns the views and takes the medoid of the motions.
 // Below this number of keypoints, shape alone decides.
 constexpr std::size_t kFewKeypoints = 40;  // Median per view.
-constexpr double kMinAgreement = 0.25;
-constexpr double kMaxContradicted = 0.06;
-constexpr std::size_t kVertexStep = 13;
+constexpr double kMinAgreement = 0.25;     // Least ShapeFit::agreement of an alignment by shape.
+constexpr double kMaxContradicted = 0.06;  // Largest share of either surface in the free space of the other.
+constexpr std::size_t kVertexStep = 13;    // Every 13th vertex is tested, for speed.
 // A point contradicts a view if it lies this far in front of the observed surface.
-constexpr float kFreeM = 0.008F;
+constexpr double kFree_m = 0.008;
 
 struct Way {
   Rigid3 first_from_second;
@@ -36,7 +37,8 @@ struct Way {
 };
 
 bool are_same_motion(const Rigid3& a, const Rigid3& b, const Vector3d& middle) {
-  return rotation_angle_rad(a.rotation, b.rotation) <= kSameTurnRad && (a * middle - b * middle).norm() <= kSameShiftM;
+  return rotation_angle_rad(a.rotation, b.rotation) <= kSameRotation_rad &&
+         (a * middle - b * middle).norm() <= kSameShift_m;
 }
 
 // About `count` indices, evenly spaced.
@@ -63,10 +65,11 @@ class TrackJoiner {
   // Joins by features, or by shape if features give no result.
   Result<Rigid3> find() {
     const std::vector<Way> matched = find_ways();
-    if (const std::optional<Rigid3> best = choose(matched, options_.min_correlation)) return *best;
+    if (const std::optional<Rigid3> best = choose(matched, options_.plausible.min_correlation)) return *best;
     const bool has_texture = num_keypoints_ >= kFewKeypoints;
     const std::vector<Way> shaped = find_ways_by_shape();
-    if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.min_correlation : -1)) return *best;
+    if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.plausible.min_correlation : -1))
+      return *best;
     return Error{fmt::format(
         "the recordings cannot be joined: {} matches at best, {}", matched.empty() ? 0 : matched.front().num_matches,
         shaped.empty() ? "no common shape" : "and no alignment by shape that the texture supports")};
@@ -80,7 +83,7 @@ class TrackJoiner {
     if (!model_) return best;
     for (const Way& way : ways) {
       const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
-      if (likeness < min_likeness || overlap < options_.min_join_overlap) continue;
+      if (likeness < min_likeness || overlap < options_.join.min_overlap) continue;
       if (best && score + way.shape_score <= best_score) continue;
       best = pose;
       best_score = score + way.shape_score;
@@ -105,21 +108,19 @@ class TrackJoiner {
   // Share of the surface's points in front of what the views observe there, over some of the views.
   [[nodiscard]] double contradicted_share(const TriangleMesh& mesh, const Rigid3& views_from_mesh,
                                           const std::vector<TrainingView>& views) const {
-    std::size_t before = 0, seen = 0;
-    for (const int v : choose_evenly(views.size(), options_.num_join_views)) {
+    std::vector<Eigen::Vector3f> sampled;
+    for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) sampled.push_back(mesh.vertices[k]);
+    const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = kFree_m, .noise_sigmas = 0}};
+    int before = 0, seen = 0;
+    for (const int v : choose_evenly(views.size(), options_.join.num_views)) {
       const RgbdFrame& frame = views[v].frame;
-      const Rigid3 camera_from_mesh = frame.world_from_camera.inverse() * views_from_mesh;
-      for (std::size_t k = 0; k < mesh.vertices.size(); k += kVertexStep) {
-        const Vector3d p = camera_from_mesh * mesh.vertices[k].cast<double>().eval();
-        const std::optional<Pixel> pixel = frame.camera.pixel_of(p);
-        if (!pixel) continue;
-        const float depth_m = frame.depth_m(pixel->u, pixel->v);
-        if (std::isnan(depth_m)) continue;
-        ++seen;
-        before += p.z() < depth_m - kFreeM;
-      }
+      const SurfaceEvidence evidence =
+          classify_surface({.points = sampled}, frame.world_from_camera.inverse() * views_from_mesh,
+                           {frame.camera, frame.depth_m}, evidence_options);
+      before += evidence.num(Evidence::kSeenThrough);
+      seen += static_cast<int>(sampled.size()) - evidence.num(Evidence::kUnobserved);
     }
-    return seen == 0 ? 0 : static_cast<double>(before) / static_cast<double>(seen);
+    return seen == 0 ? 0 : static_cast<double>(before) / seen;
   }
 
   // Matches features between views of both recordings. Matches with similar motions are added up.
@@ -133,7 +134,7 @@ class TrackJoiner {
     parallel_for(found.size(), options_.num_threads, [&](std::size_t k) {
       const std::size_t i = k / b.size();
       const std::size_t j = k % b.size();
-      const std::optional<ViewMatch> match = match_views(a[i].features, b[j].features, options_.match);
+      const std::optional<ViewMatch> match = match_views(a[i].features, b[j].features, options_.features.match);
       if (!match) return;
       found[k] = Way{first_[of_first[i]].frame.world_from_camera * match->a_from_b *
                          second_[of_second[j]].frame.world_from_camera.inverse(),
@@ -181,7 +182,7 @@ class TrackJoiner {
   Refined refine(Rigid3 way) {
     Refined refined;
     for (int round = 0; round < kRefineRounds; ++round) {
-      const std::vector<int> chosen = choose_evenly(second_.size(), options_.num_join_views);
+      const std::vector<int> chosen = choose_evenly(second_.size(), options_.join.num_views);
       std::vector<AlignedView> aligned(chosen.size());
       parallel_for(chosen.size(), options_.num_threads, [&](std::size_t k) { aligned[k] = align(chosen[k], way); });
       refined = {way, 0, 0, 0};
@@ -195,7 +196,7 @@ class TrackJoiner {
         refined.score +=
             (std::min(a.overlap, 0.3) - 2 * a.seen_through + 2 * likeness) / static_cast<double>(chosen.size());
         refined.likeness += likeness / static_cast<double>(chosen.size());
-        if (a.overlap >= options_.min_join_overlap)
+        if (a.overlap >= options_.join.min_overlap)
           ways.push_back({a.world_from_camera * second_[chosen[k]].frame.world_from_camera.inverse(), a.num_pairs});
       }
       if (ways.empty()) break;

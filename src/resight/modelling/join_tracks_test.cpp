@@ -32,7 +32,7 @@ ObjectTrack follow_truly(const std::string& object, double step_deg, bool upside
 
 const Rigid3 kOther{Rigid3::from_axis_angle({1, 0.3, 0.2}, 2.8).rotation, {0.02, -0.01, 0.12}};
 
-TEST(JoinTracks, AnObjectWithoutMuchPrintByItsShape) {
+TEST(JoinTracks, AnObjectWithLittleTextureByItsShape) {
   ObjectTrack second = follow_truly("duck", 36, true, kOther);
   std::vector<Rigid3> camera_from_object;
   for (const TrainingView& view : second.views)

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr double kMinHoleLengthM = 0.02;
+constexpr double kMinHoleLength_m = 0.02;
 
 using Edge = std::pair<int, int>;  // In the direction of its face.
 
@@ -96,7 +96,7 @@ MeshHoles measure_holes(const TriangleMesh& mesh) {
       length_m += static_cast<double>((mesh.vertices[loop[k]] - mesh.vertices[loop[(k + 1) % loop.size()]]).norm());
     holes.boundary_length_m += length_m;
     holes.area_sq_m += fan_area(mesh, loop);
-    holes.count += length_m >= kMinHoleLengthM;
+    holes.count += length_m >= kMinHoleLength_m;
   }
   const double total = holes.area_sq_m + surface_area(mesh);
   holes.open_share = total > 0 ? holes.area_sq_m / total : 0;

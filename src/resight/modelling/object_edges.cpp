@@ -15,16 +15,16 @@ namespace {
 using Eigen::Vector3d;
 
 // Residual error of the sensor's bias between any two views, independent of the number of agreeing pixels.
-constexpr double kFloorSigmaM = 0.0007;
-constexpr double kFloorSigmaRad = 0.003;
+constexpr double kFloorSigma_m = 0.0007;
+constexpr double kFloorSigma_rad = 0.003;
 constexpr int kPixelStep = 9;  // Sampling step on the surface on which errors are measured.
 
 TwistMatrix edge_information(const TwistMatrix& information) {
-  return limit_information(information, 1, kFloorSigmaRad, kFloorSigmaM);
+  return limit_information(information, 1, kFloorSigma_rad, kFloorSigma_m);
 }
 
 TwistMatrix match_information(const TrackObjectOptions& options) {
-  return twist_information(options.match_sigma_rad, options.match_sigma_m);
+  return twist_information(options.features.sigma_rad, options.features.sigma_m);
 }
 
 const Rigid3& pose_of(const TrainingView& view) { return view.frame.world_from_camera; }
@@ -32,7 +32,7 @@ const Rigid3& pose_of(const TrainingView& view) { return view.frame.world_from_c
 std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<const TrackView> parts, int a, int b,
                                      const TrackObjectOptions& options) {
   std::vector<AlignmentStart> starts{{poses[b], false}};
-  if (const auto match = match_views(parts[a].features, parts[b].features, options.match))
+  if (const auto match = match_views(parts[a].features, parts[b].features, options.features.match))
     starts.push_back({poses[a] * match->a_from_b, true});
   const std::vector<AlignmentTarget> target{{&parts[a].alignment, poses[a]}};
   std::optional<AlignedView> best;
@@ -68,15 +68,16 @@ AlignViewOptions align_options(const TrackObjectOptions& options, bool is_matche
   AlignViewOptions align = options.align;
   align.num_threads = options.num_threads;
   if (is_matched) {
-    align.prior_sigma_m = options.match_sigma_m;
-    align.prior_sigma_rad = options.match_sigma_rad;
+    align.prior_sigma_m = options.features.sigma_m;
+    align.prior_sigma_rad = options.features.sigma_rad;
   }
   return align;
 }
 
 bool is_plausible(const AlignedView& aligned, const TrackObjectOptions& options) {
-  return aligned.overlap >= options.min_overlap && aligned.seen_through <= options.max_seen_through &&
-         !(aligned.brightness_correlation < options.min_correlation);
+  return aligned.overlap >= options.plausible.min_overlap &&
+         aligned.seen_through <= options.plausible.max_seen_through &&
+         !(aligned.brightness_correlation < options.plausible.min_correlation);
 }
 
 double alignment_score(const AlignedView& aligned) {

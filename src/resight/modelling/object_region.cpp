@@ -21,12 +21,12 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSampleStepPx = 4;  // Of the points in which planes are searched.
+constexpr int kSampleStep_px = 4;  // Of the points in which planes are searched.
 // Largest distance between the three points of a plane hypothesis, in rows and columns.
-constexpr int kTripleRadiusPx = 60;
-constexpr double kHeightBinM = 0.004;  // Bin size of the histogram of heights.
-constexpr double kFootHeightM = 0.03;  // Lower points belong to the foot of the object.
-constexpr double kMarginReachM = 0.03;
+constexpr int kTripleRadius_px = 60;
+constexpr double kHeightBin_m = 0.004;  // Bin size of the histogram of heights.
+constexpr double kFootHeight_m = 0.03;  // Lower points belong to the foot of the object.
+constexpr double kMarginReach_m = 0.03;
 // Share of the points beside the foot that must be visible; the object occludes the others.
 constexpr double kMinSeenShare = 0.15;
 constexpr int kRefits = 4;
@@ -73,8 +73,8 @@ class RegionFinder {
     target_px_ = Vector2d(0.5 * camera.width, 0.5 * camera.height);
     if (previous != nullptr)
       target_px_ = camera.project(previous->foot + 0.5 * previous->height_m * previous->plane.normal);
-    for (int v = 0; v < cloud_.height(); v += kSampleStepPx)
-      for (int u = 0; u < cloud_.width(); u += kSampleStepPx) {
+    for (int v = 0; v < cloud_.height(); v += kSampleStep_px)
+      for (int u = 0; u < cloud_.width(); u += kSampleStep_px) {
         const std::size_t i = cloud_.z.index(u, v);
         if (!cloud_.has_point(i) || cloud_.z[i] > options.max_depth_m) continue;
         samples_.push_back({cloud_.point(i).cast<double>(), 1});
@@ -95,7 +95,7 @@ class RegionFinder {
   [[nodiscard]] double pixel_area_m2(const Vector3d& p, const Vector3d& normal) const {
     const double slant = std::max(0.1, std::abs(normal.dot(p.normalized())));
     const Camera& camera = view_.frame.camera;
-    return kSampleStepPx * kSampleStepPx * p.squaredNorm() / (camera.fx * camera.fy * slant);
+    return kSampleStep_px * kSampleStep_px * p.squaredNorm() / (camera.fx * camera.fy * slant);
   }
 
   [[nodiscard]] bool looks_down_on(const Vector3d& normal) const {
@@ -123,8 +123,8 @@ class RegionFinder {
   // support.
   [[nodiscard]] bool is_turntable(const Standing& higher, const Standing& lower) const {
     const double step_m = higher.region.plane.offset_m - lower.region.plane.offset_m;
-    return step_m > 0 && step_m <= options_.max_turntable_height_m &&
-           higher.margin_area_m2 >= options_.min_turntable_share * std::numbers::pi * lower.reach_m * lower.reach_m;
+    return step_m > 0 && step_m <= options_.turntable.max_height_m &&
+           higher.margin_area_m2 >= options_.turntable.min_share * std::numbers::pi * lower.reach_m * lower.reach_m;
   }
 
   [[nodiscard]] double shift_m(const Standing& standing) const {
@@ -144,8 +144,8 @@ class RegionFinder {
     std::array<Vector3d, 3> corners;
     corners[0] = cloud_.point(first).cast<double>();
     for (int k = 1; k < 3; ++k) {
-      const int u = first % cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadiusPx)) - kTripleRadiusPx;
-      const int v = first / cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadiusPx)) - kTripleRadiusPx;
+      const int u = first % cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadius_px)) - kTripleRadius_px;
+      const int v = first / cloud_.width() + static_cast<int>(rng.below(2 * kTripleRadius_px)) - kTripleRadius_px;
       if (!cloud_.z.contains(u, v) || !cloud_.has_point(cloud_.z.index(u, v))) return std::nullopt;
       corners[k] = cloud_.point(cloud_.z.index(u, v)).cast<double>();
     }
@@ -190,17 +190,17 @@ class RegionFinder {
 
   // Level surfaces of sufficient area, from bottom to top: peaks of the histogram of heights.
   std::vector<SupportPlane> find_level_planes(const SupportPlane& dominant) {
-    const int below = static_cast<int>(options_.max_height_m / kHeightBinM);
+    const int below = static_cast<int>(options_.max_height_m / kHeightBin_m);
     std::vector<double> area(static_cast<std::size_t>(2 * below + 1), 0.0);
     for (const Sample& s : samples_) {
-      const int bin = static_cast<int>(std::lround(dominant.height_m(s.point) / kHeightBinM)) + below;
+      const int bin = static_cast<int>(std::lround(dominant.height_m(s.point) / kHeightBin_m)) + below;
       if (bin >= 0 && bin < static_cast<int>(area.size())) area[bin] += s.weight;
     }
     std::vector<SupportPlane> planes;
     for (std::size_t bin = 1; bin + 1 < area.size(); ++bin) {
       if (area[bin] < area[bin - 1] || area[bin] <= area[bin + 1]) continue;
       if (area[bin - 1] + area[bin] + area[bin + 1] < options_.min_support_area_m2) continue;
-      const SupportPlane level{dominant.normal, dominant.offset_m + (static_cast<int>(bin) - below) * kHeightBinM};
+      const SupportPlane level{dominant.normal, dominant.offset_m + (static_cast<int>(bin) - below) * kHeightBin_m};
       planes.push_back(refit_level(level, dominant));
     }
     return planes;
@@ -235,42 +235,42 @@ class RegionFinder {
   // The component nearest to the expected position of the object.
   [[nodiscard]] std::optional<Standing> find_standing(const SupportPlane& plane) const {
     std::optional<Standing> best;
-    for (const std::vector<int>& part : find_pixel_components(cloud_, mask_above(plane), 2, options_.max_jump_m)) {
-      if (static_cast<int>(part.size()) < options_.min_pixels) continue;
-      const std::optional<Standing> standing = describe_standing(plane, part);
+    for (const std::vector<int>& component : find_pixel_components(cloud_, mask_above(plane), 2, options_.max_jump_m)) {
+      if (static_cast<int>(component.size()) < options_.min_pixels) continue;
+      const std::optional<Standing> standing = describe_standing(plane, component);
       if (standing && (!best || standing->image_distance_px < best->image_distance_px)) best = standing;
     }
     return best;
   }
 
   [[nodiscard]] std::optional<Standing> describe_standing(const SupportPlane& plane,
-                                                          const std::vector<int>& part) const {
+                                                          const std::vector<int>& component) const {
     const Vector3d axis_u = plane.normal.unitOrthogonal();
     const Vector3d axis_v = plane.normal.cross(axis_u);
     Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
     Vector2d high = -low;
     Vector2d pixel = Vector2d::Zero();
     double top_m = 0;
-    for (const int i : part) {
+    for (const int i : component) {
       const Vector3d p = cloud_.point(static_cast<std::size_t>(i)).cast<double>();
       const Vector2d uv(axis_u.dot(p), axis_v.dot(p));
       const double height_m = plane.height_m(p);
       low = low.cwiseMin(uv);
       high = high.cwiseMax(uv);
       top_m = std::max(top_m, height_m);
-      pixel += Vector2d(i % cloud_.width(), i / cloud_.width()) / static_cast<double>(part.size());
+      pixel += Vector2d(i % cloud_.width(), i / cloud_.width()) / static_cast<double>(component.size());
     }
     const auto on_plane = [&](const Vector2d& uv) -> Vector3d {
       return uv.x() * axis_u + uv.y() * axis_v + plane.offset_m * plane.normal;
     };
-    if (top_m < options_.min_object_height_m || !is_founded(plane, part)) return std::nullopt;
+    if (top_m < options_.min_object_height_m || !is_founded(plane, component)) return std::nullopt;
     Standing standing;
     standing.region.plane = plane;
     standing.region.foot = on_plane(0.5 * (low + high));
     standing.region.radius_m = 0.5 * (high - low).norm() * 1.3 + 0.03;
     standing.region.height_m = 1.2 * top_m + 0.02;
     standing.reach_m = 0.5 * (high - low).maxCoeff();
-    standing.margin_area_m2 = margin_area(plane, standing.region.foot, standing.reach_m + kMarginReachM);
+    standing.margin_area_m2 = margin_area(plane, standing.region.foot, standing.reach_m + kMarginReach_m);
     standing.image_distance_px = (pixel - target_px_).norm();
     return standing;
   }
@@ -284,10 +284,10 @@ class RegionFinder {
 
   // Whether the plane continues beside the foot of the object, as far as visible. The lid of an object, which may carry
   // something too, rarely does. The foot is the lowest point of each image column.
-  [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& part) const {
+  [[nodiscard]] bool is_founded(const SupportPlane& plane, const std::vector<int>& component) const {
     std::vector<int> lowest(static_cast<std::size_t>(cloud_.width()), -1);
-    for (const int i : part)
-      if (plane.height_m(cloud_.point(static_cast<std::size_t>(i)).cast<double>()) <= kFootHeightM)
+    for (const int i : component)
+      if (plane.height_m(cloud_.point(static_cast<std::size_t>(i)).cast<double>()) <= kFootHeight_m)
         lowest[i % cloud_.width()] = std::max(lowest[i % cloud_.width()], i);
     const Vector3d ahead = (-plane.normal.cross(Vector3d::UnitZ()).cross(plane.normal)).normalized();
     const Vector3d aside = ahead.cross(plane.normal);
@@ -300,14 +300,14 @@ class RegionFinder {
       const Vector3d foot = p - plane.height_m(p) * plane.normal;
       for (int k = -2; k <= 2; ++k) {  // Towards the camera and to both sides.
         const double angle_rad = k * std::numbers::pi / 4;
-        const int found =
-            look_for(plane, foot + options_.min_margin_m * (std::cos(angle_rad) * ahead + std::sin(angle_rad) * aside));
+        const int found = look_for(
+            plane, foot + options_.margin.width_m * (std::cos(angle_rad) * ahead + std::sin(angle_rad) * aside));
         seen += found > 0;
         missing += found < 0;
         ++asked;
       }
     }
-    return seen >= options_.min_margin_share * (seen + missing) && seen >= kMinSeenShare * asked && seen > 0;
+    return seen >= options_.margin.min_share * (seen + missing) && seen >= kMinSeenShare * asked && seen > 0;
   }
 
   // 1 if the plane is visible at a point of it, -1 if it is missing there, 0 if the place is occluded or unknown.
@@ -350,10 +350,10 @@ void ObjectRegionOptions::check() const {
   check_positive("ObjectRegionOptions.max_jump_m", max_jump_m);
   check_positive("ObjectRegionOptions.min_pixels", min_pixels);
   check_positive("ObjectRegionOptions.min_object_height_m", min_object_height_m);
-  check_not_negative("ObjectRegionOptions.max_turntable_height_m", max_turntable_height_m);
-  check_in_range("ObjectRegionOptions.min_turntable_share", min_turntable_share, 0, 1);
-  check_positive("ObjectRegionOptions.min_margin_m", min_margin_m);
-  check_in_range("ObjectRegionOptions.min_margin_share", min_margin_share, 0, 1);
+  check_not_negative("ObjectRegionOptions.turntable.max_height_m", turntable.max_height_m);
+  check_in_range("ObjectRegionOptions.turntable.min_share", turntable.min_share, 0, 1);
+  check_positive("ObjectRegionOptions.margin.width_m", margin.width_m);
+  check_in_range("ObjectRegionOptions.margin.min_share", margin.min_share, 0, 1);
   check_positive("ObjectRegionOptions.same_place_px", same_place_px);
   check_positive("ObjectRegionOptions.max_support_shift_m", max_support_shift_m);
   check_in_range("ObjectRegionOptions.num_hypotheses", num_hypotheses, 1, 1000000);

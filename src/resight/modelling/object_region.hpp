@@ -33,6 +33,18 @@ struct ObjectRegion {
 /// Transforms a region from frame b to frame a.
 [[nodiscard]] ObjectRegion transform(const Rigid3& a_from_b, const ObjectRegion& region_in_b);
 
+/// A turntable is a low, wide support just above another one.
+struct TurntableSearchOptions {
+  double max_height_m = 0.08;
+  double min_share = 0.15;  ///< Least share of the circle around the object at which the turntable's top is visible.
+};
+
+/// The support must be visible around the foot of an object.
+struct FootMarginOptions {
+  double width_m = 0.02;
+  double min_share = 0.85;  ///< Least share of the unoccluded directions in which it is visible.
+};
+
 /// All values are ours.
 struct ObjectRegionOptions {
   double max_depth_m = 1.6;            ///< Farther points are background.
@@ -42,13 +54,12 @@ struct ObjectRegionOptions {
   double min_height_m = 0.006;         ///< Of what stands on a support.
   double max_height_m = 0.45;
   double min_object_height_m = 0.012;
-  double max_turntable_height_m = 0.08;  ///< Above what it stands on.
-  double min_turntable_share = 0.15;     ///< Of the circle around what stands on the table that is seen of its top.
-  double max_jump_m = 0.06;              ///< Between neighbouring points of one object: parts of it may overhang.
-  int min_pixels = 300;                  ///< Of the object.
-  double min_margin_m = 0.02;            ///< Of the support around the foot of what stands on it, ..
-  double min_margin_share = 0.85;        ///< .. in this share of the directions that are not hidden.
-  double same_place_px = 60;  ///< Things on two supports are one if they are as near to the middle, give or take.
+  TurntableSearchOptions turntable;
+  double max_jump_m = 0.06;  ///< Between neighbouring points of one object: parts of it may overhang.
+  int min_pixels = 300;      ///< Of the object.
+  FootMarginOptions margin;
+  /// Objects on two supports are the same if their distances to the middle differ by less.
+  double same_place_px = 60;
   double max_support_shift_m = 0.10;  ///< Of the support from the one of the view before, where there is one.
   int num_hypotheses = 300;           ///< Of the random search (RANSAC) for the dominant plane.
   std::uint64_t seed = 1;
@@ -65,10 +76,10 @@ struct ObjectRegionOptions {
 
 /// All values are ours.
 struct SegmentObjectOptions {
-  double min_height_m = 0.005;   ///< Above the support: beyond the noise of its points.
-  double max_jump_m = 0.06;      ///< Between neighbouring points of one object: parts of it may overhang.
-  int max_gap_px = 4;            ///< Between neighbouring points of one object: slanted parts give no return.
-  double min_part_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
+  double min_height_m = 0.005;        ///< Above the support: beyond the noise of its points.
+  double max_jump_m = 0.06;           ///< Between neighbouring points of one object: parts of it may overhang.
+  int max_gap_px = 4;                 ///< Between neighbouring points of one object: slanted parts give no return.
+  double min_component_share = 0.05;  ///< Of the largest connected part; smaller ones are no part of the object.
   void check() const;
 };
 

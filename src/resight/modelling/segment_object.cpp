@@ -28,7 +28,7 @@ void SegmentObjectOptions::check() const {
   check_positive("SegmentObjectOptions.min_height_m", min_height_m);
   check_positive("SegmentObjectOptions.max_jump_m", max_jump_m);
   check_in_range("SegmentObjectOptions.max_gap_px", max_gap_px, 1, 32);
-  check_in_range("SegmentObjectOptions.min_part_share", min_part_share, 0, 1);
+  check_in_range("SegmentObjectOptions.min_component_share", min_component_share, 0, 1);
 }
 
 Image<std::uint8_t> segment_object(const OrganizedCloud& cloud, const ObjectRegion& region,
@@ -43,12 +43,12 @@ Image<std::uint8_t> segment_object(const OrganizedCloud& cloud, const ObjectRegi
     if (region.axis_distance_m(p) <= region.radius_m) mask[i] = 255;
   }
   remove_specks(mask);
-  const auto parts = find_pixel_components(cloud, mask, options.max_gap_px, options.max_jump_m);
+  const auto components = find_pixel_components(cloud, mask, options.max_gap_px, options.max_jump_m);
   std::size_t largest = 0;
-  for (const auto& part : parts) largest = std::max(largest, part.size());
-  for (const auto& part : parts)
-    if (static_cast<double>(part.size()) < options.min_part_share * static_cast<double>(largest))
-      for (const int i : part) mask[static_cast<std::size_t>(i)] = 0;
+  for (const auto& component : components) largest = std::max(largest, component.size());
+  for (const auto& component : components)
+    if (static_cast<double>(component.size()) < options.min_component_share * static_cast<double>(largest))
+      for (const int i : component) mask[static_cast<std::size_t>(i)] = 0;
   return mask;
 }
 

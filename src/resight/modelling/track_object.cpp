@@ -116,7 +116,8 @@ class ObjectTracker {
     std::vector<AlignmentStart> starts;
     int num_matches = 0;
     for (std::size_t k = i; k-- > (i > 2 ? i - 2 : 0);) {
-      const std::optional<ViewMatch> match = match_views(parts_[k].features, parts_[i].features, options_.match);
+      const std::optional<ViewMatch> match =
+          match_views(parts_[k].features, parts_[i].features, options_.features.match);
       if (!match) continue;
       num_matches = std::max(num_matches, match->num_inliers);
       starts.push_back({pose(k) * match->a_from_b, true});
@@ -172,22 +173,20 @@ class ObjectTracker {
 void TrackObjectOptions::check() const {
   region.check();
   segment.check();
-  sift.check();
-  match.check();
+  features.sift.check();
+  features.match.check();
   view.check();
   align.check();
   graph.check();
   check_positive("TrackObjectOptions.num_targets", num_targets);
-  check_in_range("TrackObjectOptions.min_overlap", min_overlap, 0, 1);
-  check_in_range("TrackObjectOptions.max_seen_through", max_seen_through, 0, 1);
-  check_in_range("TrackObjectOptions.min_correlation", min_correlation, -1, 1);
-  check_positive("TrackObjectOptions.match_sigma_m", match_sigma_m);
-  check_positive("TrackObjectOptions.match_sigma_rad", match_sigma_rad);
+  plausible.check();
+  check_positive("TrackObjectOptions.features.sigma_m", features.sigma_m);
+  check_positive("TrackObjectOptions.features.sigma_rad", features.sigma_rad);
   check_in_range("TrackObjectOptions.max_edge_angle_rad", max_edge_angle_rad, 0, std::numbers::pi);
   check_in_range("TrackObjectOptions.min_still_share", min_still_share, 0, 1);
   check_not_negative("TrackObjectOptions.num_refinements", num_refinements);
-  check_positive("TrackObjectOptions.num_join_views", num_join_views);
-  check_in_range("TrackObjectOptions.min_join_overlap", min_join_overlap, 0, 1);
+  check_positive("TrackObjectOptions.join.num_views", join.num_views);
+  check_in_range("TrackObjectOptions.join.min_overlap", join.min_overlap, 0, 1);
   fuse.check();
   check_in_range("TrackObjectOptions.num_threads", num_threads, 1, 4096);
 }

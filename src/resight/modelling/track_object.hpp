@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "resight/cameras/match_views.hpp"
+#include "resight/cameras/plausibility.hpp"
 #include "resight/cameras/pose_graph.hpp"
 #include "resight/core/result.hpp"
 #include "resight/features/sift.hpp"
@@ -16,28 +17,36 @@
 
 namespace resight {
 
+/// Features of the views of an object, and their matches.
+struct TrackFeaturesOptions {
+  SiftOptions sift{.root_sift = true};
+  MatchViewsOptions match{.pose = {.inlier_distance_m = 0.005, .max_normal_angle_rad = 0.8, .min_inliers = 6}};
+  double sigma_m = 0.003;    ///< Standard deviation of a position from matches, for the alignment that follows.
+  double sigma_rad = 0.006;  ///< The same of its rotation.
+};
+
+/// How a second recording is joined to the first.
+struct JoinOptions {
+  int num_views = 10;         ///< Views of the second recording that are aligned to the model of the first.
+  double min_overlap = 0.06;  ///< Least mean overlap of these views with the model.
+};
+
 /// All values are ours.
 struct TrackObjectOptions {
   ObjectRegionOptions region;
   SegmentObjectOptions segment;
-  SiftOptions sift{.root_sift = true};
-  MatchViewsOptions match{.pose = {.inlier_distance_m = 0.005, .max_normal_angle_rad = 0.8, .min_inliers = 6}};
+  TrackFeaturesOptions features;
   AlignmentViewOptions view{.num_levels = 2, .min_edge_distance_px = 2, .mean_radius = 0.0125};
   AlignViewOptions align{.max_distance_m = 0.02, .min_distance_m = 0.006, .brightness_sigma = 25};
   PoseGraphOptions graph;
-  double match_sigma_m = 0.003;    ///< Of a pose that features gave, for the alignment that follows.
-  double match_sigma_rad = 0.006;  ///< The same of its rotation.
-  int num_targets = 3;             ///< Views before that a view is aligned to.
-  double min_overlap = 0.4;        ///< Of a view with those before: less, and the object is lost.
-  double max_seen_through =
-      0.25;                      ///< Of a view's points, in front of what the views before show: more, and it is lost.
-  double min_correlation = 0.2;  ///< Of brightness with them, where there is print: less, and it is lost.
-  double max_edge_angle_rad = 0.6;  ///< Between the directions of two views that are joined by an edge.
-  double min_still_share = 0.8;    ///< Of the pixels beside the object that do not change when the camera stands still.
-  int num_refinements = 2;         ///< Rounds of: fuse all views, align each to the whole.
-  int num_join_views = 10;         ///< Of a second recording that are tried on the model of the first.
-  double min_join_overlap = 0.06;  ///< Of those with that model, in the mean: less, and they cannot be joined.
-  /// Of the model that views are aligned to: its colours must be those of the light as it mostly fell.
+  int num_targets = 3;  ///< Predecessors that a view is aligned to.
+  /// Of a view with its predecessors. If its pose is not plausible, the object is lost.
+  PlausibilityOptions plausible{.min_overlap = 0.4, .max_seen_through = 0.25, .min_correlation = 0.2};
+  double max_edge_angle_rad = 0.6;  ///< Largest angle between the directions of two views that an edge joins.
+  double min_still_share = 0.8;     ///< Least share of unchanged pixels beside the object if the camera stands still.
+  int num_refinements = 2;          ///< Rounds of: fuse all views, align each to the whole.
+  JoinOptions join;
+  /// Of the model that views are aligned to. It has the colours of the most usual light.
   FuseViewsOptions fuse{.voxel_m = 0.002, .truncation_m = 0.006, .color_from = 0, .color_to = 1};
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const;

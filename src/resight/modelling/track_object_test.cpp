@@ -98,7 +98,7 @@ TEST(TrackObject, SaysWhereItIsLost) {
 
 TEST(TrackObject, RefusesBadOptions) {
   TrackObjectOptions options;
-  options.min_overlap = 2;
+  options.plausible.min_overlap = 2;
   EXPECT_THROW(options.check(), std::invalid_argument);
 }
 

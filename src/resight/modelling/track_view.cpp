@@ -14,11 +14,11 @@
 namespace resight {
 namespace {
 
-constexpr int kCropMarginPx = 24;
-constexpr int kMinWidthPx = 320;  // So that all views have the same number of levels.
+constexpr int kCropMargin_px = 24;
+constexpr int kMinWidth_px = 320;  // So that all views have the same number of levels.
 // The model may not move an approximately aligned view farther than this; it would have slid along a symmetry.
-constexpr double kMaxShiftM = 0.015;
-constexpr double kMaxTurnRad = 0.12;
+constexpr double kMaxShift_m = 0.015;
+constexpr double kMaxRotation_rad = 0.12;
 
 // Neutral lighting, because the mesh has the observed colours.
 Lighting flat_light() {
@@ -46,11 +46,11 @@ void drop_insides(const RaycastScene& scene, const Camera& camera, const Rigid3&
 
 TrainingView crop_for_tracking(const TrainingView& view) {
   TrainingView part;
-  int margin_px = kCropMarginPx;
+  int margin_px = kCropMargin_px;
   do {
     part = crop_to_object(view, margin_px);
-    margin_px += kCropMarginPx;
-  } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidthPx, view.mask.width()));
+    margin_px += kCropMargin_px;
+  } while (!part.mask.empty() && part.mask.width() < std::min(kMinWidth_px, view.mask.width()));
   return part;
 }
 
@@ -58,7 +58,7 @@ TrackView make_track_view(const TrainingView& view, const TrackObjectOptions& op
   TrainingView part = crop_for_tracking(view);
   const PreparedView prepared = prepare_view(std::move(part.frame));
   return {make_alignment_view(prepared, options.view, &part.mask),
-          ViewFeatures(extract_sift(prepared, options.sift, &part.mask))};
+          ViewFeatures(extract_sift(prepared, options.features.sift, &part.mask))};
 }
 
 std::vector<TrackView> make_track_views(std::span<const TrainingView> views, std::span<const int> chosen,
@@ -99,8 +99,8 @@ AlignedView ModelTarget::align(const AlignmentView& view, const Camera& camera, 
   AlignViewOptions align = impl_->options.align;
   align.num_threads = 1;
   if (is_known) {
-    align.prior_sigma_m = impl_->options.match_sigma_m;
-    align.prior_sigma_rad = impl_->options.match_sigma_rad;
+    align.prior_sigma_m = impl_->options.features.sigma_m;
+    align.prior_sigma_rad = impl_->options.features.sigma_rad;
   }
   return align_view(view, targets, object_from_camera, align);
 }
@@ -121,11 +121,11 @@ void refine_on_model(std::vector<TrainingView>& views, const TrackObjectOptions&
       const AlignedView aligned =
           model.align(make_alignment_view(prepared, options.view, &part.mask), camera, before, true);
       const Rigid3 step = before.inverse() * aligned.world_from_camera;
-      const double turn_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
+      const double rotation_rad = rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity());
       // Rotation and translation of the camera are coupled; the displacement of the object's surface counts.
       const Eigen::Vector3d object = before.inverse().translation;
-      if (aligned.overlap < options.min_overlap || turn_rad > kMaxTurnRad ||
-          (step * object - object).norm() > kMaxShiftM)
+      if (aligned.overlap < options.plausible.min_overlap || rotation_rad > kMaxRotation_rad ||
+          (step * object - object).norm() > kMaxShift_m)
         return;
       views[i].frame.world_from_camera = aligned.world_from_camera;
     });

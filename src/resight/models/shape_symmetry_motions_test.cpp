@@ -23,7 +23,7 @@ ObjectSymmetries round_about(const Eigen::Vector3d& axis) { return {.discrete = 
 
 Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kPi); }
 
-TEST(ShapeSymmetryMotions, OfAPrintedCanGoAllTheWayRoundInSteps) {
+TEST(ShapeSymmetryMotions, OfATexturedCanAreAllRotationsInSteps) {
   ObjectModel can = colored();
   can.shape_symmetries = round_about(kZ);
   const std::vector<Rigid3> symmetry_motions = shape_symmetry_motions(can, kPi / 18);
@@ -34,7 +34,7 @@ TEST(ShapeSymmetryMotions, OfAPrintedCanGoAllTheWayRoundInSteps) {
     EXPECT_NEAR(rotation_angle_rad(symmetry_motions[i - 1].rotation, symmetry_motions[i].rotation), kPi / 18, 1e-9);
 }
 
-TEST(ShapeSymmetryMotions, WhatIsTheSameInPrintAsWellIsNoTurn) {
+TEST(ShapeSymmetryMotions, SymmetriesOfTheTextureAreNone) {
   ObjectModel can = colored();
   can.symmetries = can.shape_symmetries = round_about(kZ);
   EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 1U);
@@ -42,7 +42,7 @@ TEST(ShapeSymmetryMotions, WhatIsTheSameInPrintAsWellIsNoTurn) {
   EXPECT_EQ(shape_symmetry_motions(can, 0.1).size(), 2U);
 }
 
-TEST(ShapeSymmetryMotions, OfABoxAreTheHalfTurnsThatItsPrintTellsApart) {
+TEST(ShapeSymmetryMotions, OfABoxAreTheHalfTurnsThatItsTextureDistinguishes) {
   ObjectModel box = colored();
   box.shape_symmetries.discrete = {half_turn(kX), half_turn(Eigen::Vector3d::UnitY()), half_turn(kZ)};
   EXPECT_EQ(shape_symmetry_motions(box, 0.1).size(), 4U);

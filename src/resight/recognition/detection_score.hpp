@@ -14,7 +14,7 @@ struct DetectionScoreOptions {
   double correspondence_weight = 0;
   double fit_weight = 0;
   double visible_weight = 0;
-  double known_weight = 0;
+  double tracked_weight = 0;
   void check() const { check_options("DetectionScoreOptions", *this); }
 };
 
@@ -25,7 +25,7 @@ inline void declare(OptionVisitor& v, DetectionScoreOptions& o) {
   v.field("correspondence_weight", o.correspondence_weight, between(0, 100), "Of log(1 + correspondences).", "fitted");
   v.field("fit_weight", o.fit_weight, between(0, 100), "Of how well its visible points are explained.", "fitted");
   v.field("visible_weight", o.visible_weight, between(0, 100), "Of the visible share of the model.", "fitted");
-  v.field("known_weight", o.known_weight, between(0, 100), "Of having been recognised there before.", "fitted");
+  v.field("tracked_weight", o.tracked_weight, between(0, 100), "Of having been recognised there before.", "fitted");
 }
 
 /// How likely an accepted hypothesis is right, in [0, 1]: of the detections with score s about a share s is.

@@ -17,8 +17,8 @@ HypothesisEvidence some_evidence() {
   evidence.fit = 0.8;
   evidence.visible_share = 0.3;
   evidence.num_correspondences = 20;
-  evidence.explained_scene = 500;
-  evidence.unary_cost = -350;
+  evidence.costs.explained_scene = 500;
+  evidence.costs.unary = -350;
   return evidence;
 }
 
@@ -27,7 +27,7 @@ constexpr DetectionScoreOptions kSome{.offset = -4,
                                       .correspondence_weight = 0.7,
                                       .fit_weight = 2,
                                       .visible_weight = 6,
-                                      .known_weight = 0.8};
+                                      .tracked_weight = 0.8};
 
 TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * 0.3;
@@ -45,17 +45,17 @@ TEST(DetectionScore, GrowsWithTheEvidence) {
     better.num_correspondences = 40;
     EXPECT_GT(detection_score(better, false, options), score) << preset;
     better = some_evidence();
-    better.unary_cost = -450;
+    better.costs.unary = -450;
     EXPECT_GT(detection_score(better, false, options), score) << preset;
   }
 }
 
 TEST(DetectionScore, IsFiniteIfNothingIsExplainedOrTheCostIsHigher) {
   HypothesisEvidence evidence = some_evidence();
-  evidence.explained_scene = 0;
+  evidence.costs.explained_scene = 0;
   const double nothing = detection_score(evidence, false, kSome);
-  evidence.explained_scene = 1e-3;
-  evidence.unary_cost = 1e9;
+  evidence.costs.explained_scene = 1e-3;
+  evidence.costs.unary = 1e9;
   const double costly = detection_score(evidence, false, kSome);
   EXPECT_GT(nothing, costly);
   EXPECT_GT(costly, 0);

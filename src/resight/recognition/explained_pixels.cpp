@@ -9,8 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxGoneShare = 0.1;  // A pose that sees more free space may be wrong.
-constexpr float kMinDepth_m = 0.1F;
+constexpr double kMaxGoneShare = 0.1;      // A pose that sees more free space may be wrong.
+constexpr float kMinDepth_m = 0.1F;        // Nearer points are beside or behind the camera.
 constexpr double kPointRadius_m = 0.0015;  // Surfaces of models are sampled about 2 mm apart.
 
 class Marker {

@@ -33,9 +33,9 @@ tolerance_m = 0.015
 weight = 3
 ```
 
-`summary.json` keeps all settings of a run. An option that has no effect in its context is refused, as is an unknown key.
-In the tables, `off` is the absence of an optional value, and `–` an option without effect in that preset. Paper: the paper
-that resight reproduces; V4R: its reference code; ours: an addition of this project.
+`summary.json` keeps all settings of a run. An option that has no effect in its context is refused, as is an unknown
+key. In the tables, `off` is the absence of an optional value, and `–` an option without effect in that preset. Paper:
+the paper that resight reproduces; V4R: its reference code; ours: an addition of this project.
 )";
 
 std::string_view unit_of(std::string_view key) {

@@ -13,7 +13,7 @@ namespace {
 
 void set_paper(RecognizerConfig& config) {
   config.changes.detection.occlusion_test = OcclusionTest::kSphericalBins;
-  config.verify.refine.max_iterations = 0;
+  config.verify.refine.max_iterations.reset();
   config.detections.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
 }
 
@@ -58,7 +58,7 @@ void set_default(RecognizerConfig& config) {
                              .gain_weight = 5.14,
                              .correspondence_weight = 0.71,
                              .visible_weight = 6.87,
-                             .known_weight = 0.83};
+                             .tracked_weight = 0.83};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.
@@ -70,7 +70,6 @@ void set_default(RecognizerConfig& config) {
 RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
-  config.features.shot.max_keypoint_depth_m = 2.0;  // Beyond, normals are noise.
   if (name == "default") {
     set_default(config);
   } else if (name == "mvr-chd" || name == "mvr") {

@@ -142,7 +142,7 @@ TEST(SceneRecognizer, RefutedHypothesesAreNotCarriedOver) {
   for (const SceneUpdate& update : c.run()) EXPECT_EQ(update.counts.merged, 2) << update.view;
 }
 
-TEST(SceneRecognizer, LateHypothesesHaveTheirTurnInTheNextView) {
+TEST(SceneRecognizer, LateHypothesesAreVerifiedInTheNextView) {
   BoxScene c;
   ViewHypotheses first = *c.store->find(0);
   const Hypothesis right = first.hypotheses[0];

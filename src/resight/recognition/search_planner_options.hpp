@@ -31,8 +31,8 @@ inline void declare(OptionVisitor& v, SearchPlannerOptions& o) {
           "ours");
   v.only_if(o.place_interval.has_value(), "place_interval", "a number", [&] {
     v.field("min_explained_share", o.min_explained_share, between(0, 1),
-            "Such a place is searched if the last view explained a smaller share of what it saw of the object. 0: only "
-            "every place_interval views.");
+            "The place of a tracked object is also searched if the last view explained a smaller share of the object. "
+            "0: only every place_interval views.");
   });
 }
 

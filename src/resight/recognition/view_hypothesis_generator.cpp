@@ -58,7 +58,7 @@ ViewHypotheses ViewHypothesisGenerator::generate(const PreparedView& view, int n
 void ViewHypothesisGenerator::extract_features(const PreparedView& view, const SearchView* searched,
                                                const Image<std::uint8_t>& explained, ViewHypotheses& made) const {
   Image<std::uint8_t> where;
-  if (searched != nullptr && config_.shape.skip_planes) where = searched->probe.off_larger_planes(largest_diameter_m_);
+  if (searched != nullptr && config_.shape.skip_planes) where = searched->scorer.off_larger_planes(largest_diameter_m_);
   if (explained.size() > 0) {
     if (where.size() == 0) where = Image<std::uint8_t>(explained.width(), explained.height(), 255);
     for (std::size_t i = 0; i < explained.size(); ++i)
@@ -90,7 +90,7 @@ void ViewHypothesisGenerator::add_from_shape(const PreparedView& view, const Sea
 // Most groups of correspondences are spurious, which their own view shows.
 void ViewHypothesisGenerator::discard_spurious(const SearchView& view, std::vector<Hypothesis>& hypotheses) const {
   if (config_.shape.min_feature_share <= 0) return;
-  const std::vector<PoseFit> fits = shapes_.look_at(view, hypotheses);
+  const std::vector<PoseFit> fits = shapes_.score_hypotheses(view, hypotheses);
   std::vector<Hypothesis> kept;
   for (std::size_t h = 0; h < hypotheses.size(); ++h)
     if (fits[h].explained_share >= config_.shape.min_feature_share) kept.push_back(std::move(hypotheses[h]));

@@ -10,11 +10,12 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxTurn_rad = 0.26;  // A surface seen from a direction that differs more (15 deg) is searched again.
-constexpr double kMaxDepth_m = 2.0;    // Surfaces farther away do not count: nothing is recognised there.
-constexpr std::size_t kRememberedViews = 4;
-constexpr int kPixelStep = 4;
-constexpr float kMinEdgeDistance_px = 3;  // Nearer to depth edges, measurements of the same surface vary.
+// A surface seen from a direction that differs more (15 deg) is searched again.
+constexpr double kMaxRotation_rad = 0.26;
+constexpr double kMaxDepth_m = 2.0;          // Surfaces farther away do not count: nothing is recognised there.
+constexpr std::size_t kRememberedViews = 4;  // Searched views that a surface is compared with; bounds time and memory.
+constexpr int kPixelStep = 4;                // Every fourth row and column is tested, for speed.
+constexpr float kMinEdgeDistance_px = 3;     // Nearer to depth edges, measurements of the same surface vary.
 constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As in change detection.
 
 // Whether one of the pixels around has the depth of the point.
@@ -66,7 +67,7 @@ bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResu
 
 bool ViewNovelty::was_searched(const Eigen::Vector3f& p_in_world, const Eigen::Vector3f& eye_in_world) const {
   const Eigen::Vector3f ray = p_in_world - eye_in_world;
-  const auto min_cosine = static_cast<float>(std::cos(kMaxTurn_rad));
+  const auto min_cosine = static_cast<float>(std::cos(kMaxRotation_rad));
   for (const SearchedView& searched : searched_) {
     const Rigid3f camera_from_world(searched.world_from_camera.inverse());
     const Eigen::Vector3f p = camera_from_world * p_in_world;

@@ -12,7 +12,7 @@ namespace {
 
 // Squared Mahalanobis distance between given and aligned pose below which the given one stands: chi-squared with 6
 // degrees of freedom, one in 1,000 by chance.
-constexpr double kMinSurprise = 22.5;
+constexpr double kMinMahalanobis_sq = 22.5;
 // A given pose is not off by more standard deviations: then it is the alignment that is wrong.
 constexpr double kMaxSigmas = 4;
 
@@ -46,7 +46,7 @@ Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& world_f
   near.num_levels = 1;
   if (!is_surprising(align_view(view, targets, world_from_camera, near), world_from_camera)) return world_from_camera;
   const AlignedView aligned = align_view(view, targets, world_from_camera, align_);
-  const AlignedView given = judge_alignment(view, targets, world_from_camera, align_);
+  const AlignedView given = evaluate_alignment(view, targets, world_from_camera, align_);
   if (aligned.overlap < std::max(options_.min_overlap, given.overlap)) return world_from_camera;
   const Twist off = to_twist(aligned.world_from_camera.inverse() * world_from_camera);
   const bool too_far =
@@ -56,7 +56,7 @@ Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& world_f
 
 bool CameraCorrector::is_surprising(const AlignedView& aligned, const Rigid3& world_from_camera) const {
   const Twist off = to_twist(aligned.world_from_camera.inverse() * world_from_camera);
-  return off.dot(aligned.information * off) > kMinSurprise;
+  return off.dot(aligned.information * off) > kMinMahalanobis_sq;
 }
 
 }  // namespace resight

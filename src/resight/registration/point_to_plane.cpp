@@ -28,11 +28,12 @@ double StepEquations::step(Rigid3& pose, const Eigen::Vector3d& middle, double r
   Matrix6 damped = matrix;
   damped.diagonal().array() += kDamping * matrix.trace() / 6;
   const Vector6 x = damped.ldlt().solve(right);
-  const Eigen::Vector3d turn = x.head<3>() / radius_m;
+  const Eigen::Vector3d rotation = x.head<3>() / radius_m;
   const Eigen::Vector3d moved_middle = pose * middle;
-  pose.rotation = Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? turn.normalized() : Eigen::Vector3d::UnitX())
-                      .toRotationMatrix() *
-                  pose.rotation;
+  pose.rotation =
+      Eigen::AngleAxisd(rotation.norm(), rotation.norm() > 0 ? rotation.normalized() : Eigen::Vector3d::UnitX())
+          .toRotationMatrix() *
+      pose.rotation;
   pose.translation = moved_middle + x.tail<3>() - pose.rotation * middle;
   return x.norm();
 }

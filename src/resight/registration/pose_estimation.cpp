@@ -17,7 +17,7 @@ namespace {
 constexpr float kNotInlier = std::numeric_limits<float>::infinity();
 constexpr double kConfidence = 0.9999;    // Probability that at least one sample without outliers is drawn.
 constexpr int kSamplesPerIteration = 50;  // At most this many samples are drawn per scored pose.
-constexpr int kMaxRefinements = 50;
+constexpr int kMaxRefinements = 50;       // Ends alternation between two sets of inliers.
 // Metres and radians. A refinement that moves the pose by less has converged.
 constexpr double kStill = 5e-5;
 // Ratio of the two largest singular values of the cross-covariance below which the pairs count as collinear. It equals

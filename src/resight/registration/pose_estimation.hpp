@@ -31,10 +31,10 @@ inline void declare(OptionVisitor& v, EstimatePoseOptions& o) {
   v.field("inlier_distance_m", o.inlier_distance_m, positive(),
           "Correspondences within this distance agree with a pose.", "V4R");
   v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi),
-          "...if the angle between their normals is smaller.", "V4R (cosine of 0.8)");
+          "Largest angle between the normals of an inlier.", "V4R (cosine of 0.8)");
   v.field("max_iterations", o.max_iterations, at_least(1),
           "Iterations of RANSAC; fewer if the share of inliers allows.");
-  v.field("min_inliers", o.min_inliers, at_least(3), "Poses with fewer inliers are none.");
+  v.field("min_inliers", o.min_inliers, at_least(3), "Poses with fewer inliers are rejected.");
   v.seed(o.seed);
 }
 

@@ -7,6 +7,7 @@
 namespace resight {
 namespace {
 
+// Directions with less information than this share of the pairs are free.
 constexpr double kFreeShare = 0.01;
 
 // Converts a twist about the middle of the points to one about the object's centre.

@@ -92,21 +92,21 @@ TEST(EstimatePoseUncertainty, ABoxIsFixed) {
   EXPECT_GT(u.covariance.diagonal().minCoeff(), 0);
 }
 
-TEST(EstimatePoseUncertainty, ACanTurnsAboutItsAxis) {
+TEST(EstimatePoseUncertainty, ACanRotatesAboutItsAxis) {
   const PoseUncertainty u = of_solid(Shape::kCylinder, {0.07, 0.07, 0.1});
   ASSERT_EQ(u.free_directions.size(), 1U);
   EXPECT_GT(std::abs(u.free_directions[0][2]), 0.95);
   EXPECT_GT(std::sqrt(u.covariance(2, 2)), 5 * std::sqrt(u.covariance(0, 0)));
 }
 
-TEST(EstimatePoseUncertainty, ABallTurnsAboutAllAxes) {
+TEST(EstimatePoseUncertainty, ABallRotatesAboutAllAxes) {
   const PoseUncertainty u = of_solid(Shape::kSphere, {0.08, 0.08, 0.08});
   ASSERT_EQ(u.free_directions.size(), 3U);
   for (const Vector6& direction : u.free_directions) EXPECT_GT(direction.head<3>().norm(), 0.9);
   EXPECT_LT(std::sqrt(u.covariance.bottomRightCorner<3, 3>().diagonal().maxCoeff()), 0.002);
 }
 
-TEST(EstimatePoseUncertainty, AFaceSlidesAndTurnsInItsPlane) {
+TEST(EstimatePoseUncertainty, AFaceSlidesAndRotatesInItsPlane) {
   const PoseUncertainty u = of_solid(Shape::kBox, {0.08, 0.06, 0.1}, 0.9F);
   ASSERT_EQ(u.free_directions.size(), 3U);
   EXPECT_LT(std::sqrt(u.covariance(5, 5)), 0.003);  // Vertical.

@@ -36,18 +36,18 @@ using TwistMatrix = Eigen::Matrix<double, 6, 6>;
 
 /// Rotation by the rotation vector and translation, applied separately (not the SE(3) exponential).
 [[nodiscard]] inline Rigid3 from_twist(const Twist& twist) {
-  const Eigen::Vector3d turn = twist.head<3>();
-  const double angle_rad = turn.norm();
+  const Eigen::Vector3d rotation = twist.head<3>();
+  const double angle_rad = rotation.norm();
   Rigid3 motion = Rigid3::from_translation(twist.tail<3>());
-  if (angle_rad > 0) motion.rotation = Eigen::AngleAxisd(angle_rad, turn / angle_rad).toRotationMatrix();
+  if (angle_rad > 0) motion.rotation = Eigen::AngleAxisd(angle_rad, rotation / angle_rad).toRotationMatrix();
   return motion;
 }
 
 /// Inverse of from_twist().
 [[nodiscard]] inline Twist to_twist(const Rigid3& motion) {
-  const Eigen::AngleAxisd turn(motion.rotation);
+  const Eigen::AngleAxisd rotation(motion.rotation);
   Twist twist;
-  twist << turn.angle() * turn.axis(), motion.translation;
+  twist << rotation.angle() * rotation.axis(), motion.translation;
   return twist;
 }
 

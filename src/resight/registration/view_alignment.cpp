@@ -127,7 +127,7 @@ class LevelTarget {
         gate_m_(static_cast<float>(gate_m)),
         min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))) {}
 
-  enum class Outcome { kNothing, kPair, kHidden, kInFront };
+  enum class Outcome { kNothing, kPair, kOccluded, kSeenThrough };
 
   Outcome add(const Samples& samples, std::size_t s, Sums& sums) const {
     const Eigen::Vector3f p = samples.points[s];
@@ -152,8 +152,8 @@ class LevelTarget {
         return Outcome::kPair;
       }
     }
-    if (offset.z() > kMaxPairDistance * gate) return Outcome::kHidden;
-    return offset.z() < -kMaxPairDistance * gate ? Outcome::kInFront : Outcome::kNothing;
+    if (offset.z() > kMaxPairDistance * gate) return Outcome::kOccluded;
+    return offset.z() < -kMaxPairDistance * gate ? Outcome::kSeenThrough : Outcome::kNothing;
   }
 
  private:
@@ -205,8 +205,8 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
       for (const LevelTarget& target : seen) {
         const LevelTarget::Outcome outcome = target.add(samples, s, sums);
         pair |= outcome == LevelTarget::Outcome::kPair;
-        hidden |= outcome == LevelTarget::Outcome::kHidden;
-        in_front |= outcome == LevelTarget::Outcome::kInFront;
+        hidden |= outcome == LevelTarget::Outcome::kOccluded;
+        in_front |= outcome == LevelTarget::Outcome::kSeenThrough;
       }
       sums.num_matched += pair;
       sums.num_seen_through += in_front && !pair && !hidden;
@@ -292,8 +292,8 @@ void AlignViewOptions::check() const {
   check_positive("num_threads", num_threads);
 }
 
-AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
-                            const Rigid3& world_from_camera, const AlignViewOptions& options) {
+AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                               const Rigid3& world_from_camera, const AlignViewOptions& options) {
   options.check();
   check_targets(view, targets);
   const Samples samples = draw_samples(view.levels[0], options.max_samples);
@@ -323,7 +323,7 @@ AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarge
     const Samples samples = draw_samples(view.levels[l], options.max_samples);
     pose = align_level(samples, targets, l, world_from_camera, pose, gate_m, options);
   }
-  return judge_alignment(view, targets, pose, options);
+  return evaluate_alignment(view, targets, pose, options);
 }
 
 }  // namespace resight

@@ -11,15 +11,14 @@ struct AlignViewOptions {
   double max_distance_m = 0.05;        ///< Farther pairs are no pairs, at the coarsest level.
   double min_distance_m = 0.008;       ///< The same at the finest level: beyond noise, within what changes.
   double max_normal_angle_rad = 0.6;   ///< Between the normals of a pair.
-  double max_noise_sigmas = 3;         ///< A pair may in any case be so far apart, in sigmas of both depths.
+  double max_noise_sigmas = 3;         ///< Lower bound of a pair's gate, in standard deviations of both depths.
   double brightness_sigma = 12;        ///< Of brightness, grey levels; 0 = depth only.
   int num_levels = 8;                  ///< Levels used, from the finest; the views may have fewer.
-  int max_iterations = 12;             ///< A level.
-  int max_samples = 6000;              ///< Points of the view used, evenly over the image, a level.
+  int max_iterations = 12;             ///< Per level.
+  int max_samples = 6000;              ///< Points of the view used, evenly over the image, per level.
   double prior_sigma_m = 0;            ///< Of the given position; 0 = nothing is known of it.
   double prior_sigma_rad = 0;          ///< Of the given rotation; 0 = nothing is known of it.
-  double information_per_pair = 0.25;  ///< Errors of neighbouring pixels are alike: one pair tells so much of what an
-                                       ///< independent one would.
+  double information_per_pair = 0.25;  ///< Information of one pair: neighbouring pixels share errors.
   int num_threads = 1;                 ///< Same bits for any value >= 1.
   void check() const;
 };
@@ -53,7 +52,7 @@ struct AlignedView {
                                      const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 
 /// Evaluates a pose without moving it: all fields of AlignedView at the finest level.
-[[nodiscard]] AlignedView judge_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
-                                          const Rigid3& world_from_camera, const AlignViewOptions& options = {});
+[[nodiscard]] AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
+                                             const Rigid3& world_from_camera, const AlignViewOptions& options = {});
 
 }  // namespace resight

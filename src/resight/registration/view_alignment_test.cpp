@@ -26,8 +26,9 @@ PreparedView prepared(const BallScene& scene, const Rigid3& pose, double noise_m
   return prepare_view(test::render_ball_scene(scene, pose, noise_m, seed));
 }
 
-Rigid3 off(const Rigid3& pose, double shift, double turn) {
-  return pose * Rigid3{Rigid3::from_axis_angle({1, -2, 0.5}, turn).rotation, shift * Eigen::Vector3d(0.6, -0.3, 0.742)};
+Rigid3 off(const Rigid3& pose, double shift, double rotation) {
+  return pose *
+         Rigid3{Rigid3::from_axis_angle({1, -2, 0.5}, rotation).rotation, shift * Eigen::Vector3d(0.6, -0.3, 0.742)};
 }
 
 class Alignment : public testing::Test {
@@ -55,7 +56,7 @@ TEST_F(Alignment, ChangedThingsDoNotPull) {
   EXPECT_LT(turn_rad(aligned.world_from_camera, second_pose()), 0.004);
 }
 
-TEST_F(Alignment, PrintFixesWhatShapeLeavesOpen) {
+TEST_F(Alignment, TextureFixesWhatShapeLeavesOpen) {
   BallScene floor;
   floor.has_ball = false;
   const Rigid3 down_a = test::look_at_point({0, -0.3, 0.9}, {0, 0, 0});
@@ -82,7 +83,7 @@ TEST_F(Alignment, BrighterLightIsNoError) {
   EXPECT_LT(shift_m(aligned.world_from_camera, second_pose()), 0.0025);
 }
 
-TEST_F(Alignment, APlainFloorIsOpenAlongItself) {
+TEST_F(Alignment, AnUntexturedFloorIsOpenAlongItself) {
   BallScene bare;
   bare.has_ball = bare.textured = false;
   const Rigid3 down = test::look_at_point({0, -0.5, 0.9}, {0, -0.2, 0});
@@ -115,9 +116,9 @@ TEST_F(Alignment, SaysHowMuchIsSeenThrough) {
   without.has_ball = false;
   const AlignmentView bare = make_alignment_view(prepared(without, first_pose()));
   const std::vector<AlignmentTarget> one{{&bare, first_pose()}};
-  const double with_ball = judge_alignment(second, one, second_pose()).seen_through;
+  const double with_ball = evaluate_alignment(second, one, second_pose()).seen_through;
   EXPECT_GT(with_ball, 0.02);  // The ball occupies what the first view saw as free space in front of the wall.
-  EXPECT_LT(judge_alignment(second, targets, second_pose()).seen_through, 0.01);
+  EXPECT_LT(evaluate_alignment(second, targets, second_pose()).seen_through, 0.01);
 }
 
 TEST_F(Alignment, SameForAnyNumberOfThreads) {
@@ -144,8 +145,8 @@ TEST_F(Alignment, MaskedPointsStillHide) {
   const Image<std::uint8_t> nothing(view.cloud.width(), view.cloud.height());
   const AlignmentView masked = make_alignment_view(view, {}, &nothing);
   const std::vector<AlignmentTarget> one{{&masked, first_pose()}};
-  EXPECT_EQ(judge_alignment(second, one, second_pose()).num_pairs, 0);
-  EXPECT_LT(judge_alignment(second, one, second_pose()).seen_through, 0.01);
+  EXPECT_EQ(evaluate_alignment(second, one, second_pose()).num_pairs, 0);
+  EXPECT_LT(evaluate_alignment(second, one, second_pose()).seen_through, 0.01);
 }
 
 TEST(AlignmentView, EmptyDepthHasNothingToAlign) {

@@ -36,13 +36,13 @@ Json found_json(const FoundCount& count) {
 }
 
 Json changes_json(const ConfigurationSummary& c) {
-  if (!c.has_changes) return nullptr;
-  const auto& delays = c.events.delays;
-  return {{"removed_points", points_json(c.points.removed)},
-          {"novel_points", points_json(c.points.novel)},
-          {"events", score_json(c.events.events)},
-          {"departures", score_json(c.events.departures)},
-          {"arrivals", score_json(c.events.arrivals)},
+  if (!c.changes.are_scored) return nullptr;
+  const auto& delays = c.changes.events.delays;
+  return {{"removed_points", points_json(c.changes.points.removed)},
+          {"novel_points", points_json(c.changes.points.novel)},
+          {"events", score_json(c.changes.events.events)},
+          {"departures", score_json(c.changes.events.departures)},
+          {"arrivals", score_json(c.changes.events.arrivals)},
           {"mean_delay_views", delays.empty() ? Json(nullptr)
                                               : Json(std::accumulate(delays.begin(), delays.end(), 0.0) /
                                                      static_cast<double>(delays.size()))},
@@ -69,12 +69,12 @@ Json configuration_json(const ConfigurationSummary& c) {
   json["num_views"] = c.num_views;
   json["score_5cm_30deg"] = score_json(c.score);
   json["score_1cm_10deg"] = score_json(c.strict_score);
-  json["center_error_m"] = {{"median", number(c.center_error_m.median)}, {"p95", number(c.center_error_m.p95)}};
-  json["rotation_error_rad"] = {{"median", number(c.rotation_error_rad.median)},
-                                {"p95", number(c.rotation_error_rad.p95)}};
-  json["ghosts"] = {{"detections", c.num_ghosts},
-                    {"former_places", c.num_former_places},
-                    {"per_former_place", number(c.ghosts_per_change())}};
+  json["center_error_m"] = {{"median", number(c.errors.center_m.median)}, {"p95", number(c.errors.center_m.p95)}};
+  json["rotation_error_rad"] = {{"median", number(c.errors.rotation_rad.median)},
+                                {"p95", number(c.errors.rotation_rad.p95)}};
+  json["ghosts"] = {{"detections", c.ghosts.num_detections},
+                    {"former_places", c.ghosts.num_former_places},
+                    {"per_former_place", number(c.ghosts.per_former_place())}};
   json["reliability"] = reliability_json(c.reliability);
   json["hypotheses"] = {{"correspondences", c.counts.correspondences},
                         {"generated", c.counts.generated},
@@ -82,13 +82,13 @@ Json configuration_json(const ConfigurationSummary& c) {
                         {"clustered", c.counts.clustered},
                         {"accepted", c.counts.accepted}};
   json["changes"] = changes_json(c);
-  json["lost_at"] = c.lost_at;
+  json["lost_at"] = c.found.lost_at;
   json["by_object"] = Json::object();
-  for (const auto& [name, count] : c.by_object) json["by_object"][name] = found_json(count);
+  for (const auto& [name, count] : c.found.by_object) json["by_object"][name] = found_json(count);
   json["by_visible_share"] = Json::array();
-  for (std::size_t i = 0; i < c.by_visible_share.size(); ++i) {
+  for (std::size_t i = 0; i < c.found.by_visible_share.size(); ++i) {
     Json bin = {{"from", i < visible_share_bins().size() ? Json(visible_share_bins()[i]) : Json(nullptr)}};
-    bin.update(found_json(c.by_visible_share[i]));
+    bin.update(found_json(c.found.by_visible_share[i]));
     json["by_visible_share"].push_back(bin);
   }
   return json;
@@ -97,13 +97,13 @@ Json configuration_json(const ConfigurationSummary& c) {
 Json times_json(const ConfigurationSummary& c) {
   Json json = key_json(c);
   json["num_views"] = c.num_views;
-  json["seconds_per_view"] = number(c.times.total_wall_s() / c.num_views);
+  json["seconds_per_view"] = number(c.times.stages.total_wall_s() / c.num_views);
   json["stages"] = Json::array();
-  for (const StageTime& stage : c.times.stages())
+  for (const StageTime& stage : c.times.stages.stages())
     json["stages"].push_back({{"stage", stage.stage},
                               {"wall_s_per_view", number(stage.wall_s / c.num_views)},
                               {"cpu_s_per_view", number(stage.cpu_s / c.num_views)}});
-  json["seconds_by_view_number"] = c.mean_view_wall_s;
+  json["seconds_by_view_number"] = c.times.mean_view_wall_s;
   return json;
 }
 

@@ -40,7 +40,7 @@ std::string plot_view_times(std::span<const ConfigurationSummary> configurations
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     const ConfigurationSummary& c = configurations[i];
     if (i + 1 < configurations.size() && series_name(configurations[i + 1]) == series_name(c)) continue;
-    PlotSeries series{fmt::format("{}, K = {}", series_name(c), c.num_previous_views), {}, c.mean_view_wall_s};
+    PlotSeries series{fmt::format("{}, K = {}", series_name(c), c.num_previous_views), {}, c.times.mean_view_wall_s};
     for (std::size_t v = 0; v < series.y.size(); ++v) series.x.push_back(static_cast<double>(v));
     plot.series.push_back(std::move(series));
   }
@@ -65,9 +65,9 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
                          "Recall", "recall", c, [](const C& x) { return x.score.recall(); }, true)},
       {"f.svg", plot_over_k(
                     "F", "F", c, [](const C& x) { return x.score.f_score(); }, true)},
-      {"ghosts.svg",
-       plot_over_k(
-           "Ghost detections", "views per former place", c, [](const C& x) { return x.ghosts_per_change(); }, false)},
+      {"ghosts.svg", plot_over_k(
+                         "Ghost detections", "views per former place", c,
+                         [](const C& x) { return x.ghosts.per_former_place(); }, false)},
       {"view_time.svg", plot_view_times(c)}};
   for (const auto& [name, text] : files)
     if (auto written = write_file(directory / name, text); !written.ok()) return written;

@@ -37,11 +37,12 @@ std::string recognition_table(Configurations configurations) {
       "rotation median | rotation 95 % | ghosts | per former place |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ConfigurationSummary& c : configurations)
-    text += fmt::format(
-        "| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} |\n", name_of(c), c.num_previous_views,
-        prf(c.score), prf(c.strict_score), format_number(1e3 * c.center_error_m.median, 1),
-        format_number(1e3 * c.center_error_m.p95, 1), format_number(kDegrees * c.rotation_error_rad.median, 1),
-        format_number(kDegrees * c.rotation_error_rad.p95, 1), c.num_ghosts, format_number(c.ghosts_per_change(), 2));
+    text += fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} |\n", name_of(c),
+                        c.num_previous_views, prf(c.score), prf(c.strict_score),
+                        format_number(1e3 * c.errors.center_m.median, 1), format_number(1e3 * c.errors.center_m.p95, 1),
+                        format_number(kDegrees * c.errors.rotation_rad.median, 1),
+                        format_number(kDegrees * c.errors.rotation_rad.p95, 1), c.ghosts.num_detections,
+                        format_number(c.ghosts.per_former_place(), 2));
   return text;
 }
 
@@ -119,18 +120,19 @@ std::string points_cells(const ChangePointScore& s) {
 std::string change_table(Configurations configurations) {
   std::string rows;
   for (const ConfigurationSummary& c : configurations) {
-    if (!c.has_changes) continue;
-    const auto& d = c.events.delays;
+    if (!c.changes.are_scored) continue;
+    const auto& d = c.changes.events.delays;
     const double mean =
         d.empty() ? std::nan("") : std::accumulate(d.begin(), d.end(), 0.0) / static_cast<double>(d.size());
     const double late = d.empty() ? std::nan("")
                                   : static_cast<double>(std::ranges::count_if(d, [](int x) { return x > 1; })) /
                                         static_cast<double>(d.size());
     rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(c),
-                        c.num_previous_views, points_cells(c.points.removed), points_cells(c.points.novel),
-                        share(c.events.events.precision()), share(c.events.events.recall()), format_number(mean, 2),
-                        share(late), share(c.events.departures.precision()), share(c.events.departures.recall()),
-                        share(c.events.arrivals.precision()), share(c.events.arrivals.recall()));
+                        c.num_previous_views, points_cells(c.changes.points.removed),
+                        points_cells(c.changes.points.novel), share(c.changes.events.events.precision()),
+                        share(c.changes.events.events.recall()), format_number(mean, 2), share(late),
+                        share(c.changes.events.departures.precision()), share(c.changes.events.departures.recall()),
+                        share(c.changes.events.arrivals.precision()), share(c.changes.events.arrivals.recall()));
   }
   if (rows.empty()) return {};
   return "\n## Changes\n\nPoints of objects that have left (removed) or arrived (novel), and events: added, moved, "
@@ -168,7 +170,7 @@ std::string loss_table(Configurations configurations, const std::vector<std::str
   text += loss_header("| preset | K | missed |", stages);
   for (const ConfigurationSummary& c : configurations)
     text += fmt::format("| {} | {} | {} |{}\n", name_of(c), c.num_previous_views, c.score.false_negatives,
-                        lost_cells(c.lost_at, stages));
+                        lost_cells(c.found.lost_at, stages));
   return text;
 }
 
@@ -182,16 +184,16 @@ std::string found_row(const std::string& first, const FoundCount& count, const s
 std::string breakdown(const ConfigurationSummary& c, const std::vector<std::string>& stages) {
   std::string text = fmt::format("\n## {}, K = {}: objects and visibility\n\n", name_of(c), c.num_previous_views);
   text += loss_header("| object | instances | recall | false |", stages);
-  for (const auto& [name, count] : c.by_object) text += found_row(name, count, stages);
+  for (const auto& [name, count] : c.found.by_object) text += found_row(name, count, stages);
   text += '\n';
   text += loss_header("| visible share | instances | recall | false |", stages);
   const auto bins = visible_share_bins();
-  for (std::size_t i = 0; i < c.by_visible_share.size(); ++i) {
-    if (i == bins.size() && c.by_visible_share[i].found + c.by_visible_share[i].missed == 0) continue;
+  for (std::size_t i = 0; i < c.found.by_visible_share.size(); ++i) {
+    if (i == bins.size() && c.found.by_visible_share[i].found + c.found.by_visible_share[i].missed == 0) continue;
     const std::string name = i == bins.size()
                                  ? "unknown"
                                  : fmt::format("{:.2f} to {:.2f}", bins[i], i + 1 < bins.size() ? bins[i + 1] : 1.0);
-    text += found_row(name, c.by_visible_share[i], stages);
+    text += found_row(name, c.found.by_visible_share[i], stages);
   }
   return text;
 }
@@ -200,7 +202,7 @@ std::string breakdown(const ConfigurationSummary& c, const std::vector<std::stri
 std::vector<std::string> stages_of(Configurations configurations) {
   std::set<std::string> names;
   for (const ConfigurationSummary& c : configurations)
-    for (const auto& [name, count] : c.lost_at) names.insert(name);
+    for (const auto& [name, count] : c.found.lost_at) names.insert(name);
   std::vector<std::string> ordered;
   for (int stage = 0; stage <= static_cast<int>(LossStage::kRejected); ++stage)
     if (const char* known = to_string(static_cast<LossStage>(stage)); names.erase(known) > 0)
@@ -239,12 +241,12 @@ std::string format_evaluation_times(const EvaluationHeader& header, Configuratio
     text += fmt::format("\n## {}, K = {}\n\n| stage | wall ms per view | CPU ms per view |\n|---|---|---|\n",
                         name_of(c), c.num_previous_views);
     double cpu_s = 0;
-    for (const StageTime& stage : c.times.stages()) {
+    for (const StageTime& stage : c.times.stages.stages()) {
       text += fmt::format("| {} | {:.2f} | {:.2f} |\n", stage.stage, 1e3 * stage.wall_s / c.num_views,
                           1e3 * stage.cpu_s / c.num_views);
       cpu_s += stage.cpu_s;
     }
-    text += fmt::format("| all | {:.2f} | {:.2f} |\n", 1e3 * c.times.total_wall_s() / c.num_views,
+    text += fmt::format("| all | {:.2f} | {:.2f} |\n", 1e3 * c.times.stages.total_wall_s() / c.num_views,
                         1e3 * cpu_s / c.num_views);
   }
   return text;

@@ -10,13 +10,13 @@
 namespace resight::report {
 namespace {
 
-struct CellLook {
+struct CellStyle {
   const char* css_class;
   const char* glyph;
   int weight;  // Of several events in one cell, the one with the largest weight is shown.
 };
 
-CellLook style_of_event(ObjectEventKind kind) {
+CellStyle style_of_event(ObjectEventKind kind) {
   switch (kind) {
     case ObjectEventKind::kFound:
       return {"found", "●", 2};
@@ -58,8 +58,8 @@ Timeline make_timeline(const ReportRun& run) {
   return timeline;
 }
 
-std::string cell(const CellLook& look, const std::string& title) {
-  return fmt::format("<span class=\"cell {}\" title=\"{}\">{}</span>", look.css_class, title, look.glyph);
+std::string cell(const CellStyle& style, const std::string& title) {
+  return fmt::format("<span class=\"cell {}\" title=\"{}\">{}</span>", style.css_class, title, style.glyph);
 }
 
 std::string timeline_table(const ReportRun& run, const Timeline& timeline, const ModelLibrary& library) {

@@ -82,7 +82,7 @@ TEST(FormatReport, LinesUpRunsOfDifferentLength) {
   EXPECT_EQ(count_of(html, "<img "), 3);
 }
 
-TEST(FormatReport, TellsWhatHappened) {
+TEST(FormatReport, DescribesWhatHappened) {
   const std::string html = report_of({make_run()});
   EXPECT_NE(html.find("title=\"view 1: moved\""), std::string::npos);
   EXPECT_NE(html.find("title=\"view 1: removed\""), std::string::npos);

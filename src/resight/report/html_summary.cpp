@@ -43,7 +43,7 @@ void add_score_rows(SummaryTable& table) {
   table.add_row("Ghosts <span class=\"soft\">objects reported at a place they have left</span>",
                 [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_ghosts); });
   table.add_row("Views with ground truth",
-                [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_judged_views); });
+                [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_scored_views); });
 }
 
 void add_cost_rows(SummaryTable& table) {
@@ -105,7 +105,7 @@ std::string summary_section(std::span<const ReportRun> runs) {
   table.add_row("Objects added, moved or removed",
                 [](const ReportRun&, const RunSummary& s) { return std::to_string(s.num_events); });
   const bool judged = std::any_of(table.summaries.begin(), table.summaries.end(),
-                                  [](const RunSummary& s) { return s.num_judged_views > 0; });
+                                  [](const RunSummary& s) { return s.num_scored_views > 0; });
   if (judged) add_score_rows(table);
   add_cost_rows(table);
   return "<h2 id=\"summary\">Summary</h2>\n<section class=\"card\"><table>" + run_header_row(runs) + "<tbody>\n" +

@@ -23,12 +23,12 @@ constexpr Rgb8 kNovelColor{30, 200, 60};
 constexpr Rgb8 kRemovedColor{235, 30, 40};
 constexpr Rgb8 kMissedColor{255, 255, 255};
 
-struct OutlineLook {
+struct OutlineStyle {
   LineStyle style = LineStyle::kSolid;
   double thickness = 1.0;  // Factor of DrawOverlayOptions::outline_px.
 };
 
-OutlineLook look_of(DetectionMark mark) {
+OutlineStyle style_of(DetectionMark mark) {
   switch (mark) {
     case DetectionMark::kUnjudged:
     case DetectionMark::kCorrect:
@@ -95,11 +95,11 @@ class OverlayPainter {
     const Rgb8 color = object_color(detection.object);
     const Outline outline = outline_of(detection.object, camera_from_world_ * detection.world_from_object);
     if (outline.empty()) return;
-    const OutlineLook look = look_of(mark);
-    const int width = line_width_px(options_.outline_px, look.thickness);
+    const OutlineStyle style = style_of(mark);
+    const int width = line_width_px(options_.outline_px, style.thickness);
     // A dark rim makes the line visible on any background.
-    report::draw_outline(canvas_, outline, {0, 0, 0}, look.style, width + 2);
-    report::draw_outline(canvas_, outline, color, look.style, width);
+    report::draw_outline(canvas_, outline, {0, 0, 0}, style.style, width + 2);
+    report::draw_outline(canvas_, outline, color, style.style, width);
     const cv::Rect box = report::bounding_box(outline);
     if (mark == DetectionMark::kGhost) cross_out(canvas_, box, color, width);
     labels_.push_back({label_of(detection, model(detection.object).name, mark), box, color});

@@ -161,8 +161,8 @@ std::string format_summary_json(const ReportRun& run) {
   json["median_view_wall_s"] = summary.median_view_wall_s;
   json["stages"] = stage_times_json(summary.times, summary.num_views);
   json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
-  if (summary.num_judged_views > 0) {
-    json["evaluation"] = {{"num_views", summary.num_judged_views},
+  if (summary.num_scored_views > 0) {
+    json["evaluation"] = {{"num_views", summary.num_scored_views},
                           {"score", score_json(summary.score)},
                           {"strict_score", score_json(summary.strict_score)},
                           {"num_ghosts", summary.num_ghosts}};

@@ -102,7 +102,7 @@ TEST(FormatDetectionsJson, HoldsAllThatIsKnown) {
   EXPECT_FALSE(view.contains("left_out"));
 }
 
-TEST(FormatDetectionsJson, TellsWhatThereWasNoTimeFor) {
+TEST(FormatDetectionsJson, NamesWhatThereWasNoTimeFor) {
   ReportRun run = make_run();
   run.views[1].update.left_out = {"shape search"};
   const json parsed = json::parse(format_detections_json(run, make_library()));

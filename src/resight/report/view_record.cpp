@@ -111,7 +111,7 @@ RunSummary summarize(const ReportRun& run) {
     view_wall_s.push_back(view.update.times.total_wall_s());
     total_wall_s += view_wall_s.back();
     if (!view.evaluation) continue;
-    ++summary.num_judged_views;
+    ++summary.num_scored_views;
     summary.score += view.evaluation->matching.score;
     summary.strict_score += view.evaluation->strict_score;
     summary.num_ghosts += static_cast<int>(view.evaluation->ghosts.size());

@@ -72,7 +72,7 @@ struct RunSummary {
   int num_views = 0;
   int num_detections = 0;
   int num_events = 0;        ///< Changes of the scene: added, moved and removed events.
-  int num_judged_views = 0;  ///< Views with ground truth, which the scores refer to.
+  int num_scored_views = 0;  ///< Views with ground truth, which the scores refer to.
   RecognitionScore score;
   RecognitionScore strict_score;
   int num_ghosts = 0;

@@ -59,7 +59,7 @@ TEST(MakeViewRecord, PictureCanBeLeftOut) {
       std::invalid_argument);
 }
 
-TEST(EvaluateView, JudgesEachDetection) {
+TEST(EvaluateView, GivesEachDetectionAVerdict) {
   const RgbdFrame frame = make_frame();
   const ModelLibrary library = make_library();
   SceneUpdate update = make_update(frame, 4);
@@ -93,7 +93,7 @@ TEST(Summarize, SumsOverViews) {
   EXPECT_EQ(summary.num_views, 2);
   EXPECT_EQ(summary.num_detections, 3);
   EXPECT_EQ(summary.num_events, 2) << "moved and removed; not the two found objects";
-  EXPECT_EQ(summary.num_judged_views, 1);
+  EXPECT_EQ(summary.num_scored_views, 1);
   EXPECT_EQ(summary.score, (RecognitionScore{3, 1, 2}));
   EXPECT_EQ(summary.strict_score, (RecognitionScore{1, 3, 4}));
   EXPECT_EQ(summary.num_ghosts, 2);

@@ -16,9 +16,9 @@ namespace resight {
 namespace {
 
 constexpr double kFullViewSpacing_m = 1.0 / 525.0;  // Pixel spacing of a Kinect at 1 m.
-constexpr float kOutlineCell_m = 0.025F;
+constexpr float kOutlineCell_m = 0.025F;            // Wider than the spacing of points, so that outlines have no gaps.
 constexpr double kMinFlatShare = 0.7;  // A segment with a smaller share of points near its own plane is curved.
-constexpr int kRefits = 3;
+constexpr int kRefits = 3;             // Each takes the points near the last fit.
 
 using Points = std::span<const Eigen::Vector3f>;
 
@@ -212,7 +212,7 @@ ScenePlanes find_scene_planes(Points points, Points normals, const SmoothSegment
 
 ScenePlanes find_planes_of_downsampled(Points points, Points normals, double spacing_m,
                                        const FindPlanesOptions& options) {
-  constexpr double kSmoothSpacings = 2;
+  constexpr double kSmoothSpacings = 2;  // Reaches the diagonal neighbours of a voxel grid.
   const SmoothSegmentsOptions segments{.max_distance_m = kSmoothSpacings * spacing_m,
                                        .num_threads = options.num_threads};
   return find_scene_planes(points, normals, find_smooth_segments(points, normals, segments), spacing_m, options);

@@ -28,7 +28,7 @@ struct SurfacePoint {
 
 /// Whether a plane is larger than an object: a smaller one may be a face of the object itself.
 [[nodiscard]] inline bool is_larger_than_object(float plane_extent_m, float object_diameter_m) {
-  constexpr float kFactor = 1.2F;
+  constexpr float kFactor = 1.2F;  // A face of the object may seem larger by noise.
   return plane_extent_m > kFactor * object_diameter_m;
 }
 

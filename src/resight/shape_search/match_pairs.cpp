@@ -12,9 +12,9 @@
 namespace resight {
 namespace {
 
-constexpr float kMinLength_m = 0.012F;  // Shorter pairs turn the pose too freely.
-constexpr float kMaxLengthDifference_m = 0.008F;
-constexpr float kMaxCosineDifference = 0.3F;  // Of normals with each other and with the line.
+constexpr float kMinLength_m = 0.012F;            // Shorter pairs leave the rotation too uncertain.
+constexpr float kMaxLengthDifference_m = 0.008F;  // Two keypoints are off by a few millimetres each.
+constexpr float kMaxCosineDifference = 0.3F;      // Of normals with each other and with the line.
 
 bool may_be_one_thing(const OrientedPointPair& model, const OrientedPointPair& scene) {
   const Eigen::Vector3f model_line = model.p2 - model.p1;
@@ -33,7 +33,7 @@ bool may_be_one_thing(const OrientedPointPair& model, const OrientedPointPair& s
 }  // namespace
 
 std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> matches, int object,
-                                                const SampledModel& model, const PoseScorer& probe,
+                                                const SampledModel& model, const PoseScorer& scorer,
                                                 const ShapeSearchOptions& options) {
   std::vector<PoseCandidate> found;
   if (options.max_matches == 0 || model.points.empty()) return found;
@@ -47,7 +47,7 @@ std::vector<PoseCandidate> poses_of_match_pairs(std::span<const Correspondence> 
       if (!may_be_one_thing(in_model, in_scene)) continue;
       const auto pose = align(in_model, in_scene);
       if (!pose) continue;
-      if (const auto candidate = first_test(object, model, *pose, probe)) found.push_back(*candidate);
+      if (const auto candidate = test_coarsely(object, model, *pose, scorer)) found.push_back(*candidate);
     }
   return found;
 }

@@ -55,7 +55,7 @@ struct TwoOfMany : BoxOnTable {
     });
   }
   std::vector<PoseCandidate> find(const ShapeSearchOptions& options = {}) const {
-    return poses_of_match_pairs(matches, 3, samples, probe, options);
+    return poses_of_match_pairs(matches, 3, samples, scorer, options);
   }
 };
 
@@ -76,10 +76,10 @@ TEST(MatchPairs, NoneWhereThereIsNothingToPair) {
   ShapeSearchOptions off;
   off.max_matches = 0;
   EXPECT_TRUE(c.find(off).empty());
-  EXPECT_TRUE(poses_of_match_pairs({}, 3, c.samples, c.probe, {}).empty());
-  EXPECT_TRUE(poses_of_match_pairs(c.matches, 3, SampledModel{}, c.probe, {}).empty());
+  EXPECT_TRUE(poses_of_match_pairs({}, 3, c.samples, c.scorer, {}).empty());
+  EXPECT_TRUE(poses_of_match_pairs(c.matches, 3, SampledModel{}, c.scorer, {}).empty());
   const std::vector<Correspondence> same(5, c.matches[11]);
-  EXPECT_TRUE(poses_of_match_pairs(same, 3, c.samples, c.probe, {}).empty());
+  EXPECT_TRUE(poses_of_match_pairs(same, 3, c.samples, c.scorer, {}).empty());
   for (Correspondence& m : c.matches) m.scene_normal.setConstant(std::numeric_limits<float>::quiet_NaN());
   EXPECT_TRUE(c.find().empty());
 }

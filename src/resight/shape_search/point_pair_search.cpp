@@ -27,10 +27,10 @@ void keep_within(const Eigen::ArrayXf& distances_sq, float radius_sq, bool of_al
 
 }  // namespace
 
-PointPairSearch::PointPairSearch(const PointCloud& scene, const PoseScorer& probe,
+PointPairSearch::PointPairSearch(const PointCloud& scene, const PoseScorer& scorer,
                                  const std::vector<SampledModel>& objects, const PointPairTable& table,
                                  std::span<const int> max_entries, const ShapeSearchOptions& options)
-    : scene_(scene), probe_(probe), objects_(objects), table_(table), max_entries_(max_entries), options_(options) {
+    : scene_(scene), scorer_(scorer), objects_(objects), table_(table), max_entries_(max_entries), options_(options) {
   coordinates_.resize(static_cast<Eigen::Index>(scene.size()), 3);
   for (std::size_t i = 0; i < scene.size(); ++i)
     coordinates_.row(static_cast<Eigen::Index>(i)) = scene.points[i].transpose().array();
@@ -65,8 +65,8 @@ std::vector<PoseCandidate> PointPairSearch::from_seed(std::size_t seed) const {
 // Objects whose bin holds many are drawn from.
 void PointPairSearch::try_point_pair(const OrientedPointPair& seen, Rng& rng, std::vector<PoseCandidate>& found) const {
   const auto bin = point_pair_bin(seen, table_.max_length_m());
-  const int first = probe_.pixel_of(seen.p1);
-  const int second = probe_.pixel_of(seen.p2);
+  const int first = scorer_.pixel_of(seen.p1);
+  const int second = scorer_.pixel_of(seen.p2);
   if (!bin || first < 0 || second < 0) return;
   const std::span<const PointPairEntry> entries = table_.find(*bin);
   for (std::size_t begin = 0; begin < entries.size();) {
@@ -75,8 +75,8 @@ void PointPairSearch::try_point_pair(const OrientedPointPair& seen, Rng& rng, st
     const auto count = static_cast<std::uint32_t>(end - begin);
     const auto tries = std::min(count, static_cast<std::uint32_t>(max_entries_[entries[begin].object]));
     for (std::uint32_t t = 0; t < tries; ++t)
-      try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, probe_.chroma_at(first),
-                probe_.chroma_at(second), found);
+      try_entry(entries[begin + (tries == count ? t : rng.below(count))], seen, scorer_.chroma_at(first),
+                scorer_.chroma_at(second), found);
     begin = end;
   }
 }
@@ -85,15 +85,15 @@ void PointPairSearch::try_entry(const PointPairEntry& entry, const OrientedPoint
                                 const Eigen::Vector2f& first, const Eigen::Vector2f& second,
                                 std::vector<PoseCandidate>& found) const {
   const SampledModel& model = objects_[entry.object];
-  const float max_chroma = static_cast<float>(CountSamplesOptions{}.max_chroma_difference);
-  if (!model.chroma.empty() && std::max((model.chroma[entry.first] - first).squaredNorm(),
-                                        (model.chroma[entry.second] - second).squaredNorm()) > max_chroma * max_chroma)
+  const float max_difference = static_cast<float>(CountSamplesOptions{}.max_chroma_difference);
+  if (!model.chroma.empty() && !(is_similar_chroma(model.chroma[entry.first], first, max_difference) &&
+                                 is_similar_chroma(model.chroma[entry.second], second, max_difference)))
     return;
   const auto pose = align(
       {model.points[entry.first], model.normals[entry.first], model.points[entry.second], model.normals[entry.second]},
       seen);
   if (!pose) return;
-  if (const auto candidate = first_test(entry.object, model, *pose, probe_)) found.push_back(*candidate);
+  if (const auto candidate = test_coarsely(entry.object, model, *pose, scorer_)) found.push_back(*candidate);
 }
 
 }  // namespace resight

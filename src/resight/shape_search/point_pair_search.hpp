@@ -11,14 +11,14 @@
 
 namespace resight {
 
-/// Dipoles of one view, and the poses they stand for. All arguments must outlive it; camera frame.
+/// Poses from the oriented point pairs of one view. All arguments must outlive it; camera frame.
 class PointPairSearch {
  public:
-  /// `max_entries`: of each object, per dipole (in place of options.max_entries).
-  PointPairSearch(const PointCloud& scene, const PoseScorer& probe, const std::vector<SampledModel>& objects,
+  /// `max_entries`: of each object, per oriented point pair (in place of options.max_entries).
+  PointPairSearch(const PointCloud& scene, const PoseScorer& scorer, const std::vector<SampledModel>& objects,
                   const PointPairTable& table, std::span<const int> max_entries, const ShapeSearchOptions& options);
 
-  /// Poses that pass the first test, of dipoles from one scene point to others around it.
+  /// Poses that pass the coarse test, from the pairs of one scene point and others around it.
   [[nodiscard]] std::vector<PoseCandidate> from_seed(std::size_t seed) const;
 
  private:
@@ -28,7 +28,7 @@ class PointPairSearch {
                  const Eigen::Vector2f& second, std::vector<PoseCandidate>& found) const;
 
   const PointCloud& scene_;
-  const PoseScorer& probe_;
+  const PoseScorer& scorer_;
   const std::vector<SampledModel>& objects_;
   const PointPairTable& table_;
   std::span<const int> max_entries_;

@@ -12,9 +12,9 @@
 namespace resight {
 namespace {
 
-constexpr double kDistanceBin_m = 0.01;
+constexpr double kDistanceBin_m = 0.01;     // A few times the depth noise at 1 m.
 constexpr std::uint32_t kAngleBins = 10;    // Of 0 to 180 deg.
-constexpr std::uint32_t kTorsionBins = 20;  // Of a whole turn.
+constexpr std::uint32_t kTorsionBins = 20;  // Of 360 deg.
 constexpr float kFlatCosine = 0.26F;        // 15 deg.
 constexpr float kMinSquare = 0.2F;          // Part of a normal that is square to the line.
 
@@ -78,13 +78,13 @@ std::optional<Rigid3f> align(const OrientedPointPair& from, const OrientedPointP
 }
 
 PointPairTable::PointPairTable(std::span<const Samples> objects) {
-  require(objects.size() <= std::numeric_limits<std::uint16_t>::max(), "DipoleTable: too many objects");
+  require(objects.size() <= std::numeric_limits<std::uint16_t>::max(), "PointPairTable: too many objects");
   for (const Samples& s : objects) max_length_m_ = std::max(max_length_m_, s.max_length_m);
   std::vector<std::pair<std::uint32_t, PointPairEntry>> found;
   for (std::size_t o = 0; o < objects.size(); ++o) {
     const Samples& s = objects[o];
     require(s.points.size() <= std::numeric_limits<std::uint16_t>::max() && s.points.size() == s.normals.size(),
-            "DipoleTable: too many samples, or not as many normals");
+            "PointPairTable: too many samples, or not as many normals");
     for (std::size_t i = 0; i < s.points.size(); ++i)
       for (std::size_t j = 0; j < s.points.size(); ++j) {
         const double distance = (s.points[i] - s.points[j]).norm();

@@ -10,7 +10,7 @@
 
 namespace resight {
 
-/// Two oriented points (a dipole; Winkelbach, Molkenstruck and Wahl 2006). Unit normals.
+/// Two points with unit normals (Winkelbach, Molkenstruck and Wahl 2006).
 struct OrientedPointPair {
   Eigen::Vector3f p1, n1, p2, n2;
 };
@@ -38,8 +38,8 @@ class PointPairTable {
   struct Samples {
     std::span<const Eigen::Vector3f> points;
     std::span<const Eigen::Vector3f> normals;
-    double min_length_m = 0;  ///< Of a dipole...
-    double max_length_m = 0;  ///< ...both inclusive.
+    double min_length_m = 0;  ///< Of a pair: inclusive.
+    double max_length_m = 0;  ///< Of a pair: inclusive.
   };
   PointPairTable() = default;
   /// At most 65,535 objects with as many samples each.

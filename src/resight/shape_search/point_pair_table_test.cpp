@@ -50,7 +50,7 @@ TEST(PointPairBin, DoesNotChangeWithTheFrame) {
   EXPECT_GE(same, num_bins - 3);  // Rounding at the border of a bin.
 }
 
-TEST(PointPairBin, TellsAMirrorImage) {
+TEST(PointPairBin, DistinguishesAMirrorImage) {
   const OrientedPointPair d{{0, 0, 0}, {0, 1, 0}, {0.1F, 0, 0}, Eigen::Vector3f(0, 1, 1).normalized()};
   OrientedPointPair mirrored = d;
   mirrored.n2.z() = -mirrored.n2.z();
@@ -66,7 +66,7 @@ TEST(PointPairBin, PlanesAndLengthsOutOfRangeHaveNone) {
   EXPECT_FALSE(point_pair_bin({{0, 0, 0}, up, {0, 0, 0}, {1, 0, 0}}, kMaxLength_m));
 }
 
-TEST(Align, PutsADipoleOntoItsImage) {
+TEST(Align, MapsAnOrientedPointPairOntoItsImage) {
   Rng rng(2);
   int num_aligned = 0;
   for (int i = 0; i < 200; ++i) {

@@ -17,18 +17,18 @@
 namespace resight {
 namespace {
 
-constexpr double kSpacingShare = 0.05;
-constexpr double kMinSpacing_m = 0.005;
-constexpr float kMinFacing = 0.25F;    // Cosine between normal and viewing ray: steeper ones are measured badly.
-constexpr float kMinNormalDot = 0.5F;  // 60 deg.
-constexpr float kMinDepth_m = 0.05F;
-constexpr int kMinPairs = 15;
-constexpr float kCellSpacings = 1.5F;  // Cells of a silhouette, in spacings of the samples: without holes.
-constexpr float kMaxContinuationOffset_m = 0.005F;
-constexpr float kMaxGain = 0.25F;  // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
-constexpr float kMinPlane_m = 0.1F;
-constexpr float kPlaneDistance_m = 0.01F;
-constexpr float kMinPlaneDot = 0.87F;  // 30 deg.
+constexpr double kSpacingShare = 0.05;   // Of the diameter; grows until max_samples suffice.
+constexpr double kMinSpacing_m = 0.005;  // The resolution of verification.
+constexpr float kMinFacing = 0.25F;      // Cosine between normal and viewing ray: steeper ones are measured badly.
+constexpr float kMinNormalDot = 0.5F;    // 60 deg, as kMaxInlierAngle_rad of verification.
+constexpr float kMinDepth_m = 0.05F;     // Nearer points are beside or behind the camera.
+constexpr int kMinPairs = 15;            // Fewer hold six unknowns too weakly.
+constexpr float kCellSpacings = 1.5F;    // Cells of a silhouette, in spacings of the samples: without holes.
+constexpr float kMaxContinuationOffset_m = 0.005F;  // As ContinuationClutter::max_offset_m of verification.
+constexpr float kMaxGain = 0.25F;    // Of a score, from few samples to all: 0.5 % of the poses that hold gain more.
+constexpr float kMinPlane_m = 0.1F;  // Smaller planes may be faces of any object.
+constexpr float kPlaneDistance_m = 0.01F;  // As PlaneOptions::max_distance_m of verification.
+constexpr float kMinPlaneDot = 0.87F;      // 30 deg: normals of single pixels are noisy.
 const Eigen::Vector3f kNoNormal = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
 // Mean distance to the nearest other sample.
@@ -141,11 +141,11 @@ float PoseScorer::margin_at_center(const SampledModel& model, const Rigid3f& cam
 }
 
 // classify_surface() for vector instructions: no branches in its loops, and one margin for all samples of a pose.
-SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_from_object,
-                               const CountSamplesOptions& options, double min_score) const {
+SampleCounts PoseScorer::score_coarse(const SampledModel& model, const Rigid3f& camera_from_object,
+                                      const CountSamplesOptions& options, double min_score) const {
   SampleCounts counts;
   const bool has_colors = !model.chroma.empty();
-  const float max_chroma_sq = static_cast<float>(options.max_chroma_difference * options.max_chroma_difference);
+  const float max_chroma_difference = static_cast<float>(options.max_chroma_difference);
   const float margin_m = margin_at_center(model, camera_from_object, options.margin);
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const PosedBlock posed = project(model.blocks[b], camera_from_object);
@@ -160,13 +160,14 @@ SampleCounts PoseScorer::count(const SampledModel& model, const Rigid3f& camera_
       const int on_plane = int{is_larger_than_object(pixel.plane_extent_m, model.diameter_m)};
       const int confirmed = near & ~on_plane;
       counts.facing += posed.faces[k];
-      counts.hidden += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
-      counts.through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
+      counts.occluded += (posed.faces[k] & ~posed.inside[k]) | (measured & int{ahead_m < -margin_m});
+      counts.seen_through += (measured & int{ahead_m > margin_m}) | (near & on_plane);
       counts.confirmed += confirmed;
-      if (has_colors) counts.off_color += confirmed & int{(chroma[k] - pixel.chroma).squaredNorm() > max_chroma_sq};
+      if (has_colors)
+        counts.wrong_color += confirmed & int{!is_similar_chroma(chroma[k], pixel.chroma, max_chroma_difference)};
     }
     const float share_left = 1 - static_cast<float>(counts.facing) / static_cast<float>(options.max_samples);
-    counts.gave_up = counts.through + counts.off_color > options.max_wrong + counts.facing / 4 ||
+    counts.gave_up = counts.seen_through + counts.wrong_color > options.max_wrong + counts.facing / 4 ||
                      counts.score() < static_cast<float>(min_score) - kMaxGain * std::max(0.0F, share_left);
     if (counts.gave_up || counts.facing >= options.max_samples) break;
   }
@@ -270,7 +271,7 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
                                 float margin_m, Confirmed& confirmed) const {
   ++confirmed.facing;
   if (posed.inside[k] == 0) {
-    ++confirmed.hidden;
+    ++confirmed.occluded;
     return;
   }
   const auto at = static_cast<std::size_t>(posed.pixel[k]);
@@ -280,7 +281,7 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
   if (evidence == Evidence::kUnobserved) return;
   const Eigen::Vector3f normal(posed.samples.nx[k], posed.samples.ny[k], posed.samples.nz[k]);
   if (evidence == Evidence::kOccluded) {
-    ++confirmed.hidden;
+    ++confirmed.occluded;
   } else if (evidence == Evidence::kSeenThrough || is_larger_than_object(pixel.plane_extent_m, model.diameter_m) ||
              oriented_[at].normal().dot(normal) < kMinNormalDot) {  // Not so without a normal.
     ++confirmed.wrong;
@@ -344,7 +345,7 @@ PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {
   if (confirmed.samples.empty()) return fit;
   fit.num_explained = static_cast<int>(confirmed.samples.size());
   fit.explained_share = static_cast<double>(fit.num_explained) / (fit.num_explained + confirmed.wrong);
-  fit.visible_share = 1 - static_cast<double>(confirmed.hidden) / confirmed.facing;
+  fit.visible_share = 1 - static_cast<double>(confirmed.occluded) / confirmed.facing;
   return fit;
 }
 

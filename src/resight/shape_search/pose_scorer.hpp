@@ -17,21 +17,20 @@
 
 namespace resight {
 
-/// Eight samples of a surface side by side, for vector instructions. Places that are not filled have no normal.
+/// Eight contiguous samples of a surface, for vector instructions. Unused entries have no normal.
 struct SampleBlock {
   static constexpr int kSize = 8;
   std::array<float, kSize> x{}, y{}, z{}, nx{}, ny{}, nz{};
 };
 
-/// An object as poses of it are tested: samples of its surface, any first part of them spread over all of it. Object
-/// frame.
+/// Samples of an object's surface for scoring poses. Any prefix covers the whole surface. Object frame.
 struct SampledModel {
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<SampleBlock> blocks;            ///< Both again.
+  std::vector<SampleBlock> blocks;            ///< The same points and normals.
   std::vector<Eigen::Vector3f> linear_light;  ///< Empty if its colours are not known.
-  std::vector<Eigen::Vector2f> chroma;        ///< chroma() of the same, under the white balance that was set; as many
-                                              ///< as the blocks have places.
+  /// chroma() of the same, under the white balance that was set; padded to whole blocks.
+  std::vector<Eigen::Vector2f> chroma;
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   double radius_m = 0;  ///< About the centre.
   float diameter_m = 0;
@@ -43,7 +42,7 @@ struct SampledModel {
 
 struct CountSamplesOptions {
   int max_samples = 40;  ///< That face the camera: counting stops with the block that has them.
-  int max_wrong = 5;     ///< Beside a quarter of those seen so far: with more, counting stops.
+  int max_wrong = 5;     ///< Counting stops with more wrong samples than this plus a quarter of those seen.
   DepthMargin margin{.base_m = 0.009, .noise_sigmas = 3};  ///< At the depth of the object's centre.
   double max_chroma_difference = 0.3;  ///< Of a* and b*, each over L* + 26: the light is not known yet.
   void check() const;
@@ -51,30 +50,30 @@ struct CountSamplesOptions {
 
 /// What a view says about the samples of an object at a pose.
 struct SampleCounts {
-  int facing = 0;        ///< Turned to the camera; of these:
-  int confirmed = 0;     ///< At the measured depth,
-  int off_color = 0;     ///< of which of another hue.
-  int through = 0;       ///< The camera looks through them, or a plane that is larger than the object lies there.
-  int hidden = 0;        ///< Behind what was measured, or outside the image.
-  bool gave_up = false;  ///< Too many wrong (off_color, through), or a score too low: the rest was not counted.
-  /// In [-1, 1): share of the samples that the view confirms, less what speaks against the pose. Hidden ones count
-  /// little.
+  int facing = 0;        ///< Facing the camera. Of these:
+  int confirmed = 0;     ///< Present.
+  int wrong_color = 0;   ///< Present, but of another chromaticity.
+  int seen_through = 0;  ///< Seen through, or on a plane larger than the object.
+  int occluded = 0;      ///< Occluded, or outside the image.
+  bool gave_up = false;  ///< Stopped early: too many wrong samples, or too low a score.
+  /// In [-1, 1): confirmed minus contradicting samples, as a share. Occluded samples count little.
   [[nodiscard]] float score() const {
-    constexpr float kHiddenWeight = 0.4F;
-    constexpr float kPrior = 3;
-    return static_cast<float>(confirmed - off_color - through) /
-           (static_cast<float>(confirmed + through) + kHiddenWeight * static_cast<float>(hidden) + kPrior);
+    constexpr float kOccludedWeight = 0.4F;  // Occlusion neither confirms nor contradicts, but is often a wrong pose.
+    constexpr float kPrior = 3;              // Samples: few of them give no high score.
+    return static_cast<float>(confirmed - wrong_color - seen_through) /
+           (static_cast<float>(confirmed + seen_through) + kOccludedWeight * static_cast<float>(occluded) + kPrior);
   }
 };
 
 /// How well a pose fits a view.
 struct PoseFit {
-  double explained_share = 0;  ///< Confirmed by depth, normal and (in the fitted light) colour, of those not hidden and
-                               ///< of what goes on beyond the object where it should end.
-  double visible_share = 0;    ///< Not hidden, of those that face the camera.
+  /// Confirmed by depth, normal and fitted colour, of the samples that are not occluded and of the surface that
+  /// continues beyond the object.
+  double explained_share = 0;
+  double visible_share = 0;  ///< Not occluded, of those that face the camera.
   double pattern_similarity = 1;
   int num_explained = 0;
-  /// None of its numbers is less.
+  /// Whether every number is at least that of `least`.
   [[nodiscard]] bool reaches(const PoseFit& least) const {
     return explained_share >= least.explained_share && visible_share >= least.visible_share &&
            pattern_similarity >= least.pattern_similarity && num_explained >= least.num_explained;
@@ -85,7 +84,7 @@ inline constexpr PoseFit kAnyFit{.pattern_similarity = -1};
 /// Tests poses in one view. The view must outlive it; camera frame.
 class PoseScorer {
  public:
-  /// `planes`: of the view, camera frame. What lies on one that is larger than an object is not the object's.
+  /// `planes`: of the view, camera frame. Pixels on a plane larger than an object do not belong to it.
   PoseScorer(const PreparedView& view, std::span<const ScenePlane> planes, int num_threads);
 
   [[nodiscard]] const PreparedView& view() const { return view_; }
@@ -96,24 +95,24 @@ class PoseScorer {
     return pixels_[static_cast<std::size_t>(pixel)].chroma;
   }
 
-  /// Non-zero where no plane lies that is larger than objects of this diameter: where keypoints may be theirs.
+  /// Non-zero where keypoints may belong to objects of this diameter: not on a larger plane.
   [[nodiscard]] Image<std::uint8_t> off_larger_planes(float diameter_m) const;
 
-  /// The first test: quick, of rough poses. It gives up on those that will hardly reach `min_score`.
-  [[nodiscard]] SampleCounts count(const SampledModel& model, const Rigid3f& camera_from_object,
-                                   const CountSamplesOptions& options, double min_score = -1) const;
+  /// Coarse score of a rough pose. Stops if `min_score` is out of reach.
+  [[nodiscard]] SampleCounts score_coarse(const SampledModel& model, const Rigid3f& camera_from_object,
+                                          const CountSamplesOptions& options, double min_score = -1) const;
   /// Point-to-plane ICP with the scene points in the same pixels (Blais and Levine 1995). The pose as far as it got.
   [[nodiscard]] Rigid3 refine(const SampledModel& model, const Rigid3& camera_from_object, int max_iterations,
                               double max_distance_m) const;
-  /// The light on the object at a pose that is known to be about right (photometric_fit.hpp); its chroma is not
+  /// Photometric fit of the object at a pose that is about right (photometric_fit.hpp); its chromaticity is not
   /// limited.
   [[nodiscard]] PhotometricFit fit_photometry(const SampledModel& model, const Rigid3& camera_from_object,
                                               const DepthMargin& margin, const PhotometricLimits& limits) const;
-  /// Whether the last test, without colours and what goes on beyond the object, would reach `least`.
+  /// Whether the pose can reach `least` by depth and normals alone.
   [[nodiscard]] bool fits_in_shape(const SampledModel& model, const Rigid3& camera_from_object,
                                    const DepthMargin& margin, const PoseFit& least) const;
-  /// The last test: all samples, their colours in the light that fits them best (photometric_fit.hpp). What cannot
-  /// reach `least` is not looked at to the end: its fit is then better than it should be, but does not reach it either.
+  /// Fine score: all samples, with fitted colours (photometric_fit.hpp). Stops early if `least` is out of reach; the
+  /// result is then an upper bound that does not reach it.
   [[nodiscard]] PoseFit score_fine(const SampledModel& model, const Rigid3& camera_from_object,
                                    const DepthMargin& margin, const MatchCriteria& criteria,
                                    const PoseFit& least = kAnyFit) const;
@@ -126,7 +125,7 @@ class PoseScorer {
     ColorPairs colors;                     // Empty if the model has no colours. Normals: camera frame.
     std::vector<Eigen::Vector2f> outline;  // Pixels of all that face the camera.
     int facing = 0;
-    int hidden = 0;
+    int occluded = 0;
     int wrong = 0;
   };
   // Eight samples at a pose, and the pixels they fall into.
@@ -152,13 +151,13 @@ class PoseScorer {
   [[nodiscard]] float margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
                                        const DepthMargin& margin) const;
 
-  // What the first test asks of a pixel, in one place.
+  // What the coarse test reads of a pixel, contiguous in memory.
   struct Pixel {
     float z_m = 0;             // NaN: no return.
     float plane_extent_m = 0;  // Of the plane that it lies on; 0: none.
     Eigen::Vector2f chroma = Eigen::Vector2f::Zero();
   };
-  // And what the refinement asks of it.
+  // What the refinement reads of a pixel.
   struct OrientedPixel {
     float z_m = 0;
     float nx = 0, ny = 0, nz = 0;  // NaN: no normal.
@@ -172,14 +171,20 @@ class PoseScorer {
   float fx_, fy_, cx_, cy_;  // Of the camera; centres with half a pixel, so that truncation finds the pixel.
 };
 
-/// The samples' colours for the first test, under the white balance of the scene (PhotometricFit::chroma()).
+/// The chromaticities of the samples for the coarse test, under the white balance of the scene
+/// (PhotometricFit::chroma()).
 void set_white_balance(SampledModel& model, const Eigen::Array3f& white_balance);
 
-/// a* and b* over L* + 26: what is darker has less of both, and hence the same of it (but for the dark, whose hue is
-/// noise). The first test compares colours by it, since the light is not known yet.
+/// Chromaticity as a* and b* over L* + 26, nearly independent of brightness except for dark colours. Used by the coarse
+/// score, where the light is unknown.
 [[nodiscard]] inline Eigen::Vector2f chroma(const LabColor& color) {
   const float scale = 128 / (50 * color.l + 76);
   return {scale * color.a, scale * color.b};
+}
+
+/// Whether two chroma() differ by at most this.
+[[nodiscard]] inline bool is_similar_chroma(const Eigen::Vector2f& a, const Eigen::Vector2f& b, float max_difference) {
+  return (a - b).squaredNorm() <= max_difference * max_difference;
 }
 
 }  // namespace resight

@@ -58,40 +58,40 @@ TEST(PoseScorer, CountsWhatIsThereHiddenAndSeenThrough) {
   const BoxOnTable c;
   CountSamplesOptions options;
   options.max_wrong = 1000;
-  const SampleCounts right = c.probe.count(c.samples, Rigid3f(c.truth), options);
+  const SampleCounts right = c.scorer.score_coarse(c.samples, Rigid3f(c.truth), options);
   EXPECT_GE(right.facing, options.max_samples);
   EXPECT_LT(right.facing, options.max_samples + SampleBlock::kSize);
   EXPECT_GT(right.confirmed, 0.9 * right.facing);
-  EXPECT_LT(right.off_color, 0.25 * right.facing);
+  EXPECT_LT(right.wrong_color, 0.25 * right.facing);
 
   const auto along_view = [&](double shift_m) {
     Rigid3 pose = c.truth;
     pose.translation += shift_m * pose.translation.normalized();
-    return c.probe.count(c.samples, Rigid3f(pose), options);
+    return c.scorer.score_coarse(c.samples, Rigid3f(pose), options);
   };
-  EXPECT_GT(along_view(-0.1).through, 0.9 * options.max_samples);
-  EXPECT_GT(along_view(0.1).hidden, 0.9 * options.max_samples);
+  EXPECT_GT(along_view(-0.1).seen_through, 0.9 * options.max_samples);
+  EXPECT_GT(along_view(0.1).occluded, 0.9 * options.max_samples);
 
   Rigid3 outside = c.truth;
   outside.translation.x() += 5;
-  const SampleCounts none = c.probe.count(c.samples, Rigid3f(outside), options);
+  const SampleCounts none = c.scorer.score_coarse(c.samples, Rigid3f(outside), options);
   EXPECT_GT(none.facing, 0);
-  EXPECT_EQ(none.hidden, none.facing);
+  EXPECT_EQ(none.occluded, none.facing);
 
   // Behind the camera, at whatever distance: nothing is known there.
   for (const double z : {-0.2, -1.0, -3.0}) {
     Rigid3 behind = c.truth;
     behind.translation.z() = z;
-    const SampleCounts counts = c.probe.count(c.samples, Rigid3f(behind), options);
+    const SampleCounts counts = c.scorer.score_coarse(c.samples, Rigid3f(behind), options);
     EXPECT_GT(counts.facing, 0);
-    EXPECT_EQ(counts.hidden, counts.facing) << z;
-    EXPECT_EQ(c.probe.score_fine(c.samples, behind, kMargin, {}).num_explained, 0) << z;
+    EXPECT_EQ(counts.occluded, counts.facing) << z;
+    EXPECT_EQ(c.scorer.score_fine(c.samples, behind, kMargin, {}).num_explained, 0) << z;
   }
 
   options.max_wrong = 3;
   Rigid3 near = c.truth;
   near.translation *= 0.8;
-  const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(near), options);
+  const SampleCounts stopped = c.scorer.score_coarse(c.samples, Rigid3f(near), options);
   EXPECT_TRUE(stopped.gave_up);
   EXPECT_LT(stopped.facing, 10);
 }
@@ -107,7 +107,7 @@ TEST(PoseScorer, CountsLikeClassifySurface) {
   std::array<int, 4> sum{};
   for (int trial = 0; trial < 60; ++trial) {
     const Rigid3 pose = disturb(c.truth, random(0.06), random(1), rng.uniform(-0.6, 0.6));
-    const SampleCounts counts = c.probe.count(c.samples, Rigid3f(pose), options);
+    const SampleCounts counts = c.scorer.score_coarse(c.samples, Rigid3f(pose), options);
     const float center_z_m = (Rigid3f(pose) * c.samples.center).z();
     const SurfaceEvidence evidence = classify_surface(
         {c.samples.points, c.samples.normals}, pose, {c.view.frame.camera, c.view.cloud.z},
@@ -116,8 +116,8 @@ TEST(PoseScorer, CountsLikeClassifySurface) {
     // One sample may round to another pixel in single precision.
     EXPECT_NEAR(counts.facing, evidence.count[0] + evidence.count[1] + evidence.count[2] + evidence.count[3], 1);
     EXPECT_NEAR(counts.confirmed, evidence.num(Evidence::kPresent), 1) << trial;
-    EXPECT_NEAR(counts.through, evidence.num(Evidence::kSeenThrough), 1) << trial;
-    EXPECT_NEAR(counts.hidden, evidence.num(Evidence::kOccluded), 1) << trial;
+    EXPECT_NEAR(counts.seen_through, evidence.num(Evidence::kSeenThrough), 1) << trial;
+    EXPECT_NEAR(counts.occluded, evidence.num(Evidence::kOccluded), 1) << trial;
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += evidence.count[k];
   }
   EXPECT_GT(sum[static_cast<std::size_t>(Evidence::kOccluded)], 500);
@@ -128,7 +128,7 @@ TEST(PoseScorer, CountsLikeClassifySurface) {
 TEST(PoseScorer, RefinesARoughPose) {
   const BoxOnTable c;
   const Rigid3 rough = disturb(c.truth, {0.006, -0.005, 0.007}, {1, 2, 0.5}, 0.1);
-  const Rigid3 refined = c.probe.refine(c.samples, rough, 20, 0.02);
+  const Rigid3 refined = c.scorer.refine(c.samples, rough, 20, 0.02);
   const auto error_m = [&](const Rigid3& pose) {
     double worst = 0;
     for (const Eigen::Vector3f& p : c.samples.points)
@@ -137,13 +137,13 @@ TEST(PoseScorer, RefinesARoughPose) {
   };
   EXPECT_GT(error_m(rough), 0.008);
   EXPECT_LT(error_m(refined), 0.003);
-  EXPECT_EQ(c.probe.refine(c.samples, rough, 0, 0.02).translation, rough.translation);
+  EXPECT_EQ(c.scorer.refine(c.samples, rough, 0, 0.02).translation, rough.translation);
 }
 
-TEST(PoseScorer, JudgesDepthAndColour) {
+TEST(PoseScorer, ScoresDepthAndColour) {
   const BoxOnTable c;
   const MatchCriteria colors;
-  const PoseFit right = c.probe.score_fine(c.samples, c.truth, kMargin, colors);
+  const PoseFit right = c.scorer.score_fine(c.samples, c.truth, kMargin, colors);
   EXPECT_GT(right.explained_share, 0.85);
   EXPECT_GT(right.visible_share, 0.95);
   EXPECT_GT(right.pattern_similarity, 0.7);
@@ -151,38 +151,38 @@ TEST(PoseScorer, JudgesDepthAndColour) {
   Solid other = c.box;
   other.paint = checks({50, 200, 50}, {220, 220, 220}, 0.017);
   const PoseFit wrong_print =
-      c.probe.score_fine(make_sampled_model(make_model("other", other), 300), c.truth, kMargin, colors);
+      c.scorer.score_fine(make_sampled_model(make_model("other", other), 300), c.truth, kMargin, colors);
   EXPECT_LT(wrong_print.explained_share, right.explained_share - 0.2);
 
-  Rigid3 through = c.truth;
-  through.translation *= 0.85;
-  EXPECT_LT(c.probe.score_fine(c.samples, through, kMargin, colors).explained_share, 0.3);
+  Rigid3 seen_through = c.truth;
+  seen_through.translation *= 0.85;
+  EXPECT_LT(c.scorer.score_fine(c.samples, seen_through, kMargin, colors).explained_share, 0.3);
 }
 
 TEST(PoseScorer, GivesUpOnPosesThatWillHardlyReachTheLeastScore) {
   const BoxOnTable c;
   CountSamplesOptions options;
   options.max_wrong = 1000;
-  Rigid3 hidden = c.truth;
-  hidden.translation *= 1.2;
-  EXPECT_FALSE(c.probe.count(c.samples, Rigid3f(hidden), options).gave_up);
-  const SampleCounts stopped = c.probe.count(c.samples, Rigid3f(hidden), options, 0.6);
+  Rigid3 occluded = c.truth;
+  occluded.translation *= 1.2;
+  EXPECT_FALSE(c.scorer.score_coarse(c.samples, Rigid3f(occluded), options).gave_up);
+  const SampleCounts stopped = c.scorer.score_coarse(c.samples, Rigid3f(occluded), options, 0.6);
   EXPECT_TRUE(stopped.gave_up);
   EXPECT_LT(stopped.facing, options.max_samples);
-  EXPECT_FALSE(c.probe.count(c.samples, Rigid3f(c.truth), options, 0.6).gave_up);
+  EXPECT_FALSE(c.scorer.score_coarse(c.samples, Rigid3f(c.truth), options, 0.6).gave_up);
 }
 
-TEST(PoseScorer, JudgesToTheEndWhatReachesTheLeastFit) {
+TEST(PoseScorer, ScoresInFullWhatReachesTheLeastFit) {
   const BoxOnTable c;
-  const PoseFit whole = c.probe.score_fine(c.samples, c.truth, kMargin, {});
-  const PoseFit judged = c.probe.score_fine(c.samples, c.truth, kMargin, {}, {.explained_share = 0.5});
-  EXPECT_EQ(judged.explained_share, whole.explained_share);
-  EXPECT_EQ(judged.pattern_similarity, whole.pattern_similarity);
+  const PoseFit whole = c.scorer.score_fine(c.samples, c.truth, kMargin, {});
+  const PoseFit scored = c.scorer.score_fine(c.samples, c.truth, kMargin, {}, {.explained_share = 0.5});
+  EXPECT_EQ(scored.explained_share, whole.explained_share);
+  EXPECT_EQ(scored.pattern_similarity, whole.pattern_similarity);
   Rigid3 off = c.truth;
   off.translation *= 0.85;
-  const PoseFit cut = c.probe.score_fine(c.samples, off, kMargin, {}, {.explained_share = 0.5});
+  const PoseFit cut = c.scorer.score_fine(c.samples, off, kMargin, {}, {.explained_share = 0.5});
   EXPECT_FALSE(cut.reaches({.explained_share = 0.5}));
-  EXPECT_GE(cut.explained_share, c.probe.score_fine(c.samples, off, kMargin, {}).explained_share);
+  EXPECT_GE(cut.explained_share, c.scorer.score_fine(c.samples, off, kMargin, {}).explained_share);
 }
 
 TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
@@ -195,16 +195,16 @@ TEST(PoseScorer, WhatLiesOnALargerPlaneIsNotTheObjects) {
   const SampledModel samples = make_sampled_model(make_model("card", card), 300);
   const Rigid3 pose = view.frame.world_from_camera.inverse() * card.world_from_object;
   const PoseScorer blind(view, {}, 1);
-  const PoseScorer probe(view, scene.planes, 1);
-  EXPECT_GT(blind.count(samples, Rigid3f(pose), {}).confirmed, 20);
-  const SampleCounts counts = probe.count(samples, Rigid3f(pose), {});
+  const PoseScorer scorer(view, scene.planes, 1);
+  EXPECT_GT(blind.score_coarse(samples, Rigid3f(pose), {}).confirmed, 20);
+  const SampleCounts counts = scorer.score_coarse(samples, Rigid3f(pose), {});
   EXPECT_TRUE(counts.gave_up);
   EXPECT_EQ(counts.confirmed, 0);
-  EXPECT_EQ(probe.score_fine(samples, pose, kMargin, {}).explained_share, 0);
+  EXPECT_EQ(scorer.score_fine(samples, pose, kMargin, {}).explained_share, 0);
   // A plane no larger than the object may be its own face.
   std::vector<ScenePlane> small = scene.planes;
   for (ScenePlane& plane : small) plane.extent_m = 0.15F;
-  EXPECT_GT(PoseScorer(view, small, 1).count(samples, Rigid3f(pose), {}).confirmed, 20);
+  EXPECT_GT(PoseScorer(view, small, 1).score_coarse(samples, Rigid3f(pose), {}).confirmed, 20);
 }
 
 TEST(PoseScorer, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
@@ -227,12 +227,12 @@ TEST(PoseScorer, WhatGoesOnBeyondTheObjectSpeaksAgainstIt) {
 
 TEST(PoseScorer, PixelsOutsideAndBehindAreNone) {
   const BoxOnTable c;
-  EXPECT_EQ(c.probe.pixel_of({0, 0, -1}), -1);
-  EXPECT_EQ(c.probe.pixel_of({10, 0, 1}), -1);
-  EXPECT_EQ(c.probe.pixel_of({std::numeric_limits<float>::quiet_NaN(), 0, 1}), -1);
+  EXPECT_EQ(c.scorer.pixel_of({0, 0, -1}), -1);
+  EXPECT_EQ(c.scorer.pixel_of({10, 0, 1}), -1);
+  EXPECT_EQ(c.scorer.pixel_of({std::numeric_limits<float>::quiet_NaN(), 0, 1}), -1);
   const Camera& camera = c.view.frame.camera;
   const Eigen::Vector3d corner = camera.unproject(camera.width - 0.51, camera.height - 0.51, 1);
-  EXPECT_EQ(c.probe.pixel_of(corner.cast<float>()), camera.width * camera.height - 1);
+  EXPECT_EQ(c.scorer.pixel_of(corner.cast<float>()), camera.width * camera.height - 1);
 }
 
 }  // namespace

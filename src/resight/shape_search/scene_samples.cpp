@@ -11,8 +11,8 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxPlane_m = 0.4;  // Points of larger planes (tables, walls) are not searched.
-constexpr double kSpacingStep = 1.15;
+constexpr double kMaxPlane_m = 0.4;      // Points of larger planes (tables, walls) are not searched.
+constexpr double kSpacingStep = 1.15;    // A quarter fewer points per step.
 constexpr int kMaxSpacingSteps = 40;     // 270 times the first.
 constexpr float kSimilarNormals = 0.3F;  // Cosine; below: the other side of a thin wall, or another face.
 

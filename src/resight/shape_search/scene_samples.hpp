@@ -26,7 +26,7 @@ inline void declare(OptionVisitor& v, SampleSceneOptions& o) {
   v.num_threads(o.num_threads);
 }
 
-/// A view thinned, with mean normals and colours. Camera frame.
+/// A downsampled view with mean normals and colours. Camera frame.
 struct SceneSamples {
   PointCloud points;               ///< Those that may belong to an object: not of large planes.
   std::vector<ScenePlane> planes;  ///< Of any size.

@@ -21,8 +21,8 @@
 namespace resight {
 namespace {
 
-constexpr double kMinLengthShare = 0.25;    // Of an object's diameter: shorter dipoles turn poses too freely...
-constexpr double kMaxLengthShare = 0.8;     // ...and longer ones are seldom seen whole.
+constexpr double kMinLengthShare = 0.25;    // Of an object's diameter: shorter pairs leave the rotation too uncertain.
+constexpr double kMaxLengthShare = 0.8;     // Longer pairs are seldom seen whole.
 constexpr double kMaxLength_m = 1;          // Whatever a library says of its objects: the table grows with it.
 constexpr int kMaxModelSamples = 300;       // Per object, on its surface.
 constexpr int kRefineIterations = 6;        // Of projective ICP.
@@ -31,13 +31,13 @@ constexpr double kMatchDistance_m = 0.015;  // Matches agree with a pose within 
 constexpr int kMaxRotations = 8;            // Of those of a round shape, with most samples of the right chromaticity.
 constexpr double kSamePose_m = 0.015;       // Poses nearer than this (at the object's centre),
 constexpr double kSameRotation_rad = 0.21;  // and this (12 deg, over its symmetries), are one.
-constexpr double kMinExplainedShareOfSamples = 0.1;
-constexpr double kMarginSigmas = 3;    // DepthMargin::noise_sigmas of the last test.
-constexpr double kSamePlace_m = 0.03;  // Within this, poses of one object only differ in how it is turned:
-constexpr int kMaxPerPlace = 2;        // so many are left to the verification...
-constexpr int kMaxRoundPerPlace = 1;   // ...which finds the turn of what is round by itself.
+constexpr double kMinExplainedShareOfSamples = 0.1;  // Less of the surface fits too many places.
+constexpr double kMarginSigmas = 3;                  // DepthMargin::noise_sigmas of the fine test.
+constexpr double kSamePlace_m = 0.03;                // Within this, poses of one object differ only in rotation.
+constexpr int kMaxPerPlace = 2;                      // Poses per place that are left to verification.
+constexpr int kMaxRoundPerPlace = 1;                 // Verification finds the rotation of round objects by itself.
 
-constexpr int kAlikeEntries = 4;  // Of what is round, so many entries differ by a turn only: fewer are tried.
+constexpr int kAlikeEntries = 4;  // Of round objects, this many entries differ by a rotation only: fewer are tried.
 
 SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
   options.num_threads = num_threads;
@@ -77,19 +77,19 @@ struct ShapeSearch::Impl {
     table = PointPairTable(samples);
   }
 
-  // As the verification does it (find_white_balance): the colours of rough poses are compared before their own light is
-  // known.
-  [[nodiscard]] std::vector<SampledModel> balance(const PoseScorer& probe,
+  // As in verification (find_white_balance()): the colours of rough poses are compared before their own photometric
+  // fit is known.
+  [[nodiscard]] std::vector<SampledModel> balance(const PoseScorer& scorer,
                                                   std::span<const Hypothesis> from_features) const {
-    const Rigid3 camera_from_world = probe.view().frame.world_from_camera.inverse();
+    const Rigid3 camera_from_world = scorer.view().frame.world_from_camera.inverse();
     const std::vector<float> votes = white_balance_weights(from_features, objects.size());
     std::vector<PhotometricFit> lights(from_features.size());
     for (std::size_t h = 0; h < lights.size(); ++h)
       if (votes[h] > 0)
-        lights[h] = probe.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
-                                         camera_from_world * from_features[h].world_from_object,
-                                         {.base_m = kRefineDistance_m, .noise_sigmas = kMarginSigmas},
-                                         criteria.appearance.light);
+        lights[h] = scorer.fit_photometry(objects[static_cast<std::size_t>(from_features[h].object)],
+                                          camera_from_world * from_features[h].world_from_object,
+                                          {.base_m = kRefineDistance_m, .noise_sigmas = kMarginSigmas},
+                                          criteria.appearance.light);
     const Eigen::Array3f white_balance = find_white_balance(lights, votes);
     std::vector<SampledModel> balanced = objects;
     for (SampledModel& model : balanced) set_white_balance(model, white_balance);
@@ -100,25 +100,25 @@ struct ShapeSearch::Impl {
                                                    std::span<const std::vector<Correspondence>> matches,
                                                    std::span<const Hypothesis> from_features) const {
     require(matches.empty() || matches.size() == objects.size(), "ShapeSearch::search: matches of other objects");
-    const PoseScorer& probe = view.probe;
+    const PoseScorer& scorer = view.scorer;
     if (!view.samples.points.has_normals()) return {};
-    const std::vector<SampledModel> balanced = balance(probe, from_features);
+    const std::vector<SampledModel> balanced = balance(scorer, from_features);
     std::vector<std::vector<PoseCandidate>> of_object = find_candidates(view, without_colors_of_round_shapes(balanced));
-    std::vector<std::vector<ShapeCandidate>> judged(objects.size());
+    std::vector<std::vector<ShapeCandidate>> scored(objects.size());
     parallel_for(objects.size(), options.num_threads, [&](std::size_t o) {
       if (!matches.empty()) {
-        const auto more = poses_of_match_pairs(matches[o], static_cast<int>(o), balanced[o], probe, options);
+        const auto more = poses_of_match_pairs(matches[o], static_cast<int>(o), balanced[o], scorer, options);
         of_object[o].insert(of_object[o].end(), more.begin(), more.end());
       }
       std::stable_sort(of_object[o].begin(), of_object[o].end(),
                        [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
-      judged[o] = choose(score_fine(of_object[o], balanced[o], probe));
+      scored[o] = choose(score_fine(of_object[o], balanced[o], scorer));
       if (matches.empty()) return;
-      for (ShapeCandidate& c : judged[o])
+      for (ShapeCandidate& c : scored[o])
         c.matches = agreeing_matches(matches[o], c.camera_from_object, kMatchDistance_m);
     });
     std::vector<ShapeCandidate> result;
-    for (const auto& list : judged) result.insert(result.end(), list.begin(), list.end());
+    for (const auto& list : scored) result.insert(result.end(), list.begin(), list.end());
     return result;
   }
 
@@ -131,13 +131,13 @@ struct ShapeSearch::Impl {
     for (std::size_t o = 0; o < objects.size(); ++o)
       max_entries.push_back(is_round_in_shape(o) ? std::max(1, options.max_entries / kAlikeEntries)
                                                  : options.max_entries);
-    const PointPairSearch pairs(scene, view.probe, balanced, table, max_entries, options);
+    const PointPairSearch pairs(scene, view.scorer, balanced, table, max_entries, options);
     std::vector<int> seeds(scene.size());
     std::iota(seeds.begin(), seeds.end(), 0);
     Rng(options.seed).shuffle(seeds);
     const auto max_seeds = static_cast<std::size_t>(std::ceil(view.searched_share * options.max_seeds));
     seeds.resize(std::min(seeds.size(), max_seeds));
-    std::sort(seeds.begin(), seeds.end());  // Neighbours look at the same pixels, which are then in the cache.
+    std::sort(seeds.begin(), seeds.end());  // Neighbours read the same pixels, which are then in the cache.
     std::vector<std::vector<PoseCandidate>> found(seeds.size());
     parallel_for(seeds.size(), options.num_threads,
                  [&](std::size_t s) { found[s] = pairs.from_seed(static_cast<std::size_t>(seeds[s])); });
@@ -146,9 +146,9 @@ struct ShapeSearch::Impl {
     return of_object;
   }
 
-  // A few turns are found one by one. Of many, a pair of points hardly ever gives the right one.
+  // A few symmetry motions are found one by one. Of many, a pair of points hardly ever gives the right one.
   [[nodiscard]] bool is_round_in_shape(std::size_t object) const {
-    constexpr std::size_t kMany = 12;
+    constexpr std::size_t kMany = 12;  // As MatchCriteria::symmetry_step_rad says.
     return symmetry_motions[object].size() > kMany;
   }
 
@@ -158,15 +158,15 @@ struct ShapeSearch::Impl {
     return models;
   }
 
-  // The pose, or the turns of it with most samples of the right hue.
-  [[nodiscard]] std::vector<Rigid3> turns_of(std::size_t object, const Rigid3& pose, const SampledModel& balanced,
-                                             const PoseScorer& probe) const {
+  // The pose, or its rotations with most samples of the right chromaticity.
+  [[nodiscard]] std::vector<Rigid3> rotations_of(std::size_t object, const Rigid3& pose, const SampledModel& balanced,
+                                                 const PoseScorer& scorer) const {
     if (!is_round_in_shape(object)) return {pose};
     CountSamplesOptions all{};
     all.max_samples = all.max_wrong = static_cast<int>(balanced.points.size());
     std::vector<std::pair<float, Rigid3>> scored;
-    for (const Rigid3& turn : symmetry_motions[object])
-      scored.emplace_back(probe.count(balanced, Rigid3f(pose * turn), all).score(), pose * turn);
+    for (const Rigid3& motion : symmetry_motions[object])
+      scored.emplace_back(scorer.score_coarse(balanced, Rigid3f(pose * motion), all).score(), pose * motion);
     std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<Rigid3> best;
     for (std::size_t t = 0; t < std::min(scored.size(), static_cast<std::size_t>(kMaxRotations)); ++t)
@@ -174,10 +174,10 @@ struct ShapeSearch::Impl {
     return best;
   }
 
-  // The best by the first test, no two alike, refined; those that hold.
+  // The best by the coarse test, no two alike, refined; those that pass the fine test.
   [[nodiscard]] std::vector<ShapeCandidate> score_fine(const std::vector<PoseCandidate>& candidates,
-                                                       const SampledModel& balanced, const PoseScorer& probe) const {
-    std::vector<ShapeCandidate> judged;
+                                                       const SampledModel& balanced, const PoseScorer& scorer) const {
+    std::vector<ShapeCandidate> scored;
     std::vector<Rigid3> tried;
     for (const PoseCandidate& c : candidates) {
       if (static_cast<int>(tried.size()) == options.max_refined) break;
@@ -192,17 +192,17 @@ struct ShapeSearch::Impl {
       const Rigid3 start{nearest_rotation(rough.rotation), rough.translation};
       tried.push_back(start);
       const SampledModel& model = objects[object];
-      const Rigid3 refined = probe.refine(model, start, kRefineIterations, kRefineDistance_m);
+      const Rigid3 refined = scorer.refine(model, start, kRefineIterations, kRefineDistance_m);
       const PoseFit least = least_fit(model);
-      if (is_round_in_shape(object) && !probe.fits_in_shape(model, refined, margin(), least)) continue;
-      for (const Rigid3& pose : turns_of(object, refined, balanced, probe)) {
-        const PoseFit fit = probe.score_fine(model, pose, margin(), criteria, least);
+      if (is_round_in_shape(object) && !scorer.fits_in_shape(model, refined, margin(), least)) continue;
+      for (const Rigid3& pose : rotations_of(object, refined, balanced, scorer)) {
+        const PoseFit fit = scorer.score_fine(model, pose, margin(), criteria, least);
         if (!fit.reaches(least)) continue;
         const double doubt = std::sqrt(fit.visible_share * std::max(0.0, fit.pattern_similarity));
-        judged.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
+        scored.push_back({c.object, pose, fit.explained_share * doubt, fit.num_explained, {}});
       }
     }
-    return judged;
+    return scored;
   }
 
   [[nodiscard]] PoseFit least_fit(const SampledModel& model) const {
@@ -211,11 +211,11 @@ struct ShapeSearch::Impl {
             static_cast<int>(std::ceil(num_explained))};
   }
 
-  [[nodiscard]] std::vector<ShapeCandidate> choose(std::vector<ShapeCandidate> judged) const {
-    std::stable_sort(judged.begin(), judged.end(),
+  [[nodiscard]] std::vector<ShapeCandidate> choose(std::vector<ShapeCandidate> scored) const {
+    std::stable_sort(scored.begin(), scored.end(),
                      [](const ShapeCandidate& a, const ShapeCandidate& b) { return a.quality > b.quality; });
     std::vector<ShapeCandidate> kept;
-    for (const ShapeCandidate& c : judged) {
+    for (const ShapeCandidate& c : scored) {
       if (static_cast<int>(kept.size()) == options.max_hypotheses) break;
       int num_here = 0;
       bool repeated = false;
@@ -245,7 +245,7 @@ struct ShapeSearch::Impl {
 SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options,
                        const Image<std::uint8_t>& explained)
     : samples(sample_scene(view, with_threads(options.scene, options.num_threads))),
-      probe(view, samples.planes, options.num_threads) {
+      scorer(view, samples.planes, options.num_threads) {
   if (explained.size() == 0 || samples.points.empty()) return;
   PointCloud searched = without_explained(samples.points, view.frame.camera, explained);
   searched_share = static_cast<double>(searched.size()) / static_cast<double>(samples.points.size());
@@ -264,26 +264,27 @@ std::vector<ShapeCandidate> ShapeSearch::search(const SearchView& view,
   return impl_->search(view, matches, from_features);
 }
 
-std::vector<PoseFit> ShapeSearch::look_at(const SearchView& view, std::span<const Hypothesis> hypotheses) const {
+std::vector<PoseFit> ShapeSearch::score_hypotheses(const SearchView& view,
+                                                   std::span<const Hypothesis> hypotheses) const {
   const ShapeSearchOptions& options = impl_->options;
-  const Rigid3 camera_from_world = view.probe.view().frame.world_from_camera.inverse();
+  const Rigid3 camera_from_world = view.scorer.view().frame.world_from_camera.inverse();
   std::vector<PoseFit> fits(hypotheses.size(),
-                            PoseFit{.explained_share = 1});  // Of what has no normals, nothing is said.
+                            PoseFit{.explained_share = 1});  // Models without normals are not scored.
   parallel_for(hypotheses.size(), options.num_threads, [&](std::size_t h) {
     const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(hypotheses[h].object));
     if (model.points.empty()) return;
-    const Rigid3 pose = view.probe.refine(model, camera_from_world * hypotheses[h].world_from_object, kRefineIterations,
-                                          kRefineDistance_m);
-    fits[h] = view.probe.score_fine(model, pose, impl_->margin(), impl_->criteria);
+    const Rigid3 pose = view.scorer.refine(model, camera_from_world * hypotheses[h].world_from_object,
+                                           kRefineIterations, kRefineDistance_m);
+    fits[h] = view.scorer.score_fine(model, pose, impl_->margin(), impl_->criteria);
   });
   return fits;
 }
 
 ShapeSearch::Trial ShapeSearch::score_pose(const SearchView& view, int object, const Rigid3& camera_from_object) const {
   const SampledModel& model = impl_->objects.at(static_cast<std::size_t>(object));
-  const Rigid3 refined = view.probe.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
-  return {view.probe.count(model, Rigid3f(camera_from_object), {}),
-          view.probe.score_fine(model, refined, impl_->margin(), impl_->criteria)};
+  const Rigid3 refined = view.scorer.refine(model, camera_from_object, kRefineIterations, kRefineDistance_m);
+  return {view.scorer.score_coarse(model, Rigid3f(camera_from_object), {}),
+          view.scorer.score_fine(model, refined, impl_->margin(), impl_->criteria)};
 }
 
 }  // namespace resight

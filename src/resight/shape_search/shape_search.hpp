@@ -50,9 +50,9 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
     v.field("tolerance_m", o.tolerance_m, positive(),
             "Tolerance of the depth when a refined pose is scored, plus three standard deviations of the sensor.");
     v.field("min_explained_share", o.min_explained_share, between(0, 1),
-            "Least share of the samples that are not hidden which must be explained.");
+            "Least explained share of the samples that are not occluded.");
     v.field("min_visible_share", o.min_visible_share, between(0, 1),
-            "Least share of the samples facing the camera which must be in the image and not hidden.");
+            "Least share of the samples facing the camera that must be in the image and not occluded.");
     v.field("max_hypotheses", o.max_hypotheses, at_least(0), "Hypotheses per object and view.");
     v.field(
         "min_feature_share", o.min_feature_share, between(0, 1),
@@ -63,30 +63,30 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
   v.num_threads(o.num_threads);
 }
 
-/// A view made ready for the search. It must outlive what is asked of it, and the PreparedView must outlive it.
+/// A view prepared for the search. The PreparedView must outlive it.
 struct SearchView {
-  /// Where `explained` (as large as the view; empty: nowhere) is not 0 nothing is searched, but poses are tried there.
+  /// Pixels where `explained` is not 0 start no search (size of the view; empty: none), but poses are scored there.
   SearchView(const PreparedView& view, const ShapeSearchOptions& options, const Image<std::uint8_t>& explained = {});
   SceneSamples samples;
-  PoseScorer probe;
-  double searched_share = 1;  ///< Of the samples: those not explained, and so many of the seeds.
+  PoseScorer scorer;
+  double searched_share = 1;  ///< Share of the samples that are searched; scales the number of seeds.
 };
 
 /// A pose found by shape.
 struct ShapeCandidate {
   int object = -1;  ///< Index into the library.
   Rigid3 camera_from_object;
-  double quality = 0;  ///< In [0, 1]: explained share, less for what is hidden or of another pattern.
+  double quality = 0;  ///< In [0, 1]: explained share, reduced by occlusion and by a different texture.
   int num_explained = 0;
   std::vector<int> matches;  ///< Those of the object that agree with the pose.
 };
 
-/// Finds objects by their shape, and checks them by their colours: for what has no print, and hence few matches.
+/// Finds objects by shape and checks them by colour: for untextured objects, which have few matches.
 ///
-/// Pairs of oriented points of the scene (dipoles; Winkelbach et al. 2006, Papazov and Burschka 2010) are looked up
-/// among those of all objects. Each that is alike gives a pose, which has to agree with the depth image and with the
-/// hue of a few samples; the best are refined by projective ICP and judged as the verification does. Unlike voting over
-/// such pairs, nothing is counted: one good pair is enough. Faces of one plane alone are no shape: they fix no pose.
+/// Oriented point pairs of the scene (Winkelbach et al. 2006, Papazov and Burschka 2010) are looked up among those of
+/// all objects. Each similar pair gives a pose, which must agree with the depth image and with the chromaticity of a
+/// few samples. The best are refined by projective ICP and scored like in verification. There is no voting: one good
+/// pair is enough. Pairs on one plane fix no pose.
 class ShapeSearch {
  public:
   /// The library must outlive it. Objects without normals are not searched.
@@ -95,17 +95,17 @@ class ShapeSearch {
   ShapeSearch(ShapeSearch&&) noexcept;
   ShapeSearch& operator=(ShapeSearch&&) noexcept;
 
-  /// By object, then by quality. Nothing for a view without normals. `matches` (of each object, camera frame; may be
-  /// empty): poses that two of them fix are tried as well. The white balance of the view is taken from what is known of
-  /// it, `from_features` (world frame): those with many correspondences are seldom wrong.
+  /// Sorted by object, then quality. Empty for a view without normals. `matches` (per object, camera frame; may be
+  /// empty): pairs of them also give poses. `from_features` (world frame) determine the white balance.
   [[nodiscard]] std::vector<ShapeCandidate> search(const SearchView& view,
                                                    std::span<const std::vector<Correspondence>> matches = {},
                                                    std::span<const Hypothesis> from_features = {}) const;
 
-  /// How well each hypothesis (world frame) fits a view, once refined in it: a quick look before the verification.
-  [[nodiscard]] std::vector<PoseFit> look_at(const SearchView& view, std::span<const Hypothesis> hypotheses) const;
+  /// Refines each hypothesis (world frame) in this view and scores it.
+  [[nodiscard]] std::vector<PoseFit> score_hypotheses(const SearchView& view,
+                                                      std::span<const Hypothesis> hypotheses) const;
 
-  /// What the search would make of a pose: its first test, and the judgement once refined.
+  /// Coarse score of a pose, and fine score after refinement.
   struct Trial {
     SampleCounts coarse;
     PoseFit fit;

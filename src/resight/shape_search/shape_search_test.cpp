@@ -12,7 +12,7 @@ namespace {
 
 using namespace analytic;
 
-// Three things without print, which give no keypoints on their colours; the third stands on no table.
+// Three untextured objects, which give no keypoints by their colours; the third stands on no table.
 struct PlainThings {
   Solid box{Shape::kBox, {0.12, 0.07, 0.09}, plain({200, 120, 60}), on_table(-0.12, 0.02, 0.045, 0.5)};
   Solid can{Shape::kCylinder, {0.08, 0.08, 0.1}, plain({60, 110, 190}), on_table(0.12, 0, 0.05)};
@@ -34,7 +34,7 @@ const ShapeCandidate* best_of(const std::vector<ShapeCandidate>& found, int obje
   return nullptr;
 }
 
-TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
+TEST(ShapeSearch, FindsUntexturedObjectsAndNoOther) {
   const PlainThings c;
   const auto found = ShapeSearch(c.library, {}).search(c.searched);
   int object = 0;
@@ -43,7 +43,8 @@ TEST(ShapeSearch, FindsPlainObjectsAndNoOther) {
     ASSERT_NE(best, nullptr) << object;
     const Rigid3 pose = c.view.frame.world_from_camera * best->camera_from_object;
     EXPECT_LT((pose.translation - solid->world_from_object.translation).norm(), 0.004) << object;
-    // The box looks the same turned by half a turn, the can turned about its axis: the axis that stands upright must.
+    // The box is symmetric under half a turn, the can under any rotation about its axis; the upright axis must be
+    // right.
     EXPECT_GT(std::abs(pose.rotation(2, 2)), 0.998) << object;
     EXPECT_GT(best->quality, 0.6);
     ++object;
@@ -70,8 +71,8 @@ TEST(ShapeSearch, WhatIsExplainedIsNotSearched) {
   EXPECT_TRUE(ShapeSearch(c.library, {}).search(SearchView(c.view, {}, all)).empty());
 }
 
-// Shape finds the can, and leaves its turn to the print: a pair of points alone hardly ever gives both.
-TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
+// Shape finds the can, and its texture the rotation: a pair of points alone hardly ever gives both.
+TEST(ShapeSearch, RotatesATexturedCanToTheBestTexture) {
   const Paint paint = [](const Eigen::Vector3d& p) {
     const double angle = std::atan2(p.y(), p.x());
     return angle < -1.5 ? Rgb8{200, 40, 40} : angle < 0.3 ? Rgb8{230, 220, 200} : Rgb8{50, 80, 180};
@@ -82,7 +83,7 @@ TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
   const PreparedView view = prepare_view(render({.solids = {can}}, circle_of_cameras(3)[1]).frame);
   const auto finds = [&](std::optional<double> symmetry_step_rad) {
     ShapeSearchOptions options;
-    options.max_seeds = 3;  // So few pairs of points hit the turn by chance only.
+    options.max_seeds = 3;  // With few pairs of points, the rotation is right by chance only.
     options.max_entries = 4;
     const auto found =
         ShapeSearch(library, options, {.symmetry_step_rad = symmetry_step_rad}).search(SearchView(view, options));
@@ -98,7 +99,7 @@ TEST(ShapeSearch, TurnsAPrintedCanToWhereItsPrintFits) {
 TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
   PlainThings c;
   c.library.objects[0].shape_symmetries.continuous.push_back(
-      {.axis = Eigen::Vector3d::UnitZ()});  // So that it is turned.
+      {.axis = Eigen::Vector3d::UnitZ()});  // So that it is rotated.
   ShapeSearchOptions options;
   const MatchCriteria criteria{.symmetry_step_rad = 0.1745};
   options.max_seeds = 300;
@@ -154,20 +155,20 @@ TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   EXPECT_LT(search.score_pose(c.searched, 2, truth).fit.explained_share, 0.6);
 }
 
-TEST(ShapeSearch, ALookTellsARightHypothesisFromChance) {
+TEST(ShapeSearch, ASingleViewRejectsSpuriousHypotheses) {
   PlainThings c;
   const ShapeSearch search(c.library, {});
   const std::vector<Hypothesis> hypotheses = {
       make_hypothesis(0, disturb(c.box.world_from_object, {0.004, -0.003, 0.002}, {1, 1, 0}, 0.05)),
       make_hypothesis(0, on_table(0.1, 0.3, 0.3, 1.0)), make_hypothesis(2, c.box.world_from_object)};
-  const auto fits = search.look_at(c.searched, hypotheses);
+  const auto fits = search.score_hypotheses(c.searched, hypotheses);
   ASSERT_EQ(fits.size(), 3U);
   EXPECT_GT(fits[0].explained_share, 0.8);
   EXPECT_LT(fits[1].explained_share, 0.3);  // In the air.
   EXPECT_LT(fits[2].explained_share, 0.6);
   // Of a model without normals nothing is said.
   for (ObjectModel& model : c.library.objects) model.surface.normals.clear();
-  EXPECT_EQ(ShapeSearch(c.library, {}).look_at(c.searched, hypotheses)[1].explained_share, 1.0);
+  EXPECT_EQ(ShapeSearch(c.library, {}).score_hypotheses(c.searched, hypotheses)[1].explained_share, 1.0);
 }
 
 TEST(ShapeSearchOptions, ChecksItsFields) {

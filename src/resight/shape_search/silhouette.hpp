@@ -26,11 +26,11 @@ class Silhouette {
     for (const Eigen::Vector2f& p : samples_px) cells_[index(p)] = kInside;
   }
 
-  /// Says what is known of the cell of a sample: any number from 0 on.
+  /// Stores a value >= 0 for the cell of a sample.
   void set_known(const Eigen::Vector2f& sample_px, int known) { cells_[index(sample_px)] = known; }
 
-  /// For each empty cell two cells away from the object (the cell between is the rim, which sensors smear): calls
-  /// visit(middle_px, known) with what is known of the cells of the object near it, until it returns true.
+  /// Visits the empty cells two cells away from the object; the rim between is smeared by sensors. Calls
+  /// visit(middle_px, value) with the values of nearby cells until it returns true.
   template <typename Visit>
   void visit_around(Visit&& visit) const {
     for (int y = 0; y < height_; ++y)

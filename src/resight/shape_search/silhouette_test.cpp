@@ -34,7 +34,7 @@ TEST(Silhouette, IsWalkedAroundWithTheRimLeftOut) {
   EXPECT_LT(cells, 100);
 }
 
-TEST(Silhouette, GoesOnToTheNextUntilToldThatItIsEnough) {
+TEST(Silhouette, VisitsMoreUntilVisitReturnsTrue) {
   const auto samples = disc(10, 2);
   Silhouette silhouette(samples, 4);
   silhouette.visit_around([](const Eigen::Vector2f&, int) {

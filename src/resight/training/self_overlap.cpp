@@ -116,7 +116,7 @@ Vector6 solve_damped(const NormalEquations& equations) {
   return (equations.matrix + damping * Matrix6::Identity()).ldlt().solve(equations.right);
 }
 
-TurnAxis move_axis(const TurnAxis& axis, const Vector6& twist, const Vector3d& center, double scale) {
+RotationAxis move_axis(const RotationAxis& axis, const Vector6& twist, const Vector3d& center, double scale) {
   const double angle = twist.head<3>().norm();
   const Eigen::Matrix3d turn = angle > 0 ? Rigid3::from_axis_angle(twist.head<3>(), angle).rotation
                                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
@@ -125,7 +125,7 @@ TurnAxis move_axis(const TurnAxis& axis, const Vector6& twist, const Vector3d& c
 
 }  // namespace
 
-Rigid3 turn_about(const TurnAxis& axis, double angle_rad) {
+Rigid3 rotation_about(const RotationAxis& axis, double angle_rad) {
   return Rigid3::from_translation(axis.point) * Rigid3::from_axis_angle(axis.direction, angle_rad) *
          Rigid3::from_translation(-axis.point);
 }
@@ -220,13 +220,13 @@ int SelfOverlap::find_partner(const Vector3f& point, const Vector3f& normal, dou
   return -1;
 }
 
-TurnAxis SelfOverlap::refine(TurnAxis axis, std::span<const double> angles_rad) const {
+RotationAxis SelfOverlap::refine(RotationAxis axis, std::span<const double> angles_rad) const {
   const std::size_t stride = std::max<std::size_t>(1, samples_.size() / kIcpSamples);
   double reach_m = kIcpReach * radius_m_;
   for (int step = 0; step < kIcpSteps; ++step, reach_m *= kIcpDecay) {
     NormalEquations equations;
     for (const double angle : angles_rad) {
-      const Rigid3 motion = turn_about(axis, angle);
+      const Rigid3 motion = rotation_about(axis, angle);
       const Rigid3f moved(motion);
       for (std::size_t k = 0; k < samples_.size(); k += stride) {
         const auto i = static_cast<std::size_t>(samples_[k]);

@@ -20,25 +20,25 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using internal::rotation_about;
+using internal::RotationAxis;
 using internal::SelfOverlap;
-using internal::turn_about;
-using internal::TurnAxis;
-using Axes = std::vector<TurnAxis>;
+using Axes = std::vector<RotationAxis>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kGoldenAngle_rad = 2.399963;  // no two of its multiples are the same rotation
-constexpr int kContinuousTurns = 16;
-constexpr double kMaxMeanNormal = 0.35;  // a scan may lack the underside, but not half of the object
-constexpr double kAlike = 0.8;           // principal moments with a larger quotient do not distinguish their axes
-constexpr int kCircleDirections = 36;
-constexpr int kSphereDirections = 800;        // half of them are tried, 7 deg apart
-constexpr double kDirectionError_rad = 0.07;  // largest error of the nearest tested direction
-constexpr double kMinRoughShare = 0.8;
-constexpr double kMinSeparation_rad = 0.12;  // of candidates; closer ones converge to the same axis
-constexpr std::size_t kMaxRefined = 24;      // candidates per order; an icosahedron has 15 axes of half turns
+constexpr int kContinuousTurns = 16;           // multiples of kGoldenAngle_rad that must all be symmetries
+constexpr double kMaxMeanNormal = 0.35;        // a scan may lack the underside, but not half of the object
+constexpr double kAlike = 0.8;                 // principal moments with a larger quotient do not distinguish their axes
+constexpr int kCircleDirections = 36;          // 5 deg apart
+constexpr int kSphereDirections = 800;         // half of them are tried, 7 deg apart
+constexpr double kDirectionError_rad = 0.07;   // largest error of the nearest tested direction
+constexpr double kMinRoughShare = 0.8;         // candidates with a smaller share of overlap are not refined
+constexpr double kMinSeparation_rad = 0.12;    // of candidates; closer ones converge to the same axis
+constexpr std::size_t kMaxRefined = 24;        // candidates per order; an icosahedron has 15 axes of half turns
 constexpr std::array kOrders = {12, 10, 8, 6, 5, 4, 3, 2};
-constexpr double kMinGain = 0.02;
-constexpr double kSameAxis_rad = 0.17;
+constexpr double kMinGain = 0.02;       // of the share, beyond noise: see is_of_order()
+constexpr double kSameAxis_rad = 0.17;  // 10 deg: closer axes are one
 constexpr std::array<double, 3> kSpinAngles_rad = {kGoldenAngle_rad, 2 * kGoldenAngle_rad, 3 * kGoldenAngle_rad};
 
 bool is_usable(const PointCloud& surface) {
@@ -115,8 +115,8 @@ Axes find_rough_axes(const SelfOverlap& overlap, const std::vector<Vector3d>& di
       if (shares[i] == 0) return;
       // An error e of the axis displaces the result of a rotation about it by 2 sin(angle / 2) e.
       const double slack_rad = 2 * std::abs(std::sin(angle / 2)) * kDirectionError_rad;
-      const Rigid3 turn = turn_about({directions[i], overlap.center()}, angle);
-      shares[i] = std::min(shares[i], overlap.rough_share(turn, slack_rad, kMinRoughShare));
+      const Rigid3 motion = rotation_about({directions[i], overlap.center()}, angle);
+      shares[i] = std::min(shares[i], overlap.rough_share(motion, slack_rad, kMinRoughShare));
     }
   });
   Axes axes;
@@ -135,7 +135,7 @@ Axes keep_true_axes(const SelfOverlap& overlap, Axes axes, std::span<const doubl
   });
   Axes kept;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const auto is_same = [&](const TurnAxis& other) {
+    const auto is_same = [&](const RotationAxis& other) {
       return angle_between(axes[i].direction, other.direction) < kSameAxis_rad;
     };
     if (holds[i] != 0 && std::ranges::none_of(kept, is_same)) kept.push_back(axes[i]);
@@ -143,9 +143,9 @@ Axes keep_true_axes(const SelfOverlap& overlap, Axes axes, std::span<const doubl
   return kept;
 }
 
-bool is_continuous(const SelfOverlap& overlap, const TurnAxis& axis) {
+bool is_continuous(const SelfOverlap& overlap, const RotationAxis& axis) {
   for (int k = 1; k <= kContinuousTurns; ++k)
-    if (!overlap.is_symmetry(turn_about(axis, k * kGoldenAngle_rad))) return false;
+    if (!overlap.is_symmetry(rotation_about(axis, k * kGoldenAngle_rad))) return false;
   return true;
 }
 
@@ -154,7 +154,7 @@ Vector3d meeting_point(const Axes& axes, const Vector3d& center) {
   constexpr double kPull = 1e-6;
   Matrix3d a = kPull * Matrix3d::Identity();
   Vector3d b = kPull * center;
-  for (const TurnAxis& axis : axes) {
+  for (const RotationAxis& axis : axes) {
     const Matrix3d off_axis = Matrix3d::Identity() - axis.direction * axis.direction.transpose();
     a += off_axis;
     b += off_axis * axis.point;
@@ -179,8 +179,8 @@ ObjectSymmetries::Continuous to_continuous(const Vector3d& direction, const Vect
 }
 
 // Tests a second axis perpendicular to the first one. If both are continuous, the object is a ball.
-std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const TurnAxis& axis) {
-  const TurnAxis across =
+std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const RotationAxis& axis) {
+  const RotationAxis across =
       overlap.refine({any_perpendicular(axis.direction), meeting_point({axis}, overlap.center())}, kSpinAngles_rad);
   if (!is_continuous(overlap, across)) return std::nullopt;
   const Vector3d center = meeting_point({axis, across}, overlap.center());
@@ -194,19 +194,19 @@ std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const 
 }
 
 // A half turn perpendicular to the axis, if the object is the same upside down.
-std::optional<Rigid3> find_flip(const SelfOverlap& overlap, const TurnAxis& axis) {
+std::optional<Rigid3> find_flip(const SelfOverlap& overlap, const RotationAxis& axis) {
   const Vector3d start = meeting_point({axis}, overlap.center());
-  const TurnAxis across = overlap.refine({any_perpendicular(axis.direction), start}, std::array{kPi});
+  const RotationAxis across = overlap.refine({any_perpendicular(axis.direction), start}, std::array{kPi});
   // Only the position along the axis is unknown; the axis determines the rest.
   const Vector3d point = axis.point + axis.direction.dot(across.point - axis.point) * axis.direction;
-  const Rigid3 flip = turn_about({any_perpendicular(axis.direction), point}, kPi);
+  const Rigid3 flip = rotation_about({any_perpendicular(axis.direction), point}, kPi);
   return overlap.is_symmetry(flip) ? std::optional(flip) : std::nullopt;
 }
 
 std::optional<ObjectSymmetries> find_round(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
   const Axes rough = find_rough_axes(overlap, directions.main, kSpinAngles_rad, num_threads);
   const Axes axes = keep_true_axes(overlap, rough, kSpinAngles_rad, num_threads,
-                                   [&](const TurnAxis& axis) { return is_continuous(overlap, axis); });
+                                   [&](const RotationAxis& axis) { return is_continuous(overlap, axis); });
   if (axes.empty()) return std::nullopt;
   if (std::optional<ObjectSymmetries> ball = complete_ball(overlap, axes.front())) return ball;
   ObjectSymmetries round;
@@ -217,15 +217,16 @@ std::optional<ObjectSymmetries> find_round(const SelfOverlap& overlap, const Dir
 
 /// An axis with the order of the rotations about it.
 struct OrderedAxis {
-  TurnAxis axis;
+  RotationAxis axis;
   int order = 2;
 };
 
 // A rotation that fits no better than half of its angle does not determine the order: a round object with slightly
 // varying colours passes at some angles and fails at others.
-bool is_of_order(const SelfOverlap& overlap, const TurnAxis& axis, int order) {
-  const Rigid3 turn = turn_about(axis, 2 * kPi / order);
-  return overlap.is_symmetry(turn) && overlap.share(turn) > overlap.share(turn_about(axis, kPi / order)) + kMinGain;
+bool is_of_order(const SelfOverlap& overlap, const RotationAxis& axis, int order) {
+  const Rigid3 motion = rotation_about(axis, 2 * kPi / order);
+  return overlap.is_symmetry(motion) &&
+         overlap.share(motion) > overlap.share(rotation_about(axis, kPi / order)) + kMinGain;
 }
 
 // Axes in descending order. For each axis, omits rotations that follow from those found before.
@@ -236,8 +237,8 @@ std::vector<OrderedAxis> find_ordered_axes(const SelfOverlap& overlap, const Dir
     const Axes rough =
         find_rough_axes(overlap, order == 2 ? directions.half_turn : directions.main, angle, num_threads);
     const Axes axes = keep_true_axes(overlap, rough, angle, num_threads,
-                                     [&](const TurnAxis& axis) { return is_of_order(overlap, axis, order); });
-    for (const TurnAxis& axis : axes) {
+                                     [&](const RotationAxis& axis) { return is_of_order(overlap, axis, order); });
+    for (const RotationAxis& axis : axes) {
       const auto follows = [&](const OrderedAxis& other) {
         return other.order % order == 0 && angle_between(axis.direction, other.axis.direction) < kSameAxis_rad;
       };
@@ -248,10 +249,10 @@ std::vector<OrderedAxis> find_ordered_axes(const SelfOverlap& overlap, const Dir
 }
 
 // All motions of the group that the rotations generate, without the identity, provided that each of them is a symmetry.
-std::optional<std::vector<Rigid3>> complete_group(const SelfOverlap& overlap, const std::vector<OrderedAxis>& turns) {
+std::optional<std::vector<Rigid3>> complete_group(const SelfOverlap& overlap, const std::vector<OrderedAxis>& ordered) {
   std::vector<Matrix3d> generators;
   Axes axes;
-  for (const auto& [axis, order] : turns) {
+  for (const auto& [axis, order] : ordered) {
     generators.push_back(Rigid3::from_axis_angle(axis.direction, 2 * kPi / order).rotation);
     axes.push_back(axis);
   }
@@ -277,9 +278,9 @@ void sort_motions(std::vector<Rigid3>& motions) {
   };
   std::vector<Entry> entries;
   for (const Rigid3& motion : motions) {
-    const Eigen::AngleAxisd turn(motion.rotation);
-    const Vector3d axis = canonical(turn.axis());
-    const double angle = axis.dot(turn.axis()) < 0 ? 2 * kPi - turn.angle() : turn.angle();
+    const Eigen::AngleAxisd rotation(motion.rotation);
+    const Vector3d axis = canonical(rotation.axis());
+    const double angle = axis.dot(rotation.axis()) < 0 ? 2 * kPi - rotation.angle() : rotation.angle();
     entries.push_back({motion, axis, angle});
   }
   for (Entry& entry : entries)
@@ -295,14 +296,14 @@ void sort_motions(std::vector<Rigid3>& motions) {
 
 // The largest group that is found by adding the rotations one by one.
 std::vector<Rigid3> find_discrete(const SelfOverlap& overlap, const Directions& directions, int num_threads) {
-  std::vector<OrderedAxis> turns;
+  std::vector<OrderedAxis> ordered;
   std::vector<Rigid3> motions;
-  for (const OrderedAxis& turn : find_ordered_axes(overlap, directions, num_threads)) {
-    turns.push_back(turn);
-    if (auto group = complete_group(overlap, turns))
+  for (const OrderedAxis& axis : find_ordered_axes(overlap, directions, num_threads)) {
+    ordered.push_back(axis);
+    if (auto group = complete_group(overlap, ordered))
       motions = *std::move(group);
     else
-      turns.pop_back();
+      ordered.pop_back();
   }
   sort_motions(motions);
   return motions;

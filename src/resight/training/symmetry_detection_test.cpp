@@ -226,7 +226,7 @@ void expect_round(const Shape& shape, const Paint& paint, bool can_be_turned_ove
   }
 }
 
-TEST(FindSymmetries, OfPlainBoxesAndPrisms) {
+TEST(FindSymmetries, OfUntexturedBoxesAndPrisms) {
   expect_discrete(make_box({0.2, 0.09, 0.05}), paint_grey, dihedral(2, {1, 0, 0}));
   expect_discrete(make_box({0.06, 0.06, 0.11}), paint_grey, dihedral(4, {1, 0, 0}));
   expect_discrete(make_prism(3), paint_grey, dihedral(3, {1, 0, 0}));
@@ -234,7 +234,7 @@ TEST(FindSymmetries, OfPlainBoxesAndPrisms) {
   expect_discrete(make_prism(6), paint_grey, dihedral(6, {1, 0, 0}));
 }
 
-TEST(FindSymmetries, OfACubeAreAllItsTurns) {
+TEST(FindSymmetries, OfACubeAreAllItsRotations) {
   std::vector<Rigid3> all;
   for (int k = 0; k < 3; ++k)
     for (const Rigid3& turn : turns(Vector3d::Unit(k), 4)) all.push_back(turn);
@@ -270,7 +270,7 @@ TEST(FindSymmetries, OfThingsWithAHandleOrTwoUnlikeArmsAreNone) {
   expect_discrete(make_mug(), paint_grey, {});
 }
 
-TEST(FindSymmetries, APrintBreaksThem) {
+TEST(FindSymmetries, TextureBreaksThem) {
   const Vector3d size(0.2, 0.09, 0.05);
   const auto on_lid = [&](const Vector3d& p) { return p.z() > 0.499 * size.z() ? kRed : kGrey; };
   expect_discrete(make_box(size), on_lid, turns({0, 0, 1}, 2));
@@ -293,7 +293,7 @@ TEST(FindSymmetries, APrintBreaksThem) {
   expect_discrete(make_can(), two_labels, dihedral(2, {1, 0, 0}), 0.1);
 }
 
-TEST(FindSymmetries, APrintAllAroundLeavesTheAxis) {
+TEST(FindSymmetries, TextureAllAroundLeavesTheAxis) {
   expect_round(
       make_can(), [](const Vector3d& p) { return std::abs(p.z()) < 0.02 ? kRed : kGrey; }, true);
   expect_round(
@@ -317,7 +317,7 @@ TEST(FindSymmetries, AreSortedByAxis) {
     EXPECT_LT(rotation_angle_rad(prism.discrete[i].rotation, turns({0, 0, 1}, 4)[i].rotation), 0.02);
 }
 
-TEST(FindSymmetries, OfWhatTellsNothingAreNone) {
+TEST(FindSymmetries, WithoutEvidenceThereAreNone) {
   const PointCloud good = measure(make_can(), paint_grey, {});
   ASSERT_FALSE(find_symmetries(good).none());
   EXPECT_TRUE(find_symmetries({}).none());

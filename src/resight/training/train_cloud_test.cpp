@@ -89,7 +89,7 @@ TEST(TrainObjectFromCloud, ViewsShowTheBallWithItsColours) {
   EXPECT_GT(blue, 10000);
 }
 
-TEST(TrainObjectFromCloud, GivenNormalsAreTurnedOutwards) {
+TEST(TrainObjectFromCloud, GivenNormalsAreFlippedOutwards) {
   PointCloud ball = make_ball(20000);
   for (const Eigen::Vector3f& p : ball.points)
     ball.normals.emplace_back((kCenter - p.cast<double>()).normalized().cast<float>());

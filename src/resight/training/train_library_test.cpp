@@ -162,7 +162,7 @@ TEST(TrainObjectFromSource, FindsSymmetriesUnlessTheyAreDeclared) {
   EXPECT_TRUE(train_object(source, options)->shape_symmetries.none());
 }
 
-TEST(TrainObjectFromSource, FindsWhatOnlyThePrintTellsApart) {
+TEST(TrainObjectFromSource, FindsWhatOnlyTheTextureDistinguishes) {
   ModelSource source;
   source.name = "soup";
   source.mesh = make_procedural_object("soup_tomato")->mesh;
@@ -266,7 +266,7 @@ TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
   EXPECT_GT(with_mesh->diameter_m, 0);
 }
 
-TEST(TrainObjectFromSource, TheViewsTellWhetherAPlainSurfaceHasItsColour) {
+TEST(TrainObjectFromSource, TheViewsDecideWhetherASurfaceOfOneColourHasIt) {
   const ProceduralObject object = make_any_object();
   const TrainOptions options = make_quick_options();
   ModelSource source = make_source_of_one_view(object, options);

@@ -17,7 +17,8 @@ namespace resight {
 
 struct TrainOptions {
   SiftOptions sift{};
-  ShotOptions shot{.min_surface_variation = 0.0};  ///< On an object every keypoint counts.
+  /// On an object every keypoint counts.
+  ShotOptions shot{.min_surface_variation = 0.0, .max_keypoint_depth_m = std::nullopt};
   double surface_voxel_m = 0.003;
   TurntableOptions turntable{};
   double min_edge_distance_px = 2.0;

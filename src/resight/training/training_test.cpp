@@ -323,7 +323,7 @@ TEST(TrainOptions, RefusesNonsense) {
   EXPECT_THROW(check([](TrainOptions& o) { o.turntable.step_deg = 0; }), std::invalid_argument);
 }
 
-TEST(TrainOptions, HashTellsEveryFieldThatChangesTheResult) {
+TEST(TrainOptions, HashCoversEveryFieldThatChangesTheResult) {
   const std::vector<std::function<void(TrainOptions&)>> changes{
       [](TrainOptions&) {},
       [](TrainOptions& o) { o.sift.contrast_threshold = 0.04; },

@@ -7,7 +7,7 @@
 
 namespace resight {
 
-/// A hypothesis needs as many visible model points as this to be judged at all. Fewer are no evidence.
+/// Least number of visible model points of a hypothesis: fewer are no evidence.
 inline constexpr int kMinVisiblePoints = 20;
 
 /// What is asked of a hypothesis that shares no texture with the scene, or is compared without colours: many things
@@ -52,8 +52,8 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
       "off: none is.");
   v.field(
       "min_newest_similarity", o.min_newest_similarity, between(-1, 1),
-      "Likewise with the colours of the newest view that sees at least 50 points: the reconstruction may still hold "
-      "those of an object that was exchanged. off: not compared.");
+      "Least similarity of the colours in the newest view that sees at least 50 points; the reconstruction may still "
+      "hold those of a former object. off: not compared.");
   v.field("min_shared_texture", o.min_shared_texture, between(0, 1),
           "A hypothesis of a textured model (contrast of 1 or more) that shares a smaller part of its texture with the "
           "scene is rejected. 0: none is.");
@@ -66,7 +66,7 @@ inline void declare(OptionVisitor& v, AcceptanceOptions& o) {
 }
 
 /// Whether the evidence is enough to ask for the costs (kCost), or else why not.
-[[nodiscard]] Verdict judge_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options);
+[[nodiscard]] Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options);
 
 /// Whether it may enter the selection: its verdict is kCost and, if required, it explains more than it costs (by
 /// UntexturedOptions::min_gain where it shares no texture).

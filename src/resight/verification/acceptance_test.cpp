@@ -12,10 +12,10 @@ HypothesisEvidence good_evidence() {
   e.visible_share = 0.4;
   e.num_explained = 450;
   e.explained_share = 0.9;
-  e.pattern_similarity = 0.9;
-  e.shared_texture = 3;
-  e.explained_scene = 500;
-  e.outlier_cost = 50;
+  e.appearance.pattern_similarity = 0.9;
+  e.appearance.shared_texture = 3;
+  e.costs.explained_scene = 500;
+  e.costs.outlier = 50;
   e.verdict = Verdict::kCost;
   return e;
 }
@@ -33,26 +33,33 @@ AcceptanceOptions options() {
 
 Verdict judge(double HypothesisEvidence::*field, double value, double shared_texture) {
   HypothesisEvidence e = good_evidence();
-  e.shared_texture = shared_texture;
+  e.appearance.shared_texture = shared_texture;
   e.*field = value;
-  return judge_evidence(e, options());
+  return assess_evidence(e, options());
+}
+
+Verdict judge(double AppearanceEvidence::*field, double value, double shared_texture) {
+  HypothesisEvidence e = good_evidence();
+  e.appearance.shared_texture = shared_texture;
+  e.appearance.*field = value;
+  return assess_evidence(e, options());
 }
 
 TEST(Acceptance, EachLimitHasItsVerdict) {
-  EXPECT_EQ(judge_evidence(good_evidence(), options()), Verdict::kCost);
+  EXPECT_EQ(assess_evidence(good_evidence(), options()), Verdict::kCost);
   EXPECT_EQ(judge(&HypothesisEvidence::visible_share, 0.09, 3), Verdict::kTooFewVisible);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.59, 3), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.61, 3), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.49, 3), Verdict::kDifferentAppearance);
-  EXPECT_EQ(judge(&HypothesisEvidence::pattern_similarity, 0.51, 3), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.39, 3), Verdict::kDifferentAppearance);
-  EXPECT_EQ(judge(&HypothesisEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
+  EXPECT_EQ(judge(&AppearanceEvidence::pattern_similarity, 0.49, 3), Verdict::kDifferentAppearance);
+  EXPECT_EQ(judge(&AppearanceEvidence::pattern_similarity, 0.51, 3), Verdict::kCost);
+  EXPECT_EQ(judge(&AppearanceEvidence::newest_similarity, 0.39, 3), Verdict::kDifferentAppearance);
+  EXPECT_EQ(judge(&AppearanceEvidence::newest_similarity, 0.41, 3), Verdict::kCost);
   HypothesisEvidence few = good_evidence();
   few.num_visible = 19;
-  EXPECT_EQ(judge_evidence(few, options()), Verdict::kTooFewVisible);
+  EXPECT_EQ(assess_evidence(few, options()), Verdict::kTooFewVisible);
 }
 
-TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
+TEST(Acceptance, UntexturedObjectsNeedMore) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.79, 0), Verdict::kNoSupport);
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.81, 0), Verdict::kCost);
   // Half as much more of what shares half the contrast.
@@ -60,20 +67,20 @@ TEST(Acceptance, OfWhatIsPlainMoreIsAsked) {
   EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.71, 0.5), Verdict::kCost);
 }
 
-TEST(Acceptance, APrintThatTheSceneDoesNotShareIsAnother) {
-  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
-  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
-  EXPECT_EQ(judge(&HypothesisEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no print to share.
+TEST(Acceptance, TextureThatTheSceneDoesNotShareIsRejected) {
+  EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
+  EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
+  EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no texture to share.
 }
 
-TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
+TEST(Acceptance, UntexturedObjectsMustGainAShareOfWhatTheyExplain) {
   HypothesisEvidence e = good_evidence();
   const auto pays = [&](double clutter, double shared_texture, const AcceptanceOptions& o) {
-    e.clutter_cost = clutter;
-    e.shared_texture = shared_texture;
+    e.costs.clutter = clutter;
+    e.appearance.shared_texture = shared_texture;
     return has_unary_gain(e, o);
   };
-  // 500 explained, 50 of outliers: plain things may cost 350 more, printed ones 450.
+  // 500 explained, 50 of outliers: untextured objects may cost 350 more, textured ones 450.
   EXPECT_TRUE(pays(345, 0, options()));
   EXPECT_FALSE(pays(355, 0, options()));
   EXPECT_TRUE(pays(445, 1, options()));
@@ -85,15 +92,15 @@ TEST(Acceptance, WhatIsPlainMustGainAShareOfWhatItExplains) {
   EXPECT_FALSE(pays(0, 3, any));
 }
 
-TEST(Acceptance, WithoutPlainOptionsNothingMoreIsAsked) {
+TEST(Acceptance, WithoutUntexturedOptionsNothingMoreIsNeeded) {
   AcceptanceOptions o = options();
   o.untextured.reset();
   HypothesisEvidence e = good_evidence();
-  e.shared_texture = 0;
+  e.appearance.shared_texture = 0;
   e.explained_share = 0.61;
-  e.pattern_similarity = 0.51;
-  EXPECT_EQ(judge_evidence(e, o), Verdict::kCost);
-  e.clutter_cost = 445;
+  e.appearance.pattern_similarity = 0.51;
+  EXPECT_EQ(assess_evidence(e, o), Verdict::kCost);
+  e.costs.clutter = 445;
   EXPECT_TRUE(has_unary_gain(e, o));
 }
 

@@ -10,8 +10,8 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMinPoints = 50;
-constexpr float kMinProjectedDepth_m = 0.1F;
+constexpr std::size_t kMinPoints = 50;        // Fewer colours do not determine a pattern.
+constexpr float kMinProjectedDepth_m = 0.1F;  // Nearer points are beside or behind the camera.
 
 // Colours of the model and of the view where the view has no depth; normals in the camera frame.
 ColorPairs pair_colors_without_depth(const PointCloud& surface, const Rigid3f& camera_from_object,

@@ -6,12 +6,11 @@
 
 namespace resight {
 
-/// Of the points of a model, the share that a view shows in the colours of its print where its depth image has no
-/// return (too near, black, glossy): a sensor that is blind there still has eyes. 0 where less than 50 points are seen
-/// so, where less than min_explained_share of them have the right colours or their print is not alike
-/// (AcceptanceOptions::min_pattern_similarity) under light that is about white, where it shares too little contrast to
-/// tell (UntexturedOptions::max_shared_contrast), and without use_color. What hides the object, or is hidden by itself
-/// but faces the camera, is known by its other colours only.
+/// Share of a model's points that a view confirms by colour at pixels without depth (too near, too dark, glossy).
+/// 0 if fewer than 50 points are visible there, if fewer than acceptance.min_explained_share of them have the right
+/// colours, if the texture differs (acceptance.min_pattern_similarity, with a nearly neutral white balance), if too
+/// little texture is shared (UntexturedOptions::max_shared_contrast), or without use_color. Occlusion cannot be tested
+/// without depth: occluded points are recognised only by their wrong colours.
 [[nodiscard]] double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_object,
                                            const RgbdFrame& frame, const VerifyOptions& options);
 

@@ -16,7 +16,7 @@ using test::make_plate;
 using test::plate_at;
 using test::see_nothing;
 
-// Stripes, fields and a corner: no turn or mirror image of the print is like it.
+// Stripes, fields and a corner: no rotation or mirror image of the texture is like it.
 Rgb8 print_at(double x, double y) {
   if (x > 0.04 && y > 0.02) return {250, 240, 60};
   if (y < -0.05) return {30, 40, 160};
@@ -56,14 +56,14 @@ class ColorConfirmation : public ::testing::Test {
   Rigid3 near_ = plate_at(0, 0, 0.4);
 };
 
-TEST_F(ColorConfirmation, APrintIsSeenWithoutDepth) { EXPECT_GT(share(near_, see_print_without_depth(near_)), 0.95); }
+TEST_F(ColorConfirmation, TextureIsSeenWithoutDepth) { EXPECT_GT(share(near_, see_print_without_depth(near_)), 0.95); }
 
 TEST_F(ColorConfirmation, OnlyWhatIsInTheImageCounts) {
   const Rigid3 half_outside = plate_at(0.4 * 79.5 / 130, 0, 0.4);
   EXPECT_NEAR(share(half_outside, see_print_without_depth(half_outside)), 0.5, 0.05);
 }
 
-TEST_F(ColorConfirmation, AnotherPrintIsNone) {
+TEST_F(ColorConfirmation, AnotherTextureIsNone) {
   const Rigid3 turned = near_ * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), 3.14159);
   EXPECT_EQ(share(turned, see_print_without_depth(near_)), 0);
   EXPECT_EQ(share(near_, see_nothing()), 0) << "grey all over";
@@ -74,14 +74,14 @@ TEST_F(ColorConfirmation, AnotherPrintIsNone) {
   EXPECT_EQ(share(near_, speckled), 0);
 }
 
-TEST_F(ColorConfirmation, TheSamePrintInAnotherHueIsNone) {
+TEST_F(ColorConfirmation, TheSameTextureOfAnotherChromaticityIsNone) {
   RgbdFrame frame = see_print_without_depth(near_);
   for (std::size_t i = 0; i < frame.color.size(); ++i) std::swap(frame.color[i].r, frame.color[i].g);
   EXPECT_EQ(share(near_, frame), 0);
 }
 
 // A ball of one colour, lit from one side.
-TEST_F(ColorConfirmation, ShadingIsNoPrint) {
+TEST_F(ColorConfirmation, ShadingIsNoTexture) {
   constexpr float kRadius_m = 0.08F;
   ObjectModel ball;
   RgbdFrame frame = see_nothing();
@@ -116,7 +116,7 @@ TEST_F(ColorConfirmation, WhereThereIsDepthColorsAreNotAsked) {
   EXPECT_EQ(share(near_, frame), 0);
 }
 
-TEST_F(ColorConfirmation, WhatIsPlainOrHasNoColorsOrIsSeenFromBehindIsNotConfirmed) {
+TEST_F(ColorConfirmation, UntexturedOrColorlessOrBackFacingIsNotConfirmed) {
   const RgbdFrame frame = see_print_without_depth(near_);
   RgbdFrame red = frame;
   for (std::size_t i = 0; i < red.color.size(); ++i) red.color[i] = {200, 30, 30};

@@ -18,9 +18,9 @@
 namespace resight {
 namespace {
 
-constexpr double kPlaneWeight = 0.8;  // How well a plane explains its points (V4R: 0.8, half of it with colour).
-constexpr float kMinWeight = 0.05F;
-constexpr float kWellExplained = 0.5F;
+constexpr double kPlaneWeight = 0.8;    // How well a plane explains its points (V4R: 0.8, half of it with colour).
+constexpr float kMinWeight = 0.05F;     // Smaller weights are dropped, for speed.
+constexpr float kWellExplained = 0.5F;  // Weight from which a scene point is a start of a continuing surface.
 
 // Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
 // 0.
@@ -42,36 +42,37 @@ struct CueComputer::Impl {
         colors_(color_tolerance(options.appearance)),
         use_normals_(!model.normals.empty() && !scene.normals.empty()),
         use_color_(!model.linear_light.empty() && !scene.linear_light.empty()),
-        look_(model, refined(world_from_object, correspondences, views, allowed), scene, views, allowed, options) {
-    turn(views, allowed);
-    cues_.evidence.world_from_object = look_.world_from_object;
+        association_(model, refined(world_from_object, correspondences, views, allowed), scene, views, allowed,
+                     options) {
+    rotate_by_symmetry(views, allowed);
+    cues_.evidence.world_from_object = association_.world_from_object;
     count_agreeing(correspondences);
     if (use_color_ && options.acceptance.min_newest_similarity)
-      newest_view_appearance_.emplace(model_, look_, views, options_);
+      newest_view_appearance_.emplace(model_, association_, views, options_);
   }
 
-  // A hypothesis is moved onto the scene before it is judged.
+  // A hypothesis is moved onto the scene before it is assessed.
   Rigid3 refined(const Rigid3& pose, std::span<const Correspondence> correspondences, std::span<const DepthView> views,
                  std::span<const std::uint8_t> allowed) const {
-    if (options_.refine.max_iterations == 0) return pose;
+    if (!options_.refine.max_iterations) return pose;
     return refine_pose_on_scene(model_, pose, find_roughly_visible(model_, pose, views, allowed, options_),
                                 correspondences, scene_, options_.refine);
   }
 
-  // To where the print of the model fits that of the scene, about what the shape leaves free; but what has no support
-  // has none there either.
-  void turn(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
-    if (model_.symmetry_motions.size() < 2 || !look_.local || !use_color_) return;
-    if (look_.supported_share() < options_.acceptance.min_explained_share) return;
-    const Rigid3f object_from_world(look_.world_from_object.inverse());
+  // Applies the symmetry motion of the shape under which the textures agree best. A pose without support gets none by
+  // it.
+  void rotate_by_symmetry(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
+    if (model_.symmetry_motions.size() < 2 || !association_.local || !use_color_) return;
+    if (association_.supported_share() < options_.acceptance.min_explained_share) return;
+    const Rigid3f object_from_world(association_.world_from_object.inverse());
     std::vector<ExplainedPoint> explained;
-    for (const PointMatch& m : look_.nearest)
-      explained.push_back({object_from_world * look_.local->point(static_cast<std::size_t>(m.local)),
-                           look_.local_lab[static_cast<std::size_t>(m.local)]});
-    const Rigid3 turn = resolve_symmetry(model_, explained, chroma_weight(options_.appearance));
-    if (turn.rotation.isIdentity()) return;
-    SceneAssociation turned(model_, look_.world_from_object * turn, scene_, views, allowed, options_);
-    if (turned.color_fit() > look_.color_fit()) look_ = std::move(turned);
+    for (const PointMatch& m : association_.nearest)
+      explained.push_back({object_from_world * association_.local->point(static_cast<std::size_t>(m.local)),
+                           association_.local_lab[static_cast<std::size_t>(m.local)]});
+    const Rigid3 motion = resolve_symmetry(model_, explained, chroma_weight(options_.appearance));
+    if (motion.rotation.isIdentity()) return;
+    SceneAssociation rotated(model_, association_.world_from_object * motion, scene_, views, allowed, options_);
+    if (rotated.color_fit() > association_.color_fit()) association_ = std::move(rotated);
   }
 
   void count_agreeing(std::span<const Correspondence> correspondences) {
@@ -82,18 +83,18 @@ struct CueComputer::Impl {
   }
 
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
-    cues_.state.assign(look_.points.size(), ModelPointState::kNotVisible);
-    if (look_.local) {
-      adapt_model_colors(limit_chromaticity(look_.light, white_balance));
+    cues_.state.assign(association_.points.size(), ModelPointState::kNotVisible);
+    if (association_.local) {
+      adapt_model_colors(limit_chromaticity(association_.light, white_balance));
       compare_patterns();
       if (newest_view_appearance_)
-        cues_.evidence.newest_similarity = newest_view_appearance_->similarity(white_balance);
-      weigh_matches(*look_.local);
+        cues_.evidence.appearance.newest_similarity = newest_view_appearance_->similarity(white_balance);
+      weigh_matches(*association_.local);
       classify_model_points();
     }
-    fill_evidence(look_.visibility.evidence.size());
-    cues_.evidence.verdict = judge_evidence(cues_.evidence, options_.acceptance);
-    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*look_.local);
+    fill_evidence(association_.visibility.evidence.size());
+    cues_.evidence.verdict = assess_evidence(cues_.evidence, options_.acceptance);
+    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*association_.local);
     return std::move(cues_);
   }
 
@@ -108,9 +109,9 @@ struct CueComputer::Impl {
   void adapt_model_colors(const PhotometricFit& light) {
     if (!use_color_) return;
     ColorPairs visible;
-    for (const int i : look_.visibility.visible) {
+    for (const int i : association_.visibility.visible) {
       visible.model.push_back(model_.linear_light[i]);
-      if (!look_.normals.empty()) visible.normals.push_back(look_.normals[i]);
+      if (!association_.normals.empty()) visible.normals.push_back(association_.normals[i]);
     }
     lab_ = adapt_colors(visible, light);
   }
@@ -120,20 +121,20 @@ struct CueComputer::Impl {
     std::vector<LabColor> own_colors;
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
-    for (const PointMatch& m : look_.nearest) {
-      own_colors.push_back(model_.lab[look_.visibility.visible[m.visible]]);
+    for (const PointMatch& m : association_.nearest) {
+      own_colors.push_back(model_.lab[association_.visibility.visible[m.visible]]);
       model_colors.push_back(lab_[m.visible]);
-      scene_colors.push_back(look_.local_lab[m.local]);
+      scene_colors.push_back(association_.local_lab[m.local]);
     }
     const TextureMatch match = match_texture(own_colors, model_colors, scene_colors, options_.appearance);
-    cues_.evidence.pattern_similarity = match.similarity;
-    cues_.evidence.texture_contrast = match.texture_contrast;
-    cues_.evidence.shared_texture = match.shared_texture;
+    cues_.evidence.appearance.pattern_similarity = match.similarity;
+    cues_.evidence.appearance.texture_contrast = match.texture_contrast;
+    cues_.evidence.appearance.shared_texture = match.shared_texture;
   }
 
   // -log of the colour similarity.
   float color_exponent(const PointMatch& m) const {
-    return use_color_ ? colors_.exponent(lab_[m.visible], look_.local_lab[m.local]) : 0;
+    return use_color_ ? colors_.exponent(lab_[m.visible], association_.local_lab[m.local]) : 0;
   }
 
   void weigh_matches(const LocalScene& local) {
@@ -142,9 +143,9 @@ struct CueComputer::Impl {
     const float min_dot = static_cast<float>(std::cos(kMaxInlierAngle_rad));
     scene_weight_.assign(local.size(), 0);
     beside_model_.assign(local.size(), 1);
-    fit_exponent_.assign(look_.visibility.visible.size(), std::numeric_limits<float>::infinity());
-    for (const PointMatch& m : look_.matches) {
-      const float dot = look_.normal_dot(m);
+    fit_exponent_.assign(association_.visibility.visible.size(), std::numeric_limits<float>::infinity());
+    for (const PointMatch& m : association_.matches) {
+      const float dot = association_.normal_dot(m);
       if (dot <= 0) continue;
       if (dot >= min_dot) beside_model_[m.local] = 0;
       const float color = color_exponent(m);
@@ -161,15 +162,16 @@ struct CueComputer::Impl {
   void excuse_noise(const LocalScene& local) {
     const auto* rule = std::get_if<ContinuationClutter>(&options_.clutter.rule);
     if (!use_normals_ || rule == nullptr) return;
-    const float reach_m = std::min(static_cast<float>(rule->noise_sigmas) * look_.depth_noise_m,
+    const float reach_m = std::min(static_cast<float>(rule->noise_sigmas) * association_.depth_noise_m,
                                    static_cast<float>(options_.clutter.radius_m));
     if (reach_m <= static_cast<float>(options_.support.max_distance_m)) return;
     const float beside_sq = static_cast<float>(options_.resolution_m * options_.resolution_m);
     const float min_dot = static_cast<float>(std::cos(kMaxInlierAngle_rad));
-    for (const int i : look_.visibility.visible)
-      local.visit_within(look_.points[i], reach_m, [&](std::size_t q, float distance_sq) {
-        const float along = look_.normals[i].dot(local.point(q) - look_.points[i]);
-        if (distance_sq - along * along <= beside_sq && look_.normals[i].dot(look_.local_normals[q]) >= min_dot)
+    for (const int i : association_.visibility.visible)
+      local.visit_within(association_.points[i], reach_m, [&](std::size_t q, float distance_sq) {
+        const float along = association_.normals[i].dot(local.point(q) - association_.points[i]);
+        if (distance_sq - along * along <= beside_sq &&
+            association_.normals[i].dot(association_.local_normals[q]) >= min_dot)
           beside_model_[q] = 0;
         return true;
       });
@@ -180,19 +182,20 @@ struct CueComputer::Impl {
     double sum_weight = 0;
     double sum_explained = 0;
     double sum_fit = 0;
-    for (std::size_t v = 0; v < look_.visibility.visible.size(); ++v) {
-      const double weight = look_.visibility.facing[v] < grazing_cosine ? kGrazingWeight : 1.0;
+    for (std::size_t v = 0; v < association_.visibility.visible.size(); ++v) {
+      const double weight = association_.visibility.facing[v] < grazing_cosine ? kGrazingWeight : 1.0;
       const double fit = std::exp(-static_cast<double>(fit_exponent_[v]));
-      const bool explained = fit > options_.support.min_weight && look_.visibility.seen_through[v] == 0;
+      const bool explained = fit > options_.support.min_weight && association_.visibility.seen_through[v] == 0;
       sum_weight += weight;
       if (explained) {
         ++cues_.evidence.num_explained;
         sum_explained += weight;
         sum_fit += weight * fit;
       } else {
-        cues_.evidence.outlier_cost += options_.selection.outlier_weight * weight;
+        cues_.evidence.costs.outlier += options_.selection.outlier_weight * weight;
       }
-      cues_.state[look_.visibility.visible[v]] = explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
+      cues_.state[association_.visibility.visible[v]] =
+          explained ? ModelPointState::kExplained : ModelPointState::kOutlier;
     }
     if (sum_weight > 0) {
       cues_.evidence.explained_share = sum_explained / sum_weight;
@@ -212,10 +215,10 @@ struct CueComputer::Impl {
       const float weight = scene_weight_[q];
       if (weight < kMinWeight) continue;
       if (is_background(local.scene_index(q))) {
-        cues_.evidence.plane_cost += std::min<double>(weight, plane_weight);
+        cues_.evidence.costs.plane += std::min<double>(weight, plane_weight);
       } else {
         cues_.explained.push_back({local.scene_index(q), weight});
-        cues_.evidence.explained_scene += weight;
+        cues_.evidence.costs.explained_scene += weight;
       }
     }
     std::sort(cues_.explained.begin(), cues_.explained.end(),
@@ -240,8 +243,9 @@ struct CueComputer::Impl {
                                   return !goes_on;
                                 });
     if (!goes_on) return 0;
-    const double print = rule.texture_contrast ? cues_.evidence.shared_texture / *rule.texture_contrast : 0;
-    return static_cast<float>(options_.clutter.weight / (1 + print * print));
+    const double texture =
+        rule.texture_contrast ? cues_.evidence.appearance.shared_texture / *rule.texture_contrast : 0;
+    return static_cast<float>(options_.clutter.weight / (1 + texture * texture));
   }
 
   // Cost of leaving q unexplained beside the explained points around it.
@@ -288,7 +292,7 @@ struct CueComputer::Impl {
                                                    : segment_weight(local, q, *segments);
       if (weight < kMinWeight) continue;
       cues_.clutter.push_back({local.scene_index(q), weight});
-      cues_.evidence.clutter_cost += weight;
+      cues_.evidence.costs.clutter += weight;
     }
     std::sort(cues_.clutter.begin(), cues_.clutter.end(),
               [](const WeightedPoint& a, const WeightedPoint& b) { return a.point < b.point; });
@@ -297,40 +301,43 @@ struct CueComputer::Impl {
   // The smaller of the two parts that a plane cuts the model into, over the part of the plane that was seen.
   void add_pierced_planes() {
     const float clearance = static_cast<float>(options_.support.max_distance_m);
-    std::vector<float> distances(look_.points.size());
+    std::vector<float> distances(association_.points.size());
     for (const ScenePlane& plane : scene_.planes) {
       if (!is_larger_than_object(plane.extent_m, model_.diameter_m)) continue;
-      std::ranges::transform(look_.points, distances.begin(), [&](const auto& p) { return plane.signed_distance(p); });
+      std::ranges::transform(association_.points, distances.begin(),
+                             [&](const auto& p) { return plane.signed_distance(p); });
       const auto [lowest, highest] = std::ranges::minmax(distances);
       if (lowest >= -clearance || highest <= clearance) continue;
       int above = 0;
       int below = 0;
-      for (std::size_t i = 0; i < look_.points.size(); ++i) {
-        if (std::abs(distances[i]) <= clearance || !plane.covers(look_.points[i])) continue;
+      for (std::size_t i = 0; i < association_.points.size(); ++i) {
+        if (std::abs(distances[i]) <= clearance || !plane.covers(association_.points[i])) continue;
         ++(distances[i] > 0 ? above : below);
       }
-      cues_.evidence.plane_cost += std::min(above, below);
+      cues_.evidence.costs.plane += std::min(above, below);
     }
   }
 
   void fill_evidence(std::size_t num_views) {
     HypothesisEvidence& evidence = cues_.evidence;
-    evidence.num_visible = static_cast<int>(look_.visibility.visible.size());
-    evidence.visible_share =
-        look_.points.empty() ? 0 : static_cast<double>(evidence.num_visible) / static_cast<double>(look_.points.size());
+    evidence.num_visible = static_cast<int>(association_.visibility.visible.size());
+    evidence.visible_share = association_.points.empty() ? 0
+                                                         : static_cast<double>(evidence.num_visible) /
+                                                               static_cast<double>(association_.points.size());
     evidence.visible_share_per_view.assign(num_views, 0);
     evidence.explained_share_per_view.assign(num_views, 0);
     for (std::size_t view = 0; view < num_views; ++view) {
       int visible = 0;
       int explained = 0;
-      for (std::size_t i = 0; i < look_.visibility.evidence[view].size(); ++i) {
-        const Evidence point = look_.visibility.evidence[view][i];
+      for (std::size_t i = 0; i < association_.visibility.evidence[view].size(); ++i) {
+        const Evidence point = association_.visibility.evidence[view][i];
         if (!is_observed(point)) continue;
         ++visible;
         if (point == Evidence::kPresent && cues_.state[i] == ModelPointState::kExplained) ++explained;
       }
       if (visible == 0) continue;
-      evidence.visible_share_per_view[view] = static_cast<float>(visible) / static_cast<float>(look_.points.size());
+      evidence.visible_share_per_view[view] =
+          static_cast<float>(visible) / static_cast<float>(association_.points.size());
       evidence.explained_share_per_view[view] = static_cast<float>(explained) / static_cast<float>(visible);
     }
   }
@@ -341,7 +348,7 @@ struct CueComputer::Impl {
   ColorTolerance colors_;
   bool use_normals_;
   bool use_color_;
-  SceneAssociation look_;
+  SceneAssociation association_;
   std::optional<NewestViewAppearance> newest_view_appearance_;
   std::vector<LabColor> lab_;               // Per visible point, under the scene's light.
   std::vector<float> scene_weight_;         // Per local scene point.
@@ -359,7 +366,7 @@ CueComputer::CueComputer(const PreparedModel& model, const Rigid3& world_from_ob
 CueComputer::~CueComputer() = default;
 CueComputer::CueComputer(CueComputer&&) noexcept = default;
 
-const PhotometricFit& CueComputer::light() const { return impl_->look_.light; }
+const PhotometricFit& CueComputer::light() const { return impl_->association_.light; }
 HypothesisCues CueComputer::finish(const Eigen::Array3f& white_balance) { return impl_->finish(white_balance); }
 
 }  // namespace resight

@@ -19,39 +19,40 @@ struct WeightedPoint {
 /// What the scene says about one model point.
 enum class ModelPointState : std::uint8_t { kNotVisible, kExplained, kOutlier };
 
-/// The cues of one hypothesis, before any choice between hypotheses.
+/// The cues of one hypothesis, before the selection.
 struct HypothesisCues {
-  HypothesisEvidence evidence;  ///< All but what only the choice decides; verdict kCost: it may enter the choice.
-  std::vector<WeightedPoint>
-      explained;  ///< Scene points that it explains, weight in (0, 1]; ascending; none that a plane claims.
-  std::vector<WeightedPoint> clutter;  ///< Scene points that it leaves unexplained and should not; ascending.
+  /// Everything that does not depend on other hypotheses. kCost: a candidate of the selection.
+  HypothesisEvidence evidence;
+  /// Explained scene points without those of larger planes; weights in (0, 1]; ascending.
+  std::vector<WeightedPoint> explained;
+  std::vector<WeightedPoint> clutter;  ///< Clutter; ascending.
   std::vector<ModelPointState> state;  ///< Per model point.
 };
 
-/// Works out the cues of a model at its pose, in two steps: the light on the scene is found from all hypotheses
-/// together. `allowed`: per view, non-zero = the object may be present there.
+/// Computes the cues of a model at its pose, in two steps, because the white balance of the scene is found from all
+/// hypotheses together. `allowed`: per view, non-zero = the object may be present there.
 ///
-/// The model's colours are put into the light of the scene (photometric_fit.hpp). Scene point q is explained with the
+/// The model's colours are adapted to the light of the scene (photometric_fit.hpp). Scene point q is explained with the
 /// largest weight over visible model points p within t = support.max_distance_m:
 ///   exp(-d^2 / 2t^2) * colour(p, q) * max(0, 1 - angle(n_p, n_q) / 90 deg),
 ///   colour = exp(-1/2 (dl^2 / 2 sigma_l^2 + (da^2 + db^2) / 2 sigma_ab^2));
 /// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
-/// exceeds support.min_weight for a scene point within t and kMaxInlierAngle_rad, and most views do not look through
+/// exceeds support.min_weight for a scene point within t and kMaxInlierAngle_rad, and most views do not see through
 /// it. Points of a plane larger than the object cost min(weight, kPlaneWeight) instead of being explained.
 class CueComputer {
  public:
-  /// Refines the pose, then finds what is visible, its neighbours in the scene, and the light on it. All arguments but
-  /// the pose must outlive it.
+  /// Refines the pose, then finds the visible points, their neighbours in the scene, and the photometric fit. All
+  /// arguments but the pose must outlive it.
   CueComputer(const PreparedModel& model, const Rigid3& world_from_object,
               std::span<const Correspondence> correspondences, const PreparedScene& scene,
               std::span<const DepthView> views, std::span<const std::uint8_t> allowed, const VerifyOptions& options);
   ~CueComputer();
   CueComputer(CueComputer&&) noexcept;
 
-  /// As the colours of this hypothesis alone would have it, its chroma not limited.
+  /// Photometric fit of this hypothesis alone; its chromaticity is not limited.
   [[nodiscard]] const PhotometricFit& light() const;
-  /// The cues, under the white balance that the hypotheses of the scene agree on (PhotometricFit::chroma()). What has
-  /// not evidence enough has no costs, and explains nothing. To be called once.
+  /// The cues under the common white balance of the scene. Hypotheses without enough evidence have no costs and explain
+  /// nothing. Call it once.
   [[nodiscard]] HypothesisCues finish(const Eigen::Array3f& white_balance);
 
  private:

@@ -152,7 +152,7 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
 TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   SmallCase c;
   c.options.planes.reset();
-  c.options.refine.max_iterations = 0;
+  c.options.refine.max_iterations.reset();
   c.options.appearance.light = {0, 0, 0, 0};
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
@@ -202,7 +202,7 @@ TEST(CueComputer, ClutterIsTheUnexplainedRestOfASegmentNearby) {
     if (q.weight == 1.0F && c.scene.points[q.point].z() > 0.05F) ++same_segment;
   }
   EXPECT_GT(same_segment, 150);
-  EXPECT_GT(cues.evidence.clutter_cost, 150);
+  EXPECT_GT(cues.evidence.costs.clutter, 150);
 }
 
 }  // namespace

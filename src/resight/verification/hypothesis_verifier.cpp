@@ -66,7 +66,7 @@ std::vector<std::uint8_t> allowed_views(std::span<const std::uint8_t> present, s
   return allowed;
 }
 
-// First the light on the scene from all hypotheses, then what each of them looks like in it.
+// First the white balance of the scene from all hypotheses, then the cues of each under it.
 std::vector<HypothesisCues> compute_all_cues(std::span<const Hypothesis> hypotheses,
                                              const std::vector<PreparedModel>& models, const PreparedScene& scene,
                                              std::span<const DepthView> views, std::span<const std::uint8_t> present,
@@ -93,11 +93,11 @@ std::vector<int> visible_points(const HypothesisCues& cues) {
   return visible;
 }
 
-// Hypotheses of one object that refinement and turns have brought together are one: that with most correspondences
-// stays. Which of them explains a few points more is chance.
+// Hypotheses of one object that refinement and symmetry motions have brought together are one: that with most
+// correspondences stays. Which of them explains a few points more is random.
 void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary& library, const VerifyOptions& options,
                       std::vector<int>& candidates, std::vector<HypothesisEvidence>& evidence) {
-  if (options.refine.max_iterations == 0 && !options.refine.symmetry_step_rad) return;
+  if (!options.refine.max_iterations && !options.refine.symmetry_step_rad) return;
   std::vector<int> by_support = candidates;
   std::stable_sort(by_support.begin(), by_support.end(), [&](int a, int b) {
     return hypotheses[a].correspondences.size() > hypotheses[b].correspondences.size();
@@ -116,7 +116,7 @@ void merge_duplicates(std::span<const Hypothesis> hypotheses, const ModelLibrary
     } else {
       evidence[h].verdict = Verdict::kSuppressed;
       evidence[h].suppressed_by = *same;
-      evidence[h].unary_cost = unary_cost(evidence[h]);
+      evidence[h].costs.unary = unary_cost(evidence[h]);
     }
   }
   std::sort(kept.begin(), kept.end());
@@ -150,7 +150,7 @@ void explain_choice(const SelectionProblem& problem, const SearchSelectionResult
     for (const int c : component) {
       HypothesisEvidence& e = evidence[candidates[c]];
       const FixedCost change = none.change_if_switched(c);
-      e.unary_cost = from_fixed(change);
+      e.costs.unary = from_fixed(change);
       e.accepted = found.active[c] != 0;
       e.verdict = e.accepted ? Verdict::kAccepted : Verdict::kCost;
       if (e.accepted || change >= 0) continue;
@@ -176,9 +176,6 @@ void choose(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
   const SearchSelectionResult found = search_selection(problem, options.selection, options.seed);
   explain_choice(problem, found, candidates, result.evidence);
   result.cost = from_fixed(found.cost);
-  result.num_moves = found.num_moves;
-  result.num_components = found.num_components;
-  result.is_optimal = found.is_optimal;
 }
 
 }  // namespace
@@ -209,8 +206,6 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   prepare_models(hypotheses);
   const PreparedScene scene =
       prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models_, options_)), options_);
-  result.num_planes = static_cast<int>(scene.planes.size());
-  result.num_segments = scene.num_segments;
   std::vector<HypothesisCues> cues = compute_all_cues(hypotheses, models_, scene, depth_views, present, options_);
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {

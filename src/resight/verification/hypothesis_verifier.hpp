@@ -17,12 +17,11 @@ namespace resight {
 /// that the object may be present; empty = everywhere. A model point counts as visible if one allowed view sees it (its
 /// own back and self-occluded parts do not count). Scene and views in the world frame.
 ///
-/// Minimises J = -( E - r Out - Dup - Clut - w Occ - Plane ). Deviations from V4R, each because the published
-/// form fails where our tests look: small components are solved exactly; planes are always active, and count against a
-/// hypothesis only where they are larger than its object; Occ is summed over pairs and does not count voxels whose
-/// normals oppose (contact). A model or a scene without colours is judged by its shape, without normals by distance and
-/// colour. Throws std::invalid_argument for bad options, a null view, a wrong size of `present`, an unknown object or a
-/// pose that is not rigid. Non-finite scene points are ignored.
+/// Minimises J = -( E - r Out - Dup - Clut - w Occ - Plane ). Deviations from V4R, each covered by a test: small
+/// components are solved exactly; planes are always active and count only if larger than the object; Occ is summed over
+/// pairs, without voxels in which the normals oppose (contact). Without colours, shape alone is compared; without
+/// normals, distance and colour. Throws std::invalid_argument for bad options, a null view, a wrong size of `present`,
+/// an unknown object or a pose that is not rigid. Non-finite scene points are ignored.
 [[nodiscard]] VerifyResult verify_hypotheses(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
                                              const PointCloud& scene_in_world, std::span<const VerificationView> views,
                                              std::span<const std::uint8_t> present, const VerifyOptions& options = {});

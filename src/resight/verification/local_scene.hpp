@@ -27,7 +27,7 @@ class LocalScene {
   /// Index in the whole scene.
   [[nodiscard]] int scene_index(std::size_t local) const { return indices_[local]; }
 
-  /// What the whole scene has per point, of these points: side by side, as they are looked at.
+  /// The values of these points, selected from values of the whole scene; contiguous.
   template <typename T>
   [[nodiscard]] std::vector<T> select(const std::vector<T>& of_scene) const {
     std::vector<T> selected;

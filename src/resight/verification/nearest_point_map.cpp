@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-constexpr float kMaxCellsPerAxis = 96;
+constexpr float kMaxCellsPerAxis = 96;  // At most 3.5 MB per object.
 
 }  // namespace
 

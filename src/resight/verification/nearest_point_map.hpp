@@ -7,7 +7,7 @@
 
 namespace resight {
 
-/// The nearest of some points, to within a cell, by a look into a table: worth it where one set is asked often.
+/// Lookup table of the nearest point, accurate to a cell. Pays off for many queries to one set of points.
 class NearestPointMap {
  public:
   NearestPointMap() = default;

@@ -9,8 +9,8 @@
 namespace resight {
 namespace {
 
-constexpr std::ptrdiff_t kMinPointsInView = 50;
-constexpr double kMinShare = 0.1;
+constexpr std::ptrdiff_t kMinPointsInView = 50;  // Fewer colours do not determine a pattern.
+constexpr double kMinShare = 0.1;  // Of the visible points: a small rest may lie at the rim of an occluder.
 
 // The newest view in which enough of what is visible of the model is at the measured depth, or -1.
 int find_newest(const ModelVisibility& visibility) {
@@ -23,22 +23,22 @@ int find_newest(const ModelVisibility& visibility) {
 
 }  // namespace
 
-NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const SceneAssociation& look,
+NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,
                                            std::span<const DepthView> views, const VerifyOptions& options)
     : options_(options) {
-  const int newest = find_newest(look.visibility);
-  if (newest < 0 || look.local_lab.empty()) return;
+  const int newest = find_newest(association.visibility);
+  if (newest < 0 || association.local_lab.empty()) return;
   const DepthView& view = views[static_cast<std::size_t>(newest)];
   if (view.color == nullptr) return;
-  const std::vector<Evidence>& evidence = look.visibility.evidence[static_cast<std::size_t>(newest)];
+  const std::vector<Evidence>& evidence = association.visibility.evidence[static_cast<std::size_t>(newest)];
   const Rigid3f camera_from_world(view.world_from_camera.inverse());
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     if (evidence[i] != Evidence::kPresent) continue;
-    const std::optional<Pixel> pixel = view.camera.pixel_of((camera_from_world * look.points[i]).cast<double>());
+    const std::optional<Pixel> pixel = view.camera.pixel_of((camera_from_world * association.points[i]).cast<double>());
     if (!pixel) continue;  // On the border, where rounding decides.
     colors_.model.push_back(model.linear_light[i]);
     colors_.scene.push_back(to_linear_light((*view.color)(pixel->u, pixel->v)));
-    if (!look.normals.empty()) colors_.normals.push_back(look.normals[i]);
+    if (!association.normals.empty()) colors_.normals.push_back(association.normals[i]);
   }
   light_ = fit_photometry(colors_, options.appearance.light);
 }

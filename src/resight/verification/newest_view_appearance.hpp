@@ -8,12 +8,12 @@
 
 namespace resight {
 
-/// A model's colours beside those of the newest view that sees enough of it: a reconstruction keeps the colours of what
-/// stood there before, if what stands there now has the same shape.
+/// Compares a model's colours with those of the newest view that sees enough of it. The reconstruction may still hold
+/// the colours of a former object of the same shape.
 class NewestViewAppearance {
  public:
-  NewestViewAppearance(const PreparedModel& model, const SceneAssociation& look, std::span<const DepthView> views,
-                       const VerifyOptions& options);
+  NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,
+                       std::span<const DepthView> views, const VerifyOptions& options);
 
   /// pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;

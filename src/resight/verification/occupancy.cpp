@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-constexpr float kContactDot = -0.5F;
+constexpr float kContactDot = -0.5F;  // Normals more than 120 deg apart are those of two objects that touch.
 
 struct Box {
   Eigen::Vector3f min = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());

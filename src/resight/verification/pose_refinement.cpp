@@ -11,12 +11,12 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kMaxPoints = 300;
-constexpr double kMaxStep_m = 0.02;  // A pose that moves farther in all (at the middle of the points) ran away.
-constexpr int kMinRefinedPairs = 20;
-constexpr std::size_t kCoarseStride = 3;       // Every third point until the pose stands still, and then...
-constexpr int kFineIterations = 6;             // ...all points.
-constexpr float kNearShare = 0.4F;             // Of the largest distance: most partners are nearer, and soon found.
+constexpr std::size_t kMaxPoints = 300;   // Every n-th point is used beyond, for speed.
+constexpr double kMaxStep_m = 0.02;       // A pose that moves farther in all (at the middle of the points) ran away.
+constexpr int kMinRefinedPairs = 20;      // Fewer hold six unknowns too weakly against outliers.
+constexpr std::size_t kCoarseStride = 3;  // Every third point until the pose stands still, and then...
+constexpr int kFineIterations = 6;        // ...all points.
+constexpr float kNearShare = 0.4F;        // Of the largest distance: most partners are nearer, and soon found.
 constexpr double kPairsPerIndependentOne = 6;  // Neighbours share their error: measured on the benchmark's validation
                                                // seed (bench_losses), centres were off by 2.2 sigmas in the median.
 class Refiner {
@@ -38,7 +38,7 @@ class Refiner {
   }
 
   [[nodiscard]] PoseUncertainty uncertainty(const Rigid3& pose, const Eigen::Vector3f& center) const {
-    constexpr double kMinSigma_m = 3e-4;
+    constexpr double kMinSigma_m = 3e-4;  // Least noise of a residual: few pairs may agree by chance.
     std::vector<int> partners(points_.size(), -1);
     const StepEquations equations = linearize(pose, surroundings(pose), 1, partners);
     if (equations.num_pairs < kMinRefinedPairs) return {};
@@ -51,8 +51,8 @@ class Refiner {
     const Surroundings local = surroundings(start);
     std::vector<int> partners(points_.size(), -1);
     Rigid3 pose = start;
-    (void)iterate(start, local, kCoarseStride, options_.max_iterations, partners, pose);
-    const int num_fine = std::min(kFineIterations, options_.max_iterations);
+    (void)iterate(start, local, kCoarseStride, *options_.max_iterations, partners, pose);
+    const int num_fine = std::min(kFineIterations, *options_.max_iterations);
     return iterate(start, local, 1, num_fine, partners, pose) ? pose : start;
   }
 
@@ -171,7 +171,7 @@ Rigid3 refine_pose_on_scene(const PreparedModel& model, const Rigid3& world_from
                             std::span<const Correspondence> correspondences, const PreparedScene& scene,
                             const RefinePoseOptions& options) {
   options.check();
-  if (options.max_iterations == 0 || !has_enough(model, visible, scene)) return world_from_object;
+  if (!options.max_iterations || !has_enough(model, visible, scene)) return world_from_object;
   return Refiner(model, visible, correspondences, scene, options).run(world_from_object);
 }
 

@@ -15,7 +15,7 @@ struct PreparedModel;
 struct PreparedScene;
 
 struct RefinePoseOptions {
-  int max_iterations = 10;
+  std::optional<int> max_iterations = 10;
   double max_distance_m = 0.015;
   double max_normal_angle_rad = 0.785398;
   double correspondence_weight = 4;
@@ -25,8 +25,8 @@ struct RefinePoseOptions {
 
 inline void declare(OptionVisitor& v, RefinePoseOptions& o) {
   v.field(
-      "max_iterations", o.max_iterations, at_least(0),
-      "Iterations of point-to-plane ICP on a third of the points; up to six more on all. 0: poses stay as they are.",
+      "max_iterations", o.max_iterations, at_least(1),
+      "Iterations of point-to-plane ICP on a third of the points; up to six more on all. off: poses stay as they are.",
       "Chen and Medioni 1992");
   v.field("max_distance_m", o.max_distance_m, positive(),
           "Largest distance of a pair; weights fall to 0 there (Tukey).");

@@ -80,7 +80,7 @@ TEST(RefinePoseOnScene, GivesBackWhatItCannotImprove) {
   const auto same = [](const Rigid3& a, const Rigid3& b) { return a.matrix() == b.matrix(); };
   EXPECT_TRUE(same(refine_pose_on_scene(c.model, far, c.visible, {}, c.scene), far));
   EXPECT_TRUE(same(refine_pose_on_scene(c.model, far, {}, {}, c.scene), far));
-  EXPECT_TRUE(same(refine_pose_on_scene(c.model, far, c.visible, {}, c.scene, {.max_iterations = 0}), far));
+  EXPECT_TRUE(same(refine_pose_on_scene(c.model, far, c.visible, {}, c.scene, {.max_iterations = std::nullopt}), far));
   PreparedScene flat = c.scene;
   flat.normals.clear();
   EXPECT_TRUE(same(refine_pose_on_scene(c.model, far, c.visible, {}, flat), far));

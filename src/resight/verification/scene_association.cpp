@@ -112,7 +112,7 @@ double SceneAssociation::supported_share() const {
 std::vector<int> find_roughly_visible(const PreparedModel& model, const Rigid3& world_from_object,
                                       std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                                       const VerifyOptions& options) {
-  constexpr std::size_t kEnough = 2000;
+  constexpr std::size_t kEnough = 2000;  // Refinement uses at most 300 of those that are visible.
   const std::size_t step = model.points.size() / kEnough + 1;
   const Rigid3f motion(world_from_object);
   std::vector<Eigen::Vector3f> points;

@@ -26,8 +26,8 @@ struct PointMatch {
   float distance_sq;
 };
 
-/// What views and scene show where a model is said to be: which of its points are visible, their neighbours in the
-/// scene, and the light on them. World frame.
+/// What views and scene show of a model at a pose: its visible points, their neighbours in the scene, and the
+/// photometric fit. World frame.
 class SceneAssociation {
  public:
   /// `allowed`: per view, non-zero = the object may be present there. Model, scene and options must outlive it.
@@ -35,10 +35,10 @@ class SceneAssociation {
                    std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
                    const VerifyOptions& options);
 
-  /// How well the colours agree where model and scene meet: as patterns, and one by one. What the scene's white balance
-  /// is the other hypotheses have still to say; until then there is none.
+  /// Agreement of the colours where model and scene meet: mean similarity per visible point plus pattern similarity.
+  /// Assumes a neutral white balance, because that of the scene is not known yet.
   [[nodiscard]] double color_fit() const;
-  /// At most so large a share of the visible points can be explained, whatever their colours.
+  /// Upper bound of the explained share, whatever the colours.
   [[nodiscard]] double supported_share() const;
   /// Cosine between the normals of a match; 1 where there are none.
   [[nodiscard]] float normal_dot(const PointMatch& match) const {
@@ -52,14 +52,14 @@ class SceneAssociation {
   std::vector<Eigen::Vector3f> points;   ///< Of the model.
   std::vector<Eigen::Vector3f> normals;  ///< Empty or as long as points.
   ModelVisibility visibility;
-  float depth_noise_m = 0;                     ///< Standard deviation, of the farthest view that sees it where it is.
+  float depth_noise_m = 0;                     ///< Of the depth in the farthest view that confirms the object.
   std::optional<LocalScene> local;             ///< The scene around it; none if nothing of it is visible.
   std::vector<Eigen::Vector3f> local_normals;  ///< Of its points; empty if model or scene has none.
   std::vector<LabColor> local_lab;             ///< Likewise.
-  std::vector<PointMatch> matches;             ///< Those of one visible point stand side by side.
+  std::vector<PointMatch> matches;             ///< Matches of one visible point are contiguous.
   std::vector<PointMatch> nearest;             ///< Of each visible point that has one of similar normal.
   ColorPairs nearest_colors;                   ///< Of `nearest`; empty if model or scene has none.
-  PhotometricFit light;                        ///< As the colours of this model alone would have it.
+  PhotometricFit light;                        ///< Fitted to the colours of this model alone.
 
  private:
   [[nodiscard]] float largest_depth_noise(std::span<const DepthView> views) const;
@@ -72,7 +72,7 @@ class SceneAssociation {
   const VerifyOptions* options_;
 };
 
-/// Of up to two thousand points of the model at this pose those that are visible: enough to refine a pose with.
+/// The visible ones of at most 2,000 model points at this pose: enough to refine it.
 [[nodiscard]] std::vector<int> find_roughly_visible(const PreparedModel& model, const Rigid3& world_from_object,
                                                     std::span<const DepthView> views,
                                                     std::span<const std::uint8_t> allowed,

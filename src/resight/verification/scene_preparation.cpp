@@ -11,8 +11,8 @@
 namespace resight {
 namespace {
 
-constexpr double kBlock_m = 0.06;
-constexpr float kCropCube_m = 0.1F;
+constexpr double kBlock_m = 0.06;    // Granularity of the lookup of surroundings: affects speed only.
+constexpr float kCropCube_m = 0.1F;  // Coarse: the cubes of all hypotheses are listed.
 
 PointCloud keep_finite(const PointCloud& cloud) {
   std::vector<int> finite;
@@ -40,7 +40,7 @@ bool needs_segments(const VerifyOptions& options) {
          (options.planes && !finds_planes_apart(options));
 }
 
-// In the scene thinned further: planes are large.
+// In the scene downsampled further: planes are large.
 std::vector<ScenePlane> find_planes_quickly(std::span<const Eigen::Vector3f> points,
                                             std::span<const Eigen::Vector3f> normals, const VerifyOptions& options) {
   PointCloud cloud;
@@ -104,14 +104,14 @@ PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOption
     if (needs_segments(options) && !scene.normals.empty()) find_surfaces(scene, options);
     return scene;
   }
-  // Mostly it is thin already: then its planes are those of the cloud, which need not wait for the rest.
+  // Mostly it is downsampled already: then its planes are those of the cloud, which need not wait for the rest.
   PreparedScene scene;
   std::vector<ScenePlane> planes;
   run_both(
       options.num_threads, [&] { planes = find_planes_quickly(cloud.points, cloud.normals, options); },
       [&] { scene = without_surfaces(cloud, options); });
-  const bool was_thin = scene.points.size() == cloud.points.size();
-  scene.planes = was_thin ? std::move(planes) : find_planes_quickly(scene.points, scene.normals, options);
+  const bool was_downsampled = scene.points.size() == cloud.points.size();
+  scene.planes = was_downsampled ? std::move(planes) : find_planes_quickly(scene.points, scene.normals, options);
   scene.plane = assign_to_planes(scene.points, scene.normals, scene.planes, find_planes_options(options));
   return scene;
 }

@@ -33,22 +33,21 @@ struct Ball {
   float radius_m = 0;
 };
 
-/// The points that lie in a cube of 10 cm which a ball touches (by its bounding box): a hypothesis asks only about its
-/// surroundings, and most of a room is in none of them. Non-finite points are dropped.
+/// The finite points in 10 cm cubes that touch a ball (by its bounding box). Hypotheses need only their surroundings.
 [[nodiscard]] PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls);
 
-/// Thins the scene to resolution_m and finds its segments and planes (both need normals). Non-finite points are
+/// Downsamples the scene to resolution_m and finds its segments and planes (both need normals). Non-finite points are
 /// dropped; a non-finite normal becomes zero.
 [[nodiscard]] PreparedScene prepare_scene(const PointCloud& scene_in_world, const VerifyOptions& options);
 
 /// A model as all of its hypotheses need it. Object frame.
 struct PreparedModel {
-  std::vector<Eigen::Vector3f> points;               ///< Thinned to resolution_m.
+  std::vector<Eigen::Vector3f> points;               ///< Downsampled to resolution_m.
   std::vector<Eigen::Vector3f> normals;              ///< Empty or as long as points.
   std::vector<Eigen::Vector3f> linear_light;         ///< Colours; empty or as long as points.
   std::vector<LabColor> lab;                         ///< The same.
   std::vector<Rigid3> symmetry_motions;              ///< shape_symmetry_motions(): by shape alone, these poses are one.
-  NearestPointMap nearest;                           ///< Of the points, if there are turns.
+  NearestPointMap nearest;                           ///< Of the points; empty unless there are symmetry motions.
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< Centroid of the points.
   float diameter_m = 0;
 };

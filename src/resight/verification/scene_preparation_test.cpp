@@ -72,7 +72,7 @@ TEST(PrepareScene, ARoundFaceIsAsWideAsItsDiameter) {
   EXPECT_NEAR(face->extent_m, 0.3, 0.02);
 }
 
-TEST(PrepareScene, PlanesOfTheThinnedSceneAreTheSame) {
+TEST(PrepareScene, PlanesOfTheDownsampledSceneAreTheSame) {
   VerifyOptions options;
   options.clutter.rule = ContinuationClutter{};
   const PreparedScene full = prepare_scene(box_and_ball_scene(), options);
@@ -170,7 +170,7 @@ TEST(PrepareScene, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(a.plane, b.plane);
 }
 
-TEST(PrepareScene, QuickPlanesDependNeitherOnThreadsNorOnWhoThinnedTheScene) {
+TEST(PrepareScene, QuickPlanesDependNeitherOnThreadsNorOnWhoDownsampledTheScene) {
   VerifyOptions options{.clutter = {.rule = ContinuationClutter{}}, .planes = PlaneOptions{.spacing_m = 0.01}};
   const PreparedScene a = prepare_scene(box_and_ball_scene(), options);
   ASSERT_FALSE(a.planes.empty());

@@ -26,10 +26,10 @@ std::vector<FixedWeight> merge_weights(const HypothesisCues& cues) {
 
 }  // namespace
 
-double own_cost(const HypothesisEvidence& evidence) { return evidence.outlier_cost + evidence.plane_cost; }
+double own_cost(const HypothesisEvidence& evidence) { return evidence.costs.outlier + evidence.costs.plane; }
 
 double unary_cost(const HypothesisEvidence& evidence) {
-  return own_cost(evidence) + evidence.clutter_cost - evidence.explained_scene;
+  return own_cost(evidence) + evidence.costs.clutter - evidence.costs.explained_scene;
 }
 
 FixedCost to_fixed(double cost) { return std::llround(cost * kFixedOne); }

@@ -9,14 +9,14 @@
 
 namespace resight {
 
-/// Costs in whole numbers, 2^24 a unit: sums are exact, so that a cost kept up to date over thousands of moves is the
-/// cost computed from scratch, and no result depends on the order of additions.
+/// Costs as integers in units of 2^-24. Sums are exact, so incremental costs equal recomputed ones and the order of
+/// additions does not matter.
 using FixedCost = std::int64_t;
 inline constexpr double kFixedOne = 16777216.0;
 [[nodiscard]] FixedCost to_fixed(double cost);
 [[nodiscard]] inline double from_fixed(FixedCost cost) { return static_cast<double>(cost) / kFixedOne; }
 
-/// What a hypothesis costs whatever else is chosen, and in all if nothing else is.
+/// Cost that does not depend on other hypotheses, and total cost if nothing else is chosen.
 [[nodiscard]] double own_cost(const HypothesisEvidence& evidence);
 [[nodiscard]] double unary_cost(const HypothesisEvidence& evidence);
 
@@ -44,7 +44,7 @@ struct SelectionProblem {
   [[nodiscard]] int num_candidates() const { return static_cast<int>(unary.size()); }
 };
 
-/// Only points that two candidates know remain points; the rest goes into the unary costs.
+/// Points of one candidate only are folded into its unary cost.
 [[nodiscard]] SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> candidates,
                                                       std::span<const SharedVoxels> shared_voxels,
                                                       const SelectionOptions& options);

@@ -29,7 +29,7 @@ inline void declare(OptionVisitor& v, SelectionOptions& o) {
           "Cost of a scene point that several hypotheses explain.");
   v.choice("duplicity_rule", o.duplicity_rule,
            {{"beyond_best", "all weights but the largest"}, {"all_weights", "all weights (V4R)"}},
-           "Which weights of such a point count.");
+           "Which weights of a point that several hypotheses explain are charged.");
   v.field("occupancy_weight", o.occupancy_weight, between(0, 1e6),
           "Cost of a voxel that the surfaces of two objects fill. 0: objects may interpenetrate.");
   v.field("max_moves", o.max_moves, at_least(0),

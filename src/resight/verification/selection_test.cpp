@@ -25,8 +25,8 @@ struct RandomCues {
         else if (kind < 0.8)
           h.clutter.push_back({q, static_cast<float>(rng.uniform(0.05, 1))});
       }
-      h.evidence.outlier_cost = rng.uniform(0, 0.3 * stretch);
-      h.evidence.plane_cost = rng.uniform(0, 0.05 * stretch);
+      h.evidence.costs.outlier = rng.uniform(0, 0.3 * stretch);
+      h.evidence.costs.plane = rng.uniform(0, 0.05 * stretch);
       cues.push_back(std::move(h));
     }
     for (int a = 0; a < num_candidates; ++a)
@@ -46,7 +46,7 @@ double slow_cost(const RandomCues& random, const std::vector<std::uint8_t>& acti
   double cost = 0;
   for (std::size_t c = 0; c < random.cues.size(); ++c) {
     if (active[c] == 0) continue;
-    cost += random.cues[c].evidence.outlier_cost + random.cues[c].evidence.plane_cost;
+    cost += random.cues[c].evidence.costs.outlier + random.cues[c].evidence.costs.plane;
     for (const WeightedPoint& w : random.cues[c].explained) explained[w.point].push_back(w.weight);
     for (const WeightedPoint& w : random.cues[c].clutter) clutter[w.point] += w.weight;
   }
@@ -180,7 +180,7 @@ TEST(SearchSelection, ComponentsAreIndependent) {
 TEST(SearchSelection, TakesNothingWhenNothingPaysOff) {
   HypothesisCues costly;
   costly.explained = {{3, 1.0F}};
-  costly.evidence.outlier_cost = 1.5;
+  costly.evidence.costs.outlier = 1.5;
   const std::vector<const HypothesisCues*> one = {&costly};
   const SearchSelectionResult found = search_selection(make_selection_problem(one, {}, {}));
   EXPECT_EQ(found.active, std::vector<std::uint8_t>{0});

@@ -17,10 +17,11 @@ struct ExplainedPoint {
   LabColor color;
 };
 
-/// The turn of PreparedModel::turns (object_from_turned: the better pose is world_from_object * turn) under which the
-/// print of the model is most like the scene's (pattern_similarity(), less for what the mean hues differ): depth alone
-/// says nothing about it. The identity, unless another is better by .05, and for fewer than 20 points. A point
-/// that is beside the model counts as mid-grey there. `chroma_weight`: of a and b beside l.
+/// The symmetry motion (PreparedModel::symmetry_motions) under which the textures of model and scene agree best:
+/// pattern_similarity() minus the weighted squared difference of the mean chromaticities. The better pose is
+/// world_from_object * motion. Depth cannot tell these poses apart. Returns the identity unless another motion is
+/// better by more than 0.05, and for fewer than 20 points. Points beside the model count as mid-grey.
+/// `chroma_weight`: weight of a and b relative to l.
 [[nodiscard]] Rigid3 resolve_symmetry(const PreparedModel& model, std::span<const ExplainedPoint> points,
                                       double chroma_weight);
 

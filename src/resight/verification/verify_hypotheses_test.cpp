@@ -31,7 +31,6 @@ TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
   const VerifyResult result = f.verify(hypotheses, make_library());
   EXPECT_THAT(accepted(result), testing::ElementsAre(4));
   EXPECT_GT(result.evidence[4].fit, 0.85);
-  EXPECT_GE(result.num_planes, 1);
   EXPECT_LT(result.cost, 0);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
@@ -94,12 +93,12 @@ TEST(VerifyHypotheses, KeepsOneOfTwoDuplicates) {
       if (i == winner) continue;
       EXPECT_EQ(result.evidence[i].verdict, Verdict::kSuppressed);
       EXPECT_EQ(result.evidence[i].suppressed_by, winner);
-      EXPECT_LT(result.evidence[i].unary_cost, 0);
+      EXPECT_LT(result.evidence[i].costs.unary, 0);
     }
   }
 }
 
-TEST(VerifyHypotheses, TellsLookAlikesByColor) {
+TEST(VerifyHypotheses, DistinguishesTwinsByColor) {
   ModelLibrary library = make_library();
   Solid wrong = make_box();
   wrong.paint = checks({40, 160, 60}, {60, 60, 180}, 0.03);
@@ -113,7 +112,7 @@ TEST(VerifyHypotheses, TellsLookAlikesByColor) {
     const VerifyResult result = f.verify(both, library);
     EXPECT_THAT(accepted(result), testing::ElementsAre(1)) << "brightness " << brightness;
     EXPECT_GT(result.evidence[1].fit, result.evidence[0].fit + 0.2);
-    // Even without a rival, and accepted when colour is not looked at.
+    // Even without a competitor; accepted without colours.
     EXPECT_THAT(accepted(f.verify({both[0]}, library)), testing::IsEmpty());
     EXPECT_THAT(accepted(f.verify({both[0]}, library, {.appearance = {.use_color = false}})), testing::ElementsAre(0));
   }
@@ -170,7 +169,7 @@ TEST(VerifyHypotheses, RejectsABoxInsideTheTable) {
   EXPECT_THAT(accepted(result), testing::IsEmpty());
   EXPECT_GT(result.evidence[0].fit, 0.7);  // Its sides count as visible down to the margin.
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kCost);
-  EXPECT_GT(result.evidence[0].plane_cost, 100);
+  EXPECT_GT(result.evidence[0].costs.plane, 100);
   // The planes are what rejects it.
   EXPECT_FALSE(accepted(f.verify(hypotheses, library, {.clutter = kNoClutter, .planes = {}})).empty());
 }
@@ -180,8 +179,8 @@ TEST(VerifyHypotheses, PunishesAModelThatPiercesThePlane) {
   const VerifyResult result =
       f.verify({make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4)), make_hypothesis(kBox, on_table(0, 0, 0.03, 0.4))},
                make_library(), {.acceptance = {.min_explained_share = 0.1}});
-  EXPECT_LT(result.evidence[0].plane_cost, 60);
-  EXPECT_GT(result.evidence[1].plane_cost, 300);
+  EXPECT_LT(result.evidence[0].costs.plane, 60);
+  EXPECT_GT(result.evidence[1].costs.plane, 300);
   EXPECT_THAT(accepted(result), testing::ElementsAre(0));
 }
 
@@ -212,8 +211,8 @@ TEST(VerifyHypotheses, FollowsAMovedObject) {
   EXPECT_LT(result.evidence[0].explained_share_per_view[3], 0.3);
 }
 
-TEST(VerifyHypotheses, NewerViewsThatLookThroughOutweighStalePoints) {
-  // The scene still holds the box's points (the change was missed), but two of three views look through it.
+TEST(VerifyHypotheses, NewerViewsThatSeeThroughOutweighStalePoints) {
+  // The scene still holds the box's points (the change was missed), but two of three views see through it.
   const Rigid3 truth = on_table(0, 0, 0.07, 0.4);
   const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
   const std::vector<PreparedView> views = {render(one_box(), cameras[0]), render({}, cameras[1]),
@@ -235,12 +234,12 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
     return !accepted(verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options))
                 .empty();
   };
-  // Two older views look through the place of what has just come.
+  // Two older views see through the place of an object that has just come.
   const std::vector<PreparedView> came = {render({}, cameras[0]), render({}, cameras[1]),
                                           render(one_box(), cameras[2])};
   EXPECT_TRUE(accepts(came, newest));
   EXPECT_FALSE(accepts(came, {}));
-  // Two older views still show what the newest looks through.
+  // Two older views still show what the newest sees through.
   const std::vector<PreparedView> gone = {render(one_box(), cameras[0]), render(one_box(), cameras[1]),
                                           render({}, cameras[2])};
   EXPECT_FALSE(accepts(gone, newest));
@@ -248,7 +247,7 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
 }
 
 TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
-  // They look through what the newest view cannot see: the far sides of the box.
+  // They see through what the newest view cannot see: the far sides of the box.
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
   const std::vector<Rigid3> cameras = circle_of_cameras(3);
   const auto evidence = [&](const std::vector<World>& worlds, std::optional<double> arrival_share) {
@@ -263,7 +262,7 @@ TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   EXPECT_EQ(came.visible_share_per_view[0], 0);
   EXPECT_EQ(came.visible_share_per_view[1], 0);
   EXPECT_EQ(evidence({{}, {}, one_box()}, std::nullopt).verdict, Verdict::kNoSupport);
-  // What came and went: the newest view looks through it, and nothing excuses that.
+  // What came and went: the newest view sees through it, and nothing excuses that.
   const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
   EXPECT_FALSE(gone.accepted);
   EXPECT_GT(gone.visible_share_per_view[2], 0.1);
@@ -281,12 +280,12 @@ TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
     for (std::size_t i = 0; i < f.scene.size(); ++i) scene.points[i] += 0.0035F * static_cast<float>(i % 5) * towards;
     const ContinuationClutter rule{.noise_sigmas = noise_sigmas};
     const VerifyOptions options{.support = {.max_distance_m = 0.01},
-                                .refine = {.max_iterations = 0},
+                                .refine = {.max_iterations = std::nullopt},
                                 .clutter = {.weight = 6, .rule = rule},
                                 .planes = {}};
     const std::vector<VerificationView> refs = references(f.views);
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, pose)};
-    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].clutter_cost;
+    return verify_hypotheses(hypotheses, make_library(), scene, refs, {}, options).evidence[0].costs.clutter;
   };
   EXPECT_GT(clutter(2.2, 0), 100);
   EXPECT_LT(clutter(2.2, 3), 0.2 * clutter(2.2, 0));
@@ -304,8 +303,8 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
     const Fixture f(world, circle_of_cameras(4));
     const std::vector<Hypothesis> hypotheses = {make_hypothesis(3, pose)};
     const HypothesisEvidence e = f.verify(hypotheses, library, options).evidence[0];
-    EXPECT_GT(e.explained_scene, 100);
-    return e.clutter_cost / e.explained_scene;
+    EXPECT_GT(e.costs.explained_scene, 100);
+    return e.costs.clutter / e.costs.explained_scene;
   };
   // Alone, and beside a lower box and one of another colour that touch it.
   EXPECT_LT(clutter({.solids = {small}}, small.world_from_object), 0.2);
@@ -317,27 +316,29 @@ TEST(VerifyHypotheses, WhatContinuesASurfaceIsChargedForAndANeighborIsNot) {
   EXPECT_GT(clutter({.solids = {board}}, small.world_from_object), 1.0);
 }
 
-TEST(VerifyHypotheses, APrintThatIsAlikeRulesOutThatItIsPartOfSomethingLarger) {
+TEST(VerifyHypotheses, ASimilarTextureRulesOutAPartOfSomethingLarger) {
   const auto evidence = [](const Paint& paint, std::optional<double> contrast) {
     const Solid small{Shape::kBox, {0.1, 0.1, 0.08}, paint, on_table(0, 0, 0.04)};
     const Solid board{Shape::kBox, {0.3, 0.3, 0.08}, paint, on_table(0, 0, 0.04)};
     const ModelLibrary library{.objects = {make_model("small", small)}};
     const Fixture f({.solids = {board}}, circle_of_cameras(4));
     const ContinuationClutter rule{.texture_contrast = contrast};
-    const VerifyOptions options{.refine = {.max_iterations = 0}, .clutter = {.weight = 6, .rule = rule}, .planes = {}};
+    const VerifyOptions options{
+        .refine = {.max_iterations = std::nullopt}, .clutter = {.weight = 6, .rule = rule}, .planes = {}};
     return f.verify({make_hypothesis(0, small.world_from_object)}, library, options).evidence[0];
   };
   const Paint yellow = plain({180, 170, 60});
-  const double full = evidence(yellow, std::nullopt).clutter_cost;
+  const double full = evidence(yellow, std::nullopt).costs.clutter;
   EXPECT_GT(full, 100);
-  EXPECT_LT(evidence(yellow, 0.5).shared_texture, 0.01);
-  EXPECT_NEAR(evidence(yellow, 0.5).clutter_cost, full, 1e-3 * full);
+  EXPECT_LT(evidence(yellow, 0.5).appearance.shared_texture, 0.01);
+  EXPECT_NEAR(evidence(yellow, 0.5).costs.clutter, full, 1e-3 * full);
   const Paint printed = checks({180, 170, 60}, {120, 110, 40}, 0.05);
-  const double full_of_printed = evidence(printed, std::nullopt).clutter_cost;
+  const double full_of_printed = evidence(printed, std::nullopt).costs.clutter;
   EXPECT_GT(full_of_printed, 100);
   const HypothesisEvidence e = evidence(printed, 0.5);
-  EXPECT_GT(e.shared_texture, 0.5);
-  EXPECT_NEAR(e.clutter_cost, full_of_printed / (1 + std::pow(e.shared_texture / 0.5, 2)), 1e-2 * full_of_printed);
+  EXPECT_GT(e.appearance.shared_texture, 0.5);
+  EXPECT_NEAR(e.costs.clutter, full_of_printed / (1 + std::pow(e.appearance.shared_texture / 0.5, 2)),
+              1e-2 * full_of_printed);
 }
 
 // Painted all round, so that each turn looks different.
@@ -349,7 +350,7 @@ Solid printed_can() {
   return {Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0, 0, 0.06, 0.4)};
 }
 
-TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
+TEST(VerifyHypotheses, RotatesRoundObjectsToTheBestTexture) {
   const Solid can = printed_can();
   ModelLibrary library{.objects = {make_model("can", can)}};
   library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
@@ -368,8 +369,8 @@ TEST(VerifyHypotheses, TurnsWhatIsRoundToWhereItsPrintFits) {
   EXPECT_LT(angle_left_deg(0, 0.1745), 5);  // What is right stays.
 }
 
-TEST(VerifyHypotheses, NoTurnToAWorseFit) {
-  // In blue light the yellowish side looks as blue as the other; its print is its own.
+TEST(VerifyHypotheses, NoRotationToAWorseFit) {
+  // In blue light the yellowish side looks as blue as the other; its texture is its own.
   const auto painted = [](double blue) -> Paint {
     return [=](const Eigen::Vector3d& p) {
       const bool front = p.x() > 0;
@@ -391,7 +392,7 @@ TEST(VerifyHypotheses, NoTurnToAWorseFit) {
   EXPECT_LT(rotation_angle_rad(result.evidence[0].world_from_object.rotation, can.world_from_object.rotation), 0.05);
 }
 
-TEST(VerifyHypotheses, APlainCanIsNotTurned) {
+TEST(VerifyHypotheses, AnUntexturedCanIsNotRotated) {
   // Scan and scene each have stains of their own, of which some turn fits a little better.
   const auto stained = [](double frequency) -> Paint {
     return [=](const Eigen::Vector3d& p) {
@@ -423,18 +424,18 @@ TEST(VerifyHypotheses, ChargesForTheUnexplainedRestOfASegment) {
   // The crate's faces are planes, larger than the small box.
   const VerifyResult with_planes = f.verify(both, library);
   EXPECT_THAT(accepted(with_planes), testing::ElementsAre(0));
-  EXPECT_GT(with_planes.evidence[1].plane_cost, 50);
+  EXPECT_GT(with_planes.evidence[1].costs.plane, 50);
   const VerifyResult segments_only = f.verify(both, library, {.planes = {}});
   EXPECT_THAT(accepted(segments_only), testing::ElementsAre(0));
-  EXPECT_GT(segments_only.evidence[1].clutter_cost, 200);
-  EXPECT_LT(segments_only.evidence[0].clutter_cost, 50);
+  EXPECT_GT(segments_only.evidence[1].costs.clutter, 200);
+  EXPECT_LT(segments_only.evidence[0].costs.clutter, 50);
   // Also without the rival, and it is the clutter cue that does it.
   const std::vector<Hypothesis> small = {both[1]};
   EXPECT_THAT(accepted(f.verify(small, library, {.planes = {}})), testing::IsEmpty());
   EXPECT_THAT(accepted(f.verify(small, library, {.clutter = kNoClutter, .planes = {}})), testing::ElementsAre(0));
 }
 
-TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
+TEST(VerifyHypotheses, ByDefaultNoTextureIsRejected) {
   // Black for white: the similarity is negative.
   const Rgb8 dark{80, 80, 80};
   const Rgb8 bright{200, 200, 200};
@@ -447,12 +448,12 @@ TEST(VerifyHypotheses, ByDefaultNoPrintIsRefused) {
   const HypothesisEvidence evidence =
       f.verify(negative, library, {.appearance = {.light = {0, 0, 0, 0.08}}, .acceptance = {.min_explained_share = 0}})
           .evidence[0];
-  EXPECT_LT(evidence.pattern_similarity, 0);
+  EXPECT_LT(evidence.appearance.pattern_similarity, 0);
   EXPECT_GT(evidence.num_explained, 0);
   EXPECT_NE(evidence.verdict, Verdict::kDifferentAppearance);
 }
 
-TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
+TEST(VerifyHypotheses, TheNewestViewRejectsAnExchangedObject) {
   // A can stands where another stood, of the same shape: the scene keeps colours of both, the newest view shows one.
   const auto rings = [](Rgb8 even, Rgb8 odd) -> Paint {
     return [=](const Eigen::Vector3d& p) { return std::fmod(p.z() + 1, 0.04) < 0.02 ? even : odd; };
@@ -471,15 +472,15 @@ TEST(VerifyHypotheses, TheNewestPrintTellsWhatWasExchanged) {
     return f.verify(hypotheses, library, {.acceptance = {.min_newest_similarity = min_newest_similarity}}).evidence[0];
   };
   EXPECT_TRUE(before(-1).accepted);
-  EXPECT_GT(before(-1).pattern_similarity, 0.8);
+  EXPECT_GT(before(-1).appearance.pattern_similarity, 0.8);
   EXPECT_EQ(before(0.4).verdict, Verdict::kDifferentAppearance);
-  EXPECT_LT(before(0.4).newest_similarity, 0.2);
+  EXPECT_LT(before(0.4).appearance.newest_similarity, 0.2);
   f.views.pop_back();
   EXPECT_TRUE(before(0.4).accepted) << "no view shows another";
-  EXPECT_GT(before(0.4).newest_similarity, 0.8);
+  EXPECT_GT(before(0.4).appearance.newest_similarity, 0.8);
 }
 
-TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
+TEST(VerifyHypotheses, ADifferentTextureIsRejected) {
   // The same can, once striped and once in the stripes' mean colour.
   const auto striped = [](const Eigen::Vector3d& p) {
     return std::fmod(std::abs(p.z()), 0.02) < 0.01 ? Rgb8{200, 200, 200} : Rgb8{140, 140, 140};
@@ -496,7 +497,7 @@ TEST(VerifyHypotheses, AnotherPrintIsAnotherObject) {
   const VerifyResult result = f.verify(either, library, options);
   EXPECT_THAT(accepted(result), testing::ElementsAre(1));
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kDifferentAppearance);
-  EXPECT_LT(result.evidence[0].pattern_similarity, result.evidence[1].pattern_similarity - 0.2);
+  EXPECT_LT(result.evidence[0].appearance.pattern_similarity, result.evidence[1].appearance.pattern_similarity - 0.2);
 }
 
 }  // namespace

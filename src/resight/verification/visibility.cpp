@@ -10,8 +10,8 @@
 namespace resight {
 namespace {
 
-// Whether a view looks through most of what it could see of the model.
-bool looks_through(std::span<const Evidence> evidence, double min_share, int min_points) {
+// Whether a view sees through most of what it could see of the model.
+bool sees_through(std::span<const Evidence> evidence, double min_share, int min_points) {
   const auto through = std::ranges::count(evidence, Evidence::kSeenThrough);
   const auto seen = through + std::ranges::count(evidence, Evidence::kPresent);
   return seen >= min_points && static_cast<double>(through) > min_share * static_cast<double>(seen);
@@ -33,7 +33,7 @@ struct Seen {
   // Most of what was seen of it so far, and enough of it.
   [[nodiscard]] bool is_there(double arrival_share, int min_points) const {
     return std::ranges::count(newest, Evidence::kPresent) >= std::max(1, min_points) &&
-           !looks_through(newest, arrival_share, min_points);
+           !sees_through(newest, arrival_share, min_points);
   }
 
   std::vector<float> best_facing;
@@ -70,7 +70,7 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
     if (allowed[v] == 0) continue;
     SurfaceEvidence evidence = classify_surface({points, normals}, views[v].world_from_camera.inverse(),
                                                 {views[v].camera, views[v].depth_m}, evidence_options);
-    if (options.arrival_share && looks_through(evidence.points, *options.arrival_share, min_points) &&
+    if (options.arrival_share && sees_through(evidence.points, *options.arrival_share, min_points) &&
         seen.is_there(*options.arrival_share, min_points))
       break;  // It arrived since.
     seen.add(evidence);

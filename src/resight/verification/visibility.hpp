@@ -27,26 +27,26 @@ inline constexpr double kMinFacing = 0.1;
 /// How densely points sample a model.
 struct ModelSampling {
   double spacing_m = 0.005;
-  int min_points = 20;  ///< Fewer that are seen are no evidence that it is there, or not.
+  int min_points = 20;  ///< Fewer observed points are no evidence of presence or absence.
 };
 
 struct ModelVisibility {
-  /// Per view (empty where not allowed, and of before it came) and model point. Points that the model itself hides are
+  /// Per view and model point; empty for views that are not allowed or precede the arrival. Self-occluded points are
   /// kOccluded.
   std::vector<std::vector<Evidence>> evidence;
   std::vector<int> visible;  ///< Points observed (is_observed()) in at least one view, ascending.
-  std::vector<float>
-      facing;  ///< Per entry of `visible`: largest cosine between normal and viewing ray among those views.
-  std::vector<std::uint8_t> seen_through;  ///< Per entry of `visible`: the newest of those views looks through it, or
-                                           ///< more than MajorityFreeSpace::max_share do.
+  /// Per entry of `visible`: largest cosine between normal and viewing ray among those views.
+  std::vector<float> facing;
+  /// Per entry of `visible`: whether the newest observing view, or more than MajorityFreeSpace::max_share of them, sees
+  /// through the point.
+  std::vector<std::uint8_t> seen_through;
 };
 
-/// Visibility of model points at their pose in the world (normals empty: no point counts as turned away). Views from
-/// the oldest to the newest; `allowed`: one per view. A view that looks through more than
-/// VisibilityOptions::arrival_share of what it could see, while newer ones see the model where it is, is of before it
-/// came: it and older ones do not count. V4R's GO3D without its gaps: intrinsics of the view instead of f = 525, and
-/// the model hides its own far parts (back faces by their normals, the rest by a z-buffer of the model, whose cells are
-/// as wide as the spacing of its points).
+/// Visibility of model points at their pose in the world. Views are ordered from oldest to newest; `allowed` has one
+/// entry per view. Without normals, no point faces away. If a view sees through more than
+/// VisibilityOptions::arrival_share of the model while newer views confirm it, the object arrived later: this view and
+/// all older ones are ignored. Unlike V4R's GO3D, uses the intrinsics of the view and handles self-occlusion: back
+/// faces by their normals, the rest by a z-buffer with cells as wide as the point spacing.
 [[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
                                                   std::span<const Eigen::Vector3f> normals_in_world,
                                                   std::span<const DepthView> views,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,5 +43,7 @@ struct PcdHeader {
 
 /// Parses the header. `bytes` may end anywhere after it.
 [[nodiscard]] Result<PcdHeader> parse_pcd_header(std::string_view bytes, std::string_view name);
+/// Reads only the header of a file.
+[[nodiscard]] Result<PcdHeader> read_pcd_header(const std::filesystem::path& file);
 
 }  // namespace resight::io

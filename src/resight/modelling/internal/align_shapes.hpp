@@ -9,7 +9,7 @@ namespace resight {
 
 struct AlignShapesOptions {
   int num_directions = 60;            ///< Of the moving surface's axis that are tried.
-  int num_turns = 12;                 ///< About each of them.
+  int num_rotations = 12;             ///< About each of them.
   int num_samples = 300;              ///< Points of each surface.
   int num_iterations = 15;            ///< Of each trial.
   double max_distance_m = 0.003;      ///< Between points that agree.

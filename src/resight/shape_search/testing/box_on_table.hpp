@@ -11,7 +11,7 @@ struct BoxOnTable {
   PreparedView view = prepare_view(render({.solids = {box}}, circle_of_cameras(3)[0]).frame);
   ObjectModel model = make_model("box", box);
   SampledModel samples = make_sampled_model(model, 300);
-  PoseScorer probe{view, {}, 1};
+  PoseScorer scorer{view, {}, 1};
   Rigid3 truth = view.frame.world_from_camera.inverse() * box.world_from_object;
 };
 

@@ -12,13 +12,13 @@
 namespace resight::internal {
 
 /// A rotation axis in the object frame.
-struct TurnAxis {
+struct RotationAxis {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< Unit vector.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< Metres.
 };
 
 /// Rotation by `angle_rad` about the axis.
-[[nodiscard]] Rigid3 turn_about(const TurnAxis& axis, double angle_rad);
+[[nodiscard]] Rigid3 rotation_about(const RotationAxis& axis, double angle_rad);
 
 /// Compares a surface with itself after a motion.
 class SelfOverlap {
@@ -42,7 +42,7 @@ class SelfOverlap {
   [[nodiscard]] double rough_share(const Rigid3& motion, double slack_rad, double min_share) const;
   /// Adjusts the axis so that rotations about it by each of the angles fit best (point-to-plane ICP with the axis as
   /// the only unknown; the angles are fixed).
-  [[nodiscard]] TurnAxis refine(TurnAxis axis, std::span<const double> angles_rad) const;
+  [[nodiscard]] RotationAxis refine(RotationAxis axis, std::span<const double> angles_rad) const;
 
  private:
   struct Limits {
