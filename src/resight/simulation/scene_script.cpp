@@ -51,6 +51,11 @@ class ScriptChecker {
     if (script_.world_from_camera.empty()) return Error{"camera: there is no view (give orbit or pose)"};
     for (const Rigid3& pose : script_.world_from_camera)
       if (!pose.is_rigid()) return Error{"camera: a pose is not a rigid motion"};
+    if (!script_.reported_world_from_camera.empty() &&
+        script_.reported_world_from_camera.size() != script_.world_from_camera.size())
+      return Error{"camera: there must be as many reported as true poses"};
+    for (const Rigid3& pose : script_.reported_world_from_camera)
+      if (!pose.is_rigid()) return Error{"camera: a reported pose is not a rigid motion"};
     if (script_.room_size_m && !(script_.room_size_m->minCoeff() > 0)) return Error{"room.size_m: must be > 0"};
     return {};
   }
@@ -175,6 +180,11 @@ std::vector<Rigid3> make_orbit(const OrbitScript& orbit) {
     poses.push_back(look_at(orbit.center_m + offset, orbit.center_m));
   }
   return poses;
+}
+
+const Rigid3& reported_pose(const SceneScript& script, int view) {
+  const auto i = static_cast<std::size_t>(view);
+  return script.reported_world_from_camera.empty() ? script.world_from_camera[i] : script.reported_world_from_camera[i];
 }
 
 Result<void> check_script(const SceneScript& script) { return ScriptChecker(script).check(); }

@@ -30,6 +30,7 @@ struct FurnitureScript {
   std::string kind;  ///< See furniture_kinds().
   Eigen::Vector3d size_m = Eigen::Vector3d(1.2, 0.8, 0.74);
   Placement placement;
+  SurfaceMaterial material = {};
 };
 
 /// An object of a scene, known or not.
@@ -61,7 +62,10 @@ struct SceneScript {
   std::vector<ObjectScript> objects;
   std::vector<ChangeScript> changes;
   Camera camera = make_kinect_camera();
-  std::vector<Rigid3> world_from_camera;  ///< One per view.
+  std::vector<Rigid3> world_from_camera;  ///< The true poses, one per view.
+  /// What the tracker of the camera reports, one per view; empty = the true poses.
+  std::vector<Rigid3> reported_world_from_camera = {};
+  LensDistortion color_lens = {};  ///< Left over in colour images; `camera` is the ideal camera.
   SensorOptions sensor;
   Lighting lighting;
 };
@@ -81,6 +85,9 @@ struct OrbitScript {
 };
 /// Poses (world_from_camera) of an orbit. Throws std::invalid_argument unless num_views > 0.
 [[nodiscard]] std::vector<Rigid3> make_orbit(const OrbitScript& orbit);
+
+/// The pose that is written for a view.
+[[nodiscard]] const Rigid3& reported_pose(const SceneScript& script, int view);
 
 /// Checks that keys are unique, supports and objects exist when they are used, changes are possible (a removed object
 /// was present, ...), and there is a view. The error names the entry and the rule.

@@ -7,8 +7,10 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
+#include "resight/core/options.hpp"
 #include "resight/core/result.hpp"
 
 namespace resight {
@@ -44,16 +46,26 @@ class TomlFields {
   void table(const std::string& key, const std::function<void(TomlFields&)>& body);
   /// Calls body(fields) for each table of the array [[key]] if it exists.
   void tables(const std::string& key, const std::function<void(TomlFields&)>& body);
+  /// Reads the declared options of the sub-table if it exists.
+  template <typename Options>
+  void options(const std::string& key, Options& target);
   /// Must be called after all reads.
   void finish();
 
  private:
   const toml::node* find(const std::string& key);
+  void read_options(std::span<const Option> options, std::size_t prefix_length);
+  void read_option(const std::string& key, const OptionPointer& target);
   const toml::table& table_;
   std::string where_;
   std::optional<Error>& error_;
   std::set<std::string, std::less<>> known_;
 };
+
+template <typename Options>
+void TomlFields::options(const std::string& key, Options& target) {
+  table(key, [&](TomlFields& fields) { fields.read_options(list_options(target), 0); });
+}
 
 template <std::size_t N>
 std::optional<std::array<double, N>> TomlFields::read_numbers(const std::string& key) {
