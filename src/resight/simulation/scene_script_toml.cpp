@@ -199,6 +199,7 @@ void read_room(TomlFields& fields, SceneScript& script) {
 
 void read_scene(TomlFields& root, const std::filesystem::path& folder, SceneScript& script) {
   root.read("name", script.name);
+  if (root.has("object_seed")) root.read("object_seed", script.object_seed.emplace());
   root.table("room", [&](TomlFields& f) { read_room(f, script); });
   root.table("light", [&](TomlFields& f) { read_light(f, script.lighting); });
   root.table("sensor", [&](TomlFields& f) { read_sensor(f, script.sensor); });

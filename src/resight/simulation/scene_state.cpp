@@ -116,8 +116,7 @@ class StateBuilder {
       if (!file) return Error{"object '" + o.key + "': " + file.error().message};
       object = ProceduralObject{o.model, std::move(file->mesh), {}, "mesh"};
     } else {
-      object = make_procedural_object(o.model);
-      if (!object) object = make_distractor(o.model);
+      object = make_script_object(state_.script.object_seed, o.model);
     }
     if (!object) return object.error();
     auto mesh = std::make_shared<const TriangleMesh>(object->mesh);

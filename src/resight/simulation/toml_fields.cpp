@@ -42,6 +42,13 @@ void TomlFields::read(const std::string& key, int& target) {
   }
 }
 
+void TomlFields::read(const std::string& key, std::uint64_t& target) {
+  int value = static_cast<int>(target);
+  read(key, value);
+  if (value < 0) return fail(key, "must be >= 0");
+  target = static_cast<std::uint64_t>(value);
+}
+
 void TomlFields::read(const std::string& key, bool& target) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
@@ -108,12 +115,7 @@ void TomlFields::read_option(const std::string& key, const OptionPointer& target
   if (auto* const* number = std::get_if<double*>(&target)) return read(key, **number);
   if (auto* const* count = std::get_if<int*>(&target)) return read(key, **count);
   if (auto* const* flag = std::get_if<bool*>(&target)) return read(key, **flag);
-  if (auto* const* seed = std::get_if<std::uint64_t*>(&target)) {
-    int value = static_cast<int>(**seed);
-    read(key, value);
-    if (value < 0) return fail(key, "must be >= 0");
-    **seed = static_cast<std::uint64_t>(value);
-  }
+  if (auto* const* seed = std::get_if<std::uint64_t*>(&target)) return read(key, **seed);
 }
 
 void TomlFields::finish() {

@@ -32,6 +32,7 @@ class TomlFields {
   /// Read a value of the type of the target; a missing key leaves the target unchanged.
   void read(const std::string& key, double& target);
   void read(const std::string& key, int& target);
+  void read(const std::string& key, std::uint64_t& target);  ///< A seed: >= 0.
   void read(const std::string& key, bool& target);
   void read(const std::string& key, std::string& target);
   void read(const std::string& key, std::optional<double>& target);
