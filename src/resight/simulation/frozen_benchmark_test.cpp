@@ -123,13 +123,13 @@ void expect_frozen(const SceneScript& script, const FrozenView& expected) {
 }
 
 TEST(FrozenBenchmark, Version2KeepsItsScripts) {
-  EXPECT_EQ(script_checksum(make_dynamic_tabletop(1)), 16301896283613035425ULL);
-  EXPECT_EQ(script_checksum(make_dynamic_tabletop(2)), 13241485200973923422ULL);
+  EXPECT_EQ(script_checksum(make_dynamic_tabletop(1, {.version = 2})), 16301896283613035425ULL);
+  EXPECT_EQ(script_checksum(make_dynamic_tabletop(2, {.version = 2})), 13241485200973923422ULL);
 }
 
 TEST(FrozenBenchmark, Version2KeepsItsFirstView) {
   expect_frozen(
-      make_dynamic_tabletop(1)[0],
+      make_dynamic_tabletop(1, {.version = 2})[0],
       {0x4E6D91BA1B597628ULL,
        {210.2, 2734.9, 92.7,  177.9, 2547.3, 92.4,  211.0, 3474.6, 100.0, 185.7, 3676.1, 87.7,  164.6, 3507.6, 99.5,
         173.7, 3111.1, 100.0, 181.4, 2774.1, 100.0, 187.1, 2503.3, 100.0, 158.3, 890.2,  95.7,  197.8, 1020.2, 99.9,
