@@ -190,6 +190,8 @@ Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64
   }
   if (options.models)
     if (auto done = write_bop_meshes(unknown_objects(scripts), pending->path() / "unknown", {}); !done) return done;
+  if (options.write_more)
+    if (auto done = options.write_more(pending->path()); !done) return done;
   return pending->commit();
 }
 
