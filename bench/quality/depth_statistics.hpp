@@ -27,7 +27,7 @@ struct HoleCount {
 
 class DepthStatistics {
  public:
-  static constexpr std::array<double, 6> kRanges_m{0.4, 0.8, 1.2, 1.8, 2.5, 4.0};
+  static constexpr std::array<double, 6> kRanges_m{0.2, 0.8, 1.2, 1.8, 2.5, 4.0};
   static constexpr std::array<double, 5> kAngles_deg{0, 30, 50, 65, 80};
   static constexpr std::array<double, 4> kEdgeDistances_px{0, 3, 8, 1e9};
   static constexpr std::array<int, 6> kBrightness{0, 30, 80, 160, 245, 256};
@@ -51,7 +51,8 @@ class DepthStatistics {
 
  private:
   static constexpr int kWindow_px = 21;
-  static constexpr double kMaxResidualShare = 0.01;  // of z^2: larger is no plane
+  static constexpr double kMaxResidualShare = 0.01;  // of z^2; twice the RMS beyond which a window is no plane,
+  static constexpr double kMaxRms_m = 0.004;         // unless it is below this
 
   struct Plane {
     Eigen::Vector3d inverse_depth;  // 1 / z = a u + b v + c
@@ -96,7 +97,7 @@ class DepthStatistics {
       limit = kMaxResidualShare;
     }
     measure_residuals(frame, u0, v0, plane);
-    return plane.z_m > 0 && plane.rms_m < 0.5 * kMaxResidualShare * plane.z_m * plane.z_m;
+    return plane.z_m > 0 && plane.rms_m < std::max(kMaxRms_m, 0.5 * kMaxResidualShare * plane.z_m * plane.z_m);
   }
 
   static void measure_residuals(const RgbdFrame& frame, int u0, int v0, Plane& plane) {

@@ -77,12 +77,23 @@ LightImage blur_by_motion(const LightImage& light, const Eigen::Vector2f& path_p
   });
 }
 
-float exposure_of(const LightImage& light, const ColorCamera& camera) {
-  if (camera.metering <= 0) return static_cast<float>(camera.exposure);
+float exposure_of(const LightImage& light, const ExposureControl& control) {
+  if (control.metering <= 0) return static_cast<float>(control.factor);
   double sum = 0;
   for (const Vector3f& c : light.data()) sum += std::min(1.0F, c.mean());
   const double mean = std::max(1e-3, sum / static_cast<double>(light.size()));
-  return static_cast<float>(camera.exposure * std::pow(camera.metering_target / mean, camera.metering));
+  return static_cast<float>(control.factor * std::pow(control.metering_target / mean, control.metering));
+}
+
+// Factors of the automatic white balance on the channels.
+Vector3f white_balance_of(const LightImage& light, const ExposureControl& control) {
+  if (control.white_balancing <= 0) return Vector3f::Ones();
+  Eigen::Vector3d sum = Eigen::Vector3d::Constant(1e-6);
+  for (const Vector3f& c : light.data()) sum += c.cwiseMin(1.0F).cast<double>();
+  const auto factor = [&](int channel) {
+    return static_cast<float>(std::pow(sum.y() / sum[channel], control.white_balancing));
+  };
+  return {factor(0), 1, factor(2)};
 }
 
 // The channel that a pixel of the Bayer pattern RGGB measures.
@@ -178,8 +189,9 @@ LightImage expose(const LightImage& light, const ColorCamera& camera, const Vect
   const auto draw_path = [&] { return static_cast<float>(camera.motion_blur_px * rng.normal()); };
   const float path_u = draw_path();
   const Eigen::Vector2f path_px(path_u, draw_path());
-  const Vector3f white(static_cast<float>(camera.red_gain), 1, static_cast<float>(camera.blue_gain));
-  const Vector3f factors = exposure_of(light, camera) * gains.cwiseProduct(white);
+  const Vector3f white(static_cast<float>(camera.exposure.red_gain), 1, static_cast<float>(camera.exposure.blue_gain));
+  const Vector3f factors = exposure_of(light, camera.exposure) *
+                           gains.cwiseProduct(white).cwiseProduct(white_balance_of(light, camera.exposure));
   LightImage image = light;
   for (Vector3f& c : image.data()) c = c.cwiseProduct(factors).cwiseMin(4.0F);  // stray light of lamps stays bounded
   if (camera.blur_px > 0) image = blur(image, static_cast<float>(camera.blur_px), num_threads);

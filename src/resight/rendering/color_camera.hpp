@@ -8,13 +8,35 @@
 
 namespace resight {
 
-/// The image processing of a colour camera, in the order of its steps. Each step can be off (value in its text).
-struct ColorCamera {
-  double exposure = 1;
+/// How a colour camera adapts to the light. The defaults leave it as it is.
+struct ExposureControl {
+  double factor = 1;
   double metering = 0;
   double metering_target = 0.18;
+  double white_balancing = 0;
   double red_gain = 1;
   double blue_gain = 1;
+  void check() const { check_options("ExposureControl", *this); }
+};
+
+inline void declare(OptionVisitor& v, ExposureControl& o) {
+  v.field("factor", o.factor, positive(), "Factor on the light of every view.");
+  v.field("metering", o.metering, between(0, 1),
+          "Share of the automatic exposure: 0 keeps the exposure, 1 brings the mean of each view to metering_target.");
+  v.field("metering_target", o.metering_target, between(0.01, 1),
+          "Mean of a metered view, as a share of the brightest light.", "18 % grey card");
+  v.field("white_balancing", o.white_balancing, between(0, 1),
+          "Share of the automatic white balance: 0 keeps the colours, 1 makes the mean of each view grey.",
+          "grey world, Buchsbaum 1980");
+  v.field("red_gain", o.red_gain, positive(), "Error of the white balance of red, relative to green.",
+          "up to 20 % in warm light, Cheng et al. 2014");
+  v.field("blue_gain", o.blue_gain, positive(), "Error of the white balance of blue, relative to green.",
+          "up to 20 % in warm light, Cheng et al. 2014");
+}
+
+/// The image processing of a colour camera, in the order of its steps. Each step can be off (value in its text).
+struct ColorCamera {
+  ExposureControl exposure = {};
   double blur_px = 0;
   double motion_blur_px = 0;
   bool mosaic = false;
@@ -29,15 +51,7 @@ struct ColorCamera {
 };
 
 inline void declare(OptionVisitor& v, ColorCamera& o) {
-  v.field("exposure", o.exposure, positive(), "Factor on the light of every view.");
-  v.field("metering", o.metering, between(0, 1),
-          "Share of the automatic exposure: 0 keeps the exposure, 1 brings the mean of each view to metering_target.");
-  v.field("metering_target", o.metering_target, between(0.01, 1),
-          "Mean of a metered view, as a share of the brightest light.", "18 % grey card");
-  v.field("red_gain", o.red_gain, positive(), "Error of the white balance of red, relative to green.",
-          "up to 20 % in warm light, Cheng et al. 2014");
-  v.field("blue_gain", o.blue_gain, positive(), "Error of the white balance of blue, relative to green.",
-          "up to 20 % in warm light, Cheng et al. 2014");
+  v.group("exposure", o.exposure);
   v.field("blur_px", o.blur_px, between(0, 5), "Sigma of the blur of lens and pixel; 0: off.");
   v.field("motion_blur_px", o.motion_blur_px, between(0, 50),
           "Sigma of the path of the image while a view is exposed, per axis; 0: off.");

@@ -33,8 +33,9 @@ double deviation(const Image<Rgb8>& image, int u0, int u1) {
 
 ColorCamera everything_on() {
   ColorCamera camera;
-  camera.metering = 0.8;
-  camera.red_gain = 1.1;
+  camera.exposure.metering = 0.8;
+  camera.exposure.white_balancing = 0.5;
+  camera.exposure.red_gain = 1.1;
   camera.blur_px = 0.5;
   camera.motion_blur_px = 1;
   camera.mosaic = true;
@@ -87,11 +88,21 @@ TEST(ColorCamera, MosaicKeepsFlatColours) {
 
 TEST(ColorCamera, MeteringBringsViewsToOneBrightness) {
   ColorCamera camera;
-  camera.metering = 1;
+  camera.exposure.metering = 1;
   const Image<Rgb8> dark = develop_color(edge_image(0.02F, 0.1F), camera, kNoGain, 1);
   const Image<Rgb8> bright = develop_color(edge_image(0.1F, 0.5F), camera, kNoGain, 1);
   EXPECT_NEAR(dark(10, 10).g, bright(10, 10).g, 1);
   EXPECT_NEAR(dark(50, 10).g, bright(50, 10).g, 1);
+}
+
+TEST(ColorCamera, WhiteBalanceMakesTheMeanGrey) {
+  ColorCamera camera;
+  camera.exposure.white_balancing = 1;
+  LightImage light = edge_image();
+  for (Eigen::Vector3f& c : light.data()) c = c.cwiseProduct(Eigen::Vector3f(1.3F, 1, 0.6F));
+  const Rgb8 c = develop_color(light, camera, kNoGain, 1)(5, 5);
+  EXPECT_NEAR(c.r, c.g, 1);
+  EXPECT_NEAR(c.b, c.g, 1);
 }
 
 TEST(ColorCamera, CompressionChangesTextureButNotFlatParts) {

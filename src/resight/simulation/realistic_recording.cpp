@@ -18,15 +18,15 @@ DepthErrors draw_depth_errors(Rng& rng) {
   e.shift_v_px = shift_px * std::sin(direction_rad);
   e.lens.k1 = clamped_normal(rng, 0.003, 0.008);
   e.disparity_offset_px = clamped_normal(rng, 0.08, 0.2);
-  e.disparity_noise_px = rng.uniform(0.05, 0.08);
+  e.disparity_noise_px = rng.uniform(0.055, 0.1);
   e.disparity_noise_cell_px = rng.uniform(5, 9);
   e.outline_noise_px = rng.uniform(0.4, 0.9);
   e.outline_noise_cell_px = rng.uniform(4, 7);
   e.edge_band_px = rng.uniform(3, 6);
   e.edge_loss = rng.uniform(0.5, 0.8);
-  e.grazing_start_deg = rng.uniform(50, 65);
+  e.grazing_start_deg = rng.uniform(62, 74);
   e.highlight_loss = rng.uniform(0.5, 1.5);
-  e.dark_loss = rng.uniform(0.3, 0.8);
+  e.dark_loss = rng.uniform(0.4, 0.9);
   e.dark_level = rng.uniform(0.08, 0.18);
   e.hole_cell_px = rng.uniform(3, 5);
   return e;
@@ -34,19 +34,20 @@ DepthErrors draw_depth_errors(Rng& rng) {
 
 ColorCamera draw_color_camera(Rng& rng) {
   ColorCamera c;
-  c.metering = rng.uniform(0.6, 0.9);
-  c.metering_target = rng.uniform(0.14, 0.26);
-  c.red_gain = std::exp(clamped_normal(rng, 0.08, 0.16));
-  c.blue_gain = std::exp(clamped_normal(rng, 0.1, 0.2));
+  c.exposure.metering = rng.uniform(0.6, 0.9);
+  c.exposure.metering_target = rng.uniform(0.16, 0.34);
+  c.exposure.white_balancing = rng.uniform(0.4, 0.8);
+  c.exposure.red_gain = std::exp(clamped_normal(rng, 0.08, 0.16));
+  c.exposure.blue_gain = std::exp(clamped_normal(rng, 0.1, 0.2));
   c.blur_px = rng.uniform(0.5, 0.8);
   c.motion_blur_px = rng.uniform(0.2, 1.2);
   c.mosaic = true;
   c.read_noise = rng.uniform(0.003, 0.008);
   c.shot_noise = rng.uniform(0.02, 0.05);
-  c.noise_reduction = rng.uniform(5, 12);
-  c.contrast = rng.uniform(0.1, 0.4);
+  c.noise_reduction = rng.uniform(4, 10);
+  c.contrast = rng.uniform(0.2, 0.6);
   c.sharpening = rng.uniform(0.4, 1.4);
-  c.saturation = rng.uniform(0.9, 1.3);
+  c.saturation = rng.uniform(0.7, 1.2);
   c.jpeg_quality = 75 + static_cast<int>(rng.below(21));
   return c;
 }
@@ -65,9 +66,9 @@ Lamp draw_lamp(Rng& rng, double side, const Eigen::Vector3d& color) {
 
 SensorOptions draw_sensor(Rng& rng) {
   SensorOptions sensor;
-  sensor.lateral_noise = 0.4;  // the rest is correlated
-  sensor.axial_noise = 0.35;
-  sensor.max_incidence_deg = 84;
+  sensor.lateral_noise = 0.3;  // the rest is correlated
+  sensor.axial_noise = 0.2;
+  sensor.max_incidence_deg = 86;
   sensor.edge_dropout = 0;  // edge_band_px instead
   sensor.gain_sigma = 0.06;
   sensor.white_balance_sigma = 0.015;

@@ -137,6 +137,16 @@ void read_camera_pose(TomlFields& fields, std::vector<Rigid3>& poses) {
   poses.push_back(look_at(eye, target));
 }
 
+void read_drift(TomlFields& fields, SceneScript& script) {
+  CameraDriftOptions drift;
+  fields.options(drift);
+  try {
+    script.reported_world_from_camera = drift_poses(script.world_from_camera, drift);
+  } catch (const std::invalid_argument& mistake) {
+    fields.fail("drift", mistake.what());
+  }
+}
+
 void read_camera(TomlFields& fields, SceneScript& script) {
   fields.read("width", script.camera.width);
   fields.read("height", script.camera.height);
@@ -150,9 +160,7 @@ void read_camera(TomlFields& fields, SceneScript& script) {
   fields.table("orbit", [&](TomlFields& f) { read_orbit(f, script.world_from_camera); });
   fields.tables("pose", [&](TomlFields& f) { read_camera_pose(f, script.world_from_camera); });
   fields.options("lens", script.color_lens);
-  CameraDriftOptions drift;
-  fields.options("drift", drift);
-  if (fields.has("drift")) script.reported_world_from_camera = drift_poses(script.world_from_camera, drift);
+  fields.table("drift", [&](TomlFields& f) { read_drift(f, script); });
 }
 
 void read_sensor(TomlFields& fields, SensorOptions& s) {
@@ -215,6 +223,8 @@ std::optional<Error> check_options(const SceneScript& script) {
   try {
     script.sensor.check();
     script.lighting.check();
+    script.color_lens.check();
+    for (const FurnitureScript& f : script.furniture) f.material.check();
   } catch (const std::invalid_argument& mistake) {
     return Error{mistake.what()};
   }

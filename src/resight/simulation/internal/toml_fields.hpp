@@ -47,9 +47,15 @@ class TomlFields {
   void table(const std::string& key, const std::function<void(TomlFields&)>& body);
   /// Calls body(fields) for each table of the array [[key]] if it exists.
   void tables(const std::string& key, const std::function<void(TomlFields&)>& body);
-  /// Reads the declared options of the sub-table if it exists.
+  /// Reads declared options from this table, or from the sub-table if it exists.
   template <typename Options>
-  void options(const std::string& key, Options& target);
+  void options(Options& target) {
+    read_options(list_options(target), 0);
+  }
+  template <typename Options>
+  void options(const std::string& key, Options& target) {
+    table(key, [&](TomlFields& fields) { fields.options(target); });
+  }
   /// Must be called after all reads.
   void finish();
 
@@ -62,11 +68,6 @@ class TomlFields {
   std::optional<Error>& error_;
   std::set<std::string, std::less<>> known_;
 };
-
-template <typename Options>
-void TomlFields::options(const std::string& key, Options& target) {
-  table(key, [&](TomlFields& fields) { fields.read_options(list_options(target), 0); });
-}
 
 template <std::size_t N>
 std::optional<std::array<double, N>> TomlFields::read_numbers(const std::string& key) {
