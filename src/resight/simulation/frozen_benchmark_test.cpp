@@ -43,10 +43,29 @@ class ScriptText {
          {s.sensor.lateral_noise, s.sensor.axial_noise, s.sensor.color_noise, s.lighting.ambient, s.lighting.diffuse})
       add(x);
     add(s.lighting.lamp_in_world_m);
+    if (s.object_seed) add_version_3(s);
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
+  void add_version_3(const SceneScript& s) {
+    for (const Rigid3& pose : s.reported_world_from_camera) add(pose);
+    for (const Lamp& lamp : s.lighting.lamps) {
+      add(lamp.position_in_world_m);
+      add(lamp.intensity);
+      add(lamp.radius_m);
+    }
+    for (const FurnitureScript& f : s.furniture) add(f.material.specular);
+    DepthErrors depth = s.sensor.depth_errors.value();
+    ColorCamera color = s.sensor.color_camera.value();
+    for (const Option& option : list_options(depth)) add(option);
+    for (const Option& option : list_options(color)) add(option);
+    add(s.color_lens.k1);
+  }
+  void add(const Option& option) {
+    if (const auto* const* number = std::get_if<double*>(&option.pointer)) add(**number);
+    if (const auto* const* count = std::get_if<int*>(&option.pointer)) add(std::to_string(**count));
+  }
   void add(const std::string& text) { text_ += text + '\n'; }
   void add(double x) {
     char number[32];
@@ -141,6 +160,27 @@ TEST(FrozenBenchmark, Version2KeepsItsFirstView) {
         159.0, 893.7,  99.7,  151.0, 881.4,  99.2,  152.9, 902.1,  99.0,  146.5, 1395.2, 84.2,  175.4, 1879.7, 97.7,
         131.8, 683.4,  89.2,  165.8, 678.5,  98.3,  159.7, 757.4,  99.4,  167.3, 768.0,  100.0, 161.6, 775.9,  99.3,
         173.0, 1304.0, 95.7,  167.9, 1607.6, 96.7,  189.0, 1629.0, 100.0}});
+}
+
+TEST(FrozenBenchmark, Version3KeepsItsScripts) {
+  EXPECT_EQ(script_checksum(make_dynamic_tabletop(1)), 11516790093956767996ULL);
+  EXPECT_EQ(script_checksum(make_dynamic_tabletop(2)), 10806112595597085899ULL);
+}
+
+TEST(FrozenBenchmark, Version3KeepsItsFirstView) {
+  expect_frozen(
+      make_dynamic_tabletop(1)[0],
+      {0x21DE1E241CE8F0CEULL,
+       {209.8, 2953.7, 97.6, 203.7, 3377.7, 97.8,  168.0, 3256.3, 66.8, 193.2, 3482.4, 65.3, 187.1, 2799.7, 82.1,
+        214.6, 3303.2, 95.9, 216.8, 3087.0, 98.4,  216.0, 2875.5, 98.7, 203.5, 3085.5, 99.4, 149.4, 2654.1, 57.2,
+        116.9, 1157.5, 94.9, 137.5, 2313.7, 70.1,  122.0, 1626.4, 77.5, 128.1, 1826.7, 65.8, 174.5, 2466.5, 84.5,
+        193.5, 2872.8, 96.5, 150.6, 2839.3, 94.8,  136.8, 2593.9, 66.0, 77.4,  1212.9, 77.0, 112.0, 1397.6, 87.8,
+        129.2, 1359.4, 90.2, 135.7, 1338.6, 88.3,  146.4, 1387.0, 89.7, 148.4, 2615.7, 95.3, 153.0, 2081.8, 83.1,
+        132.4, 1229.3, 73.3, 127.2, 1098.3, 80.8,  146.8, 927.2,  85.1, 119.1, 1017.4, 88.9, 157.9, 1128.1, 100.0,
+        112.9, 1574.8, 83.9, 147.8, 2197.3, 100.0, 135.0, 1226.9, 72.5, 137.8, 979.0,  96.1, 147.2, 937.4,  85.5,
+        83.6,  751.0,  95.6, 129.4, 952.6,  95.3,  148.1, 991.5,  96.3, 94.8,  1810.9, 96.8, 132.5, 1860.4, 99.8,
+        162.6, 1619.5, 86.8, 118.6, 1364.6, 70.6,  150.7, 922.4,  84.3, 121.9, 818.6,  99.4, 158.7, 829.9,  99.5,
+        112.6, 1197.5, 91.8, 114.2, 1622.4, 99.9,  134.7, 1609.5, 99.9}});
 }
 
 }  // namespace

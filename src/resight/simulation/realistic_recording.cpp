@@ -26,8 +26,8 @@ DepthErrors draw_depth_errors(Rng& rng) {
   e.edge_loss = rng.uniform(0.5, 0.8);
   e.grazing_start_deg = rng.uniform(62, 74);
   e.highlight_loss = rng.uniform(0.5, 1.5);
-  e.dark_loss = rng.uniform(0.4, 0.9);
-  e.dark_level = rng.uniform(0.08, 0.18);
+  e.dark_loss = rng.uniform(0.6, 1);
+  e.dark_level = rng.uniform(0.12, 0.28);
   e.hole_cell_px = rng.uniform(3, 5);
   return e;
 }

@@ -9,7 +9,6 @@
 #include "resight/io/bop_models.hpp"
 #include "resight/simulation/baked_light.hpp"
 #include "resight/simulation/realistic_recording.hpp"
-#include "resight/simulation/recording.hpp"
 #include "resight/simulation/seeded_objects.hpp"
 
 namespace resight {
@@ -63,9 +62,10 @@ Result<void> write_tabletop_meshes(std::uint64_t seed, const std::filesystem::pa
     ModelSource source;
     source.name = model.name;
     source.bop_id = model.bop_id;
-    source.mesh = model.origin == ModelOrigin::kScan
-                      ? bake_light(object, Rng::stream(seed, kScanStream + model.bop_id).next())
-                      : object.mesh;
+    source.mesh =
+        model.origin == ModelOrigin::kScan
+            ? bake_light(object, Rng::stream(seed, kScanStream + static_cast<std::uint64_t>(model.bop_id)).next())
+            : object.mesh;
     source.symmetries = object.symmetries;
     if (auto done = (*writer)->write_model(source, model.bop_id); !done) return done;
     if (progress) progress(std::string(to_string(model.origin)) + " " + model.name);
@@ -73,27 +73,30 @@ Result<void> write_tabletop_meshes(std::uint64_t seed, const std::filesystem::pa
   return (*writer)->finish();
 }
 
-Result<void> write_tabletop_recordings(std::uint64_t seed, const std::filesystem::path& directory, DatasetFormat format,
-                                       int num_threads, const std::function<void(const std::string&)>& progress) {
-  auto pending = PendingDirectory::create(directory);
-  if (!pending) return pending.error();
+RecordingOptions tabletop_recording_options(std::uint64_t seed, const TabletopModel& model) {
   Rng rng = Rng::stream(seed, kRecordingStream);
   RecordingOptions options;
   options.step_deg = kRecordingStepDeg;
   options.sensor = draw_sensor(rng);
   options.sensor.min_depth_m = 0.4;
   options.lighting = draw_lighting(rng);
-  options.num_threads = num_threads;
+  options.seed = Rng::stream(seed, kRecordingStream + static_cast<std::uint64_t>(model.bop_id)).next();
+  return options;
+}
+
+Result<void> write_tabletop_recordings(std::uint64_t seed, const std::filesystem::path& directory, DatasetFormat format,
+                                       int num_threads, const std::function<void(const std::string&)>& progress) {
+  auto pending = PendingDirectory::create(directory);
+  if (!pending) return pending.error();
   for (const TabletopModel& model : tabletop_models(seed)) {
     if (model.origin != ModelOrigin::kRecording) continue;
-    options.seed = Rng::stream(seed, kRecordingStream + model.bop_id).next();
+    RecordingOptions options = tabletop_recording_options(seed, model);
+    options.num_threads = num_threads;
     const auto report = [&](const std::string& side) {
       if (progress) progress(model.name + " " + side);
     };
-    if (auto done = write_recordings(*make_seeded_object(seed, model.name), pending->path() / model.name, format,
-                                     options, report);
-        !done)
-      return done;
+    const ProceduralObject object = *make_seeded_object(seed, model.name);
+    if (auto done = write_recordings(object, pending->path() / model.name, format, options, report); !done) return done;
   }
   return pending->commit();
 }

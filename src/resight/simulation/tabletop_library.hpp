@@ -8,6 +8,7 @@
 
 #include "resight/core/result.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/simulation/recording.hpp"
 
 namespace resight {
 
@@ -33,8 +34,11 @@ struct TabletopModel {
 [[nodiscard]] Result<void> write_tabletop_meshes(std::uint64_t seed, const std::filesystem::path& dataset,
                                                  const std::function<void(const std::string&)>& progress = {});
 
-/// Writes `directory`/<name>/side_1 and side_2 for each recorded object (write_recordings()). All are recorded in one
-/// room with one device, as a user would. The folder appears when it is complete.
+/// How a recorded object is recorded: all in one room with one device, as a user would.
+[[nodiscard]] RecordingOptions tabletop_recording_options(std::uint64_t seed, const TabletopModel& model);
+
+/// Writes `directory`/<name>/side_1 and side_2 for each recorded object (write_recordings()). The folder appears
+/// when it is complete.
 [[nodiscard]] Result<void> write_tabletop_recordings(std::uint64_t seed, const std::filesystem::path& directory,
                                                      DatasetFormat format, int num_threads = 1,
                                                      const std::function<void(const std::string&)>& progress = {});
