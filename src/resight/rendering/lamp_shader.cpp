@@ -23,7 +23,7 @@ float hashed_share(std::uint32_t x) {
 // A point of the disc that the lamp shows. The samples of a pixel share its area, which makes penumbras smooth.
 Eigen::Vector3f LampShader::point_of(const Lamp& lamp, std::uint32_t lamp_index, const LightSample& sample,
                                      const Eigen::Vector3f& from) {
-  const Eigen::Vector3f center = lamp.position_in_world_m.cast<float>();
+  Eigen::Vector3f center = lamp.position_in_world_m.cast<float>();
   if (lamp.radius_m <= 0) return center;
   const std::uint32_t key = (sample.pixel * 8U + lamp_index) * 2U;
   const float area = (static_cast<float>(sample.index) + hashed_share(key)) / static_cast<float>(sample.count);

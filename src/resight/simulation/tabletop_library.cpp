@@ -17,9 +17,10 @@ namespace {
 constexpr std::uint64_t kScanStream = 3000;
 constexpr std::uint64_t kRecordingStream = 4000;
 constexpr double kRecordingStepDeg = 12;
-// Positions in SeededObjectNames::known: one twin of each pair, boxes, a flat package, a book, a carton, cans, a
-// bottle, a cup, a figure and the toys.
-constexpr std::array<std::size_t, 14> kRecorded{0, 2, 4, 6, 8, 10, 11, 13, 15, 18, 23, 25, 26, 27};
+// Positions in SeededObjectNames::known: one twin of each pair, boxes, a flat package, a carton, cans, a bottle, a cup,
+// a figure and the toys. Books are not: they lie too flat on a turntable for `resight model` (39 % of one was
+// complete).
+constexpr std::array<std::size_t, 14> kRecorded{0, 2, 4, 6, 10, 11, 13, 14, 15, 18, 23, 25, 26, 27};
 
 }  // namespace
 
