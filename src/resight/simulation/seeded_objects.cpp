@@ -210,7 +210,7 @@ std::vector<std::string> draw_names(const std::vector<Slot>& slots, Rng& rng, st
       name = make_word(rng, 2);
       std::ranges::transform(name, name.begin(),
                              [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-      name = std::string(slot.family) + "_" + name;
+      name.insert(0, std::string(slot.family) + "_");
     } while (std::ranges::find(taken, name) != taken.end());
     taken.push_back(name);
     names.push_back(name);
