@@ -35,7 +35,7 @@ run() {
   rm -rf "$results" && mkdir "$results" && cd "$results"
   if [[ ! -e $work/data.done ]]; then
     rm -rf "$work/data"
-    "$resight" simulate --preset dynamic-tabletop --seed 1 --format bop --out "$work/data" >log 2>&1
+    "$resight" simulate --preset dynamic-tabletop-2 --seed 1 --format bop --out "$work/data" >log 2>&1
     touch "$work/data.done"
   fi
   ln -sfn "$work/data" data

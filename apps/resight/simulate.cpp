@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/simulation/dynamic_tabletop.hpp"
 #include "resight/simulation/presets.hpp"
 #include "resight/simulation/recording.hpp"
 #include "resight/simulation/simulation.hpp"
+#include "resight/simulation/tabletop_library.hpp"
 #include "resight/simulation/write_simulation.hpp"
 
 namespace resight::app {
 namespace {
 
 constexpr const char* kBenchmark = "dynamic-tabletop";
+constexpr const char* kBenchmark2 = "dynamic-tabletop-2";
+constexpr const char* kBenchmarkRecordings = "dynamic-tabletop-recordings";
 constexpr const char* kTurntableRecording = "turntable-recording";
 constexpr const char* kWalkRecording = "walk-recording";
 constexpr const char* kRecordedObject = "milk_carton";
@@ -44,8 +49,10 @@ void simulate_scene(const SimulateArguments& arguments) {
 }
 
 void simulate_benchmark(const SimulateArguments& arguments) {
-  std::vector<SceneScript> scripts = make_dynamic_tabletop(arguments.seed);
-  const std::size_t num_models = dynamic_tabletop_library().size();
+  DynamicTabletopOptions benchmark;
+  benchmark.version = arguments.preset == kBenchmark2 ? 2 : kDynamicTabletopVersion;
+  std::vector<SceneScript> scripts = make_dynamic_tabletop(arguments.seed, benchmark);
+  const std::size_t num_models = dynamic_tabletop_library(arguments.seed, benchmark.version).size();
   std::size_t num_views = 0;
   std::size_t num_changes = 0;
   for (SceneScript& script : scripts) {
@@ -55,11 +62,16 @@ void simulate_benchmark(const SimulateArguments& arguments) {
   }
   {
     Progress progress("simulate", static_cast<int>(num_models + num_views));
+    WriteSimulationOptions options = write_options(arguments, progress);
+    if (benchmark.version >= 3)
+      options.write_more = [&](const std::filesystem::path& folder) {
+        return write_tabletop_meshes(arguments.seed, folder / "library");
+      };
     value_or_throw(write_simulations(scripts, arguments.seed, arguments.out, to_format(arguments.format),
-                                     {.num_threads = arguments.num_threads}, write_options(arguments, progress)));
+                                     {.num_threads = arguments.num_threads}, options));
   }
   fmt::print("{} version {}, seed {}: {} sequences, {} objects, {} views, {} changes: {}\n", kBenchmark,
-             kDynamicTabletopVersion, arguments.seed, scripts.size(), num_models, num_views, num_changes,
+             benchmark.version, arguments.seed, scripts.size(), num_models, num_views, num_changes,
              arguments.out.string());
 }
 
@@ -81,6 +93,19 @@ void simulate_recordings(const SimulateArguments& arguments) {
              arguments.out.string());
 }
 
+void simulate_benchmark_recordings(const SimulateArguments& arguments) {
+  const std::vector<TabletopModel> models = tabletop_models(arguments.seed);
+  const auto num_recorded = std::ranges::count(models, ModelOrigin::kRecording, &TabletopModel::origin);
+  {
+    Progress progress("simulate", 2 * static_cast<int>(num_recorded));
+    value_or_throw(write_tabletop_recordings(
+        arguments.seed, arguments.out, to_format(arguments.format), arguments.num_threads,
+        [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
+  }
+  fmt::print("{} version {}, seed {}: recordings of {} objects: {}\n", kBenchmark, kDynamicTabletopVersion,
+             arguments.seed, num_recorded, arguments.out.string());
+}
+
 bool is_recording(const std::string& preset) { return preset == kTurntableRecording || preset == kWalkRecording; }
 
 }  // namespace
@@ -91,7 +116,8 @@ void run_simulate(const SimulateArguments& arguments) {
   if (!arguments.object.empty() && !is_recording(arguments.preset))
     throw InputError("simulate: --object requires --preset turntable-recording or walk-recording");
   if (is_recording(arguments.preset)) return simulate_recordings(arguments);
-  if (arguments.preset == kBenchmark) return simulate_benchmark(arguments);
+  if (arguments.preset == kBenchmark || arguments.preset == kBenchmark2) return simulate_benchmark(arguments);
+  if (arguments.preset == kBenchmarkRecordings) return simulate_benchmark_recordings(arguments);
   simulate_scene(arguments);
 }
 

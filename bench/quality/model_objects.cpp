@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Accuracy of object models built from recordings: both sides of generated objects on a turntable, 36 views each, with
 // sensor noise, compared with the generated meshes. --true-poses skips tracking and joining and tests fusion alone. The
-// models in --out are in the frames of the meshes, so that both results can be compared.
-//   bench_model_objects [--true-poses] [--walk] [--out DIR] [OBJECT...]
+// models in --out are in the frames of the meshes, so that both results can be compared. --tabletop records the objects
+// of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed.
+//   bench_model_objects [--true-poses] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +24,8 @@
 #include "resight/modelling/write_model.hpp"
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/registration/twist.hpp"
+#include "resight/simulation/scene_script.hpp"
+#include "resight/simulation/tabletop_library.hpp"
 
 namespace {
 
@@ -34,21 +39,31 @@ struct Plan {
   bool true_poses = false;
   RecordingKind kind = RecordingKind::kTurntable;
   std::filesystem::path out;
+  std::optional<std::uint64_t> tabletop_seed;
   std::vector<std::string> names;
 };
+
+RecordingOptions recording_options(const ProceduralObject& object, const Plan& plan) {
+  RecordingOptions options;
+  if (plan.tabletop_seed)
+    for (const TabletopModel& model : tabletop_models(*plan.tabletop_seed))
+      if (model.name == object.name) options = tabletop_recording_options(*plan.tabletop_seed, model);
+  options.kind = plan.kind;
+  options.material = object.material;
+  options.num_threads = num_hardware_threads();
+  return options;
+}
 
 struct Side {
   std::vector<RgbdFrame> frames;
   std::vector<Rigid3> object_from_camera;
 };
 
-Side record(const TriangleMesh& mesh, const Plan& plan, bool upside_down) {
-  RecordingOptions options;
-  options.kind = plan.kind;
+Side record(const ProceduralObject& object, const Plan& plan, bool upside_down) {
+  RecordingOptions options = recording_options(object, plan);
   options.upside_down = upside_down;
-  options.num_threads = num_hardware_threads();
   Side side;
-  for (RecordedView& view : simulate_recording(mesh, options)) {
+  for (RecordedView& view : simulate_recording(object.mesh, options)) {
     side.frames.push_back(std::move(view.frame));
     side.object_from_camera.push_back(view.camera_from_object.inverse());
   }
@@ -70,12 +85,12 @@ Result<ObjectTrack> mask_with_true_poses(Side side) {
   return track;
 }
 
-Result<ObjectTrack> track_both(const TriangleMesh& mesh, const Plan& plan, std::vector<Rigid3>& truth) {
+Result<ObjectTrack> track_both(const ProceduralObject& object, const Plan& plan, std::vector<Rigid3>& truth) {
   TrackObjectOptions options;
   options.num_threads = num_hardware_threads();
   std::vector<ObjectTrack> tracks;
   for (const bool upside_down : {false, true}) {
-    Side side = record(mesh, plan, upside_down);
+    Side side = record(object, plan, upside_down);
     truth.insert(truth.end(), side.object_from_camera.begin(), side.object_from_camera.end());
     auto track =
         plan.true_poses ? mask_with_true_poses(std::move(side)) : track_object(std::move(side.frames), options);
@@ -118,10 +133,12 @@ void move_model(const Rigid3& truth_from_model, ObjectTrack& track, ObjectModelB
 }
 
 void measure(const std::string& name, const Plan& plan) {
-  const TriangleMesh truth = make_procedural_object(name)->mesh;
+  const auto object = make_script_object(plan.tabletop_seed, name);
+  if (!object.ok()) return static_cast<void>(fmt::print("{}\n", object.error().message));
+  const TriangleMesh& truth = object->mesh;
   std::vector<Rigid3> true_poses;
   const auto start = std::chrono::steady_clock::now();
-  auto track = track_both(truth, plan, true_poses);
+  auto track = track_both(*object, plan, true_poses);
   if (!track) {
     fmt::print("{:12} {}\n", name, track.error().message);
     return;
@@ -149,6 +166,14 @@ void measure(const std::string& name, const Plan& plan) {
     fmt::print("{}\n", done.error().message);
 }
 
+std::vector<std::string> default_names(const Plan& plan) {
+  if (!plan.tabletop_seed) return kObjects;
+  std::vector<std::string> names;
+  for (const TabletopModel& model : tabletop_models(*plan.tabletop_seed))
+    if (model.origin == ModelOrigin::kRecording) names.push_back(model.name);
+  return names;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -157,6 +182,8 @@ int main(int argc, char** argv) {
     const std::string_view argument = argv[i];
     if (argument == "--out" && i + 1 < argc) {
       plan.out = argv[++i];
+    } else if (argument == "--tabletop" && i + 1 < argc) {
+      plan.tabletop_seed = std::strtoull(argv[++i], nullptr, 10);
     } else if (argument == "--true-poses") {
       plan.true_poses = true;
     } else if (argument == "--walk") {
@@ -167,6 +194,6 @@ int main(int argc, char** argv) {
   }
   fmt::print("{:12} {:>6} {:>10} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "object", "views", "closure mm", "rot. deg",
              "median mm", "p95 mm", "complete", "open", "seconds");
-  for (const std::string& name : plan.names.empty() ? kObjects : plan.names) measure(name, plan);
+  for (const std::string& name : plan.names.empty() ? default_names(plan) : plan.names) measure(name, plan);
   return 0;
 }

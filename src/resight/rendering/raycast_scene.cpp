@@ -50,6 +50,7 @@ struct InstanceEntry {
   Eigen::Matrix3f rotation;
   RTCGeometry geometry = nullptr;
   bool visible = true;
+  SurfaceMaterial material{};
 };
 
 RTCScene build_mesh_scene(RTCDevice device, const TriangleMesh& mesh) {
@@ -158,6 +159,12 @@ void RaycastScene::set_visible(int instance, bool visible) {
   }
 }
 
+void RaycastScene::set_material(int instance, const SurfaceMaterial& material) {
+  static_cast<void>(impl_->instance(instance));
+  material.check();
+  impl_->instances[instance].material = material;
+}
+
 void RaycastScene::commit() { rtcCommitScene(impl_->scene); }
 int RaycastScene::num_instances() const { return static_cast<int>(impl_->instances.size()); }
 bool RaycastScene::is_visible(int instance) const { return impl_->instance(instance).visible; }
@@ -165,6 +172,8 @@ const Rigid3& RaycastScene::pose(int instance) const { return impl_->instance(in
 const TriangleMesh& RaycastScene::mesh(int instance) const {
   return *impl_->meshes[impl_->instance(instance).mesh].mesh;
 }
+
+const SurfaceMaterial& RaycastScene::material(int instance) const { return impl_->instance(instance).material; }
 
 void RaycastScene::cast(std::span<const Ray> rays, std::span<RayHit> hits, float min_distance) const {
   require(rays.size() == hits.size(), "RaycastScene::cast: rays and hits differ in length");

@@ -8,6 +8,7 @@
 #include "resight/core/image.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
+#include "resight/rendering/surface_material.hpp"
 
 namespace resight {
 
@@ -48,6 +49,8 @@ class RaycastScene {
   /// rigid.
   void set_pose(int instance, const Rigid3& world_from_mesh);
   void set_visible(int instance, bool visible);
+  /// Takes effect at once. Throws std::invalid_argument for an unknown instance or an invalid material.
+  void set_material(int instance, const SurfaceMaterial& material);
   /// Applies all changes. Must be called before casting.
   void commit();
 
@@ -55,6 +58,7 @@ class RaycastScene {
   [[nodiscard]] bool is_visible(int instance) const;
   [[nodiscard]] const Rigid3& pose(int instance) const;
   [[nodiscard]] const TriangleMesh& mesh(int instance) const;
+  [[nodiscard]] const SurfaceMaterial& material(int instance) const;
 
   /// Finds the first hit of each ray beyond `min_distance`, on either side of a face. `hits` must be as long as `rays`.
   void cast(std::span<const Ray> rays, std::span<RayHit> hits, float min_distance = 0.0F) const;

@@ -11,13 +11,14 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
+#include "resight/rendering/internal/depth_edges.hpp"
+#include "resight/rendering/internal/depth_error_field.hpp"
 #include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kEdgeJump = 0.03;  // Share of z; a larger step is a discontinuity.
 constexpr double kIncidenceRampDeg = 10.0;
 constexpr double kSelfShadowGapM = 2e-3;
 constexpr std::uint64_t kColorStream = 0xC0104ULL;  // Separates the random numbers of colour from those of depth.
@@ -27,52 +28,58 @@ double incidence_rad(const Eigen::Vector3f& normal, const Eigen::Vector3f& direc
   return std::acos(std::clamp(cosine, 0.0, 1.0));
 }
 
-bool is_beside_edge(const Image<float>& depth_m, int u, int v) {
-  const float z = depth_m(u, v);
-  for (int dv = -1; dv <= 1; ++dv)
-    for (int du = -1; du <= 1; ++du) {
-      if (!depth_m.contains(u + du, v + dv)) continue;
-      const float other = depth_m(u + du, v + dv);
-      if (std::isnan(other) || std::abs(other - z) > kEdgeJump * z) return true;
-    }
-  return false;
-}
-
 class DepthSensor {
  public:
   DepthSensor(const RaycastScene& scene, const Camera& camera, const Rigid3& world_from_camera,
-              const RenderedView& view, const SensorOptions& options)
+              const RenderedView& view, const SensorOptions& options, std::uint64_t seed)
       : scene_(scene),
         camera_(camera),
         view_(view),
         options_(options),
         world_from_camera_(world_from_camera),
-        projector_((world_from_camera * Eigen::Vector3d(options.baseline_m, 0, 0)).cast<float>()) {}
+        projector_((world_from_camera * Eigen::Vector3d(options.baseline_m, 0, 0)).cast<float>()) {
+    if (options.depth_errors) errors_.emplace(*options.depth_errors, camera, view, seed);
+  }
 
   void sense_row(int v, Rng rng, std::span<float> depth_m) const {
     std::vector<int> columns;  // Columns of pixels that may have a return.
+    std::vector<Pixel> measured;
     std::vector<Ray> rays;
     for (int u = 0; u < camera_.width; ++u) {
-      if (std::isnan(view_.depth_m(u, v)) || is_lost_at_edge(u, v, rng)) continue;
+      const Eigen::Vector2d ideal = errors_ ? errors_->measured_pixel(u, v) : Eigen::Vector2d(u, v);
+      const std::optional<Pixel> pixel = camera_.pixel_at(ideal);
+      if (!pixel || std::isnan(view_.depth_m(pixel->u, pixel->v)) || is_lost_at_edge(pixel->u, pixel->v, rng)) continue;
       columns.push_back(u);
-      rays.push_back(perturbed_ray(u, v, rng));
+      measured.push_back(*pixel);
+      rays.push_back(perturbed_ray(*pixel, ideal.cast<float>(), rng));
     }
     std::vector<RayHit> hits(rays.size());
     scene_.cast(rays, hits);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const double z = measure(rays[i], hits[i], rng);
+      if (errors_ && is_lost(columns[i], v, measured[i], rays[i], hits[i])) continue;
+      const double z = measure(columns[i], v, rays[i], hits[i], rng);
       if (z >= options_.min_depth_m && z <= options_.max_depth_m)  // false for NaN
         depth_m[columns[i]] = static_cast<float>(z);
     }
   }
 
  private:
+  bool is_lost(int u, int v, const Pixel& measured, const Ray& ray, const RayHit& hit) const {
+    if (!hit.has_hit()) return true;
+    SensedSurface surface;
+    surface.incidence_deg = incidence_rad(scene_.face_normal(hit), ray.direction) * 180 / std::numbers::pi;
+    surface.material = scene_.material(hit.instance);
+    surface.brightness = scene_.color(hit, hit.distance / static_cast<float>(camera_.fx)).mean() / 255;
+    return errors_->is_lost(u, v, measured, surface, options_.max_incidence_deg);
+  }
+
   bool is_lost_at_edge(int u, int v, Rng& rng) const {
-    return options_.edge_dropout > 0 && is_beside_edge(view_.depth_m, u, v) && rng.uniform() < options_.edge_dropout;
+    return options_.edge_dropout > 0 && is_beside_depth_edge(view_.depth_m, u, v) &&
+           rng.uniform() < options_.edge_dropout;
   }
 
   // Measured depth; NaN means no return.
-  double measure(const Ray& ray, const RayHit& hit, Rng& rng) const {
+  double measure(int u, int v, const Ray& ray, const RayHit& hit, Rng& rng) const {
     if (!hit.has_hit()) return kMissing;
     const Eigen::Vector3f normal = scene_.face_normal(hit);
     const double angle = incidence_rad(normal, ray.direction);
@@ -81,27 +88,27 @@ class DepthSensor {
       return kMissing;
     double z = hit.distance;
     if (options_.axial_noise > 0) z += options_.axial_noise * nguyen_noise(z, angle, camera_.fx).axial_m * rng.normal();
-    if (options_.disparity_step_px > 0)
-      z = quantize_depth(z, camera_.fx * options_.baseline_m, options_.disparity_step_px);
+    const double focal_baseline = camera_.fx * options_.baseline_m;
+    if (errors_) z = focal_baseline / std::max(1e-6, focal_baseline / z + errors_->disparity_error_px(u, v));
+    if (options_.disparity_step_px > 0) z = quantize_depth(z, focal_baseline, options_.disparity_step_px);
     return z;
   }
 
-  Ray perturbed_ray(int u, int v, Rng& rng) const {
-    float du = 0;
-    float dv = 0;
+  Ray perturbed_ray(const Pixel& pixel, Eigen::Vector2f position, Rng& rng) const {
     if (options_.lateral_noise > 0) {
-      const double z = view_.depth_m(u, v);
-      const Eigen::Vector3f direction = camera_.unproject(u, v, 1.0).cast<float>();
-      const double angle = incidence_rad(view_.normals_in_camera(u, v), direction);
+      const double z = view_.depth_m(pixel.u, pixel.v);
+      const Eigen::Vector3f direction = camera_.unproject(pixel.u, pixel.v, 1.0).cast<float>();
+      const double angle = incidence_rad(view_.normals_in_camera(pixel.u, pixel.v), direction);
       const double sigma_px = options_.lateral_noise * nguyen_noise(z, angle, camera_.fx).lateral_m * camera_.fx / z;
-      du = static_cast<float>(sigma_px * rng.normal());
-      dv = static_cast<float>(sigma_px * rng.normal());
+      position.x() += static_cast<float>(sigma_px * rng.normal());
+      position.y() += static_cast<float>(sigma_px * rng.normal());
     }
-    return pixel_ray(camera_, world_from_camera_, static_cast<float>(u) + du, static_cast<float>(v) + dv);
+    return pixel_ray(camera_, world_from_camera_, position.x(), position.y());
   }
 
   bool reflects(double angle_rad, Rng& rng) const {
     if (options_.max_incidence_deg >= 90) return true;
+    if (errors_ && options_.depth_errors->grazing_start_deg < 90) return true;  // is_lost() decides
     const double margin_deg = options_.max_incidence_deg - angle_rad * 180 / std::numbers::pi;
     if (margin_deg >= kIncidenceRampDeg) return true;
     return margin_deg > 0 && rng.uniform() < margin_deg / kIncidenceRampDeg;
@@ -119,7 +126,17 @@ class DepthSensor {
   const SensorOptions& options_;
   Rigid3f world_from_camera_;
   Eigen::Vector3f projector_;
+  std::optional<DepthErrorField> errors_;
 };
+
+// Factors of the exposure and white balance of a view.
+std::array<float, 3> draw_gains(const SensorOptions& options, std::uint64_t color_seed) {
+  Rng view_rng = Rng::stream(color_seed, ~0ULL);
+  const double gain = std::exp(options.gain_sigma * view_rng.normal());
+  std::array<float, 3> gains{};
+  for (float& g : gains) g = static_cast<float>(gain * std::exp(options.white_balance_sigma * view_rng.normal()));
+  return gains;
+}
 
 }  // namespace
 
@@ -135,6 +152,8 @@ void SensorOptions::check() const {
   check_not_negative("SensorOptions.color_noise", color_noise);
   check_not_negative("SensorOptions.gain_sigma", gain_sigma);
   check_not_negative("SensorOptions.white_balance_sigma", white_balance_sigma);
+  if (depth_errors) depth_errors->check();
+  if (color_camera) color_camera->check();
 }
 
 double quantize_depth(double depth_m, double focal_baseline, double disparity_step_px) {
@@ -149,7 +168,7 @@ Image<float> sense_depth(const RaycastScene& scene, const Camera& camera, const 
           "sense_depth: the view must have the size of the camera image");
   if (options.noise_free) return view.depth_m;
   Image<float> depth_m(camera.width, camera.height, kMissing);
-  const DepthSensor sensor(scene, camera, world_from_camera, view, options);
+  const DepthSensor sensor(scene, camera, world_from_camera, view, options, seed);
   parallel_for(static_cast<std::size_t>(camera.height), num_threads, [&](std::size_t v) {
     sensor.sense_row(static_cast<int>(v), Rng::stream(seed, v), depth_m.row(static_cast<int>(v)));
   });
@@ -160,10 +179,7 @@ Image<Rgb8> sense_color(const Image<Rgb8>& ideal, const SensorOptions& options, 
   options.check();
   if (options.noise_free) return ideal;
   const std::uint64_t color_seed = seed ^ (kColorStream << 32U);
-  Rng view_rng = Rng::stream(color_seed, ~0ULL);
-  const double gain = std::exp(options.gain_sigma * view_rng.normal());
-  std::array<float, 3> gains{};
-  for (float& g : gains) g = static_cast<float>(gain * std::exp(options.white_balance_sigma * view_rng.normal()));
+  const std::array<float, 3> gains = draw_gains(options, color_seed);
   Image<Rgb8> sensed = ideal;
   parallel_for(static_cast<std::size_t>(ideal.height()), num_threads, [&](std::size_t v) {
     Rng rng = Rng::stream(color_seed, v);
@@ -179,6 +195,15 @@ Image<Rgb8> sense_color(const Image<Rgb8>& ideal, const SensorOptions& options, 
     }
   });
   return sensed;
+}
+
+Image<Rgb8> sense_color(const RenderedView& view, const SensorOptions& options, std::uint64_t seed, int num_threads) {
+  if (options.noise_free || !options.color_camera) return sense_color(view.color, options, seed, num_threads);
+  options.check();
+  require(!view.light.empty(), "sense_color: options.color_camera needs a view with linear light");
+  const std::uint64_t color_seed = seed ^ (kColorStream << 32U);
+  const std::array<float, 3> gains = draw_gains(options, color_seed);
+  return develop_color(view.light, *options.color_camera, {gains[0], gains[1], gains[2]}, color_seed, num_threads);
 }
 
 }  // namespace resight

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 
+#include "resight/rendering/color_camera.hpp"
+#include "resight/rendering/depth_errors.hpp"
 #include "resight/rendering/view_renderer.hpp"
 
 namespace resight {
@@ -16,12 +19,15 @@ struct SensorOptions {
   bool projector_shadow = true;      ///< No return where the projector does not see the surface.
   double max_incidence_deg =
       82.0;  ///< No return from surfaces slanted more; returns thin out over the 10 deg before. 90 = off.
-  double edge_dropout = 0.4;          ///< Probability of no return beside a depth discontinuity. 0 = off.
-  double min_depth_m = 0.5;           ///< Nearer: no return.
-  double max_depth_m = 4.0;           ///< Farther: no return.
-  double color_noise = 2.0;           ///< Sigma of each channel of each pixel, of 255. 0 = off.
-  double gain_sigma = 0.05;           ///< Relative sigma of the exposure from view to view. 0 = off.
-  double white_balance_sigma = 0.01;  ///< Relative sigma of each channel from view to view. 0 = off.
+  double edge_dropout = 0.4;                     ///< Probability of no return beside a depth discontinuity. 0 = off.
+  double min_depth_m = 0.5;                      ///< Nearer: no return.
+  double max_depth_m = 4.0;                      ///< Farther: no return.
+  double color_noise = 2.0;                      ///< Sigma of each channel of each pixel, of 255. 0 = off.
+  double gain_sigma = 0.05;                      ///< Relative sigma of the exposure from view to view. 0 = off.
+  double white_balance_sigma = 0.01;             ///< Relative sigma of each channel from view to view. 0 = off.
+  std::optional<DepthErrors> depth_errors = {};  ///< Correlated and systematic errors of depth.
+  /// Image processing of the colour camera. Replaces color_noise, and needs linear light.
+  std::optional<ColorCamera> color_camera = {};
   void check() const;
 };
 
@@ -33,6 +39,11 @@ struct SensorOptions {
 
 /// Simulates the colour image of the sensor from an ideal image: gain, white balance and pixel noise.
 [[nodiscard]] Image<Rgb8> sense_color(const Image<Rgb8>& ideal, const SensorOptions& options, std::uint64_t seed,
+                                      int num_threads = 1);
+
+/// Same for a view that was rendered with RenderOptions::linear_light if options.color_camera is set. Throws
+/// std::invalid_argument if it was not.
+[[nodiscard]] Image<Rgb8> sense_color(const RenderedView& view, const SensorOptions& options, std::uint64_t seed,
                                       int num_threads = 1);
 
 /// Depth whose disparity is the nearest multiple of the step. `focal_baseline` is focal length (px) times baseline (m).

@@ -8,12 +8,13 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/rendering/color_camera.hpp"
+#include "resight/rendering/internal/lamp_shader.hpp"
 
 namespace resight {
 namespace {
 
 constexpr float kNoReturn = std::numeric_limits<float>::quiet_NaN();
-constexpr float kShadowGapM = 1e-3F;  // Surfaces closer than this cast no shadow, which prevents self-shadowing.
 
 class RowRenderer {
  public:
@@ -24,7 +25,8 @@ class RowRenderer {
         options_(options),
         world_from_camera_(world_from_camera),
         camera_from_world_(world_from_camera.rotation.transpose().cast<float>()),
-        lamp_(options.lighting.lamp_in_world_m.cast<float>()) {}
+        lamp_(options.lighting.lamp_in_world_m.cast<float>()),
+        lamp_shader_(scene, options.lighting) {}
 
   void render(int v, RenderedView& view) const {
     const int width = camera_.width;
@@ -40,7 +42,7 @@ class RowRenderer {
       view.labels(u, v) = hits[u].instance;
       view.normals_in_camera(u, v) = camera_from_world_ * towards_viewer(scene_.face_normal(hits[u]), rays[u]);
     }
-    render_colors(v, view.color.row(v));
+    render_colors(v, view);
   }
 
  private:
@@ -48,7 +50,7 @@ class RowRenderer {
     return normal.dot(ray.direction) > 0 ? Eigen::Vector3f(-normal) : normal;
   }
 
-  void render_colors(int v, std::span<Rgb8> colors) const {
+  void render_colors(int v, RenderedView& view) const {
     const int n = options_.samples_per_side;
     std::vector<Ray> rays(static_cast<std::size_t>(camera_.width) * n * n);
     std::vector<RayHit> hits(rays.size());
@@ -56,22 +58,39 @@ class RowRenderer {
     for (int u = 0, i = 0; u < camera_.width; ++u)
       for (int sv = 0; sv < n; ++sv)
         for (int su = 0; su < n; ++su, ++i)
-          rays[i] = pixel_ray(camera_, world_from_camera_, static_cast<float>(u) + offset(su),
-                              static_cast<float>(v) + offset(sv));
+          rays[i] = color_ray(static_cast<float>(u) + offset(su), static_cast<float>(v) + offset(sv));
     scene_.cast(rays, hits);
     for (int u = 0; u < camera_.width; ++u) {
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      for (int i = u * n * n; i < (u + 1) * n * n; ++i) sum += shade(rays[i], hits[i]);
+      for (int i = u * n * n; i < (u + 1) * n * n; ++i) sum += shade(rays[i], hits[i], sample_of(u, v, i % (n * n)));
       sum /= static_cast<float>(n * n);
+      if (options_.linear_light) {
+        view.light(u, v) = sum;
+        sum = sum.unaryExpr(&encode_srgb);
+      }
       const auto round = [](float x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5F, 0.0F, 255.0F)); };
-      colors[u] = {round(sum.x()), round(sum.y()), round(sum.z())};
+      view.color(u, v) = {round(sum.x()), round(sum.y()), round(sum.z())};
     }
   }
 
-  [[nodiscard]] Eigen::Vector3f shade(const Ray& ray, const RayHit& hit) const {
+  [[nodiscard]] LightSample sample_of(int u, int v, int index) const {
+    return {static_cast<std::uint32_t>(v * camera_.width + u), index,
+            options_.samples_per_side * options_.samples_per_side};
+  }
+
+  [[nodiscard]] Ray color_ray(float u, float v) const {
+    if (options_.color_lens.k1 != 0 || options_.color_lens.k2 != 0) {
+      const Eigen::Vector2f ideal = ideal_pixel(options_.color_lens, camera_, u, v).cast<float>();
+      return pixel_ray(camera_, world_from_camera_, ideal.x(), ideal.y());
+    }
+    return pixel_ray(camera_, world_from_camera_, u, v);
+  }
+
+  // Encoded grey levels, or linear light.
+  [[nodiscard]] Eigen::Vector3f shade(const Ray& ray, const RayHit& hit, const LightSample& sample) const {
     if (!hit.has_hit()) {
       const Rgb8 b = options_.background;
-      return {static_cast<float>(b.r), static_cast<float>(b.g), static_cast<float>(b.b)};
+      return surface_light({static_cast<float>(b.r), static_cast<float>(b.g), static_cast<float>(b.b)});
     }
     const Eigen::Vector3f p = ray.origin + hit.distance * ray.direction;
     const Eigen::Vector3f normal = towards_viewer(scene_.shading_normal(hit), ray);
@@ -80,7 +99,15 @@ class RowRenderer {
     const float cosine = std::max(0.1F, std::abs(normal.dot(ray.direction)) / ray.direction.norm());
     const float footprint_m =
         hit.distance / static_cast<float>(camera_.fx * options_.samples_per_side) / std::sqrt(cosine);
-    return scene_.color(hit, footprint_m) * brightness(p, normal);
+    const Eigen::Vector3f color = surface_light(scene_.color(hit, footprint_m));
+    if (options_.lighting.lamps.empty()) return color * brightness(p, normal);
+    const float white = options_.linear_light ? 1.0F : 255.0F;
+    return lamp_shader_.shade({p, normal, -ray.direction.normalized()}, color, white, scene_.material(hit.instance),
+                              sample);
+  }
+
+  [[nodiscard]] Eigen::Vector3f surface_light(const Eigen::Vector3f& color) const {
+    return options_.linear_light ? Eigen::Vector3f(color.unaryExpr(&decode_srgb)) : color;
   }
 
   [[nodiscard]] float brightness(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {
@@ -89,7 +116,7 @@ class RowRenderer {
     const float distance = to_lamp.norm();
     float lamp_share = std::max(0.0F, normal.dot(to_lamp) / distance);
     if (light.shadows && lamp_share > 0 &&
-        scene_.is_blocked({p, to_lamp / distance}, kShadowGapM, distance - kShadowGapM)) {
+        scene_.is_blocked({p, to_lamp / distance}, kLampShadowGapM, distance - kLampShadowGapM)) {
       lamp_share = 0;
     }
     return static_cast<float>(light.ambient) * (0.85F + 0.15F * normal.z()) +
@@ -102,6 +129,7 @@ class RowRenderer {
   Rigid3f world_from_camera_;
   Eigen::Matrix3f camera_from_world_;
   Eigen::Vector3f lamp_;
+  LampShader lamp_shader_;
 };
 
 }  // namespace
@@ -110,12 +138,19 @@ void Lighting::check() const {
   require(lamp_in_world_m.allFinite(), "Lighting.lamp_in_world_m must be finite");
   check_not_negative("Lighting.ambient", ambient);
   check_not_negative("Lighting.diffuse", diffuse);
+  require(ambient_color.allFinite() && ambient_color.minCoeff() >= 0, "Lighting.ambient_color must be >= 0");
+  for (const Lamp& lamp : lamps) {
+    require(lamp.position_in_world_m.allFinite(), "Lamp.position_in_world_m must be finite");
+    require(lamp.intensity.allFinite() && lamp.intensity.minCoeff() >= 0, "Lamp.intensity must be >= 0");
+    check_not_negative("Lamp.radius_m", lamp.radius_m);
+  }
 }
 
 void RenderOptions::check() const {
   check_in_range("RenderOptions.samples_per_side", samples_per_side, 1, 8);
   check_in_range("RenderOptions.num_threads", num_threads, 1, 4096);
   lighting.check();
+  color_lens.check();
 }
 
 Ray pixel_ray(const Camera& camera, const Rigid3f& world_from_camera, float u, float v) {
@@ -131,8 +166,12 @@ RenderedView render_scene(const RaycastScene& scene, const Camera& camera, const
   require(world_from_camera.is_rigid(), "render_scene: the camera pose is not a rigid motion");
   const int w = camera.width;
   const int h = camera.height;
-  RenderedView view{Image<Rgb8>(w, h), Image<float>(w, h, kNoReturn), Image<int>(w, h, -1),
-                    Image<Eigen::Vector3f>(w, h, Eigen::Vector3f::Constant(kNoReturn))};
+  RenderedView view{Image<Rgb8>(w, h),
+                    Image<float>(w, h, kNoReturn),
+                    Image<int>(w, h, -1),
+                    Image<Eigen::Vector3f>(w, h, Eigen::Vector3f::Constant(kNoReturn)),
+                    {}};
+  if (options.linear_light) view.light = Image<Eigen::Vector3f>(w, h, Eigen::Vector3f::Zero());
   const RowRenderer renderer(scene, camera, world_from_camera, options);
   parallel_for_blocks(static_cast<std::size_t>(h), 8, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) renderer.render(static_cast<int>(v), view);

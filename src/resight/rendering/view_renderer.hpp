@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "resight/core/image.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
+#include "resight/rendering/lens_distortion.hpp"
 #include "resight/rendering/raycast_scene.hpp"
 
 namespace resight {
 
-/// One lamp and ambient light that is slightly stronger from above. Intensities are relative to the surface colour.
+/// A coloured lamp, which makes highlights on glossy surfaces.
+struct Lamp {
+  Eigen::Vector3d position_in_world_m = Eigen::Vector3d(1.2, -1.0, 2.8);
+  Eigen::Vector3d intensity = Eigen::Vector3d::Constant(0.5);  ///< Red, green, blue; 1 lights a white surface fully.
+  double radius_m = 0;                                         ///< Of the shining sphere: shadows have edges this soft.
+};
+
+/// One white lamp and ambient light that is slightly stronger from above, or several coloured lamps. Intensities are
+/// relative to the surface colour.
 struct Lighting {
   Eigen::Vector3d lamp_in_world_m = Eigen::Vector3d(1.2, -1.0, 2.8);
   double ambient = 0.55;
   double diffuse = 0.55;
-  bool shadows = false;  ///< Whether the lamp casts shadows; costs one ray per sample.
+  bool shadows = false;     ///< Whether lamps cast shadows; costs one ray per sample and lamp.
+  std::vector<Lamp> lamps;  ///< Instead of the white lamp, if there are any.
+  Eigen::Vector3d ambient_color = Eigen::Vector3d::Ones();  ///< Factors on `ambient`; only with `lamps`.
   void check() const;
 };
 
@@ -22,6 +34,10 @@ struct RenderOptions {
   int samples_per_side = 2;  ///< Colour is averaged over n x n rays a pixel; depth, label and normal are of its centre.
   Lighting lighting;
   Rgb8 background{120, 122, 125};  ///< Where no surface is.
+  /// Light adds up in linear intensities, as in a scene, instead of in encoded grey levels. Also fills
+  /// RenderedView::light.
+  bool linear_light = false;
+  LensDistortion color_lens = {};  ///< Of the colour image only.
   int num_threads = 1;             ///< Same bytes for any value >= 1.
   void check() const;
 };
@@ -33,10 +49,11 @@ struct RenderedView {
   Image<int> labels;     ///< Instance in the scene; -1 if there is no surface.
   /// Unit normal of the face, oriented towards the camera; NaN if there is no surface.
   Image<Eigen::Vector3f> normals_in_camera;
+  Image<Eigen::Vector3f> light;  ///< Linear, 1 = white surface in full light, not clipped; empty unless asked for.
 };
 
-/// Ray-casts the visible instances of a committed scene. Pixel centres are at whole numbers; there is no distortion.
-/// Throws std::invalid_argument for an invalid camera or pose.
+/// Ray-casts the visible instances of a committed scene. Pixel centres are at whole numbers; there is no distortion but
+/// that of options.color_lens. Throws std::invalid_argument for an invalid camera or pose.
 [[nodiscard]] RenderedView render_scene(const RaycastScene& scene, const Camera& camera,
                                         const Rigid3& world_from_camera, const RenderOptions& options = {});
 

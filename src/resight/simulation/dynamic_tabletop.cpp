@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
@@ -16,7 +18,9 @@
 #include "resight/simulation/internal/footprint.hpp"
 #include "resight/simulation/internal/tabletop_stage.hpp"
 #include "resight/simulation/procedural_objects.hpp"
+#include "resight/simulation/realistic_recording.hpp"
 #include "resight/simulation/room.hpp"
+#include "resight/simulation/seeded_objects.hpp"
 
 namespace resight {
 namespace {
@@ -27,6 +31,7 @@ using Eigen::Vector3d;
 constexpr int kAttempts = 400;
 constexpr double kMinMoveM = 0.10;
 constexpr double kNearMoveM = 0.30;
+constexpr std::uint64_t kRealismStream = 1000;  // of what version 3 adds to the layout
 // Unknown objects that resemble known ones.
 constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};
 
@@ -44,22 +49,41 @@ constexpr std::array<SequencePlan, 9> kPlan{{{TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kDesk, 23},
                                              {TabletopTheme::kMeeting, 22}}};
 
-// Footprints of all models, upright and laid down. Computed once, because drawing a model is slow.
+// The models of a seed and their footprints, upright and laid down. Computed once, because drawing a model is slow.
 class Catalogue {
  public:
-  Catalogue() {
-    for (const ProceduralObject& object : procedural_objects()) add(object);
-    for (const std::string& name : distractor_names()) add(*make_distractor(name));
+  Catalogue(std::uint64_t seed, int version) : known_(dynamic_tabletop_library(seed, version)) {
+    if (version == 2) {
+      unknown_ = distractor_names();
+      unknown_.insert(unknown_.end(), kLookAlikes.begin(), kLookAlikes.end());
+    } else {
+      object_seed_ = seed;
+      unknown_ = seeded_object_names(seed).unknown;
+    }
+    for (const auto* names : {&known_, &unknown_})
+      for (const std::string& name : *names) add(*make_script_object(object_seed_, name));
   }
   [[nodiscard]] const Footprint& footprint(const std::string& model, bool lying) const {
     return footprints_.at(model)[lying ? 1 : 0];
+  }
+  [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
+  [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
+  [[nodiscard]] const std::optional<std::uint64_t>& object_seed() const { return object_seed_; }
+  /// Whether the model belongs to the pair of twins that stands side by side in every other scene.
+  [[nodiscard]] bool is_twin(const std::string& model) const {
+    return object_seed_ ? twins_.contains(model) : model.starts_with("soup");
   }
 
  private:
   void add(const ProceduralObject& object) {
     footprints_[object.name] = {footprint_of(object.mesh, 0), footprint_of(object.mesh, std::numbers::pi / 2)};
+    // The twin follows the object that it resembles.
+    if (object.kind == "twin") twins_ = {object.name, *std::prev(std::ranges::find(known_, object.name))};
   }
+  std::vector<std::string> known_, unknown_;
+  std::optional<std::uint64_t> object_seed_;
   std::map<std::string, std::array<Footprint, 2>> footprints_;
+  std::set<std::string> twins_;
 };
 
 // Position of an object in the frame of the surface.
@@ -82,6 +106,7 @@ class SequenceBuilder {
   SequenceBuilder(const Catalogue& catalogue, std::uint64_t seed, int index, const DynamicTabletopOptions& options)
       : catalogue_(catalogue),
         rng_(Rng::stream(seed, static_cast<std::uint64_t>(index))),
+        realism_rng_(Rng::stream(seed, kRealismStream + static_cast<std::uint64_t>(index))),
         index_(index),
         options_(options) {}
 
@@ -97,20 +122,32 @@ class SequenceBuilder {
     list_objects();
     add_changes();
     move_camera();
+    script_.object_seed = catalogue_.object_seed();
+    if (options_.version >= 3) add_realism();
     return std::move(script_);
   }
 
  private:
+  void add_realism() {
+    script_.sensor = draw_sensor(realism_rng_);
+    script_.color_lens = draw_lens(realism_rng_);
+    script_.lighting = draw_lighting(realism_rng_);
+    script_.reported_world_from_camera = drift_poses(script_.world_from_camera, draw_drift(realism_rng_));
+    for (FurnitureScript& f : script_.furniture) {
+      const double specular = realism_rng_.uniform(0.02, 0.25);  // varnish and plastic
+      f.material = {.specular = specular, .shininess = realism_rng_.uniform(10, 60)};
+    }
+  }
+
   // ---- things ----
 
   void choose_things() {
-    std::vector<std::string> known = dynamic_tabletop_library();
+    std::vector<std::string> known = catalogue_.known();
     rng_.shuffle(known);
     if (index_ % 2 == 0)  // twins side by side
       std::stable_partition(known.begin(), known.end(),
-                            [](const std::string& name) { return name.starts_with("soup"); });
-    std::vector<std::string> unknown = distractor_names();
-    unknown.insert(unknown.end(), kLookAlikes.begin(), kLookAlikes.end());
+                            [&](const std::string& name) { return catalogue_.is_twin(name); });
+    std::vector<std::string> unknown = catalogue_.unknown();
     rng_.shuffle(unknown);
     known.insert(known.begin(), {known[0], known[2]});  // two objects of each of these kinds
     for (int i = 0; i < options_.num_known; ++i) add_thing(known, i, true);
@@ -219,7 +256,7 @@ class SequenceBuilder {
                                  {},
                                  thing.known,
                                  thing.spot ? std::optional(placement_of(thing, *thing.spot)) : std::nullopt});
-    for (const std::string& model : dynamic_tabletop_library())
+    for (const std::string& model : catalogue_.known())
       if (std::ranges::none_of(things_, [&](const Thing& thing) { return thing.key == model; }))
         script_.objects.push_back({model, model, {}, true, std::nullopt});
   }
@@ -335,6 +372,7 @@ class SequenceBuilder {
 
   const Catalogue& catalogue_;
   Rng rng_;
+  Rng realism_rng_;
   int index_;
   const DynamicTabletopOptions& options_;
   SceneScript script_;
@@ -346,6 +384,7 @@ class SequenceBuilder {
 }  // namespace
 
 void DynamicTabletopOptions::check() const {
+  check_in_range("DynamicTabletopOptions.version", version, 2, kDynamicTabletopVersion);
   check_in_range("DynamicTabletopOptions.num_known", num_known, 1, 100);
   check_in_range("DynamicTabletopOptions.num_waiting", num_waiting, 0, 100);
   check_in_range("DynamicTabletopOptions.num_unknown", num_unknown, 0, 100);
@@ -363,14 +402,15 @@ void DynamicTabletopOptions::check() const {
 
 std::vector<SceneScript> make_dynamic_tabletop(std::uint64_t seed, const DynamicTabletopOptions& options) {
   options.check();
-  const Catalogue catalogue;
+  const Catalogue catalogue(seed, options.version);
   std::vector<SceneScript> scripts;
   for (int i = 0; i < static_cast<int>(kPlan.size()); ++i)
     scripts.push_back(SequenceBuilder(catalogue, seed, i, options).build());
   return scripts;
 }
 
-std::vector<std::string> dynamic_tabletop_library() {
+std::vector<std::string> dynamic_tabletop_library(std::uint64_t seed, int version) {
+  if (version != 2) return seeded_object_names(seed).known;
   std::vector<std::string> names = procedural_object_names();
   std::erase_if(names,
                 [](const std::string& name) { return std::ranges::find(kLookAlikes, name) != kLookAlikes.end(); });

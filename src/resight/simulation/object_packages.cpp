@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "resight/simulation/internal/object_makers.hpp"
+#include "resight/simulation/internal/object_shapes.hpp"
 #include "resight/simulation/mesh_parts.hpp"
 #include "resight/simulation/texture_designs.hpp"
 
@@ -32,8 +33,10 @@ double box_scale(const Vector3d& size_m) {
   return std::min(4.0, (1024.0 - 5 * 16) / strip_mm);
 }
 
+}  // namespace
+
 ProceduralObject make_package(const std::string& name, const Vector3d& size_m, const TextureStyle& style,
-                              const std::string& kind = "textured") {
+                              const std::string& kind) {
   TextureAtlas atlas(1024, box_scale(size_m));
   const BoxRegions r = allocate_box(atlas, size_m);
   print_front(atlas.canvas(r.front), style, 1);
@@ -62,6 +65,8 @@ ProceduralObject make_lying_package(const std::string& name, const Vector3d& siz
   return object;
 }
 
+namespace {
+
 void print_pages(TextureCanvas canvas, Rng rng) {
   canvas.fill({236, 230, 214});
   for (double y = 0; y < canvas.height(); y += 0.9) {
@@ -69,6 +74,8 @@ void print_pages(TextureCanvas canvas, Rng rng) {
     canvas.rect(0, y, canvas.width(), 0.4, {grey, grey, static_cast<std::uint8_t>(grey - 12)});
   }
 }
+
+}  // namespace
 
 // A book on its back cover, with the spine to the left (-x).
 ProceduralObject make_book(const std::string& name, const Vector3d& size_m, const TextureStyle& style) {
@@ -125,6 +132,8 @@ ProceduralObject make_carton(const std::string& name, double width_m, double box
   atlas.finish(object.mesh);
   return object;
 }
+
+namespace {
 
 ProceduralObject make_gift_box() {
   const TextureStyle style{"JUBILO", "GIFT", 300, 4711};

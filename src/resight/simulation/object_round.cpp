@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "resight/simulation/internal/object_makers.hpp"
+#include "resight/simulation/internal/object_shapes.hpp"
 #include "resight/simulation/mesh_parts.hpp"
 #include "resight/simulation/texture_designs.hpp"
 
@@ -46,9 +47,11 @@ void add_print_ring(TextureCanvas canvas, const TextureStyle& style, std::uint64
   canvas.text_in_box(0.6 * r, 0.85 * r, 0.8 * r, 0.3 * r, std::to_string(1000 + rng.below(9000)), {60, 60, 66});
 }
 
+}  // namespace
+
 // A tin with a label around it, steel rims and lids.
 ProceduralObject make_can(const std::string& name, double radius_m, double height_m, const TextureStyle& style,
-                          const std::string& kind = "textured") {
+                          const std::string& kind) {
   constexpr double kRim = 0.004;
   const double around_mm = 2 * std::numbers::pi * radius_m * kMmPerM;
   TextureAtlas atlas(1024, std::min(4.0, 1000.0 / around_mm));
@@ -70,10 +73,7 @@ ProceduralObject make_can(const std::string& name, double radius_m, double heigh
   return object;
 }
 
-// A bottle: foot, label, shoulder, neck, cap. `flatness` scales its depth (y).
-struct BottleShape {
-  double radius_m, label_top_m, shoulder_top_m, neck_radius_m, cap_radius_m, height_m, flatness = 1.0;
-};
+namespace {}  // namespace
 
 ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8 glass, const TextureStyle& style) {
   constexpr double kFoot = 0.012;
@@ -108,9 +108,7 @@ ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8
   return object;
 }
 
-struct CupShape {
-  double bottom_radius_m, top_radius_m, height_m, wall_m;
-};
+namespace {}  // namespace
 
 // Outside, rim, inside and bottom of a cup or bowl. `outside` is wrapped around it.
 TriangleMesh make_cup_part(const CupShape& s, const PixelRect& outside, const PixelRect& inside) {
@@ -133,6 +131,8 @@ TriangleMesh make_handle(double x_m, double center_z_m, double reach_m, double h
   }
   return make_tube_part(path, radius_m, region);
 }
+
+namespace {
 
 ProceduralObject make_mug(const std::string& name, bool is_plain, const TextureStyle& style) {
   const CupShape shape = is_plain ? CupShape{0.036, 0.043, 0.088, 0.004} : CupShape{0.041, 0.041, 0.095, 0.004};
@@ -162,6 +162,8 @@ ProceduralObject make_bowl() {
   return object;
 }
 
+}  // namespace
+
 // Symmetries of an upright body of revolution that is the same upside down.
 ObjectSymmetries cylinder_symmetries(double height_m) {
   ObjectSymmetries symmetries;
@@ -170,6 +172,8 @@ ObjectSymmetries cylinder_symmetries(double height_m) {
                                 lift(-height_m / 2));
   return symmetries;
 }
+
+namespace {
 
 ProceduralObject make_plain_can() {
   constexpr double kRadius = 0.0375;

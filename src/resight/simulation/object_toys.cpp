@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "resight/simulation/internal/object_makers.hpp"
+#include "resight/simulation/internal/object_shapes.hpp"
 #include "resight/simulation/mesh_parts.hpp"
 #include "resight/simulation/texture_designs.hpp"
 
@@ -203,6 +204,8 @@ ProceduralObject make_sponge() {
   return object;
 }
 
+}  // namespace
+
 // The three half turns of a block on z = 0.
 ObjectSymmetries block_symmetries(double height_m) {
   ObjectSymmetries symmetries;
@@ -221,8 +224,6 @@ ProceduralObject make_plain_block(const std::string& name, const Vector3d& size,
   make_plain(object.mesh, color);
   return object;
 }
-
-}  // namespace
 
 std::vector<ObjectMaker> toy_makers() {
   return {

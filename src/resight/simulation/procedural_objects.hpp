@@ -7,6 +7,7 @@
 #include "resight/core/result.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
+#include "resight/rendering/surface_material.hpp"
 
 namespace resight {
 
@@ -16,6 +17,7 @@ struct ProceduralObject {
   TriangleMesh mesh;
   ObjectSymmetries symmetries;
   std::string kind;  ///< "textured", "plain" (untextured) or "twin" (differs from another object only in its texture).
+  SurfaceMaterial material = {};
 };
 
 /// Names of all objects in a fixed order: boxes, cans, bottles, crockery, books, toys and others. Twins (cereal_red /

@@ -115,6 +115,7 @@ Stage build_stage(const TriangleMesh& mesh, const RecordingOptions& options) {
   }
   stage.object = stage.scene.num_instances();
   add(stage.scene, mesh, Rigid3::identity());
+  stage.scene.set_material(stage.object, options.material);
   return stage;
 }
 
@@ -151,11 +152,13 @@ RecordedView record_view(Stage& stage, const RecordingOptions& options, int inde
   view.camera_from_object = world_from_camera.inverse() * world_from_object;
   RenderOptions render;
   render.num_threads = options.num_threads;
+  render.lighting = options.lighting;
+  render.linear_light = options.sensor.color_camera.has_value();
   const RenderedView rendered = render_scene(stage.scene, view.frame.camera, world_from_camera, render);
   const std::uint64_t seed = Rng::stream(options.seed, 1000 + 2 * index + (options.upside_down ? 1 : 0)).next();
   view.frame.depth_m = sense_depth(stage.scene, view.frame.camera, world_from_camera, rendered, options.sensor, seed,
                                    options.num_threads);
-  view.frame.color = sense_color(rendered.color, options.sensor, seed, options.num_threads);
+  view.frame.color = sense_color(rendered, options.sensor, seed, options.num_threads);
   view.mask = Image<std::uint8_t>(rendered.labels.width(), rendered.labels.height());
   std::ranges::transform(rendered.labels.data(), view.mask.data().begin(),
                          [&](int label) -> std::uint8_t { return label == stage.object ? 255 : 0; });
@@ -184,6 +187,8 @@ void RecordingOptions::check() const {
   check_in_range("RecordingOptions.off_axis_m", off_axis_m, 0, 0.1);
   check_in_range("RecordingOptions.num_threads", num_threads, 1, 4096);
   sensor.check();
+  lighting.check();
+  material.check();
 }
 
 std::vector<RecordedView> simulate_recording(const TriangleMesh& mesh, const RecordingOptions& options) {
@@ -201,6 +206,7 @@ Result<void> write_recordings(const ProceduralObject& object, const std::filesys
                               const std::function<void(const std::string&)>& progress) {
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();
+  options.material = object.material;
   for (const bool upside_down : {false, true}) {
     options.upside_down = upside_down;
     const std::string side = upside_down ? "side_2" : "side_1";

@@ -29,8 +29,10 @@ struct RecordingOptions {
   double disc_height_m = 0.02;  ///< Of the turntable above the table.
   double off_axis_m = 0.01;     ///< The object's middle from the axis: nobody centres it exactly.
   SensorOptions sensor{.min_depth_m = 0.4};
-  std::uint64_t seed = 1;  ///< Of room, sensor noise, and how the object was put down.
-  int num_threads = 1;     ///< Same bytes for any value >= 1.
+  Lighting lighting;
+  SurfaceMaterial material = {};  ///< Of the object.
+  std::uint64_t seed = 1;         ///< Of room, sensor noise, and how the object was put down.
+  int num_threads = 1;            ///< Same bytes for any value >= 1.
   void check() const;
 };
 

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "resight/core/check.hpp"
-#include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/room.hpp"
+#include "resight/simulation/seeded_objects.hpp"
 
 namespace resight {
 namespace {
@@ -27,7 +28,13 @@ std::string join(const std::vector<std::string>& names) {
 // Follows the script in order of time and tracks the objects that are present.
 class ScriptChecker {
  public:
-  explicit ScriptChecker(const SceneScript& script) : script_(script) {}
+  explicit ScriptChecker(const SceneScript& script) : script_(script), models_(procedural_object_names()) {
+    std::ranges::copy(distractor_names(), std::back_inserter(models_));
+    if (!script.object_seed) return;
+    const SeededObjectNames seeded = seeded_object_names(*script.object_seed);
+    std::ranges::copy(seeded.known, std::back_inserter(models_));
+    std::ranges::copy(seeded.unknown, std::back_inserter(models_));
+  }
 
   Result<void> check() {
     for (auto step : {&ScriptChecker::check_cameras, &ScriptChecker::check_furniture, &ScriptChecker::check_objects,
@@ -51,6 +58,11 @@ class ScriptChecker {
     if (script_.world_from_camera.empty()) return Error{"camera: there is no view (give orbit or pose)"};
     for (const Rigid3& pose : script_.world_from_camera)
       if (!pose.is_rigid()) return Error{"camera: a pose is not a rigid motion"};
+    if (!script_.reported_world_from_camera.empty() &&
+        script_.reported_world_from_camera.size() != script_.world_from_camera.size())
+      return Error{"camera: there must be as many reported as true poses"};
+    for (const Rigid3& pose : script_.reported_world_from_camera)
+      if (!pose.is_rigid()) return Error{"camera: a reported pose is not a rigid motion"};
     if (script_.room_size_m && !(script_.room_size_m->minCoeff() > 0)) return Error{"room.size_m: must be > 0"};
     return {};
   }
@@ -74,9 +86,8 @@ class ScriptChecker {
     for (std::size_t i = 0; i < script_.objects.size(); ++i) {
       const ObjectScript& o = script_.objects[i];
       const std::string where = "object[" + std::to_string(i) + "]";
-      if (o.mesh.empty() && !contains(procedural_object_names(), o.model) && !contains(distractor_names(), o.model))
-        return Error{where + ".model: unknown object '" + o.model + "' (known: " + join(procedural_object_names()) +
-                     ", " + join(distractor_names()) + "; or give mesh)"};
+      if (o.mesh.empty() && !contains(models_, o.model))
+        return Error{where + ".model: unknown object '" + o.model + "' (known: " + join(models_) + "; or give mesh)"};
       if (auto p = add_key(o.key, where)) return p;
       objects_.insert(o.key);
       if (!o.start) continue;
@@ -143,6 +154,7 @@ class ScriptChecker {
   }
 
   const SceneScript& script_;
+  std::vector<std::string> models_;  // without those of mesh files
   std::set<std::string> keys_, present_, furniture_, objects_;
   std::map<std::string, std::string> support_of_;  // of the objects that are present
 };
@@ -175,6 +187,18 @@ std::vector<Rigid3> make_orbit(const OrbitScript& orbit) {
     poses.push_back(look_at(orbit.center_m + offset, orbit.center_m));
   }
   return poses;
+}
+
+Result<ProceduralObject> make_script_object(std::optional<std::uint64_t> object_seed, std::string_view model) {
+  if (object_seed)
+    if (auto object = make_seeded_object(*object_seed, model)) return object;
+  if (auto object = make_procedural_object(model)) return object;
+  return make_distractor(model);
+}
+
+const Rigid3& reported_pose(const SceneScript& script, int view) {
+  const auto i = static_cast<std::size_t>(view);
+  return script.reported_world_from_camera.empty() ? script.world_from_camera[i] : script.reported_world_from_camera[i];
 }
 
 Result<void> check_script(const SceneScript& script) { return ScriptChecker(script).check(); }

@@ -9,6 +9,7 @@
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/rendering/sensor_model.hpp"
+#include "resight/simulation/procedural_objects.hpp"
 
 namespace resight {
 
@@ -30,14 +31,17 @@ struct FurnitureScript {
   std::string kind;  ///< See furniture_kinds().
   Eigen::Vector3d size_m = Eigen::Vector3d(1.2, 0.8, 0.74);
   Placement placement;
+  SurfaceMaterial material = {};
 };
 
 /// An object of a scene, known or not.
 struct ObjectScript {
-  std::string key;             ///< Unique; names the instance in changes.
-  std::string model;           ///< From procedural_object_names() or distractor_names(), or any name if `mesh` is set.
-  std::filesystem::path mesh;  ///< Mesh file (metres, +z up) instead of a procedural object.
-  bool known = true;           ///< Whether the object is in the library. Distractors never are.
+  std::string key;  ///< Unique; names the instance in changes.
+  /// From procedural_object_names(), distractor_names() or those of SceneScript::object_seed, or any name if `mesh` is
+  /// set.
+  std::string model;
+  std::filesystem::path mesh;      ///< Mesh file (metres, +z up) instead of a procedural object.
+  bool known = true;               ///< Whether the object is in the library. Distractors never are.
   std::optional<Placement> start;  ///< Absent if the object is added later.
 };
 
@@ -59,9 +63,13 @@ struct SceneScript {
   std::optional<Eigen::Vector3d> room_size_m = Eigen::Vector3d(5.0, 5.0, 2.6);  ///< nullopt = no room
   std::vector<FurnitureScript> furniture;
   std::vector<ObjectScript> objects;
+  std::optional<std::uint64_t> object_seed = {};  ///< Of further models that objects may have (seeded_objects.hpp).
   std::vector<ChangeScript> changes;
   Camera camera = make_kinect_camera();
-  std::vector<Rigid3> world_from_camera;  ///< One per view.
+  std::vector<Rigid3> world_from_camera;  ///< The true poses, one per view.
+  /// What the tracker of the camera reports, one per view; empty = the true poses.
+  std::vector<Rigid3> reported_world_from_camera = {};
+  LensDistortion color_lens = {};  ///< Left over in colour images; `camera` is the ideal camera.
   SensorOptions sensor;
   Lighting lighting;
 };
@@ -81,6 +89,13 @@ struct OrbitScript {
 };
 /// Poses (world_from_camera) of an orbit. Throws std::invalid_argument unless num_views > 0.
 [[nodiscard]] std::vector<Rigid3> make_orbit(const OrbitScript& orbit);
+
+/// Draws the object that a script calls `model`. The error for an unknown name lists the known ones.
+[[nodiscard]] Result<ProceduralObject> make_script_object(std::optional<std::uint64_t> object_seed,
+                                                          std::string_view model);
+
+/// The pose that is written for a view.
+[[nodiscard]] const Rigid3& reported_pose(const SceneScript& script, int view);
 
 /// Checks that keys are unique, supports and objects exist when they are used, changes are possible (a removed object
 /// was present, ...), and there is a view. The error names the entry and the rule.

@@ -80,6 +80,43 @@ TEST_F(SceneFile, ReadsWhatIsWritten) {
   EXPECT_EQ(script->changes[0].kind, ChangeKind::kAdded);
 }
 
+TEST_F(SceneFile, ReadsDevicesAndLight) {
+  const std::string text = replaced(kGood, "[[object]]", R"([[light.lamp]]
+position_m = [1, 1, 2]
+intensity = [0.6, 0.5, 0.4]
+radius_m = 0.1
+[camera.drift]
+position_sigma_m = 0.005
+seed = 3
+[camera.lens]
+k1 = 0.004
+[sensor.depth_errors]
+shift_u_px = 1.5
+[sensor.depth_errors.lens]
+k1 = 0.01
+[sensor.color_camera]
+mosaic = true
+jpeg_quality = 80
+[[object]])");
+  const auto script = read(text);
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  ASSERT_EQ(script->lighting.lamps.size(), 1U);
+  EXPECT_EQ(script->lighting.lamps[0].intensity, Eigen::Vector3d(0.6, 0.5, 0.4));
+  ASSERT_EQ(script->reported_world_from_camera.size(), 4U);
+  EXPECT_NE(reported_pose(*script, 3).translation, script->world_from_camera[3].translation);
+  EXPECT_DOUBLE_EQ(script->color_lens.k1, 0.004);
+  ASSERT_TRUE(script->sensor.depth_errors && script->sensor.color_camera);
+  EXPECT_DOUBLE_EQ(script->sensor.depth_errors->shift_u_px, 1.5);
+  EXPECT_DOUBLE_EQ(script->sensor.depth_errors->lens.k1, 0.01);
+  EXPECT_EQ(script->sensor.color_camera->jpeg_quality, 80);
+  for (const auto& [what, by] : {std::pair{"jpeg_quality = 80", "jpeg_quality = 0"},
+                                 {"shift_u_px = 1.5", "shift_w_px = 1.5"},
+                                 {"position_sigma_m = 0.005", "position_sigma_m = -1"},
+                                 {"k1 = 0.004", "k1 = 7"},
+                                 {"seed = 3", "seed = -3"}})
+    EXPECT_FALSE(read(replaced(text, what, by)).ok()) << by;
+}
+
 TEST_F(SceneFile, ErrorsNameFileKeyAndRule) {
   struct Case {
     const char* what;

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "resight/simulation/camera_drift.hpp"
 #include "resight/simulation/internal/toml_fields.hpp"
 #include "resight/simulation/scene_script.hpp"
 
@@ -57,6 +58,7 @@ FurnitureScript read_furniture(TomlFields& fields) {
   fields.read("key", f.key);
   read_vector(fields, "size_m", f.size_m);
   f.placement = read_placement(fields);
+  fields.options("material", f.material);
   return f;
 }
 
@@ -135,6 +137,16 @@ void read_camera_pose(TomlFields& fields, std::vector<Rigid3>& poses) {
   poses.push_back(look_at(eye, target));
 }
 
+void read_drift(TomlFields& fields, SceneScript& script) {
+  CameraDriftOptions drift;
+  fields.options(drift);
+  try {
+    script.reported_world_from_camera = drift_poses(script.world_from_camera, drift);
+  } catch (const std::invalid_argument& mistake) {
+    fields.fail("drift", mistake.what());
+  }
+}
+
 void read_camera(TomlFields& fields, SceneScript& script) {
   fields.read("width", script.camera.width);
   fields.read("height", script.camera.height);
@@ -147,6 +159,8 @@ void read_camera(TomlFields& fields, SceneScript& script) {
   if (fields.has("orbit") && fields.has("pose")) fields.fail("pose", "excludes orbit");
   fields.table("orbit", [&](TomlFields& f) { read_orbit(f, script.world_from_camera); });
   fields.tables("pose", [&](TomlFields& f) { read_camera_pose(f, script.world_from_camera); });
+  fields.options("lens", script.color_lens);
+  fields.table("drift", [&](TomlFields& f) { read_drift(f, script); });
 }
 
 void read_sensor(TomlFields& fields, SensorOptions& s) {
@@ -163,6 +177,16 @@ void read_sensor(TomlFields& fields, SensorOptions& s) {
   fields.read("color_noise", s.color_noise);
   fields.read("gain_sigma", s.gain_sigma);
   fields.read("white_balance_sigma", s.white_balance_sigma);
+  if (fields.has("depth_errors")) fields.options("depth_errors", s.depth_errors.emplace());
+  if (fields.has("color_camera")) fields.options("color_camera", s.color_camera.emplace());
+}
+
+Lamp read_lamp(TomlFields& fields) {
+  Lamp lamp;
+  read_vector(fields, "position_m", lamp.position_in_world_m);
+  read_vector(fields, "intensity", lamp.intensity);
+  fields.read("radius_m", lamp.radius_m);
+  return lamp;
 }
 
 void read_light(TomlFields& fields, Lighting& light) {
@@ -170,6 +194,8 @@ void read_light(TomlFields& fields, Lighting& light) {
   fields.read("ambient", light.ambient);
   fields.read("diffuse", light.diffuse);
   fields.read("shadows", light.shadows);
+  read_vector(fields, "ambient_color", light.ambient_color);
+  fields.tables("lamp", [&](TomlFields& f) { light.lamps.push_back(read_lamp(f)); });
 }
 
 void read_room(TomlFields& fields, SceneScript& script) {
@@ -181,6 +207,7 @@ void read_room(TomlFields& fields, SceneScript& script) {
 
 void read_scene(TomlFields& root, const std::filesystem::path& folder, SceneScript& script) {
   root.read("name", script.name);
+  if (root.has("object_seed")) root.read("object_seed", script.object_seed.emplace());
   root.table("room", [&](TomlFields& f) { read_room(f, script); });
   root.table("light", [&](TomlFields& f) { read_light(f, script.lighting); });
   root.table("sensor", [&](TomlFields& f) { read_sensor(f, script.sensor); });
@@ -196,6 +223,8 @@ std::optional<Error> check_options(const SceneScript& script) {
   try {
     script.sensor.check();
     script.lighting.check();
+    script.color_lens.check();
+    for (const FurnitureScript& f : script.furniture) f.material.check();
   } catch (const std::invalid_argument& mistake) {
     return Error{mistake.what()};
   }

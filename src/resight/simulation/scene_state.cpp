@@ -76,6 +76,7 @@ class StateBuilder {
     index_[key] = static_cast<int>(state_.instances.size());
     state_.instances.push_back({key, model, role, -1});
     state_.meshes.push_back(std::move(mesh));
+    state_.materials.emplace_back();
     levels_.emplace_back();
     current_.emplace_back();
     placement_.push_back(-1);
@@ -87,6 +88,7 @@ class StateBuilder {
     if (!furniture) return furniture.error();
     add_instance(f.key, f.kind, Role::kFurniture, std::move(furniture->mesh));
     levels_.back() = furniture->level_heights_m;
+    state_.materials.back() = f.material;
     return put(f.key, f.placement);
   }
 
@@ -95,6 +97,7 @@ class StateBuilder {
     const auto& [object, mesh] = models_.at(o.model);
     const bool known = o.known && object.kind != "distractor";
     add_instance(o.key, o.model, known ? Role::kKnown : Role::kDistractor, mesh);
+    state_.materials.back() = object.material;
     const bool is_new = std::ranges::none_of(state_.library, [&](const auto& l) { return l.name == o.model; });
     if (known && is_new) state_.library.push_back(object);
     if (!o.start) return {};
@@ -113,8 +116,7 @@ class StateBuilder {
       if (!file) return Error{"object '" + o.key + "': " + file.error().message};
       object = ProceduralObject{o.model, std::move(file->mesh), {}, "mesh"};
     } else {
-      object = make_procedural_object(o.model);
-      if (!object) object = make_distractor(o.model);
+      object = make_script_object(state_.script.object_seed, o.model);
     }
     if (!object) return object.error();
     auto mesh = std::make_shared<const TriangleMesh>(object->mesh);

@@ -83,7 +83,7 @@ struct Simulation::Impl {
     for (std::size_t i = 0; i < state.meshes.size(); ++i) {
       const auto [entry, is_new] = mesh_ids.try_emplace(state.meshes[i].get(), 0);
       if (is_new) entry->second = scene.add_mesh(state.meshes[i]);
-      scene.add_instance(entry->second, Rigid3::identity());
+      scene.set_material(scene.add_instance(entry->second, Rigid3::identity()), state.materials[i]);
     }
     for (const ProceduralObject& object : state.library) {
       alone.emplace_back();
@@ -142,6 +142,7 @@ Result<Simulation> Simulation::create(SceneScript script, std::uint64_t seed, co
   options.check();
   script.sensor.check();
   script.lighting.check();
+  script.color_lens.check();
   auto state = build_scene_state(std::move(script), seed);
   if (!state) return state.error();
   auto impl = std::make_unique<Impl>();
@@ -178,6 +179,8 @@ SimulatedView Simulation::render_view(int view) {
   RenderOptions render;
   render.samples_per_side = impl_->options.samples_per_side;
   render.lighting = script.lighting;
+  render.linear_light = script.sensor.color_camera.has_value();
+  render.color_lens = script.color_lens;
   render.num_threads = impl_->options.num_threads;
   RenderedView rendered = render_scene(impl_->scene, script.camera, world_from_camera, render);
 
@@ -185,10 +188,10 @@ SimulatedView Simulation::render_view(int view) {
   const std::uint64_t view_seed = Rng::stream(impl_->seed, static_cast<std::uint64_t>(view)).next();
   result.frame.name = view_name(view);
   result.frame.camera = script.camera;
-  result.frame.world_from_camera = world_from_camera;
+  result.frame.world_from_camera = reported_pose(script, view);
   result.frame.depth_m = sense_depth(impl_->scene, script.camera, world_from_camera, rendered, script.sensor, view_seed,
                                      render.num_threads);
-  result.frame.color = sense_color(rendered.color, script.sensor, view_seed, render.num_threads);
+  result.frame.color = sense_color(rendered, script.sensor, view_seed, render.num_threads);
   result.labels = std::move(rendered.labels);
   impl_->annotate(view, result);
   for (const ScriptedEvent& event : events())

@@ -23,7 +23,7 @@ struct ScriptedEvent {
 
 /// One view of the simulation as a sensor delivers it, with its ground truth.
 struct SimulatedView {
-  RgbdFrame frame;
+  RgbdFrame frame;  ///< Its pose is the reported one; ground truth refers to the true camera.
   /// The known objects whose silhouettes touch the image, hidden or not, in the order of the script. visible_share is
   /// visib_fract of BOP: visible pixels divided by the pixels of the object rendered alone, including those outside the
   /// image.

@@ -66,6 +66,22 @@ TEST(Simulation, ObjectCutByTheBorderIsPartlyVisibleAndOneOutsideIsAbsent) {
   EXPECT_NEAR(view.ground_truth[0].visible_share, (0.2486 - 0.175) / 0.15, 0.02);
 }
 
+// The written pose is the tracker's; the truth is that of the camera.
+TEST(Simulation, ReportsThePosesOfTheTracker) {
+  SceneScript script = half_hidden();
+  const Rigid3 error = Rigid3::from_translation({0.01, 0, 0.02});
+  script.reported_world_from_camera = {error * script.world_from_camera[0]};
+  const SimulatedView exact = create(half_hidden()).render_view(0);
+  const SimulatedView drifted = create(script).render_view(0);
+  EXPECT_EQ(drifted.frame.color, exact.frame.color);
+  EXPECT_EQ(drifted.frame.world_from_camera.translation, script.reported_world_from_camera[0].translation);
+  ASSERT_EQ(drifted.ground_truth.size(), exact.ground_truth.size());
+  EXPECT_EQ(drifted.ground_truth[0].camera_from_object.translation,
+            exact.ground_truth[0].camera_from_object.translation);
+  script.reported_world_from_camera.push_back(Rigid3::identity());
+  EXPECT_FALSE(Simulation::create(script, 1).ok());
+}
+
 TEST(Simulation, LabelsAndDepthAgreeWithThePoses) {
   SceneScript script = make_demo_scene(2);
   script.camera = kSmall;

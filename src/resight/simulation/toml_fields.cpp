@@ -42,6 +42,13 @@ void TomlFields::read(const std::string& key, int& target) {
   }
 }
 
+void TomlFields::read(const std::string& key, std::uint64_t& target) {
+  int value = static_cast<int>(target);
+  read(key, value);
+  if (value < 0) return fail(key, "must be >= 0");
+  target = static_cast<std::uint64_t>(value);
+}
+
 void TomlFields::read(const std::string& key, bool& target) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
@@ -85,6 +92,30 @@ void TomlFields::tables(const std::string& key, const std::function<void(TomlFie
     body(fields);
     fields.finish();
   }
+}
+
+// Options of a nested struct follow each other, and their keys start with its name and a dot.
+void TomlFields::read_options(std::span<const Option> options, std::size_t prefix_length) {
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const std::string key = options[i].key.substr(prefix_length);
+    const std::size_t dot = key.find('.');
+    if (dot == std::string::npos) {
+      read_option(key, options[i].pointer);
+      continue;
+    }
+    const std::string prefix = options[i].key.substr(0, prefix_length + dot + 1);
+    std::size_t end = i;
+    while (end < options.size() && options[end].key.starts_with(prefix)) ++end;
+    table(key.substr(0, dot), [&](TomlFields& f) { f.read_options(options.subspan(i, end - i), prefix.size()); });
+    i = end - 1;
+  }
+}
+
+void TomlFields::read_option(const std::string& key, const OptionPointer& target) {
+  if (auto* const* number = std::get_if<double*>(&target)) return read(key, **number);
+  if (auto* const* count = std::get_if<int*>(&target)) return read(key, **count);
+  if (auto* const* flag = std::get_if<bool*>(&target)) return read(key, **flag);
+  if (auto* const* seed = std::get_if<std::uint64_t*>(&target)) return read(key, **seed);
 }
 
 void TomlFields::finish() {

@@ -90,14 +90,15 @@ Result<void> write_models(const std::vector<ProceduralObject>& library, const fs
 // The procedural objects of the scripts that are in no library.
 std::vector<ProceduralObject> unknown_objects(std::span<const SceneScript> scripts) {
   std::set<std::string> names;
+  const auto is_distractor = [](const std::string& model) {
+    return std::ranges::find(distractor_names(), model) != distractor_names().end();
+  };
   for (const SceneScript& script : scripts)
     for (const ObjectScript& object : script.objects)
-      if (object.mesh.empty() && (!object.known || make_distractor(object.model).ok())) names.insert(object.model);
+      if (object.mesh.empty() && (!object.known || is_distractor(object.model))) names.insert(object.model);
   std::vector<ProceduralObject> objects;
-  for (const std::string& name : names) {
-    auto object = make_distractor(name);
-    objects.push_back(object ? std::move(*object) : std::move(*make_procedural_object(name)));
-  }
+  for (const std::string& name : names)
+    objects.push_back(std::move(*make_script_object(scripts.front().object_seed, name)));
   return objects;
 }
 
@@ -189,6 +190,8 @@ Result<void> write_simulations(std::span<const SceneScript> scripts, std::uint64
   }
   if (options.models)
     if (auto done = write_bop_meshes(unknown_objects(scripts), pending->path() / "unknown", {}); !done) return done;
+  if (options.write_more)
+    if (auto done = options.write_more(pending->path()); !done) return done;
   return pending->commit();
 }
 

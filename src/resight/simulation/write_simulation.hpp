@@ -37,6 +37,8 @@ struct WriteSimulationOptions {
   TurntableOptions turntable;  ///< Of the training views (TUW only).
   double surface_spacing_m = 0.002;
   int bop_scene_id = 1;
+  /// Writes more files into the folder of write_simulations() before it appears.
+  std::function<Result<void>(const std::filesystem::path&)> write_more = {};
   /// Called after each model and view with what was done, e.g. for a progress line.
   std::function<void(const std::string&)> progress;
 };

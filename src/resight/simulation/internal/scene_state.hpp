@@ -15,6 +15,7 @@ struct SceneState {
   SceneScript script;
   std::vector<SimulatedInstance> instances;  ///< Room, furniture, then objects, in the order of the script.
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< Mesh of each instance; shared between equal models.
+  std::vector<SurfaceMaterial> materials;                   ///< Of each instance.
   std::vector<ProceduralObject> library;
   std::vector<ScriptedEvent> events;
   /// [view][instance], world_from_instance; absent if the instance is not in the scene.

@@ -7,8 +7,10 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
+#include "resight/core/options.hpp"
 #include "resight/core/result.hpp"
 
 namespace resight {
@@ -30,6 +32,7 @@ class TomlFields {
   /// Read a value of the type of the target; a missing key leaves the target unchanged.
   void read(const std::string& key, double& target);
   void read(const std::string& key, int& target);
+  void read(const std::string& key, std::uint64_t& target);  ///< A seed: >= 0.
   void read(const std::string& key, bool& target);
   void read(const std::string& key, std::string& target);
   void read(const std::string& key, std::optional<double>& target);
@@ -44,11 +47,22 @@ class TomlFields {
   void table(const std::string& key, const std::function<void(TomlFields&)>& body);
   /// Calls body(fields) for each table of the array [[key]] if it exists.
   void tables(const std::string& key, const std::function<void(TomlFields&)>& body);
+  /// Reads declared options from this table, or from the sub-table if it exists.
+  template <typename Options>
+  void options(Options& target) {
+    read_options(list_options(target), 0);
+  }
+  template <typename Options>
+  void options(const std::string& key, Options& target) {
+    table(key, [&](TomlFields& fields) { fields.options(target); });
+  }
   /// Must be called after all reads.
   void finish();
 
  private:
   const toml::node* find(const std::string& key);
+  void read_options(std::span<const Option> options, std::size_t prefix_length);
+  void read_option(const std::string& key, const OptionPointer& target);
   const toml::table& table_;
   std::string where_;
   std::optional<Error>& error_;
