@@ -9,6 +9,7 @@
 #include "resight/io/ply.hpp"
 #include "resight/recognition/stage_options.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/registration/camera_corrector.hpp"
 #include "resight/report/overlay.hpp"
 
 namespace resight::app {
@@ -30,6 +31,16 @@ PointCloud paint(PointCloud scene, const ChangeResult& changes) {
   return scene;
 }
 
+/// The first view has no changes, and no masks yet.
+void write_masks(const std::filesystem::path& folder, const RgbdFrame& frame, const ChangeResult& changes) {
+  const Image<std::uint8_t> none(frame.camera.width, frame.camera.height);
+  const auto write = [&](const char* kind, const Image<std::uint8_t>& mask) {
+    value_or_throw(write_mask(folder / fmt::format("{}_{}.png", frame.name, kind), mask.empty() ? none : mask));
+  };
+  write("novel", changes.novel_mask);
+  write("removed", changes.removed_mask);
+}
+
 }  // namespace
 
 // Alg. 1 without models: compares each view with the reconstruction from the views before it.
@@ -40,13 +51,17 @@ void run_changes(const ChangesArguments& arguments) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   DynamicSceneOptions options = scene_options(config);
   options.detect_changes = true;  // Whatever the preset: this is what the command is for.
+  CameraCorrector corrector(correction_options(config));
   DynamicScene scene(options);
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
-    const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));
+    PreparedView view = prepare_view(value_or_throw(sequence->read_view(v)), config.prepare);
+    view.frame.world_from_camera = corrector.add_view(view);
+    const ChangeResult changes = scene.add_view(std::move(view));
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
-    value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
+    write_masks(folder.path(), frame, changes);
+    if (std::getenv("NOPLY") == nullptr) value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
     progress.report(v + 1,
                     fmt::format("{}: {} removed, {} novel points{}", frame.name, changes.removed_in_world.size(),
                                 changes.novel_in_world.size(), changes.pose_suspect ? ", camera pose suspect" : ""));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,12 +8,6 @@
 #include "resight/geometry/spherical_bins.hpp"
 
 namespace resight {
-
-/// The two ways to tell whether a view sees past a point.
-enum class OcclusionTest : std::uint8_t {
-  kSphericalBins,  ///< The paper's, Eq. (4) and Fig. 4: classify_occlusion().
-  kDepthImage,     ///< Ours: project into the depth image, classify_surface().
-};
 
 /// The paper's spherical z-buffer. Queries and blockers: metres, camera frame, NaN = no measurement. For each query:
 /// kOccluded if the nearest blocker of its bin is nearer by more than `margin_m` (ranges, not depths); kSeenThrough if

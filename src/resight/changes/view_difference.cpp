@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 
 #include "resight/changes/depth_tiles.hpp"
 #include "resight/changes/difference.hpp"
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
-#include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
@@ -45,12 +43,12 @@ struct PixelRow {
 /// The search for pixels around points.
 class PixelSearch {
  public:
-  PixelSearch(const OrganizedCloud& view, const Camera& camera, const Tolerance& tolerance)
-      : view_(view), camera_(camera), tolerance_(tolerance) {}
+  PixelSearch(const OrganizedCloud& view, const Camera& camera, double tolerance_m)
+      : view_(view), camera_(camera), tolerance_m_(tolerance_m) {}
 
   /// Whether a pixel explains `p`; `tiles` are those of the view. Marks some of those that do.
   bool is_explained(const Eigen::Vector3f& p, const DepthTiles& tiles, Image<std::uint8_t>* explained_pixels) const {
-    if (!(p.z() > 0)) return tiles.may_be_near(p) && any_within(p, tolerance_.at(p));
+    if (!(p.z() > 0)) return tiles.may_be_near(p) && any_within(p, tolerance_m_);
     const float focal_over_z = static_cast<float>(camera_.fx) / p.z();
     const float u = focal_over_z * p.x() + static_cast<float>(camera_.cx);
     const float v = static_cast<float>(camera_.fy) * p.y() / p.z() + static_cast<float>(camera_.cy);
@@ -58,19 +56,19 @@ class PixelSearch {
     const bool in_image = u > -0.5F && v > -0.5F && u < static_cast<float>(camera_.width) - 0.5F &&
                           v < static_cast<float>(camera_.height) - 0.5F;
     // A third of the tolerance, square: marks all that lies between the points of a cloud of 5 mm.
-    const float half_px = focal_over_z * static_cast<float>(tolerance_.distance_m) / 6;
+    const float half_px = focal_over_z * static_cast<float>(tolerance_m_) / 6;
     const int reach_px = half_px < 2 ? 1 : static_cast<int>(std::min<float>(half_px, kMaxFirstLook_px));
     if (in_image &&
         mark_around(p, {static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F)}, reach_px, explained_pixels))
       return true;
-    return any_within(p, tolerance_.at(p));
+    return any_within(p, tolerance_m_);
   }
 
  private:
   bool mark_around(const Eigen::Vector3f& p, const Pixel& center, int reach_px,
                    Image<std::uint8_t>* explained_pixels) const {
     const PixelWindow window = clip(center, reach_px);
-    const auto limit = static_cast<float>(tolerance_.distance_m);
+    const auto limit = static_cast<float>(tolerance_m_);
     const float limit_sq = limit * limit;
     bool found = false;
     for (int v = window.begin_v; v < window.end_v; ++v) {
@@ -140,23 +138,13 @@ class PixelSearch {
 
   const OrganizedCloud& view_;
   const Camera& camera_;
-  const Tolerance& tolerance_;
+  double tolerance_m_;
 };
 
-void check_input(const OrganizedCloud& view, const Camera& camera, const Tolerance& tolerance) {
-  check_positive("Tolerance.distance_m", tolerance.distance_m);
-  check_not_negative("Tolerance.sigmas", tolerance.sigmas);
+void check_input(const OrganizedCloud& view, const Camera& camera, double tolerance_m) {
+  check_positive("tolerance_m", tolerance_m);
   require(camera.is_valid() && camera.width == view.width() && camera.height == view.height(),
           "view_difference: the camera is not that of the view");
-}
-
-/// The widest tolerance of all the points.
-double widest(std::span<const Eigen::Vector3f> points, const Tolerance& tolerance) {
-  double widest_m = tolerance.distance_m;
-  if (tolerance.sigmas <= 0) return widest_m;
-  for (const Eigen::Vector3f& p : points)
-    if (std::isfinite(p.z())) widest_m = std::max(widest_m, tolerance.at(p));
-  return widest_m;
 }
 
 DepthTiles tiles_of_pixels(const OrganizedCloud& view, const Camera& camera, double radius_m,
@@ -206,31 +194,23 @@ Points select_near(std::span<const Eigen::Vector3f> points, const DepthTiles& ti
 
 }  // namespace
 
-double Tolerance::at(const Eigen::Vector3f& p_in_camera) const {
-  if (sigmas <= 0 || !(p_in_camera.z() > 0)) return distance_m;
-  // Two measurements of one surface, each with its own noise: their difference has sqrt(2) times as much.
-  const double sigma_m = std::numbers::sqrt2 * nguyen_noise(p_in_camera.z(), 0, focal_px).axial_m;
-  return std::max(distance_m, sigmas * sigma_m);
-}
-
 std::vector<std::uint8_t> find_explained_points(std::span<const Eigen::Vector3f> points_in_camera,
                                                 const OrganizedCloud& view_in_camera, const Camera& camera,
-                                                const Tolerance& tolerance, int num_threads,
+                                                double tolerance_m, int num_threads,
                                                 Image<std::uint8_t>* explained_pixels) {
-  check_input(view_in_camera, camera, tolerance);
+  check_input(view_in_camera, camera, tolerance_m);
   require(explained_pixels == nullptr || explained_pixels->size() == view_in_camera.z.size(),
           "find_explained_points: explained_pixels has not the size of the view");
-  const DepthTiles tiles = tiles_of_view(view_in_camera, camera, widest(points_in_camera, tolerance));
-  const PixelSearch search(view_in_camera, camera, tolerance);
+  const DepthTiles tiles = tiles_of_view(view_in_camera, camera, tolerance_m);
+  const PixelSearch search(view_in_camera, camera, tolerance_m);
   return test_all(points_in_camera.size(), num_threads,
                   [&](std::size_t i) { return search.is_explained(points_in_camera[i], tiles, explained_pixels); });
 }
 
 std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points_in_camera,
-                                         const OrganizedCloud& view_in_camera, const Camera& camera,
-                                         const Tolerance& tolerance, int num_threads,
-                                         const Image<std::uint8_t>& explained_pixels) {
-  check_input(view_in_camera, camera, tolerance);
+                                         const OrganizedCloud& view_in_camera, const Camera& camera, double tolerance_m,
+                                         int num_threads, const Image<std::uint8_t>& explained_pixels) {
+  check_input(view_in_camera, camera, tolerance_m);
   require(explained_pixels.empty() || explained_pixels.size() == view_in_camera.z.size(),
           "find_unexplained_pixels: explained_pixels has not the size of the view");
   std::vector<int> open;
@@ -240,13 +220,10 @@ std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points
     open.push_back(static_cast<int>(i));
     queries.push_back(view_in_camera.point(i));
   }
-  const DepthTiles tiles = tiles_of_pixels(view_in_camera, camera, widest(queries, tolerance), open);
-  const ProximityGrid grid(select_near(points_in_camera, tiles, num_threads), tolerance.distance_m);
-  const auto unexplained = test_all(queries.size(), num_threads, [&](std::size_t i) {
-    if (grid.any_within(queries[i])) return false;
-    const double wider_m = tolerance.at(queries[i]);
-    return wider_m <= tolerance.distance_m || !grid.any_within(queries[i], wider_m);
-  });
+  const DepthTiles tiles = tiles_of_pixels(view_in_camera, camera, tolerance_m, open);
+  const ProximityGrid grid(select_near(points_in_camera, tiles, num_threads), tolerance_m);
+  const auto unexplained =
+      test_all(queries.size(), num_threads, [&](std::size_t i) { return !grid.any_within(queries[i]); });
   std::vector<int> pixels = positions_of(unexplained);
   for (int& i : pixels) i = open[static_cast<std::size_t>(i)];
   return pixels;
@@ -255,7 +232,7 @@ std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points
 std::vector<int> find_pixels_near(std::span<const Eigen::Vector3f> points_in_camera,
                                   const OrganizedCloud& view_in_camera, const Camera& camera, double distance_m,
                                   int num_threads) {
-  check_input(view_in_camera, camera, {.distance_m = distance_m});
+  check_input(view_in_camera, camera, distance_m);
   DepthTiles tiles(camera, distance_m);
   for (const Eigen::Vector3f& p : points_in_camera)
     if (p.allFinite()) tiles.add(p);

@@ -10,23 +10,14 @@
 
 namespace resight {
 
-/// How far two measurements of one surface may lie apart.
-struct Tolerance {
-  double distance_m = 0.02;
-  double sigmas = 0;    ///< Widened to so many sigmas of two measurements at that depth (nguyen_noise()); 0: not.
-  double focal_px = 0;  ///< Of the noise; used if sigmas > 0.
-  /// At the depth of a point, camera frame.
-  [[nodiscard]] double at(const Eigen::Vector3f& p_in_camera) const;
-};
-
 /// Eq. (2) between a cloud and a view, exactly, without an index over the view: a point is explained where a point of
 /// the view lies within the tolerance, and such a point projects nearby. `view_in_camera` must be what `camera` saw
 /// (back_project()). For each point, camera frame, whether a pixel explains it; 0 for NaN. `explained_pixels`, if
-/// given, has the view's size: the pixels that were found to have one of the points within tolerance.distance_m become
+/// given, has the view's size: the pixels that were found to have one of the points within the tolerance become
 /// 1 (most of those that have one, not all).
 [[nodiscard]] std::vector<std::uint8_t> find_explained_points(std::span<const Eigen::Vector3f> points_in_camera,
                                                               const OrganizedCloud& view_in_camera,
-                                                              const Camera& camera, const Tolerance& tolerance,
+                                                              const Camera& camera, double tolerance_m,
                                                               int num_threads = 1,
                                                               Image<std::uint8_t>* explained_pixels = nullptr);
 
@@ -34,7 +25,7 @@ struct Tolerance {
 /// known to be explained; an empty image says nothing.
 [[nodiscard]] std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points_in_camera,
                                                        const OrganizedCloud& view_in_camera, const Camera& camera,
-                                                       const Tolerance& tolerance, int num_threads = 1,
+                                                       double tolerance_m, int num_threads = 1,
                                                        const Image<std::uint8_t>& explained_pixels = {});
 
 /// Ascending pixels of the view that have one of the points within `distance_m`.

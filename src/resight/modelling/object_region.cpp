@@ -13,7 +13,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
-#include "resight/modelling/internal/pixel_components.hpp"
+#include "resight/sensor/pixel_components.hpp"
 
 namespace resight {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "resight/core/check.hpp"
-#include "resight/modelling/internal/pixel_components.hpp"
+#include "resight/sensor/pixel_components.hpp"
 #include "resight/modelling/object_region.hpp"
 
 namespace resight {

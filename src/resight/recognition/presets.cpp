@@ -12,7 +12,6 @@ namespace {
 // leaves open.
 
 void set_paper(RecognizerConfig& config) {
-  config.changes.detection.occlusion_test = OcclusionTest::kSphericalBins;
   config.verify.refine.max_iterations.reset();
   config.detections.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
 }
@@ -50,7 +49,7 @@ void set_default(RecognizerConfig& config) {
   config.shape.enabled = true;
   config.shape.skip_planes = true;
   config.shape.max_seeds = 600;
-  config.changes.detection.occlusion_test = OcclusionTest::kDepthImage;
+  config.changes.detection.test = DepthTestOptions{};
   config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;

@@ -28,7 +28,7 @@ void clear_pixel(PreparedView& view, std::size_t i) {
   if (!cloud.nx.empty())
     for (Image<float>* image : {&cloud.nx, &cloud.ny, &cloud.nz}) (*image)[i] = kNaN;
   // The noise of a point depends only on the point and its normal, so that the noise of all other points stays valid.
-  for (Image<float>* image : {&view.noise.lateral_m, &view.noise.axial_m}) (*image)[i] = kNaN;
+  for (Image<float>* image : {&view.noise.lateral_m, &view.noise.axial_m, &view.noise.normal_m}) (*image)[i] = kNaN;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "resight/core/check.hpp"
@@ -65,6 +66,8 @@ struct Sums {
   int num_bright = 0;
   int num_matched = 0;  // Samples with a pair in at least one target.
   int num_seen_through = 0;
+  double cost = 0;
+  int num_compared = 0;
 
   void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
     const Twist row = j.cast<double>();
@@ -92,6 +95,8 @@ struct Sums {
     num_bright += other.num_bright;
     num_matched += other.num_matched;
     num_seen_through += other.num_seen_through;
+    cost += other.cost;
+    num_compared += other.num_compared;
   }
 };
 
@@ -128,6 +133,20 @@ class LevelTarget {
         min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))) {}
 
   enum class Outcome { kNothing, kPair, kOccluded, kSeenThrough };
+
+  /// Truncated squared distance of a sample to the target's surface, in [0, 1]; none where it measured nothing.
+  [[nodiscard]] std::optional<float> cost(const Samples& samples, std::size_t s) const {
+    const Eigen::Vector3f q = pose_ * samples.points[s];
+    const std::optional<Pixel> pixel = level_.camera.pixel_of(q.cast<double>());
+    if (!pixel) return std::nullopt;
+    const std::size_t i = level_.cloud.z.index(pixel->u, pixel->v);
+    if (!level_.cloud.has_point(i)) return std::nullopt;
+    const Eigen::Vector3f normal = pose_.rotation * samples.normals[s];
+    const float distance = normal.dot(q - level_.cloud.point(i));
+    const float sigma_sq = samples.sigma_m[s] * samples.sigma_m[s] + level_.sigma_m[i] * level_.sigma_m[i];
+    const auto limit = static_cast<float>(options_.max_noise_sigmas);
+    return std::min(1.0F, distance * distance / (sigma_sq * limit * limit));
+  }
 
   Outcome add(const Samples& samples, std::size_t s, Sums& sums) const {
     const Eigen::Vector3f p = samples.points[s];
@@ -209,6 +228,11 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
         in_front |= outcome == LevelTarget::Outcome::kSeenThrough;
       }
       sums.num_matched += pair;
+      std::optional<float> least;
+      for (const LevelTarget& target : seen)
+        if (const std::optional<float> cost = target.cost(samples, s)) least = least ? std::min(*least, *cost) : cost;
+      sums.cost += least.value_or(0);
+      sums.num_compared += least.has_value();
       sums.num_seen_through += in_front && !pair && !hidden;
     }
   });
@@ -307,6 +331,7 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
   aligned.mean_distance_m = sums.num_pairs > 0 ? sums.distance_m / sums.num_pairs : 0;
   aligned.brightness_correlation = sums.brightness_correlation();
   aligned.num_pairs = sums.num_pairs;
+  aligned.cost = sums.num_compared > 0 ? sums.cost / sums.num_compared : 0;
   return aligned;
 }
 

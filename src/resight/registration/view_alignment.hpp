@@ -42,6 +42,7 @@ struct AlignedView {
   /// Correlation of brightness over the pairs; NaN without texture.
   double brightness_correlation = 0;
   int num_pairs = 0;
+  double cost = 0;  ///< Mean truncated squared distance of the view's points to the nearest target, in [0, 1].
 };
 
 /// Moves `view` from the given pose onto the targets, from coarse to fine: projective point-to-plane alignment

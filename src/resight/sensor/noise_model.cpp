@@ -53,13 +53,19 @@ inline float angle_ratio(float c) {
 /// is not vectorised. `trust` is 1, or NaN if there are no normals.
 void model_row(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                const float* __restrict nx, const float* __restrict ny, const float* __restrict nz, int width,
-               float trust, float focal_px, float* __restrict lateral_m, float* __restrict axial_m) {
+               float trust, float focal_px, float* __restrict lateral_m, float* __restrict axial_m,
+               float* __restrict normal_m) {
   for (int u = 0; u < width; ++u) {
     const float along_ray = std::abs(nx[u] * x[u] + ny[u] * y[u] + nz[u] * z[u]);
     const float range = std::sqrt(x[u] * x[u] + y[u] * y[u] + z[u] * z[u]);
-    const float ratio = angle_ratio(trust * along_ray / range);
-    lateral_m[u] = lateral_sigma_m(z[u], ratio, focal_px);
-    axial_m[u] = axial_sigma_m(z[u], ratio);
+    const float cosine = trust * along_ray / range;
+    const float ratio = angle_ratio(cosine);
+    const float lateral = lateral_sigma_m(z[u], ratio, focal_px);
+    const float axial = axial_sigma_m(z[u], ratio);
+    const float cosine_sq = cosine < 1.0F ? cosine * cosine : 1.0F;  // NaN (no normal) becomes 1.
+    lateral_m[u] = lateral;
+    axial_m[u] = axial;
+    normal_m[u] = std::sqrt(axial * axial * cosine_sq + lateral * lateral * (1.0F - cosine_sq));
   }
 }
 
@@ -81,7 +87,7 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
   require(width == camera.width && height == camera.height,
           "model_noise: the cloud must have the size of the camera image");
   const auto focal_px = static_cast<float>((camera.fx + camera.fy) / 2);
-  NoiseImages noise{Image<float>(width, height), Image<float>(width, height)};
+  NoiseImages noise{Image<float>(width, height), Image<float>(width, height), Image<float>(width, height)};
   const OrganizedCloud& c = cloud_in_camera;
   const bool has_normals = !c.nx.empty();
   const float trust = has_normals ? 1.0F : std::numeric_limits<float>::quiet_NaN();
@@ -91,7 +97,7 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
         for (int v = static_cast<int>(first); v < static_cast<int>(last); ++v)
           model_row(c.x.row(v).data(), c.y.row(v).data(), c.z.row(v).data(), normals(c.nx).row(v).data(),
                     normals(c.ny).row(v).data(), normals(c.nz).row(v).data(), width, trust, focal_px,
-                    noise.lateral_m.row(v).data(), noise.axial_m.row(v).data());
+                    noise.lateral_m.row(v).data(), noise.axial_m.row(v).data(), noise.normal_m.row(v).data());
       });
   return noise;
 }

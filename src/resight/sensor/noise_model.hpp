@@ -21,6 +21,7 @@ struct NoiseSigma {
 struct NoiseImages {
   Image<float> lateral_m;
   Image<float> axial_m;
+  Image<float> normal_m;  ///< Along the normal: sqrt((axial cos theta)^2 + (lateral sin theta)^2). No normal: axial.
 };
 
 /// Evaluates nguyen_noise() for each point, with the mean of both focal lengths. NaN where there is no point. A point

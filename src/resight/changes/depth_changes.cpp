@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/changes/depth_changes.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "resight/core/parallel.hpp"
+#include "resight/sensor/pixel_components.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kSamePose = 1e-6;  // Metres and radians: far below a pixel.
+constexpr int kMaxGap_px = 2;       // Within a region: the pixels of one view do not cover all of another's.
+
+/// What a view and an earlier one say about each other.
+struct PairEvidence {
+  Image<Evidence> of_view;     ///< What the earlier view says about the pixels of the view.
+  Image<Evidence> of_earlier;  ///< The reverse.
+};
+
+/// Then pixels of both views show the same rays.
+bool is_same_pose(const Rigid3& a, const Rigid3& b) {
+  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kSamePose &&
+         (a.translation - b.translation).norm() < kSamePose;
+}
+
+PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
+                               int num_threads) {
+  const bool camera_moved = !is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera);
+  const CompareViewsOptions compare{options.sigmas, camera_moved ? options.neighborhood_px : 0, num_threads};
+  const double noise_scale = estimate_noise_scale(view, earlier);
+  return {compare_views(view, earlier, noise_scale, compare), compare_views(earlier, view, noise_scale, compare)};
+}
+
+Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
+                               std::size_t& num_explained) {
+  Image<std::uint8_t> novel(view.cloud.width(), view.cloud.height());
+  for (std::size_t i = 0; i < novel.size(); ++i) {
+    bool explained = false;
+    bool free_before = false;
+    for (const PairEvidence& pair : pairs) {
+      explained |= pair.of_view[i] == Evidence::kPresent;
+      free_before |= pair.of_view[i] == Evidence::kSeenThrough;
+    }
+    num_explained += explained ? 1 : 0;
+    novel[i] = free_before && !explained ? 1 : 0;
+  }
+  return novel;
+}
+
+void drop_small_regions(int min_region_px, Image<std::uint8_t>& mask) {
+  for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px))
+    if (static_cast<int>(region.size()) < min_region_px)
+      for (const int i : region) mask[static_cast<std::size_t>(i)] = 0;
+}
+
+/// Pixels of an earlier view that the view sees through, and where in the view they are.
+struct GonePixels {
+  std::vector<int> in_earlier;
+  std::vector<int> in_view;
+};
+
+/// Collects the removed surface of one earlier view after another, from the newest to the oldest. The newest one that
+/// saw a place decides: had the surface of an older one left before, it would have been cleared then.
+class RemovedSurface {
+ public:
+  explicit RemovedSurface(const PreparedView& view)
+      : view_(view), decided_(view.cloud.width(), view.cloud.height()), removed_(decided_) {}
+
+  [[nodiscard]] GonePixels add(const PreparedView& earlier, const Image<Evidence>& evidence) {
+    const Rigid3f view_from_earlier(view_.frame.world_from_camera.inverse() * earlier.frame.world_from_camera);
+    GonePixels gone;
+    std::vector<std::size_t> present;
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      if (!is_observed(evidence[i])) continue;
+      const Eigen::Vector3f p = view_from_earlier * earlier.cloud.point(i);
+      const std::optional<Pixel> pixel = view_.frame.camera.pixel_of(p.cast<double>());
+      if (!pixel) continue;
+      const std::size_t at = view_.cloud.z.index(pixel->u, pixel->v);
+      if (evidence[i] == Evidence::kPresent) present.push_back(at);
+      if (evidence[i] == Evidence::kPresent || decided_[at] != 0) continue;
+      removed_[at] = 1;
+      gone.in_earlier.push_back(static_cast<int>(i));
+      gone.in_view.push_back(static_cast<int>(at));
+    }
+    for (const std::size_t at : present) decided_[at] = 1;
+    return gone;
+  }
+  Image<std::uint8_t>& mask() { return removed_; }
+
+ private:
+  const PreparedView& view_;
+  Image<std::uint8_t> decided_;
+  Image<std::uint8_t> removed_;
+};
+
+}  // namespace
+
+DepthChanges find_depth_changes(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
+                                const DepthTestOptions& options, int num_threads) {
+  DepthChanges changes;
+  std::vector<PairEvidence> pairs;
+  for (const PreparedView* earlier : earlier_views)
+    pairs.push_back(compare_both_ways(view, *earlier, options, num_threads));
+  changes.novel = find_novel(view, pairs, changes.num_explained);
+  drop_small_regions(options.min_region_px, changes.novel);
+
+  RemovedSurface removed(view);
+  std::vector<GonePixels> gone(pairs.size());
+  for (std::size_t e = pairs.size(); e-- > 0;) {
+    for (const Evidence evidence : pairs[e].of_earlier.data())
+      ++changes.evidence_count[static_cast<std::size_t>(evidence)];
+    gone[e] = removed.add(*earlier_views[e], pairs[e].of_earlier);
+  }
+  changes.removed = std::move(removed.mask());
+  drop_small_regions(options.min_region_px, changes.removed);
+  for (const GonePixels& pixels : gone) {
+    std::vector<int>& kept = changes.gone_pixels.emplace_back();
+    for (std::size_t i = 0; i < pixels.in_view.size(); ++i)
+      if (changes.removed[static_cast<std::size_t>(pixels.in_view[i])] != 0) kept.push_back(pixels.in_earlier[i]);
+  }
+  return changes;
+}
+
+}  // namespace resight

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "resight/core/options.hpp"
+#include "resight/evidence/view_comparison.hpp"
+
+namespace resight {
+
+/// The statistical test of changes: depth against depth.
+struct DepthTestOptions {
+  double sigmas = 3;
+  int neighborhood_px = 2;
+  int min_region_px = 25;
+};
+
+inline void declare(OptionVisitor& v, DepthTestOptions& o) {
+  v.field("sigmas", o.sigmas, positive(),
+          "A surface has changed if it differs from what another view measured by more than this many standard "
+          "deviations, along its normal.",
+          "ours; noise by Nguyen et al. 2012");
+  v.field(
+      "neighborhood_px", o.neighborhood_px, between(0, 100),
+      "If the camera moved, no measurement within this many rows and columns may explain the surface: poses are never "
+      "exact. A still camera sees the same surface at the same pixel.");
+  v.field("min_region_px", o.min_region_px, at_least(1), "Smaller connected regions are noise.");
+}
+
+/// Pixels that changed between earlier views and a view.
+struct DepthChanges {
+  Image<std::uint8_t> novel;                  ///< Of the view: non-zero where a surface came.
+  Image<std::uint8_t> removed;                ///< Of the view: non-zero where it sees through a surface of before.
+  std::vector<std::vector<int>> gone_pixels;  ///< Per earlier view: its pixels whose surface has left, ascending.
+  std::array<int, 4> evidence_count{};        ///< What the view says of the pixels of earlier views, by Evidence.
+  std::size_t num_explained = 0;              ///< Pixels of the view whose surface an earlier view saw, too.
+};
+
+/// Compares each pixel of the view with every earlier view, and the reverse (compare_views()).
+///
+/// Novel: no earlier view has the surface, and at least one saw free space there. Removed: the view sees through the
+/// surface of an earlier view. Both need neighbours: regions of fewer than `min_region_px` pixels are noise. The noise
+/// is scaled to what the two views show of it (estimate_noise_scale()). Views must not be null.
+[[nodiscard]] DepthChanges find_depth_changes(const PreparedView& view,
+                                              std::span<const PreparedView* const> earlier_views,
+                                              const DepthTestOptions& options, int num_threads);
+
+}  // namespace resight

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evidence/view_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kComparedRows = 8;
+constexpr int kScaleStep_px = 4;               // One pixel in 16 is enough for a median.
+constexpr std::size_t kMinScaleSamples = 500;  // With fewer, the median says little.
+constexpr float kMaxScaleDistance_m = 0.1F;    // Larger differences are other surfaces.
+constexpr float kMinViewingCosine = 0.05F;     // 87 deg: at more grazing angles depth says nothing about a surface.
+constexpr double kNormalizedMad = 1.4826;      // Standard deviation of a normal distribution / median |x|.
+// Depth is quantised: the median of small differences may be 0, though the noise is not.
+constexpr double kMinNoiseScale = 0.7;
+
+/// A measured surface in front of the other camera.
+struct SurfaceInView {
+  Eigen::Vector3f position;  ///< In that camera.
+  float slope;               ///< Distance along the normal per metre along z.
+  float variance;            ///< Of the distance along the normal; m^2.
+};
+
+class ViewComparison {
+ public:
+  ViewComparison(const PreparedView& surfaces, const PreparedView& view, float sigmas)
+      : surfaces_(surfaces),
+        view_(view),
+        view_from_surfaces_(view.frame.world_from_camera.inverse() * surfaces.frame.world_from_camera),
+        sigmas_(sigmas) {}
+
+  /// False if the pixel has no surface, or one behind the other camera or seen at too grazing an angle.
+  bool pose(std::size_t i, SurfaceInView& surface) const {
+    const OrganizedCloud& cloud = surfaces_.cloud;
+    if (!cloud.has_point(i)) return false;
+    const Eigen::Vector3f p = view_from_surfaces_ * cloud.point(i);
+    if (!(p.z() > 0)) return false;
+    surface.position = p;
+    surface.slope = 1;
+    const float sigma_m = surfaces_.noise.normal_m[i];
+    surface.variance = sigma_m * sigma_m;
+    if (!cloud.has_normal(i)) return true;
+    surface.slope = std::abs((view_from_surfaces_.rotation * cloud.normal(i)).dot(p)) / p.z();
+    return surface.slope > kMinViewingCosine;
+  }
+
+  [[nodiscard]] std::optional<Pixel> pixel_of(const SurfaceInView& surface) const {
+    return view_.frame.camera.pixel_of(surface.position.cast<double>());
+  }
+
+  [[nodiscard]] Evidence classify(std::size_t i, int radius_px) const {
+    SurfaceInView surface;
+    if (!pose(i, surface)) return Evidence::kUnobserved;
+    const std::optional<Pixel> pixel = pixel_of(surface);
+    if (!pixel) return Evidence::kUnobserved;
+    const Evidence center = compare(surface, view_.frame.depth_m.index(pixel->u, pixel->v));
+    if (center == Evidence::kPresent) return center;
+    return agree_in_window(surface, *pixel, radius_px, center);
+  }
+
+  /// Normalised distance of the surface to the measurement where it projects to; NaN if there is none.
+  [[nodiscard]] float normalized_distance(std::size_t i) const {
+    SurfaceInView surface;
+    if (!pose(i, surface)) return kNaN;
+    const std::optional<Pixel> pixel = pixel_of(surface);
+    if (!pixel) return kNaN;
+    const std::size_t j = view_.frame.depth_m.index(pixel->u, pixel->v);
+    const float distance_m = (view_.frame.depth_m[j] - surface.position.z()) * surface.slope;
+    return std::abs(distance_m) < kMaxScaleDistance_m ? distance_m / sigma(surface, j) : kNaN;
+  }
+
+ private:
+  static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+  [[nodiscard]] float sigma(const SurfaceInView& surface, std::size_t j) const {
+    const float sigma_m = view_.noise.normal_m[j];
+    // Beyond prepare.max_depth_m there is depth, but no noise. Such a measurement is far behind.
+    return std::sqrt(surface.variance + (std::isnan(sigma_m) ? 0.0F : sigma_m * sigma_m));
+  }
+  [[nodiscard]] Evidence compare(const SurfaceInView& surface, std::size_t j) const {
+    return compare_depth(surface.position.z(), view_.frame.depth_m[j], sigmas_ * sigma(surface, j) / surface.slope);
+  }
+
+  /// The evidence of the pixel if no neighbour explains or contradicts it.
+  [[nodiscard]] Evidence agree_in_window(const SurfaceInView& surface, Pixel center, int radius_px,
+                                         Evidence evidence) const {
+    const Image<float>& depth_m = view_.frame.depth_m;
+    bool agrees = true;
+    for (int v = std::max(center.v - radius_px, 0); v <= std::min(center.v + radius_px, depth_m.height() - 1); ++v)
+      for (int u = std::max(center.u - radius_px, 0); u <= std::min(center.u + radius_px, depth_m.width() - 1); ++u) {
+        const Evidence neighbor = compare(surface, depth_m.index(u, v));
+        if (neighbor == Evidence::kPresent) return neighbor;
+        agrees &= neighbor == evidence || neighbor == Evidence::kUnobserved;
+      }
+    return agrees ? evidence : Evidence::kUnobserved;
+  }
+
+  const PreparedView& surfaces_;
+  const PreparedView& view_;
+  Rigid3f view_from_surfaces_;
+  float sigmas_;
+};
+
+void check_view(const PreparedView& view) {
+  const auto has_size = [&](const auto& image) {
+    return image.width() == view.frame.camera.width && image.height() == view.frame.camera.height;
+  };
+  require(view.frame.camera.is_valid() && has_size(view.frame.depth_m) && has_size(view.cloud.z) &&
+              has_size(view.noise.normal_m),
+          "compare_views: a view is not prepared (its images have not its camera's size)");
+}
+
+}  // namespace
+
+Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
+                              const CompareViewsOptions& options) {
+  options.check();
+  check_positive("noise_scale", noise_scale);
+  check_view(surfaces);
+  check_view(view);
+  const ViewComparison comparison(surfaces, view, static_cast<float>(options.sigmas * noise_scale));
+  Image<Evidence> evidence(surfaces.cloud.width(), surfaces.cloud.height(), Evidence::kUnobserved);
+  parallel_for_blocks(static_cast<std::size_t>(evidence.height()), kComparedRows, options.num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        const auto width = static_cast<std::size_t>(evidence.width());
+                        for (std::size_t i = begin * width; i < end * width; ++i)
+                          evidence[i] = comparison.classify(i, options.window_radius_px);
+                      });
+  return evidence;
+}
+
+double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& view) {
+  check_view(surfaces);
+  check_view(view);
+  const ViewComparison comparison(surfaces, view, 1);
+  std::vector<float> distances;
+  for (int v = 0; v < surfaces.cloud.height(); v += kScaleStep_px)
+    for (int u = 0; u < surfaces.cloud.width(); u += kScaleStep_px) {
+      const float distance = comparison.normalized_distance(surfaces.cloud.z.index(u, v));
+      if (!std::isnan(distance)) distances.push_back(std::abs(distance));
+    }
+  if (distances.size() < kMinScaleSamples) return 1;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(*middle));
+}
+
+}  // namespace resight

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "resight/core/options.hpp"
+#include "resight/evidence/surface_evidence.hpp"
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+
+struct CompareViewsOptions {
+  double sigmas = 3;
+  int window_radius_px = 1;
+  int num_threads = 1;  ///< Same bits for any value >= 1.
+  void check() const { check_options("CompareViewsOptions", *this); }
+};
+
+inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
+  v.field("sigmas", o.sigmas, positive(),
+          "Surfaces differ if they lie farther apart, along the normal, than this many standard deviations of the "
+          "noise of both views.",
+          "Nguyen et al. 2012 (noise of the sensor)");
+  v.field("window_radius_px", o.window_radius_px, between(0, 100),
+          "A measurement within this many rows and columns may explain a surface, and must not contradict free space.");
+  v.num_threads(o.num_threads);
+}
+
+/// What a view says about the surfaces that another view measured, pixel by pixel of that other view. The test is
+/// statistical: the distance between the surface and the measurement, along the normal of the surface, is compared
+/// with the noise of both views, which depends on range and angle (NoiseImages::normal_m). `noise_scale` multiplies
+/// it; see estimate_noise_scale(). Pixels without depth in either view are kUnobserved, and so is what projects between
+/// the measurements of a depth edge. Both poses must be in one world frame.
+[[nodiscard]] Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
+                                            const CompareViewsOptions& options = {});
+
+/// How much larger the differences between two views are than their noise: a robust standard deviation (1.48 times the
+/// median absolute value) of the normalised distances of compare_views(), at least 1. Poses that are slightly off and
+/// sensors noisier than the model make it larger; changes do not, as long as most of the scene stays. 1 for views that
+/// have little in common.
+[[nodiscard]] double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& view);
+
+}  // namespace resight
