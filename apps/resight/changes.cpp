@@ -61,7 +61,7 @@ void run_changes(const ChangesArguments& arguments) {
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
     write_masks(folder.path(), frame, changes);
-    if (std::getenv("NOPLY") == nullptr) value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
+    value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
     progress.report(v + 1,
                     fmt::format("{}: {} removed, {} novel points{}", frame.name, changes.removed_in_world.size(),
                                 changes.novel_in_world.size(), changes.pose_suspect ? ", camera pose suspect" : ""));

@@ -81,8 +81,7 @@ double subtract_by_pixels(const DifferenceContest& contest, Points& gone) {
   for (const Eigen::Vector3f& p : contest.before.points) in_camera.push_back(camera_from_world * p);
   std::vector<std::uint8_t> is_explained;
   const double cpu_s = cpu_time_s([&] {
-    is_explained = find_explained_points(in_camera, view.cloud, view.frame.camera,
-                                         {.distance_m = contest.input.config.changes.detection.tolerance_m});
+    is_explained = find_explained_points(in_camera, view.cloud, view.frame.camera, PointTestOptions{}.tolerance_m);
   });
   gone.clear();
   for (std::size_t i = 0; i < in_camera.size(); ++i)
@@ -92,10 +91,8 @@ double subtract_by_pixels(const DifferenceContest& contest, Points& gone) {
 
 double subtract_by_grid(const DifferenceContest& contest, Points& gone) {
   std::vector<int> left;
-  const double cpu_s = cpu_time_s([&] {
-    left =
-        subtract_clouds(contest.before.points, contest.view.points, contest.input.config.changes.detection.tolerance_m);
-  });
+  const double cpu_s = cpu_time_s(
+      [&] { left = subtract_clouds(contest.before.points, contest.view.points, PointTestOptions{}.tolerance_m); });
   gone = select_points(contest.before.points, left);
   return cpu_s;
 }
@@ -104,8 +101,8 @@ using PeerDifference = pcl_peers::Timed<std::vector<int>> (*)(pcl_peers::Points,
 
 double subtract_by_peer(const DifferenceContest& contest, const Side& of, const Side& from, PeerDifference peer,
                         Points& left) {
-  const auto result = peer(to_plain(of.points), to_plain(from.points),
-                           static_cast<float>(contest.input.config.changes.detection.tolerance_m));
+  const auto result =
+      peer(to_plain(of.points), to_plain(from.points), static_cast<float>(PointTestOptions{}.tolerance_m));
   left = select_points(of.points, result.value);
   return result.cpu_s;
 }

@@ -15,6 +15,8 @@
 namespace resight {
 namespace {
 
+using ChangeTest = decltype(DetectChangesOptions::test);
+
 const std::filesystem::path kFolder = std::filesystem::path(RESIGHT_SHARED_DATA_DIR) / "table-two-states";
 const std::filesystem::path kMeshFolder = std::filesystem::path(RESIGHT_SHARED_DATA_DIR) / "ycb-meshes";
 
@@ -81,9 +83,9 @@ TEST_F(TableTwoStates, EveryObjectIsRemovedAndEveryOtherOneNovel) {
   ASSERT_EQ(old_objects.size(), 4U);
   ASSERT_EQ(new_objects.size(), 5U);
   const PreparedView* earlier[] = {&before};
-  for (const OcclusionTest test : {OcclusionTest::kSphericalBins, OcclusionTest::kDepthImage}) {
-    const ChangeResult changes =
-        detect_changes(previous, after, {.occlusion_test = test, .frustum_margin_rad = 0}, earlier);
+  for (const ChangeTest& test :
+       {ChangeTest(PointTestOptions{.frustum_margin_rad = 0}), ChangeTest(DepthTestOptions{})}) {
+    const ChangeResult changes = detect_changes(previous, after, {.test = test}, earlier);
     EXPECT_FALSE(changes.pose_suspect);
     const PointCloud removed = on_table(changes.removed_in_world);
     const PointCloud novel = on_table(changes.novel_in_world);
@@ -98,12 +100,13 @@ TEST_F(TableTwoStates, EveryObjectIsRemovedAndEveryOtherOneNovel) {
 }
 
 TEST_F(TableTwoStates, TheTableStaysForwardsAndBackwards) {
-  for (const OcclusionTest test : {OcclusionTest::kSphericalBins, OcclusionTest::kDepthImage}) {
+  for (const ChangeTest& test : {ChangeTest(PointTestOptions{}), ChangeTest(DepthTestOptions{})}) {
     for (const bool forward : {true, false}) {
       const PreparedView& first = forward ? before : after;
       const PreparedView& second = forward ? after : before;
       const PointCloud first_cloud = to_point_cloud(first.cloud, &first.frame.color, false);
-      const ChangeResult changes = detect_changes(first_cloud, second, {.occlusion_test = test});
+      const PreparedView* earlier[] = {&first};
+      const ChangeResult changes = detect_changes(first_cloud, second, {.test = test}, earlier);
       EXPECT_GT(changes.evidence_count[static_cast<std::size_t>(Evidence::kPresent)], 20000);
       EXPECT_GT(changes.changed_share, 0.005);
       EXPECT_LT(changes.changed_share, 0.2);

@@ -113,19 +113,18 @@ Points points_above_table(double height_m, const Rigid3& world_from_camera) {
 TEST(OcclusionTests, OnASlantTheBinsHideWhatThePixelsSee) {
   const PreparedView view = see(table());
   const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
-  const auto share_seen_through = [&](double height_m, OcclusionTest test) {
+  const auto share_seen_through = [&](double height_m, bool use_bins) {
     const Points queries = points_above_table(height_m, view.frame.world_from_camera);
-    const std::vector<Evidence> evidence = test == OcclusionTest::kSphericalBins
-                                               ? classify_occlusion(queries, blockers.points, SphericalBins(), 0)
-                                               : classify_in_depth_image(queries, view);
+    const std::vector<Evidence> evidence = use_bins ? classify_occlusion(queries, blockers.points, SphericalBins(), 0)
+                                                    : classify_in_depth_image(queries, view);
     EXPECT_EQ(count(evidence, Evidence::kUnobserved), 0);
     return static_cast<double>(count(evidence, Evidence::kSeenThrough)) / static_cast<double>(queries.size());
   };
   // At 10 cm both see past them. At 3 cm, the nearest table point of a bin is nearer than many of them.
-  EXPECT_GT(share_seen_through(0.10, OcclusionTest::kSphericalBins), 0.99);
-  EXPECT_GT(share_seen_through(0.10, OcclusionTest::kDepthImage), 0.99);
-  EXPECT_LT(share_seen_through(0.03, OcclusionTest::kSphericalBins), 0.95);
-  EXPECT_GT(share_seen_through(0.03, OcclusionTest::kDepthImage), 0.99);
+  EXPECT_GT(share_seen_through(0.10, true), 0.99);
+  EXPECT_GT(share_seen_through(0.10, false), 0.99);
+  EXPECT_LT(share_seen_through(0.03, true), 0.95);
+  EXPECT_GT(share_seen_through(0.03, false), 0.99);
 }
 
 TEST(OcclusionTests, BehindABoxIsHidden) {

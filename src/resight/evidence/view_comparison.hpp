@@ -31,10 +31,10 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
 [[nodiscard]] Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
                                             const CompareViewsOptions& options = {});
 
-/// How much larger the differences between two views are than their noise: a robust standard deviation (1.48 times the
-/// median absolute value) of the normalised distances of compare_views(), at least 1. Poses that are slightly off and
-/// sensors noisier than the model make it larger; changes do not, as long as most of the scene stays. 1 for views that
-/// have little in common.
+/// How much larger the differences between two views are than the noise of the model: a robust standard deviation (1.48
+/// times the median absolute value) of the normalised distances of compare_views(), at least 0.7. Poses that are
+/// slightly off and sensors noisier than the model make it larger; changes do not, as long as most of the scene stays.
+/// 1 for views that have little in common.
 [[nodiscard]] double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& view);
 
 }  // namespace resight

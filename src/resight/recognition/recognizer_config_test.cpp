@@ -49,7 +49,7 @@ TEST(RecognizerConfig, PresetsDifferWhereTheyShould) {
   const auto chd = RecognizerConfig::from_preset("mvr-chd");
   EXPECT_FALSE(mvr.changes.enabled);
   EXPECT_TRUE(chd.changes.enabled);
-  EXPECT_EQ(chd.changes.detection.occlusion_test, OcclusionTest::kSphericalBins);
+  EXPECT_TRUE(std::holds_alternative<PointTestOptions>(chd.changes.detection.test));
   for (const char* preset : kPresets) EXPECT_NO_THROW(RecognizerConfig::from_preset(preset).check()) << preset;
   EXPECT_THROW((void)RecognizerConfig::from_preset("best"), std::invalid_argument);
 }

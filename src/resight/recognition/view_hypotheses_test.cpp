@@ -18,7 +18,7 @@ TEST(GenerationSettings, DependOnTheGenerationOnly) {
   later.detections.min_reported_share = 0.5;
   later.remember_objects = true;
   later.hypotheses.min_carried_share = 0.5;
-  later.changes.detection.tolerance_m *= 2;
+  later.changes.detection.voxel_m *= 2;
   later.verify.selection.outlier_weight *= 2;
   later.history.same_place_m *= 2;
   later.integrate.voxel_m *= 2;

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/changes/depth_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "resight/changes/analytic_scene_test_util.hpp"
+#include "resight/changes/change_detector.hpp"
+#include "resight/core/random.hpp"
+
+namespace resight {
+namespace {
+
+using namespace testing_scene;
+const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
+const Rigid3 kBeside = look_at({0.2, -0.9, 0.75}, {0.05, 0, 0});
+
+Scene with(const std::vector<Box>& boxes) {
+  Scene scene = table();
+  scene.boxes = boxes;
+  return scene;
+}
+
+/// Frame with the noise that the sensor model claims, along the rays.
+PreparedView see_with_noise(const Scene& scene, const Rigid3& world_from_camera, std::uint64_t seed) {
+  const PreparedView exact = see(scene, world_from_camera);
+  RgbdFrame frame = exact.frame;
+  Rng rng(seed);
+  for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
+    if (exact.cloud.has_normal(i)) frame.depth_m[i] += static_cast<float>(rng.normal()) * exact.noise.axial_m[i];
+  return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+}
+
+int count(const Image<std::uint8_t>& mask) {
+  return static_cast<int>(std::ranges::count_if(mask.data(), [](auto m) { return m != 0; }));
+}
+
+ChangeResult detect(const PreparedView& before, const PreparedView& after, int num_threads = 1) {
+  const PreparedView* earlier[] = {&before};
+  return detect_changes(world_cloud(before), after, {.test = DepthTestOptions{}, .num_threads = num_threads}, earlier);
+}
+
+TEST(DepthChanges, AnUnchangedSceneHasNone) {
+  for (const Rigid3& pose : {usual_pose(), kBeside, look_at({0, -0.9, 0.12}, {0, 0, 0})}) {
+    const ChangeResult changes = detect(see(with({kBox})), see(with({kBox}), pose));
+    EXPECT_EQ(count(changes.novel_mask), 0);
+    EXPECT_EQ(count(changes.removed_mask), 0);
+    EXPECT_TRUE(changes.removed_in_world.empty());
+    EXPECT_GT(changes.evidence_count[static_cast<std::size_t>(Evidence::kPresent)], 10000);
+  }
+}
+
+TEST(DepthChanges, NoiseIsNoChange) {
+  const PreparedView before = see_with_noise(with({kBox}), usual_pose(), 1);
+  for (const Rigid3& pose : {usual_pose(), kBeside}) {
+    const ChangeResult changes = detect(before, see_with_noise(with({kBox}), pose, 2));
+    EXPECT_LT(count(changes.novel_mask), 320 * 240 / 500);
+    EXPECT_LT(count(changes.removed_mask), 320 * 240 / 500);
+  }
+}
+
+TEST(DepthChanges, ARemovedBoxIsSeenThrough) {
+  for (const Rigid3& pose : {usual_pose(), kBeside}) {
+    const PreparedView before = see(with({kBox}));
+    const ChangeResult changes = detect(before, see(table(), pose));
+    EXPECT_EQ(count(changes.novel_mask), 0) << "the table below is newly seen, not new";
+    const int found = count_at(kBox, changes.removed_in_world, 0.003);
+    EXPECT_EQ(found, static_cast<int>(changes.removed_in_world.size()));
+    const PointCloud box = voxel_downsample(world_cloud(before), 0.005);
+    int expected = 0;
+    for (const Eigen::Vector3f& p : box.points) expected += is_at(kBox, p) && p.z() > 0.02F ? 1 : 0;
+    ASSERT_GT(expected, 1000);
+    EXPECT_GT(found, expected * 9 / 10);
+    EXPECT_GT(count(changes.removed_mask), 1500);
+  }
+}
+
+TEST(DepthChanges, AnAddedBoxIsNovel) {
+  for (const Rigid3& pose : {usual_pose(), kBeside}) {
+    const ChangeResult changes = detect(see(table()), see(with({kBox}), pose));
+    EXPECT_EQ(count(changes.removed_mask), 0);
+    ASSERT_GT(changes.novel_in_world.size(), 1000U);
+    EXPECT_EQ(count_at(kBox, changes.novel_in_world, 0.003), static_cast<int>(changes.novel_in_world.size()));
+    EXPECT_EQ(changes.novel_in_world.colors.size(), changes.novel_in_world.size());
+  }
+}
+
+TEST(DepthChanges, ThinThingsAreFoundDespiteNoise) {
+  const Box thin{{0, 0, 0.0075}, {0.1, 0.04, 0.0075}};  // 15 mm high, 1.2 m away
+  const ChangeResult added =
+      detect(see_with_noise(table(), usual_pose(), 3), see_with_noise(with({thin}), usual_pose(), 4));
+  const ChangeResult removed =
+      detect(see_with_noise(with({thin}), usual_pose(), 5), see_with_noise(table(), usual_pose(), 6));
+  EXPECT_GT(count_at(thin, added.novel_in_world, 0.01), 100);
+  EXPECT_GT(count_at(thin, removed.removed_in_world, 0.01), 100);
+}
+
+TEST(DepthChanges, WhatIsHiddenIsKept) {
+  const Box front{{0, -0.3, 0.12}, {0.2, 0.02, 0.12}};
+  const Rigid3 low = look_at({0, -0.9, 0.3}, {0, 0, 0.05});
+  const ChangeResult changes = detect(see(with({kBox})), see(with({front}), low));
+  for (const Eigen::Vector3f& p : changes.removed_in_world.points)
+    EXPECT_GT(p.z(), 0.1F) << "only the top of the box can be seen past";
+}
+
+TEST(DepthChanges, NoReturnIsNoEvidence) {
+  const PreparedView before = see(with({kBox}));
+  RgbdFrame frame = render(table(), small_camera(), usual_pose());
+  for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
+    if (frame.depth_m[i] != before.frame.depth_m[i]) frame.depth_m[i] = std::numeric_limits<float>::quiet_NaN();
+  const ChangeResult changes = detect(before, prepare_view(std::move(frame)));
+  EXPECT_TRUE(changes.removed_in_world.empty());
+  EXPECT_TRUE(changes.novel_in_world.empty());
+}
+
+TEST(DepthChanges, SmallRegionsAreNoise) {
+  const PreparedView before = see(table());
+  RgbdFrame frame = before.frame;
+  for (int v = 100; v < 104; ++v)
+    for (int u = 100; u < 104; ++u) frame.depth_m(u, v) -= 0.3F;
+  const PreparedView after = prepare_view(std::move(frame));
+  EXPECT_EQ(count(detect(before, after).novel_mask), 0);
+  const PreparedView* earlier[] = {&before};
+  EXPECT_GT(count(find_depth_changes(after, earlier, {.min_region_px = 4}, 1).novel), 3);
+}
+
+TEST(DepthChanges, TheNewestViewDecidesWhatIsThere) {
+  // The box left between the first two views, and the second one was not cleared of anything. For the third view
+  // nothing is removed any more where the second saw the table.
+  const PreparedView first = see(with({kBox}));
+  const PreparedView second = see(table());
+  const PreparedView* earlier[] = {&first, &second};
+  const DepthChanges changes = find_depth_changes(see(table()), earlier, {}, 1);
+  EXPECT_EQ(count(changes.removed), 0);
+  EXPECT_TRUE(changes.gone_pixels[0].empty());
+  const PreparedView* alone[] = {&first};
+  EXPECT_GT(count(find_depth_changes(see(table()), alone, {}, 1).removed), 1500);
+}
+
+TEST(DepthChanges, AWrongPoseIsSuspect) {
+  const PreparedView before = see(with({kBox}));
+  PreparedView after = see(with({kBox}));
+  after.frame.world_from_camera.translation.z() += 0.3;
+  const ChangeResult changes = detect(before, after);
+  EXPECT_TRUE(changes.pose_suspect);
+  EXPECT_TRUE(changes.removed_in_world.empty());
+  EXPECT_EQ(count(changes.removed_mask), 0);
+}
+
+TEST(DepthChanges, WithoutEarlierViewsThereAreNone) {
+  const PreparedView view = see(table());
+  const ChangeResult changes = detect_changes(world_cloud(view), view, {.test = DepthTestOptions{}});
+  EXPECT_EQ(count(changes.novel_mask), 0);
+  EXPECT_EQ(count(changes.removed_mask), 0);
+}
+
+TEST(DepthChanges, SerialIsParallel) {
+  const PreparedView before = see(with({kBox}));
+  const PreparedView after = see(with({{{0.2, 0.1, 0.06}, {0.05, 0.05, 0.06}}}), kBeside);
+  const ChangeResult serial = detect(before, after);
+  const ChangeResult parallel = detect(before, after, 3);
+  EXPECT_FALSE(serial.removed_in_world.empty());
+  EXPECT_FALSE(serial.novel_in_world.empty());
+  EXPECT_EQ(parallel.removed_in_world.points, serial.removed_in_world.points);
+  EXPECT_EQ(parallel.novel_in_world.points, serial.novel_in_world.points);
+  EXPECT_EQ(parallel.novel_mask, serial.novel_mask);
+  EXPECT_EQ(parallel.removed_mask, serial.removed_mask);
+}
+
+}  // namespace
+}  // namespace resight

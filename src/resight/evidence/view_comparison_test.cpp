@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evidence/view_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "resight/core/random.hpp"
+
+namespace resight {
+namespace {
+
+const Camera kCamera{160, 120, 525, 525, 79.5, 59.5};  // The middle of a Kinect's image.
+
+/// A wall across the view, at depth z = distance_m + slope * x, with noise of so many sigmas of the model.
+PreparedView see_wall(double distance_m, double slope = 0, double noise = 0, std::uint64_t seed = 1,
+                      const Rigid3& world_from_camera = Rigid3::identity()) {
+  RgbdFrame frame{"wall", kCamera, Image<Rgb8>(kCamera.width, kCamera.height),
+                  Image<float>(kCamera.width, kCamera.height), world_from_camera};
+  Rng rng(seed);
+  for (int v = 0; v < kCamera.height; ++v)
+    for (int u = 0; u < kCamera.width; ++u) {
+      const double z = distance_m / (1 - slope * (u - kCamera.cx) / kCamera.fx);
+      const double sigma_m = nguyen_noise(z, std::atan(slope), kCamera.fx).axial_m;
+      frame.depth_m(u, v) = static_cast<float>(z + noise * sigma_m * rng.normal());
+    }
+  return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+}
+
+int count(const Image<Evidence>& evidence, Evidence kind) {
+  return static_cast<int>(std::ranges::count(evidence.data(), kind));
+}
+
+constexpr int kNumPixels = 160 * 120;
+
+TEST(CompareViews, DepthBeyondTheNoiseContradicts) {
+  const PreparedView surface = see_wall(1.0);
+  // Both views have a sigma of 1.9 mm: the limit is 3 * sqrt(2) * 1.9 = 8 mm.
+  EXPECT_EQ(count(compare_views(surface, see_wall(1.006), 1), Evidence::kPresent), kNumPixels);
+  EXPECT_EQ(count(compare_views(surface, see_wall(1.010), 1), Evidence::kSeenThrough), kNumPixels);
+  EXPECT_EQ(count(compare_views(surface, see_wall(0.990), 1), Evidence::kOccluded), kNumPixels);
+  EXPECT_EQ(count(compare_views(surface, see_wall(1.010), 2), Evidence::kPresent), kNumPixels);
+}
+
+TEST(CompareViews, TheLimitGrowsWithTheRange) {
+  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.02), 1), Evidence::kPresent), kNumPixels);
+  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.10), 1), Evidence::kSeenThrough), kNumPixels);
+}
+
+TEST(CompareViews, DistancesAreAlongTheNormal) {
+  // At 63 deg, 20 mm along the ray are 9 mm between the surfaces.
+  const double slope = 2;
+  const Image<Evidence> evidence = compare_views(see_wall(1.0, slope), see_wall(1.02, slope), 1);
+  EXPECT_EQ(count(evidence, Evidence::kSeenThrough), 0);
+}
+
+TEST(CompareViews, AMovedCameraSeesTheSameSurface) {
+  Rigid3 beside = Rigid3::identity();
+  beside.translation.x() = 14.0 / kCamera.fx;  // 14 px
+  const PreparedView surface = see_wall(1.0);
+  const Image<Evidence> evidence = compare_views(surface, see_wall(1.0, 0, 0, 1, beside), 1);
+  EXPECT_EQ(count(evidence, Evidence::kPresent) + count(evidence, Evidence::kUnobserved), kNumPixels);
+  EXPECT_NEAR(count(evidence, Evidence::kUnobserved), 14 * kCamera.height, 2 * kCamera.height);
+}
+
+TEST(CompareViews, ANeighborExplainsAndContradicts) {
+  PreparedView view = see_wall(1.5);
+  view.frame.depth_m(80, 60) = 1.0F;
+  const PreparedView surface = see_wall(1.0);
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 0})(81, 60), Evidence::kSeenThrough);
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1})(81, 60), Evidence::kPresent);
+  view.frame.depth_m(80, 60) = 0.7F;  // The edge of something in front: no evidence beside it.
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1})(81, 60), Evidence::kUnobserved);
+}
+
+TEST(CompareViews, NoReturnIsNoEvidence) {
+  PreparedView view = see_wall(1.5);
+  std::ranges::fill(view.frame.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(count(compare_views(see_wall(1.0), view, 1), Evidence::kUnobserved), kNumPixels);
+}
+
+TEST(CompareViews, SerialIsParallel) {
+  const PreparedView surface = see_wall(1.0, 0.3, 1, 1);
+  const PreparedView view = see_wall(1.005, 0.3, 1, 2);
+  EXPECT_EQ(compare_views(surface, view, 1, {.num_threads = 3}), compare_views(surface, view, 1));
+}
+
+TEST(EstimateNoiseScale, GrowsWithTheNoise) {
+  const double once = estimate_noise_scale(see_wall(1.5, 0, 1, 1), see_wall(1.5, 0, 1, 2));
+  const double thrice = estimate_noise_scale(see_wall(1.5, 0, 3, 1), see_wall(1.5, 0, 3, 2));
+  EXPECT_NEAR(once, 1, 0.15);
+  EXPECT_NEAR(thrice, 3 * once, 0.5);
+}
+
+TEST(EstimateNoiseScale, IsNotMovedByChangesAndHasALowerLimit) {
+  PreparedView view = see_wall(1.5, 0, 1, 2);
+  for (int v = 0; v < kCamera.height / 4; ++v)
+    for (int u = 0; u < kCamera.width; ++u) view.frame.depth_m(u, v) -= 0.05F;
+  EXPECT_LT(estimate_noise_scale(see_wall(1.5, 0, 1, 1), view), 1.6);
+  const double exact = estimate_noise_scale(see_wall(1.5), see_wall(1.5));
+  EXPECT_GT(exact, 0.5);
+  EXPECT_LT(exact, 1);
+}
+
+TEST(CompareViews, RefusesNonsense) {
+  const PreparedView view = see_wall(1.0);
+  EXPECT_THROW((void)compare_views(view, view, 0), std::invalid_argument);
+  EXPECT_THROW((void)compare_views(view, view, 1, {.sigmas = -1}), std::invalid_argument);
+  EXPECT_THROW((void)compare_views(view, PreparedView{}, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace resight
