@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxFields = 1000;
 constexpr int kMaxCount = 65536;
-constexpr std::size_t kHeaderBytes = 64 * 1024;
+constexpr std::size_t kHeaderBytes = 65536;
 
 class PcdHeaderParser {
  public:
