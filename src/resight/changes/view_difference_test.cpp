@@ -121,10 +121,10 @@ TEST(ViewDifference, SerialIsParallel) {
   const Points points = points_about(view, 5);
   ASSERT_GT(points.size(), 10000U);  // several blocks
   const Camera& camera = view.frame.camera;
-  EXPECT_EQ(find_explained_points(points, view.cloud, camera, {}, 3),
-            find_explained_points(points, view.cloud, camera, {}));
-  EXPECT_EQ(find_unexplained_pixels(points, view.cloud, camera, {}, 3),
-            find_unexplained_pixels(points, view.cloud, camera, {}));
+  EXPECT_EQ(find_explained_points(points, view.cloud, camera, 0.02, 3),
+            find_explained_points(points, view.cloud, camera, 0.02));
+  EXPECT_EQ(find_unexplained_pixels(points, view.cloud, camera, 0.02, 3),
+            find_unexplained_pixels(points, view.cloud, camera, 0.02));
   EXPECT_EQ(find_pixels_near(points, view.cloud, camera, 0.02, 3), find_pixels_near(points, view.cloud, camera, 0.02));
 }
 
@@ -134,8 +134,8 @@ TEST(ViewDifference, RefusesNonsense) {
   Image<std::uint8_t> small(3, 3);
   EXPECT_THROW((void)find_explained_points({}, view.cloud, camera, 0), std::invalid_argument);
   EXPECT_THROW((void)find_explained_points({}, view.cloud, small_camera(), {}), std::invalid_argument);
-  EXPECT_THROW((void)find_explained_points({}, view.cloud, camera, {}, 1, &small), std::invalid_argument);
-  EXPECT_THROW((void)find_unexplained_pixels({}, view.cloud, camera, {}, 1, small), std::invalid_argument);
+  EXPECT_THROW((void)find_explained_points({}, view.cloud, camera, 0.02, 1, &small), std::invalid_argument);
+  EXPECT_THROW((void)find_unexplained_pixels({}, view.cloud, camera, 0.02, 1, small), std::invalid_argument);
   EXPECT_THROW((void)find_pixels_near({}, view.cloud, camera, 0), std::invalid_argument);
 }
 
