@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
-# clang-tidy, every public header alone, installation and a project that uses it, all module tests under AddressSanitizer
-# and UndefinedBehaviourSanitizer, and the whole program under ThreadSanitizer.
-#   scripts/test.sh         everything
-#   scripts/test.sh --fast  format, build and tests, for the inner loop
+# clang-tidy, every public header alone, installation and a project that uses it.
+#   scripts/test.sh               all of these
+#   scripts/test.sh --fast        format, build and tests, for the inner loop
+#   scripts/test.sh --sanitizers  also all module tests under AddressSanitizer and UndefinedBehaviourSanitizer, and the
+#                                 whole program under ThreadSanitizer
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
+sanitizers=0
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
-    *) echo "test.sh: unknown option '$option' (expected --fast)" >&2; exit 2 ;;
+    --sanitizers) sanitizers=1 ;;
+    *) echo "test.sh: unknown option '$option' (expected --fast or --sanitizers)" >&2; exit 2 ;;
   esac
 done
 scripts/setup.sh --tests
@@ -70,6 +73,8 @@ if ((!fast)); then
   step "picture of the modules" scripts/draw_modules.sh --check
   step "each public header compiles alone" cmake --build build/ci -j "$num_jobs" --target all_verify_interface_header_sets
   step "install, and a project that uses it" build_consumer
+fi
+if ((sanitizers)); then
   step "build with ASan and UBSan" build_asan
   step "module tests with ASan and UBSan" run_asan
   step "build with TSan" build_tsan

@@ -35,7 +35,7 @@ struct ViewMatch {
 
 /// Relative pose of two cameras with overlapping views, from mutual feature matches and RANSAC; needs no initial
 /// estimate. None if too few matches agree. A large rigid object that moved between the views may win over the
-/// background, so callers verify the pose with the whole views (judge_alignment()).
+/// background, so callers verify the pose with the whole views (evaluate_alignment()).
 [[nodiscard]] std::optional<ViewMatch> match_views(const ViewFeatures& a, const ViewFeatures& b,
                                                    const MatchViewsOptions& options = {});
 
