@@ -31,7 +31,9 @@ void set_planes(RecognizerConfig& c) { c.verify.planes->max_distance_m = 0.02; }
 void set_shares(RecognizerConfig& c) {
   c.verify.acceptance.min_visible_share = c.verify.acceptance.min_explained_share = 0;
 }
-void set_novel(RecognizerConfig& c) { std::get<PointTestOptions>(c.changes.detection.test).novel_needs_free_space = false; }
+void set_novel(RecognizerConfig& c) {
+  std::get<PointTestOptions>(c.changes.detection.test).novel_needs_free_space = false;
+}
 
 const Switch kSwitches[] = {
     {"as it is", [](RecognizerConfig&) {}},

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "resight/core/check.hpp"
-#include "resight/sensor/pixel_components.hpp"
 #include "resight/modelling/object_region.hpp"
+#include "resight/sensor/pixel_components.hpp"
 
 namespace resight {
 namespace {

@@ -17,13 +17,21 @@ constexpr double kMinMahalanobis_sq = 22.5;
 constexpr double kMaxSigmas = 4;
 // An aligned pose must fit the views before better than the given one, by a tenth. A still camera stays still.
 constexpr double kMaxCostRatio = 0.9;
+// Grey levels (Steinbruecker et al. 2011). Along planes, only brightness tells how the camera moved; but it misleads
+// where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
+constexpr double kBrightnessSigma = 12;
+
+bool is_same_pose(const Rigid3& a, const Rigid3& b) {
+  constexpr double kRounding = 1e-9;
+  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kRounding &&
+         (a.translation - b.translation).cwiseAbs().maxCoeff() < kRounding;
+}
 
 }  // namespace
 
 CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_(options) {
   options_.check();
   align_.max_distance_m = options_.max_distance_m;
-  // Exposure changes from view to view, and colour is not exactly registered with depth: brightness misleads.
   align_.brightness_sigma = 0;
   align_.num_threads = options_.num_threads;
   align_.prior_sigma_m = options_.sigma_m;
@@ -54,9 +62,14 @@ Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& given) 
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
   AlignedView best = as_given;
   for (const Rigid3& start : {moved, given}) {
-    const AlignedView aligned = align_view(view, targets, start, align_);
-    if (aligned.overlap < std::max(options_.min_overlap, as_given.overlap) || is_too_far(aligned, start)) continue;
-    if (aligned.cost < best.cost) best = aligned;
+    for (const double brightness_sigma : {0.0, kBrightnessSigma}) {
+      AlignViewOptions align = align_;
+      align.brightness_sigma = brightness_sigma;
+      const AlignedView aligned = align_view(view, targets, start, align);
+      if (aligned.overlap < std::max(options_.min_overlap, as_given.overlap) || is_too_far(aligned, start)) continue;
+      if (aligned.cost < best.cost) best = aligned;
+    }
+    if (is_same_pose(moved, given)) break;
   }
   return best.cost < kMaxCostRatio * as_given.cost && is_surprising(best, given) ? best.world_from_camera : given;
 }

@@ -31,7 +31,7 @@ inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
   v.num_threads(o.num_threads);
 }
 
-/// Corrects given camera poses view by view. Each view is aligned, by depth, to the preceding views at their corrected
+/// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected
 /// poses, from its given pose and from the given motion since the last view: the poses of a tracker drift. Robust
 /// weights keep changed regions from pulling. A pose that agrees with its alignment, or fits nearly as well, is
 /// returned unchanged, bit for bit.
