@@ -39,7 +39,7 @@ Image<std::uint8_t> mask_of_points(const PointCloud& cloud_in_world, const Prepa
   return mask;
 }
 
-/// Both tests name what they found; what is reported of it is decided here.
+/// The clouds and the mask that both tests report.
 ChangeResult make_result(const PreparedView& view, const std::vector<int>& novel, PointCloud removed_in_world,
                          const DetectChangesOptions& options) {
   ChangeResult result;

@@ -211,7 +211,8 @@ class LevelTarget {
 };
 
 Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
-               const Rigid3& world_from_camera, double gate_m, const AlignViewOptions& options) {
+               const Rigid3& world_from_camera, double gate_m, const AlignViewOptions& options,
+               bool with_cost = false) {
   std::vector<LevelTarget> seen;
   for (const AlignmentTarget& target : targets)
     seen.emplace_back(target.view->levels[level], target.world_from_camera.inverse() * world_from_camera, options,
@@ -228,12 +229,13 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
         in_front |= outcome == LevelTarget::Outcome::kSeenThrough;
       }
       sums.num_matched += pair;
+      sums.num_seen_through += in_front && !pair && !hidden;
+      if (!with_cost) continue;
       std::optional<float> least;
       for (const LevelTarget& target : seen)
         if (const std::optional<float> cost = target.cost(samples, s)) least = least ? std::min(*least, *cost) : cost;
       sums.cost += least.value_or(0);
       sums.num_compared += least.has_value();
-      sums.num_seen_through += in_front && !pair && !hidden;
     }
   });
   Sums all;
@@ -321,7 +323,7 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
   options.check();
   check_targets(view, targets);
   const Samples samples = draw_samples(view.levels[0], options.max_samples);
-  const Sums sums = sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options);
+  const Sums sums = sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, true);
   AlignedView aligned;
   aligned.world_from_camera = world_from_camera;
   aligned.information = options.information_per_pair * known_information(sums.unbiased);
