@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "resight/models/object_model.hpp"
 #include "resight/models/observed_object.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/sensor/sequence.hpp"
