@@ -47,14 +47,14 @@ TEST(MatchViews, NothingInCommonIsNoMatch) {
 }
 
 TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
-  constexpr int kViews = 9;
+  constexpr int kSteps = 9;
   ViewTracker tracker;
   std::vector<Rigid3> truth;
-  for (int v = 0; v < kViews; ++v) {
+  for (int v = 0; v < kSteps; ++v) {
     BallScene scene;
     if (v >= 3) scene.ball_m += Eigen::Vector3d(-0.25, 0.1, 0);
     scene.has_ball = v < 6;
-    truth.push_back(walk(v, kViews));
+    truth.push_back(walk(v, kSteps));
     const TrackedView tracked = tracker.add_view(see(scene, truth.back(), v));
     EXPECT_EQ(tracked.component, 0) << v;
   }

@@ -14,10 +14,10 @@ namespace resight {
 namespace {
 
 using namespace testing_scene;
-const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
+const Box kCarton{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
 const Rigid3 kBeside = look_at({0.2, -0.9, 0.75}, {0.05, 0, 0});
 
-Scene with(const std::vector<Box>& boxes) {
+Scene scene_with(const std::vector<Box>& boxes) {
   Scene scene = table();
   scene.boxes = boxes;
   return scene;
@@ -44,7 +44,7 @@ ChangeResult detect(const PreparedView& before, const PreparedView& after, int n
 
 TEST(DepthChanges, AnUnchangedSceneHasNone) {
   for (const Rigid3& pose : {usual_pose(), kBeside, look_at({0, -0.9, 0.12}, {0, 0, 0})}) {
-    const ChangeResult changes = detect(see(with({kBox})), see(with({kBox}), pose));
+    const ChangeResult changes = detect(see(scene_with({kCarton})), see(scene_with({kCarton}), pose));
     EXPECT_EQ(count(changes.novel_mask), 0);
     EXPECT_EQ(count(changes.removed_mask), 0);
     EXPECT_TRUE(changes.removed_in_world.empty());
@@ -53,9 +53,9 @@ TEST(DepthChanges, AnUnchangedSceneHasNone) {
 }
 
 TEST(DepthChanges, NoiseIsNoChange) {
-  const PreparedView before = see_with_noise(with({kBox}), usual_pose(), 1);
+  const PreparedView before = see_with_noise(scene_with({kCarton}), usual_pose(), 1);
   for (const Rigid3& pose : {usual_pose(), kBeside}) {
-    const ChangeResult changes = detect(before, see_with_noise(with({kBox}), pose, 2));
+    const ChangeResult changes = detect(before, see_with_noise(scene_with({kCarton}), pose, 2));
     EXPECT_LT(count(changes.novel_mask), 320 * 240 / 500);
     EXPECT_LT(count(changes.removed_mask), 320 * 240 / 500);
   }
@@ -63,14 +63,14 @@ TEST(DepthChanges, NoiseIsNoChange) {
 
 TEST(DepthChanges, ARemovedBoxIsSeenThrough) {
   for (const Rigid3& pose : {usual_pose(), kBeside}) {
-    const PreparedView before = see(with({kBox}));
+    const PreparedView before = see(scene_with({kCarton}));
     const ChangeResult changes = detect(before, see(table(), pose));
     EXPECT_EQ(count(changes.novel_mask), 0) << "the table below is newly seen, not new";
-    const int found = count_at(kBox, changes.removed_in_world, 0.003);
+    const int found = count_at(kCarton, changes.removed_in_world, 0.003);
     EXPECT_EQ(found, static_cast<int>(changes.removed_in_world.size()));
     const PointCloud box = voxel_downsample(world_cloud(before), 0.005);
     int expected = 0;
-    for (const Eigen::Vector3f& p : box.points) expected += is_at(kBox, p) && p.z() > 0.02F ? 1 : 0;
+    for (const Eigen::Vector3f& p : box.points) expected += is_at(kCarton, p) && p.z() > 0.02F ? 1 : 0;
     ASSERT_GT(expected, 1000);
     EXPECT_GT(found, expected * 9 / 10);
     EXPECT_GT(count(changes.removed_mask), 1500);
@@ -79,10 +79,10 @@ TEST(DepthChanges, ARemovedBoxIsSeenThrough) {
 
 TEST(DepthChanges, AnAddedBoxIsNovel) {
   for (const Rigid3& pose : {usual_pose(), kBeside}) {
-    const ChangeResult changes = detect(see(table()), see(with({kBox}), pose));
+    const ChangeResult changes = detect(see(table()), see(scene_with({kCarton}), pose));
     EXPECT_EQ(count(changes.removed_mask), 0);
     ASSERT_GT(changes.novel_in_world.size(), 1000U);
-    EXPECT_EQ(count_at(kBox, changes.novel_in_world, 0.003), static_cast<int>(changes.novel_in_world.size()));
+    EXPECT_EQ(count_at(kCarton, changes.novel_in_world, 0.003), static_cast<int>(changes.novel_in_world.size()));
     EXPECT_EQ(changes.novel_in_world.colors.size(), changes.novel_in_world.size());
   }
 }
@@ -90,9 +90,9 @@ TEST(DepthChanges, AnAddedBoxIsNovel) {
 TEST(DepthChanges, ThinThingsAreFoundDespiteNoise) {
   const Box thin{{0, 0, 0.0075}, {0.1, 0.04, 0.0075}};  // 15 mm high, 1.2 m away
   const ChangeResult added =
-      detect(see_with_noise(table(), usual_pose(), 3), see_with_noise(with({thin}), usual_pose(), 4));
+      detect(see_with_noise(table(), usual_pose(), 3), see_with_noise(scene_with({thin}), usual_pose(), 4));
   const ChangeResult removed =
-      detect(see_with_noise(with({thin}), usual_pose(), 5), see_with_noise(table(), usual_pose(), 6));
+      detect(see_with_noise(scene_with({thin}), usual_pose(), 5), see_with_noise(table(), usual_pose(), 6));
   EXPECT_GT(count_at(thin, added.novel_in_world, 0.01), 100);
   EXPECT_GT(count_at(thin, removed.removed_in_world, 0.01), 100);
 }
@@ -100,13 +100,13 @@ TEST(DepthChanges, ThinThingsAreFoundDespiteNoise) {
 TEST(DepthChanges, WhatIsHiddenIsKept) {
   const Box front{{0, -0.3, 0.12}, {0.2, 0.02, 0.12}};
   const Rigid3 low = look_at({0, -0.9, 0.3}, {0, 0, 0.05});
-  const ChangeResult changes = detect(see(with({kBox})), see(with({front}), low));
+  const ChangeResult changes = detect(see(scene_with({kCarton})), see(scene_with({front}), low));
   for (const Eigen::Vector3f& p : changes.removed_in_world.points)
     EXPECT_GT(p.z(), 0.1F) << "only the top of the box can be seen past";
 }
 
 TEST(DepthChanges, NoReturnIsNoEvidence) {
-  const PreparedView before = see(with({kBox}));
+  const PreparedView before = see(scene_with({kCarton}));
   RgbdFrame frame = render(table(), small_camera(), usual_pose());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
     if (frame.depth_m[i] != before.frame.depth_m[i]) frame.depth_m[i] = std::numeric_limits<float>::quiet_NaN();
@@ -129,7 +129,7 @@ TEST(DepthChanges, SmallRegionsAreNoise) {
 TEST(DepthChanges, TheNewestViewDecidesWhatIsThere) {
   // The box left between the first two views, and the second one was not cleared of anything. For the third view
   // nothing is removed any more where the second saw the table.
-  const PreparedView first = see(with({kBox}));
+  const PreparedView first = see(scene_with({kCarton}));
   const PreparedView second = see(table());
   const PreparedView* earlier[] = {&first, &second};
   const DepthChanges changes = find_depth_changes(see(table()), earlier, {}, 1);
@@ -140,8 +140,8 @@ TEST(DepthChanges, TheNewestViewDecidesWhatIsThere) {
 }
 
 TEST(DepthChanges, AWrongPoseIsSuspect) {
-  const PreparedView before = see(with({kBox}));
-  PreparedView after = see(with({kBox}));
+  const PreparedView before = see(scene_with({kCarton}));
+  PreparedView after = see(scene_with({kCarton}));
   after.frame.world_from_camera.translation.z() += 0.3;
   const ChangeResult changes = detect(before, after);
   EXPECT_TRUE(changes.pose_suspect);
@@ -157,8 +157,8 @@ TEST(DepthChanges, WithoutEarlierViewsThereAreNone) {
 }
 
 TEST(DepthChanges, SerialIsParallel) {
-  const PreparedView before = see(with({kBox}));
-  const PreparedView after = see(with({{{0.2, 0.1, 0.06}, {0.05, 0.05, 0.06}}}), kBeside);
+  const PreparedView before = see(scene_with({kCarton}));
+  const PreparedView after = see(scene_with({{{0.2, 0.1, 0.06}, {0.05, 0.05, 0.06}}}), kBeside);
   const ChangeResult serial = detect(before, after);
   const ChangeResult parallel = detect(before, after, 3);
   EXPECT_FALSE(serial.removed_in_world.empty());

@@ -13,7 +13,7 @@ namespace resight {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool any_within_slowly(const Points& points, const Eigen::Vector3f& query, double radius_m) {
@@ -106,11 +106,11 @@ TEST(SubtractClouds, GridOfPointsAtExactlyTheTolerance) {
 }
 
 TEST(SubtractClouds, EmptyDuplicateAndMissingPoints) {
-  const Points a{{0, 0, 0}, {1, 0, 0}, {kNaN, 0, 0}, {0, kInf, 0}, {1, 0, 0}};
+  const Points a{{0, 0, 0}, {1, 0, 0}, {kNoValue, 0, 0}, {0, kInf, 0}, {1, 0, 0}};
   EXPECT_EQ(subtract_clouds(a, Points{}, 0.1), (std::vector<int>{0, 1, 4}));
   EXPECT_TRUE(subtract_clouds(Points{}, a, 0.1).empty());
   EXPECT_TRUE(subtract_clouds(Points{}, Points{}, 0.1).empty());
-  const Points b{{1, 0, 0}, {1, 0, 0}, {kNaN, kNaN, kNaN}, {0, kNaN, 0}, {-kInf, 0, 0}};
+  const Points b{{1, 0, 0}, {1, 0, 0}, {kNoValue, kNoValue, kNoValue}, {0, kNoValue, 0}, {-kInf, 0, 0}};
   EXPECT_EQ(subtract_clouds(a, b, 0.1), (std::vector<int>{0}));
   EXPECT_TRUE(subtract_clouds(a, a, 0.1).empty());
 }
@@ -146,7 +146,7 @@ TEST(ProximityGrid, AgreesWithBruteForceForAnyRadius) {
     }
     EXPECT_LT(num_near, 1400) << radius;
   }
-  EXPECT_FALSE(grid.any_within({kNaN, 0, 0}));
+  EXPECT_FALSE(grid.any_within({kNoValue, 0, 0}));
   EXPECT_FALSE(grid.any_within({0, kInf, 0}));
 }
 

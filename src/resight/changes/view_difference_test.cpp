@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_scene;
 using Points = std::vector<Eigen::Vector3f>;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 PreparedView view_of_boxes() {
   Scene scene = table();
@@ -32,7 +32,8 @@ Points points_about(const PreparedView& view, std::uint64_t seed) {
     if (view.cloud.has_point(i))
       points.push_back(view.cloud.point(i) + Eigen::Vector3f(next(0.04), next(0.04), next(0.04)));
   for (int i = 0; i < 500; ++i) points.emplace_back(next(2), next(2), next(2));
-  points.insert(points.end(), {{kNaN, 0, 1}, {0, 0, kNaN}, {kNaN, kNaN, kNaN}, {0, 0, 0}, {0, 0, -1}});
+  points.insert(points.end(),
+                {{kNoDepth, 0, 1}, {0, 0, kNoDepth}, {kNoDepth, kNoDepth, kNoDepth}, {0, 0, 0}, {0, 0, -1}});
   return points;
 }
 

@@ -11,7 +11,7 @@ namespace {
 using Kind = ObjectEventKind;
 
 // A plate of 20 x 20 cm facing the camera, with points 5 mm apart.
-PointCloud plate() {
+PointCloud square_plate() {
   PointCloud cloud;
   for (int i = -20; i <= 20; ++i)
     for (int k = -20; k <= 20; ++k)
@@ -36,14 +36,14 @@ RgbdFrame frame(bool with_plate) {
   return f;
 }
 
-PointCloud plate_in_world() { return transform(place(), plate()); }
+PointCloud plate_in_world() { return transform(place(), square_plate()); }
 
 class ChangePoints : public testing::Test {
  protected:
   ChangePoints() {
     library_.objects.resize(1);
     library_.objects[0].name = "plate";
-    library_.objects[0].surface = plate();
+    library_.objects[0].surface = square_plate();
   }
   ChangePointScorer scorer(const TrueChange& change, int num_previous_views = 3) {
     truth_.changes = std::vector<TrueChange>{change};
@@ -109,7 +109,7 @@ TEST_F(ChangePoints, AnAddedPlateIsNovelWhereTheWallWasSeen) {
 }
 
 TEST_F(ChangePoints, SurfacesOfUnknownThingsComeFromTheTruth) {
-  truth_.unknown_surfaces["vase"] = plate();
+  truth_.unknown_surfaces["vase"] = square_plate();
   ChangePointScorer s = scorer({1, Kind::kRemoved, "vase", false, place(), std::nullopt});
   (void)s.add_view(frame(true), {}, {});
   EXPECT_GT(s.add_view(frame(false), plate_in_world(), {}).removed.found, 300);

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = ObjectEventKind;
 
-ModelLibrary make_library() {
+ModelLibrary library_of_seen() {
   ModelLibrary library;
   ObjectModel& mug = library.objects.emplace_back();
   mug.name = "mug";
@@ -45,7 +45,7 @@ RgbdFrame frame_with_wall(float depth_m) {
 }
 
 TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
-  const ModelLibrary library = make_library();
+  const ModelLibrary library = library_of_seen();
   SequenceTruth truth = move_mug(4);
   truth.views[0].objects = {mug_at(0, 0.5)};
   truth.views[1].objects = truth.views[2].objects = {mug_at(0.3, 0.02)};  // Still occluded.
@@ -69,7 +69,7 @@ TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
 
 // The mug was visible there, left, and returned unobserved: no view can show its second departure.
 TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
-  const ModelLibrary library = make_library();
+  const ModelLibrary library = library_of_seen();
   SequenceTruth truth;
   truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
                                           {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
@@ -86,7 +86,7 @@ TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
 // Another mug is at the new place before, and at the former place after the change: no view shows either place without
 // one.
 TEST(ChangeVisibilityFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
-  const ModelLibrary library = make_library();
+  const ModelLibrary library = library_of_seen();
   SequenceTruth truth = move_mug(2);
   truth.views[0].objects = {mug_at(0.3, 0.5)};
   truth.views[1].objects = {mug_at(0, 0.5)};
@@ -97,7 +97,7 @@ TEST(ChangeVisibilityFinder, APlaceWhereOneOfItsKindStandsIsNotFree) {
 }
 
 TEST(ChangeVisibilityFinder, AnObjectThatWasHiddenBeforeWasNotSeen) {
-  const ModelLibrary library = make_library();
+  const ModelLibrary library = library_of_seen();
   SequenceTruth truth = move_mug(1);
   truth.views[0].objects = {mug_at(0, 0.02)};
   ChangeVisibilityFinder finder(library, truth);

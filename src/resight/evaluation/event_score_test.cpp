@@ -8,7 +8,7 @@ namespace {
 
 using Kind = ObjectEventKind;
 
-ModelLibrary make_library() {
+ModelLibrary library_of_changes() {
   ModelLibrary library;
   library.objects.resize(2);
   library.objects[0].name = "mug";
@@ -17,20 +17,21 @@ ModelLibrary make_library() {
   return library;
 }
 
-Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+Rigid3 place_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 
-const TrueChange kMove{4, Kind::kMoved, "mug", true, at(0), at(0.3)};
-const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, at(-0.3), std::nullopt};
+const TrueChange kMove{4, Kind::kMoved, "mug", true, place_at(0), place_at(0.3)};
+const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, place_at(-0.3), std::nullopt};
 const ChangeVisibility kAtOnce{4, 5, 3, 3};
 
 EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeVisibility>& visibilities,
                  const std::vector<ReportedChange>& reported) {
-  return score_events(truth, visibilities, reported, make_library());
+  return score_events(truth, visibilities, reported, library_of_changes());
 }
 
 TEST(EventScore, RightKindPlacesAndTime) {
-  const EventScore s = score({kMove, kRemoval}, {kAtOnce, {6, -1, 5, -1}},
-                             {{7, Kind::kMoved, "mug", at(0.01), at(0.29)}, {6, Kind::kRemoved, "soup", at(-0.3), {}}});
+  const EventScore s = score(
+      {kMove, kRemoval}, {kAtOnce, {6, -1, 5, -1}},
+      {{7, Kind::kMoved, "mug", place_at(0.01), place_at(0.29)}, {6, Kind::kRemoved, "soup", place_at(-0.3), {}}});
   EXPECT_EQ(s.events, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
@@ -38,26 +39,29 @@ TEST(EventScore, RightKindPlacesAndTime) {
 }
 
 TEST(EventScore, AMoveReportedAsRemovalAndAdditionHasItsPlacesRight) {
-  const EventScore s =
-      score({kMove}, {kAtOnce}, {{4, Kind::kRemoved, "mug", at(0), {}}, {5, Kind::kAdded, "mug", {}, at(0.3)}});
+  const EventScore s = score(
+      {kMove}, {kAtOnce}, {{4, Kind::kRemoved, "mug", place_at(0), {}}, {5, Kind::kAdded, "mug", {}, place_at(0.3)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 2, 1}));
   EXPECT_EQ(s.departures, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
 }
 
 TEST(EventScore, TooEarlyElsewhereOrTwiceIsWrong) {
-  EXPECT_EQ(score({kMove}, {kAtOnce}, {{3, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 1, 1}));
-  EXPECT_EQ(score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", at(0), at(0.4)}}).events, (RecognitionScore{0, 1, 1}));
-  EXPECT_EQ(
-      score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", at(0), at(0.3)}, {8, Kind::kMoved, "mug", at(0), at(0.3)}})
-          .events,
-      (RecognitionScore{1, 1, 0}));
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{3, Kind::kMoved, "mug", place_at(0), place_at(0.3)}}).events,
+            (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", place_at(0), place_at(0.4)}}).events,
+            (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(score({kMove}, {kAtOnce},
+                  {{5, Kind::kMoved, "mug", place_at(0), place_at(0.3)},
+                   {8, Kind::kMoved, "mug", place_at(0), place_at(0.3)}})
+                .events,
+            (RecognitionScore{1, 1, 0}));
 }
 
 TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
-  const ReportedChange as_removal{5, Kind::kRemoved, "mug", at(0), {}};
-  const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, at(0.3)};
-  const ReportedChange as_move{5, Kind::kMoved, "mug", at(0), at(0.3)};
+  const ReportedChange as_removal{5, Kind::kRemoved, "mug", place_at(0), {}};
+  const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, place_at(0.3)};
+  const ReportedChange as_move{5, Kind::kMoved, "mug", place_at(0), place_at(0.3)};
   const ChangeVisibility only_left{4, -1, 3, 3};
   EXPECT_EQ(score({kMove}, {only_left}, {as_removal}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
@@ -73,13 +77,16 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
 TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   const ChangeVisibility nothing{-1, -1};
   EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", at(0), at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", place_at(0), place_at(0.3)}}).events,
+            (RecognitionScore{0, 0, 0}));
   const ChangeVisibility came_unseen{-1, 5, -1, -1};
-  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, at(0.3)}}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", at(0), {}}}).events, (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, place_at(0.3)}}).events,
+            (RecognitionScore{0, 0, 0}));
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", place_at(0), {}}}).events,
+            (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never observed before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
-  const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, at(0.3)};
+  const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, place_at(0.3)};
   EXPECT_EQ(score({addition}, {{-1, 5, -1, 3}}, {}).events, (RecognitionScore{0, 0, 1}));
   const ChangeVisibility first_look{-1, 5, 0, -1};  // It may have been there.
   EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
@@ -90,8 +97,9 @@ TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
   TrueChange of_stranger = kRemoval;
   of_stranger.object = "vase";
   of_stranger.known = false;
-  const EventScore s = score({of_stranger}, {{6, -1, 5, -1}},
-                             {{6, Kind::kFound, "mug", {}, at(0)}, {6, Kind::kStillThere, "mug", at(0), at(0)}});
+  const EventScore s =
+      score({of_stranger}, {{6, -1, 5, -1}},
+            {{6, Kind::kFound, "mug", {}, place_at(0)}, {6, Kind::kStillThere, "mug", place_at(0), place_at(0)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 0, 0}));
 }
 

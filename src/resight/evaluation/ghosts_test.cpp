@@ -9,7 +9,7 @@
 namespace resight {
 namespace {
 
-ModelLibrary make_library() {
+ModelLibrary library_of_ghosts() {
   ModelLibrary library;
   library.objects.resize(2);
   library.objects[0].name = "mug";
@@ -17,7 +17,7 @@ ModelLibrary make_library() {
   return library;
 }
 
-Rigid3 at(double x, double z = 1) { return Rigid3::from_translation({x, 0, z}); }
+Rigid3 ghost_at(double x, double z = 1) { return Rigid3::from_translation({x, 0, z}); }
 
 GroundTruthObject object_at(const std::string& name, const Rigid3& camera_from_object) {
   GroundTruthObject object;
@@ -30,19 +30,19 @@ GroundTruthObject object_at(const std::string& name, const Rigid3& camera_from_o
 TruthView view_at(double camera_x, const std::vector<std::pair<std::string, double>>& object_x_in_world) {
   TruthView view;
   view.world_from_camera = Rigid3::from_translation({camera_x, 0, 0});
-  for (const auto& [name, x] : object_x_in_world) view.objects.push_back(object_at(name, at(x - camera_x)));
+  for (const auto& [name, x] : object_x_in_world) view.objects.push_back(object_at(name, ghost_at(x - camera_x)));
   return view;
 }
 
 std::vector<Ghost> ghosts_of(const std::vector<FormerPlace>& places, const TruthView& truth, int view,
                              const std::vector<DetectedObject>& detections) {
-  return find_ghosts(places, truth, view, detections, make_kinect_camera(), make_library());
+  return find_ghosts(places, truth, view, detections, make_kinect_camera(), library_of_ghosts());
 }
 
-const std::vector<FormerPlace> kMugLeft = {{"mug", at(0.1), 2}};
+const std::vector<FormerPlace> kMugLeft = {{"mug", ghost_at(0.1), 2}};
 
 TEST(FindGhosts, CountsADetectionAtTheOldPlace) {
-  const auto ghosts = ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", at(0.5), 1}, {"mug", at(0.12), 1}});
+  const auto ghosts = ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.5), 1}, {"mug", ghost_at(0.12), 1}});
   ASSERT_EQ(ghosts.size(), 1U);
   EXPECT_EQ(ghosts[0].detection, 1);
   EXPECT_EQ(ghosts[0].place, 0);
@@ -50,58 +50,58 @@ TEST(FindGhosts, CountsADetectionAtTheOldPlace) {
 }
 
 TEST(FindGhosts, FindsTheOldPlaceFromAMovedCamera) {
-  const auto ghosts = ghosts_of(kMugLeft, view_at(0.3, {}), 3, {{"mug", at(-0.2), 1}});
+  const auto ghosts = ghosts_of(kMugLeft, view_at(0.3, {}), 3, {{"mug", ghost_at(-0.2), 1}});
   EXPECT_EQ(ghosts.size(), 1U);
 }
 
 TEST(FindGhosts, AnotherObjectOrAnotherPoseIsNoGhost) {
-  const Rigid3 upside_down = at(0.1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), std::numbers::pi);
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"tin", at(0.1), 1}}).empty());
+  const Rigid3 upside_down = ghost_at(0.1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), std::numbers::pi);
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"tin", ghost_at(0.1), 1}}).empty());
   EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", upside_down, 1}}).empty());
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", at(0.16), 1}}).empty());
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.16), 1}}).empty());
 }
 
 TEST(FindGhosts, APlaceIsFormerOnlyAfterItsLastView) {
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 2, {{"mug", at(0.1), 1}}).empty());
-  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", at(0.1), 1}}).size(), 1U);
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 2, {{"mug", ghost_at(0.1), 1}}).empty());
+  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.1), 1}}).size(), 1U);
 }
 
 TEST(FindGhosts, APresentObjectExplainsTheDetection) {
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {{"mug", 0.13}}), 3, {{"mug", at(0.1), 1}}).empty())
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {{"mug", 0.13}}), 3, {{"mug", ghost_at(0.1), 1}}).empty())
       << "moved by 3 cm: the same detection is right";
   TruthView hidden = view_at(0, {{"mug", 0.1}});
   hidden.objects[0].visible_share = 0;
-  EXPECT_TRUE(ghosts_of(kMugLeft, hidden, 3, {{"mug", at(0.1), 1}}).empty());
-  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {{"tin", 0.1}}), 3, {{"mug", at(0.1), 1}}).size(), 1U)
+  EXPECT_TRUE(ghosts_of(kMugLeft, hidden, 3, {{"mug", ghost_at(0.1), 1}}).empty());
+  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {{"tin", 0.1}}), 3, {{"mug", ghost_at(0.1), 1}}).size(), 1U)
       << "a tin in its place does not explain a mug";
 }
 
 TEST(FindGhosts, PlacesOutOfViewSayNothing) {
   const TruthView looks_elsewhere = view_at(3, {});
-  EXPECT_TRUE(ghosts_of(kMugLeft, looks_elsewhere, 3, {{"mug", at(0.1 - 3), 1}}).empty());
+  EXPECT_TRUE(ghosts_of(kMugLeft, looks_elsewhere, 3, {{"mug", ghost_at(0.1 - 3), 1}}).empty());
   TruthView turned_away = view_at(0, {});
   turned_away.world_from_camera = Rigid3::from_axis_angle(Eigen::Vector3d::UnitY(), std::numbers::pi);
-  const Rigid3 behind = turned_away.world_from_camera.inverse() * at(0.1);
+  const Rigid3 behind = turned_away.world_from_camera.inverse() * ghost_at(0.1);
   EXPECT_TRUE(ghosts_of(kMugLeft, turned_away, 3, {{"mug", behind, 1}}).empty());
 }
 
 TEST(FindGhosts, ChoosesTheNearestOfSeveralPlaces) {
-  const std::vector<FormerPlace> places = {{"mug", at(0.10), 0}, {"mug", at(0.14), 1}};
-  const auto ghosts = ghosts_of(places, view_at(0, {}), 2, {{"mug", at(0.13), 1}});
+  const std::vector<FormerPlace> places = {{"mug", ghost_at(0.10), 0}, {"mug", ghost_at(0.14), 1}};
+  const auto ghosts = ghosts_of(places, view_at(0, {}), 2, {{"mug", ghost_at(0.13), 1}});
   ASSERT_EQ(ghosts.size(), 1U);
   EXPECT_EQ(ghosts[0].place, 1);
 }
 
 TEST(FindGhosts, RefusesNonsense) {
-  EXPECT_THROW((void)ghosts_of({}, view_at(0, {}), 0, {{"lamp", at(0), 1}}), std::invalid_argument);
-  EXPECT_THROW((void)find_ghosts({}, {}, 0, {}, Camera{}, make_library()), std::invalid_argument);
+  EXPECT_THROW((void)ghosts_of({}, view_at(0, {}), 0, {{"lamp", ghost_at(0), 1}}), std::invalid_argument);
+  EXPECT_THROW((void)find_ghosts({}, {}, 0, {}, Camera{}, library_of_ghosts()), std::invalid_argument);
 }
 
 TEST(FindFormerPlaces, AMoveLeavesOnePlaceBehind) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}, {"tin", 0.4}}),
                                         view_at(0.2, {{"mug", 0.1}, {"tin", 0.4}}),
                                         view_at(0.1, {{"mug", 0.3}, {"tin", 0.4}})};
-  const auto places = find_former_places(views, make_library());
+  const auto places = find_former_places(views, library_of_ghosts());
   ASSERT_EQ(places.size(), 1U);
   EXPECT_EQ(places[0].object, "mug");
   EXPECT_EQ(places[0].last_view, 1);
@@ -111,14 +111,14 @@ TEST(FindFormerPlaces, AMoveLeavesOnePlaceBehind) {
 TEST(FindFormerPlaces, AnnotationJitterIsNoMove) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}}), view_at(0, {{"mug", 0.104}}),
                                         view_at(0, {{"mug", 0.097}})};
-  EXPECT_TRUE(find_former_places(views, make_library()).empty());
+  EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
 }
 
 TEST(FindFormerPlaces, AGapIsNoDeparture) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}}), view_at(0, {}), view_at(0, {{"mug", 0.1}})};
-  EXPECT_TRUE(find_former_places(views, make_library()).empty());
+  EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
   const std::vector<TruthView> gone = {view_at(0, {{"mug", 0.1}}), view_at(0, {}), view_at(0, {})};
-  const auto places = find_former_places(gone, make_library());
+  const auto places = find_former_places(gone, library_of_ghosts());
   ASSERT_EQ(places.size(), 1U);
   EXPECT_EQ(places[0].last_view, 0);
 }
@@ -126,15 +126,15 @@ TEST(FindFormerPlaces, AGapIsNoDeparture) {
 TEST(FindFormerPlaces, TwoOfAKindAreDistinguished) {
   const std::vector<TruthView> views = {view_at(0, {{"mug", 0.1}, {"mug", 0.3}}), view_at(0, {{"mug", 0.3}}),
                                         view_at(0, {{"mug", 0.3}})};
-  const auto places = find_former_places(views, make_library());
+  const auto places = find_former_places(views, library_of_ghosts());
   ASSERT_EQ(places.size(), 1U);
   EXPECT_NEAR(places[0].world_from_object.translation.x(), 0.1, 1e-9);
 }
 
 TEST(FindFormerPlaces, UnknownObjectsAreLeftOut) {
   const std::vector<TruthView> views = {view_at(0, {{"lamp", 0.1}}), view_at(0, {})};
-  EXPECT_TRUE(find_former_places(views, make_library()).empty());
-  EXPECT_THROW((void)find_former_places(views, make_library(), {.max_rotation_rad = 0}), std::invalid_argument);
+  EXPECT_TRUE(find_former_places(views, library_of_ghosts()).empty());
+  EXPECT_THROW((void)find_former_places(views, library_of_ghosts(), {.max_rotation_rad = 0}), std::invalid_argument);
 }
 
 }  // namespace

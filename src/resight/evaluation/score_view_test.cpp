@@ -21,7 +21,7 @@ ModelLibrary make_library() {
   return library;
 }
 
-Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+Rigid3 scored_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 Rigid3 turned(const Rigid3& pose, double deg) {
   return pose * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), deg * std::numbers::pi / 180);
 }
@@ -41,8 +41,8 @@ EvaluatedView score(const std::vector<GroundTruthObject>& truth, const std::vect
 }
 
 TEST(ScoreView, PerfectIsAllFoundAtBothTolerances) {
-  const EvaluatedView view = score({object("mug", at(0)), object("soup", at(0.3))},
-                                   {{"mug", at(0), 0.9}, {"soup", turned(at(0.304), 3), 0.8}});
+  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))},
+                                   {{"mug", scored_at(0), 0.9}, {"soup", turned(scored_at(0.304), 3), 0.8}});
   EXPECT_EQ(view.score, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{2, 0, 0}));
   ASSERT_EQ(view.truth.size(), 2U);
@@ -54,14 +54,14 @@ TEST(ScoreView, PerfectIsAllFoundAtBothTolerances) {
 }
 
 TEST(ScoreView, NothingReportedIsAllMissed) {
-  const EvaluatedView view = score({object("mug", at(0)), object("soup", at(0.3))}, {});
+  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))}, {});
   EXPECT_EQ(view.score, (RecognitionScore{0, 0, 2}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{0, 0, 2}));
   EXPECT_TRUE(std::isnan(view.truth[0].center_error_m));
 }
 
 TEST(ScoreView, BetweenTheTolerances) {
-  const EvaluatedView view = score({object("mug", at(0))}, {{"mug", at(0.02), 1}});
+  const EvaluatedView view = score({object("mug", scored_at(0))}, {{"mug", scored_at(0.02), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{0, 1, 1}));
   EXPECT_TRUE(view.truth[0].found);
@@ -69,25 +69,29 @@ TEST(ScoreView, BetweenTheTolerances) {
 }
 
 TEST(ScoreView, SwappedIdentitiesCostTwice) {
-  const EvaluatedView view =
-      score({object("mug", at(0)), object("soup", at(0.3))}, {{"soup", at(0), 1}, {"mug", at(0.3), 1}});
+  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))},
+                                   {{"soup", scored_at(0), 1}, {"mug", scored_at(0.3), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{0, 2, 2}));
 }
 
 TEST(ScoreView, ASecondDetectionOfOneObjectIsWrong) {
-  const EvaluatedView view = score({object("mug", at(0))}, {{"mug", at(0.01), 0.9}, {"mug", at(0), 0.2}});
+  const EvaluatedView view =
+      score({object("mug", scored_at(0))}, {{"mug", scored_at(0.01), 0.9}, {"mug", scored_at(0), 0.2}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kCorrect);  // The nearer one.
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kFalsePositive);
 }
 
 TEST(ScoreView, RotationsAboutASymmetryAxisAreFree) {
-  EXPECT_EQ(score({object("can", at(0))}, {{"can", turned(at(0), 137), 1}}).strict_score, (RecognitionScore{1, 0, 0}));
-  EXPECT_EQ(score({object("mug", at(0))}, {{"mug", turned(at(0), 137), 1}}).score, (RecognitionScore{0, 1, 1}));
+  EXPECT_EQ(score({object("can", scored_at(0))}, {{"can", turned(scored_at(0), 137), 1}}).strict_score,
+            (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(score({object("mug", scored_at(0))}, {{"mug", turned(scored_at(0), 137), 1}}).score,
+            (RecognitionScore{0, 1, 1}));
 }
 
 TEST(ScoreView, HiddenTruthIsNeitherHitNorMiss) {
-  const EvaluatedView view = score({object("mug", at(0), 0.04), object("soup", at(0.3), 0.04)}, {{"mug", at(0), 1}});
+  const EvaluatedView view =
+      score({object("mug", scored_at(0), 0.04), object("soup", scored_at(0.3), 0.04)}, {{"mug", scored_at(0), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kIgnored);
   EXPECT_FALSE(view.truth[0].counts);
@@ -95,18 +99,18 @@ TEST(ScoreView, HiddenTruthIsNeitherHitNorMiss) {
 }
 
 TEST(ScoreView, TwoOfAKindAreTwo) {
-  const std::vector<GroundTruthObject> twins{object("mug", at(0)), object("mug", at(0.3), 1, 1)};
-  EXPECT_EQ(score(twins, {{"mug", at(0.3), 1}, {"mug", at(0), 1}}).score, (RecognitionScore{2, 0, 0}));
-  const EvaluatedView one = score(twins, {{"mug", at(0.3), 1}});
+  const std::vector<GroundTruthObject> twins{object("mug", scored_at(0)), object("mug", scored_at(0.3), 1, 1)};
+  EXPECT_EQ(score(twins, {{"mug", scored_at(0.3), 1}, {"mug", scored_at(0), 1}}).score, (RecognitionScore{2, 0, 0}));
+  const EvaluatedView one = score(twins, {{"mug", scored_at(0.3), 1}});
   EXPECT_EQ(one.score, (RecognitionScore{1, 0, 1}));
   EXPECT_FALSE(one.truth[0].found);
   EXPECT_TRUE(one.truth[1].found);
 }
 
 TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
-  const EvaluatedView view =
-      score({object("stranger", at(-0.3)), object("mug", at(0)), object("stranger", at(0.1)), object("soup", at(0.3))},
-            {{"soup", at(0.3), 1}});
+  const EvaluatedView view = score({object("stranger", scored_at(-0.3)), object("mug", scored_at(0)),
+                                    object("stranger", scored_at(0.1)), object("soup", scored_at(0.3))},
+                                   {{"soup", scored_at(0.3), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 0, 1}));
   ASSERT_EQ(view.truth.size(), 2U);
   EXPECT_EQ(view.truth[1].object, "soup");
@@ -115,8 +119,8 @@ TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
 
 // The Kinect covers +-0.61 m at a distance of 1 m.
 TEST(ScoreView, ObjectsOutsideTheImageAreNotScored) {
-  const EvaluatedView view =
-      score({object("mug", at(0))}, {{"mug", at(0), 1}, {"soup", at(0.7), 1}, {"can", at(0.5), 1}});
+  const EvaluatedView view = score({object("mug", scored_at(0))},
+                                   {{"mug", scored_at(0), 1}, {"soup", scored_at(0.7), 1}, {"can", scored_at(0.5), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kIgnored);
@@ -127,14 +131,15 @@ TEST(ShareInImage, CountsSurfacePointsWithinTheBorder) {
   ObjectModel model;
   for (int i = 0; i < 10; ++i) model.surface.points.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   // The right border is at x = 320 / 525 = 0.6095 m: of 0.56 to 0.65 m, the first five are inside.
-  EXPECT_DOUBLE_EQ(share_in_image(model, at(0.56), make_kinect_camera()), 0.5);
-  EXPECT_EQ(share_in_image(model, at(0), make_kinect_camera()), 1.0);
+  EXPECT_DOUBLE_EQ(share_in_image(model, scored_at(0.56), make_kinect_camera()), 0.5);
+  EXPECT_EQ(share_in_image(model, scored_at(0), make_kinect_camera()), 1.0);
   EXPECT_EQ(share_in_image(model, Rigid3::from_translation({0, 0, -1}), make_kinect_camera()), 0.0);
 }
 
 TEST(ScoreView, ADetectionAtAPlaceLeftIsAGhost) {
-  const std::vector<FormerPlace> left{{"mug", at(0), 3}};
-  const EvaluatedView view = score({object("soup", at(0.3))}, {{"mug", at(0.01), 1}, {"mug", at(-0.3), 1}}, left);
+  const std::vector<FormerPlace> left{{"mug", scored_at(0), 3}};
+  const EvaluatedView view =
+      score({object("soup", scored_at(0.3))}, {{"mug", scored_at(0.01), 1}, {"mug", scored_at(-0.3), 1}}, left);
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kGhost);
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kFalsePositive);
   EXPECT_EQ(view.score, (RecognitionScore{0, 2, 1}));

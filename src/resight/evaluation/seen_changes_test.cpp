@@ -10,8 +10,8 @@ namespace {
 
 using Kind = ObjectEventKind;
 
-Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
-const Rigid3 kA = at(0), kB = at(0.3), kC = at(-0.3), kD = at(0.6);
+Rigid3 seen_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
+const Rigid3 kA = seen_at(0), kB = seen_at(0.3), kC = seen_at(-0.3), kD = seen_at(0.6);
 
 class SeenChangesTest : public ::testing::Test {
  protected:

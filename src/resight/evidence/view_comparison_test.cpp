@@ -14,18 +14,18 @@
 namespace resight {
 namespace {
 
-const Camera kCamera{160, 120, 140, 140, 79.5, 59.5};
+const Camera kTwoViewCamera{160, 120, 140, 140, 79.5, 59.5};
 
 /// A wall across the view, at depth z = distance_m + slope * x, with noise of so many sigmas of the model.
 PreparedView see_wall(double distance_m, double slope = 0, double noise = 0, std::uint64_t seed = 1,
                       const Rigid3& world_from_camera = Rigid3::identity()) {
-  RgbdFrame frame{"wall", kCamera, Image<Rgb8>(kCamera.width, kCamera.height),
-                  Image<float>(kCamera.width, kCamera.height), world_from_camera};
+  RgbdFrame frame{"wall", kTwoViewCamera, Image<Rgb8>(kTwoViewCamera.width, kTwoViewCamera.height),
+                  Image<float>(kTwoViewCamera.width, kTwoViewCamera.height), world_from_camera};
   Rng rng(seed);
-  for (int v = 0; v < kCamera.height; ++v)
-    for (int u = 0; u < kCamera.width; ++u) {
-      const double z = distance_m / (1 - slope * (u - kCamera.cx) / kCamera.fx);
-      const double sigma_m = nguyen_noise(z, std::atan(slope), kCamera.fx).axial_m;
+  for (int v = 0; v < kTwoViewCamera.height; ++v)
+    for (int u = 0; u < kTwoViewCamera.width; ++u) {
+      const double z = distance_m / (1 - slope * (u - kTwoViewCamera.cx) / kTwoViewCamera.fx);
+      const double sigma_m = nguyen_noise(z, std::atan(slope), kTwoViewCamera.fx).axial_m;
       frame.depth_m(u, v) = static_cast<float>(z + noise * sigma_m * rng.normal());
     }
   return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
@@ -68,11 +68,11 @@ TEST(CompareViews, DistancesAreAlongTheNormal) {
 
 TEST(CompareViews, AMovedCameraSeesTheSameSurface) {
   Rigid3 beside = Rigid3::identity();
-  beside.translation.x() = 14.0 / kCamera.fx;  // 14 px
+  beside.translation.x() = 14.0 / kTwoViewCamera.fx;  // 14 px
   const PreparedView surface = see_wall(1.0);
   const Image<Evidence> evidence = compare_views(surface, see_wall(1.0, 0, 0, 1, beside), 1);
   EXPECT_EQ(count(evidence, Evidence::kPresent) + count(evidence, Evidence::kUnobserved), kNumPixels);
-  EXPECT_NEAR(count(evidence, Evidence::kUnobserved), 14 * kCamera.height, 2 * kCamera.height);
+  EXPECT_NEAR(count(evidence, Evidence::kUnobserved), 14 * kTwoViewCamera.height, 2 * kTwoViewCamera.height);
 }
 
 TEST(CompareViews, ANeighborExplainsAndContradicts) {
@@ -107,8 +107,8 @@ TEST(EstimateNoiseScale, GrowsWithTheNoise) {
 
 TEST(EstimateNoiseScale, IsNotMovedByChangesAndHasALowerLimit) {
   PreparedView view = see_wall(1.5, 0, 1, 2);
-  for (int v = 0; v < kCamera.height / 4; ++v)
-    for (int u = 0; u < kCamera.width; ++u) view.frame.depth_m(u, v) -= 0.05F;
+  for (int v = 0; v < kTwoViewCamera.height / 4; ++v)
+    for (int u = 0; u < kTwoViewCamera.width; ++u) view.frame.depth_m(u, v) -= 0.05F;
   EXPECT_LT(estimate_noise_scale(see_wall(1.5, 0, 1, 1), view), 1.6);
   const double exact = estimate_noise_scale(see_wall(1.5), see_wall(1.5));
   EXPECT_GT(exact, 0.5);

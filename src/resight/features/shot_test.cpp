@@ -127,14 +127,14 @@ double cosine_between(std::span<const float> a, std::span<const float> b) {
   return sum;
 }
 
-const ShotOptions kKeepFlat{.min_surface_variation = 0};
+const ShotOptions kDescribeFlat{.min_surface_variation = 0};
 
 TEST(DescribeShot, AgreesWithTheDefinitionInDoublePrecision) {
   const PointCloud support = bumpy_object(4000, 1);
   const PointCloud keypoints = every_nth(support, 10);
   for (const double radius_m : {0.02, 0.04}) {
     std::vector<int> kept;
-    ShotOptions options = kKeepFlat;
+    ShotOptions options = kDescribeFlat;
     options.support_radius_m = radius_m;
     const FeatureSet features = describe_shot(support, keypoints, options, &kept);
     ASSERT_EQ(features.dimension, 352);
@@ -160,7 +160,7 @@ TEST(DescribeShot, GivesUnitDescriptorsOfTheKeptKeypoints) {
   keypoints.points[3] = {kNan, 0, 0};
   keypoints.points[7] = {5, 5, 5};
   std::vector<int> kept{99};
-  const FeatureSet features = describe_shot(support, keypoints, kKeepFlat, &kept);
+  const FeatureSet features = describe_shot(support, keypoints, kDescribeFlat, &kept);
   EXPECT_EQ(features.type, FeatureType::kShot);
   ASSERT_EQ(features.size(), keypoints.size() - 2);
   ASSERT_EQ(features.descriptors.size(), features.size() * 352);
@@ -179,9 +179,9 @@ TEST(DescribeShot, DoesNotChangeUnderRigidMotion) {
   const Rigid3 motion{Rigid3::from_axis_angle({3, -1, 2}, 2.1).rotation, {0.4, -0.3, 1.2}};
   std::vector<int> kept_before;
   std::vector<int> kept_after;
-  const FeatureSet before = describe_shot(support, keypoints, kKeepFlat, &kept_before);
+  const FeatureSet before = describe_shot(support, keypoints, kDescribeFlat, &kept_before);
   const FeatureSet after =
-      describe_shot(transform(motion, support), transform(motion, keypoints), kKeepFlat, &kept_after);
+      describe_shot(transform(motion, support), transform(motion, keypoints), kDescribeFlat, &kept_after);
   ASSERT_GT(before.size(), 150U);
   ASSERT_EQ(kept_before, kept_after);
   int num_equal = 0;
@@ -196,8 +196,8 @@ TEST(DescribeShot, DistinguishesPlaces) {
   const PointCloud keypoints = every_nth(support, 20);
   std::vector<int> kept;
   std::vector<int> kept_again;
-  const FeatureSet first = describe_shot(support, keypoints, kKeepFlat, &kept);
-  const FeatureSet second = describe_shot(resampled, keypoints, kKeepFlat, &kept_again);
+  const FeatureSet first = describe_shot(support, keypoints, kDescribeFlat, &kept);
+  const FeatureSet second = describe_shot(resampled, keypoints, kDescribeFlat, &kept_again);
   ASSERT_GT(first.size(), 150U);
   // Counts descriptors whose nearest one over another sampling of the surface belongs to about the same place.
   int num_right = 0;
@@ -228,22 +228,22 @@ TEST(DescribeShot, LeavesOutWhatHasNoStableFrame) {
   PointCloud center;
   center.points.emplace_back(0.0F, 0.0F, 0.0F);
   center.normals.emplace_back(0.0F, 0.0F, 1.0F);
-  EXPECT_EQ(describe_shot(patch(0, 0), center, kKeepFlat).size(), 0U);  // a symmetric plane: no x axis, no side
-  EXPECT_EQ(describe_shot(patch(3, 0), center, kKeepFlat).size(), 0U);  // a symmetric bowl: no x axis
+  EXPECT_EQ(describe_shot(patch(0, 0), center, kDescribeFlat).size(), 0U);  // a symmetric plane: no x axis, no side
+  EXPECT_EQ(describe_shot(patch(3, 0), center, kDescribeFlat).size(), 0U);  // a symmetric bowl: no x axis
   PointCloud off_center = center;
   off_center.points[0] = {0.02F, 0.011F, 0.0F};
-  EXPECT_EQ(describe_shot(patch(0, 0), off_center, kKeepFlat).size(), 0U);  // a plane has no side
+  EXPECT_EQ(describe_shot(patch(0, 0), off_center, kDescribeFlat).size(), 0U);  // a plane has no side
   off_center.points[0].z() = 3 * off_center.points[0].head<2>().squaredNorm();
   // Beside the middle of a bowl, the frame is defined.
-  EXPECT_EQ(describe_shot(patch(3, 0), off_center, kKeepFlat).size(), 1U);
+  EXPECT_EQ(describe_shot(patch(3, 0), off_center, kDescribeFlat).size(), 1U);
   PointCloud few = patch(3, 0);
   few.points.resize(12);
   few.normals.resize(12);
   off_center.points[0] = few.points[5];
   // 11 neighbours.
   EXPECT_EQ(describe_shot(few, off_center, {.min_surface_variation = 0, .min_neighbors = 12}).size(), 0U);
-  EXPECT_EQ(describe_shot(PointCloud{}, center, kKeepFlat).size(), 0U);
-  EXPECT_EQ(describe_shot(few, PointCloud{}, kKeepFlat).size(), 0U);
+  EXPECT_EQ(describe_shot(PointCloud{}, center, kDescribeFlat).size(), 0U);
+  EXPECT_EQ(describe_shot(few, PointCloud{}, kDescribeFlat).size(), 0U);
 }
 
 TEST(DescribeShot, DropsFlatKeypoints) {
@@ -279,19 +279,19 @@ TEST(DescribeShot, DropsFlatKeypoints) {
 TEST(DescribeShot, IgnoresSupportThatIsNotFinite) {
   PointCloud support = bumpy_object(3000, 6);
   const PointCloud keypoints = every_nth(support, 30);
-  const FeatureSet clean = describe_shot(support, keypoints, kKeepFlat);
+  const FeatureSet clean = describe_shot(support, keypoints, kDescribeFlat);
   ASSERT_GT(clean.size(), 80U);
   support.points.push_back(keypoints.points[0] + Eigen::Vector3f(0.001F, 0, 0));
   support.normals.emplace_back(kNan, kNan, kNan);
   support.points.emplace_back(kNan, kNan, kNan);
   support.normals.emplace_back(0.0F, 0.0F, 1.0F);
-  EXPECT_EQ(describe_shot(support, keypoints, kKeepFlat).descriptors, clean.descriptors);
+  EXPECT_EQ(describe_shot(support, keypoints, kDescribeFlat).descriptors, clean.descriptors);
 }
 
 TEST(DescribeShot, IsTheSameForAnyNumberOfThreads) {
   const PointCloud support = bumpy_object(5000, 7);
   const PointCloud keypoints = every_nth(support, 10);
-  ShotOptions options = kKeepFlat;
+  ShotOptions options = kDescribeFlat;
   const FeatureSet serial = describe_shot(support, keypoints, options);
   options.num_threads = 3;
   const FeatureSet parallel = describe_shot(support, keypoints, options);

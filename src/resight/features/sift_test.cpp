@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 void expect_same(const FeatureSet& a, const FeatureSet& b) {
   EXPECT_EQ(a.points, b.points);
@@ -91,7 +91,7 @@ TEST(ExtractSift, LeavesOutPixelsWithoutDepthAndOutsideTheMask) {
   Image<std::uint8_t> mask(frame.camera.width, frame.camera.height);
   for (int v = 0; v < frame.camera.height; ++v)
     for (int u = 0; u < frame.camera.width; ++u) {
-      if (u < 100) frame.depth_m(u, v) = kNan;
+      if (u < 100) frame.depth_m(u, v) = kNoDepth;
       mask(u, v) = v < 150 ? 1 : 0;
     }
   const PreparedView view = prepare_view(frame);

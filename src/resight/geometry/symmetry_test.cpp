@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Eigen::Vector3d random_vector(Rng& rng) { return {rng.normal(), rng.normal(), rng.normal()}; }
+Eigen::Vector3d random_direction(Rng& rng) { return {rng.normal(), rng.normal(), rng.normal()}; }
 
 Rigid3 random_pose(Rng& rng) {
-  Rigid3 pose = Rigid3::from_axis_angle(random_vector(rng), rng.uniform(-3.1, 3.1));
-  pose.translation = random_vector(rng);
+  Rigid3 pose = Rigid3::from_axis_angle(random_direction(rng), rng.uniform(-3.1, 3.1));
+  pose.translation = random_direction(rng);
   return pose;
 }
 
@@ -25,11 +25,11 @@ Rigid3 rotation_about_line(const Eigen::Vector3d& point, const Eigen::Vector3d& 
   return Rigid3::from_translation(point) * Rigid3::from_axis_angle(axis, angle_rad) * Rigid3::from_translation(-point);
 }
 
-double difference(const Rigid3& a, const Rigid3& b) { return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff(); }
+double pose_difference(const Rigid3& a, const Rigid3& b) { return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff(); }
 
 bool contains(const std::vector<Rigid3>& motions, const Rigid3& wanted) {
   for (const Rigid3& m : motions)
-    if (difference(m, wanted) < 1e-9) return true;
+    if (pose_difference(m, wanted) < 1e-9) return true;
   return false;
 }
 
@@ -57,14 +57,14 @@ TEST(EnumerateSymmetries, AreAGroupOfRigidMotions) {
   for (const ObjectSymmetries& symmetries : {make_none(), make_square_prism(), make_bottle(), make_cylinder()}) {
     const std::vector<Rigid3> motions = enumerate_symmetries(symmetries, kPi / 6);
     ASSERT_FALSE(motions.empty());
-    EXPECT_EQ(difference(motions.front(), Rigid3::identity()), 0);
+    EXPECT_EQ(pose_difference(motions.front(), Rigid3::identity()), 0);
     for (std::size_t i = 0; i < motions.size(); ++i) {
       EXPECT_TRUE(motions[i].is_rigid(1e-9));
       EXPECT_TRUE(contains(motions, motions[i].inverse()));
       for (std::size_t j = 0; j < motions.size(); ++j) {
         EXPECT_TRUE(contains(motions, motions[i] * motions[j]));
         if (i != j) {
-          EXPECT_GT(difference(motions[i], motions[j]), 1e-6);
+          EXPECT_GT(pose_difference(motions[i], motions[j]), 1e-6);
         }
       }
     }
@@ -120,7 +120,7 @@ TEST(NearestSymmetricPose, IsASymmetryEquivalentOfThePose) {
       const Rigid3 applied = pose.inverse() * nearest_symmetric_pose(pose, random_pose(rng), symmetries);
       double nearest_motion = 10;
       for (const Rigid3& m : enumerate_symmetries(symmetries, 0.002))
-        nearest_motion = std::min(nearest_motion, difference(m, applied));
+        nearest_motion = std::min(nearest_motion, pose_difference(m, applied));
       ASSERT_LT(nearest_motion, 0.0025);
     }
   }
@@ -131,7 +131,7 @@ TEST(NearestSymmetricPose, UndoesASymmetryExactly) {
   for (const ObjectSymmetries& symmetries : {make_square_prism(), make_bottle(), make_cylinder()}) {
     for (const Rigid3& m : enumerate_symmetries(symmetries, 0.7)) {
       const Rigid3 reference = random_pose(rng);
-      ASSERT_LT(difference(nearest_symmetric_pose(reference * m, reference, symmetries), reference), 1e-6);
+      ASSERT_LT(pose_difference(nearest_symmetric_pose(reference * m, reference, symmetries), reference), 1e-6);
       ASSERT_LT(symmetric_rotation_distance_rad(reference * m, reference, symmetries), 1e-7);
     }
   }
@@ -141,7 +141,7 @@ TEST(NearestSymmetricPose, WithoutSymmetriesIsThePose) {
   Rng rng(4);
   const Rigid3 pose = random_pose(rng);
   const Rigid3 other = random_pose(rng);
-  EXPECT_EQ(difference(nearest_symmetric_pose(pose, other, {}), pose), 0);
+  EXPECT_EQ(pose_difference(nearest_symmetric_pose(pose, other, {}), pose), 0);
   EXPECT_NEAR(symmetric_rotation_distance_rad(pose, other, {}), rotation_angle_rad(pose.rotation, other.rotation),
               1e-12);
 }

@@ -14,7 +14,7 @@
 namespace resight {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 Camera off_center_camera() { return {640, 480, 500, 520, 200, 300}; }
 
@@ -35,7 +35,7 @@ bool contains_by_projection(const ViewFrustum& f, const Eigen::Vector3d& p) {
 TEST(ViewFrustum, AgreesWithProjection) {
   Rng rng(7);
   for (const Camera& camera : {make_kinect_camera(), off_center_camera()}) {
-    for (const double margin : {0.0, 5 * kDegree, 15 * kDegree}) {
+    for (const double margin : {0.0, 5 * kRadPerDegree, 15 * kRadPerDegree}) {
       const ViewFrustum frustum{.camera = camera, .margin_rad = margin};
       int num_inside = 0;
       for (int i = 0; i < 20000; ++i) {
@@ -60,12 +60,12 @@ TEST(ViewFrustum, SidesFollowThePrincipalPoint) {
 
 TEST(ViewFrustum, FiveDegreesOffTheHalfAngle) {
   // The paper's code: |x| / sqrt(x^2 + z^2) < sin(58 deg / 2 - 5 deg) for the camera with 58 deg field of view.
-  const double half = 29 * kDegree;
+  const double half = 29 * kRadPerDegree;
   const Camera camera{640, 480, 320 / std::tan(half), 320 / std::tan(half), 319.5, 239.5};
   const ViewFrustum frustum{.camera = camera};
   for (const double degrees : {-28.9, -24.1, -23.9, 0.0, 23.9, 24.1, 28.9}) {
-    const Eigen::Vector3d p(std::sin(degrees * kDegree), 0, std::cos(degrees * kDegree));
-    const bool expected = std::abs(p.x()) / std::hypot(p.x(), p.z()) < std::sin(half - 5 * kDegree);
+    const Eigen::Vector3d p(std::sin(degrees * kRadPerDegree), 0, std::cos(degrees * kRadPerDegree));
+    const bool expected = std::abs(p.x()) / std::hypot(p.x(), p.z()) < std::sin(half - 5 * kRadPerDegree);
     EXPECT_EQ(frustum.contains(p.cast<float>()), expected) << degrees;
   }
 }
@@ -84,7 +84,7 @@ TEST(ViewFrustum, DepthRangeIsOpenAndNothingBehindTheCamera) {
 
 TEST(ViewFrustum, MarginLargerThanTheViewLeavesNothing) {
   for (const double degrees : {30.0, 60.0, 89.0}) {
-    const ViewFrustum frustum{.camera = make_kinect_camera(), .margin_rad = degrees * kDegree};
+    const ViewFrustum frustum{.camera = make_kinect_camera(), .margin_rad = degrees * kRadPerDegree};
     EXPECT_FALSE(frustum.contains({0, 0, 1})) << degrees;
     EXPECT_FALSE(frustum.contains({0.5F, 0.3F, 1})) << degrees;
   }

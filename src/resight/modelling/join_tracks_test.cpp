@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-TrackObjectOptions two_threads() {
+TrackObjectOptions join_on_two_threads() {
   TrackObjectOptions options;
   options.num_threads = 2;
   return options;
@@ -37,7 +37,7 @@ TEST(JoinTracks, AnObjectWithLittleTextureByItsShape) {
   std::vector<Rigid3> camera_from_object;
   for (const TrainingView& view : second.views)
     camera_from_object.push_back(view.frame.world_from_camera.inverse() * kOther);
-  const auto joined = join_tracks(follow_truly("duck", 36, false, {}), std::move(second), two_threads());
+  const auto joined = join_tracks(follow_truly("duck", 36, false, {}), std::move(second), join_on_two_threads());
   ASSERT_TRUE(joined.ok()) << joined.error().message;
   ASSERT_EQ(joined->views.size(), 20U);
   for (std::size_t v = 0; v < camera_from_object.size(); ++v) {
@@ -49,8 +49,8 @@ TEST(JoinTracks, AnObjectWithLittleTextureByItsShape) {
 }
 
 TEST(JoinTracks, AnotherObjectIsRefused) {
-  const auto joined =
-      join_tracks(follow_truly("duck", 60, false, {}), follow_truly("plain_box", 60, true, kOther), two_threads());
+  const auto joined = join_tracks(follow_truly("duck", 60, false, {}), follow_truly("plain_box", 60, true, kOther),
+                                  join_on_two_threads());
   ASSERT_FALSE(joined.ok());
   EXPECT_THAT(joined.error().message, testing::HasSubstr("no common shape"));
 }

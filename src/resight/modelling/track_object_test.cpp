@@ -27,7 +27,7 @@ Recording split(std::vector<RecordedView> views) {
   return recording;
 }
 
-TrackObjectOptions two_threads() {
+TrackObjectOptions track_on_two_threads() {
   TrackObjectOptions options;
   options.num_threads = 2;
   return options;
@@ -43,7 +43,7 @@ std::vector<Rigid3> poses_of(const ObjectTrack& track) {
 TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
   Recording first = split(test::record("milk_carton", 20));
   Recording second = split(test::record("milk_carton", 20, true));
-  auto track = track_object(std::move(first.frames), two_threads());
+  auto track = track_object(std::move(first.frames), track_on_two_threads());
   ASSERT_TRUE(track.ok()) << track.error().message;
   ASSERT_EQ(track->views.size(), 18U);
   EXPECT_TRUE(track->is_camera_still);
@@ -54,9 +54,9 @@ TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
   // z points up from the turntable, as in the frame of the generated object.
   EXPECT_LT(one_side.reference_from_estimate.rotation.col(2).head<2>().norm(), 0.05);
 
-  auto other = track_object(std::move(second.frames), two_threads());
+  auto other = track_object(std::move(second.frames), track_on_two_threads());
   ASSERT_TRUE(other.ok()) << other.error().message;
-  const auto joined = join_tracks(std::move(*track), std::move(*other), two_threads());
+  const auto joined = join_tracks(std::move(*track), std::move(*other), track_on_two_threads());
   ASSERT_TRUE(joined.ok()) << joined.error().message;
   std::vector<Rigid3> truth = first.object_from_camera;
   truth.insert(truth.end(), second.object_from_camera.begin(), second.object_from_camera.end());
@@ -76,24 +76,25 @@ TEST(TrackObject, SaysWhereItIsLost) {
   const Recording whole = split(test::record("milk_carton", 40));
   // The object is rotated by hand between two views.
   std::vector<RgbdFrame> frames{whole.frames[0], whole.frames[1], whole.frames[5]};
-  const auto lost = track_object(std::move(frames), two_threads());
+  const auto lost = track_object(std::move(frames), track_on_two_threads());
   ASSERT_FALSE(lost.ok());
   EXPECT_THAT(lost.error().message, testing::MatchesRegex("lost at view 00005: [0-9]+ matches"));
   // The object is removed.
   frames = {whole.frames[0], whole.frames[0]};
   for (float& z : frames[1].depth_m.data()) z = std::isnan(z) ? z : 3.0F;
-  const auto gone = track_object(std::move(frames), two_threads());
+  const auto gone = track_object(std::move(frames), track_on_two_threads());
   ASSERT_FALSE(gone.ok());
   EXPECT_THAT(gone.error().message, testing::HasSubstr("lost at view 00000: nothing stands"));
   frames = {whole.frames[0], whole.frames[0]};
   for (RgbdFrame& frame : frames)
     for (float& z : frame.depth_m.data()) z = std::isnan(z) ? z : 3.0F;
-  const auto nothing = track_object(std::move(frames), two_threads());
+  const auto nothing = track_object(std::move(frames), track_on_two_threads());
   ASSERT_FALSE(nothing.ok());
   EXPECT_THAT(nothing.error().message, testing::HasSubstr("no object stands"));
-  EXPECT_FALSE(track_object({}, two_threads()).ok());
+  EXPECT_FALSE(track_object({}, track_on_two_threads()).ok());
   frames = {whole.frames[0]};
-  EXPECT_THAT(track_object(std::move(frames), two_threads()).error().message, testing::HasSubstr("at least two views"));
+  EXPECT_THAT(track_object(std::move(frames), track_on_two_threads()).error().message,
+              testing::HasSubstr("at least two views"));
 }
 
 TEST(TrackObject, RefusesBadOptions) {

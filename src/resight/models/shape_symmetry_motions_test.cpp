@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 const Eigen::Vector3d kX = Eigen::Vector3d::UnitX();
 const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
 
@@ -21,17 +21,18 @@ ObjectModel colored() {
 
 ObjectSymmetries round_about(const Eigen::Vector3d& axis) { return {.discrete = {}, .continuous = {{.axis = axis}}}; }
 
-Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kPi); }
+Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kHalfTurn); }
 
 TEST(ShapeSymmetryMotions, OfATexturedCanAreAllRotationsInSteps) {
   ObjectModel can = colored();
   can.shape_symmetries = round_about(kZ);
-  const std::vector<Rigid3> symmetry_motions = shape_symmetry_motions(can, kPi / 18);
+  const std::vector<Rigid3> symmetry_motions = shape_symmetry_motions(can, kHalfTurn / 18);
   ASSERT_EQ(symmetry_motions.size(), 36U);
   EXPECT_EQ(symmetry_motions[0].matrix(), Rigid3::identity().matrix());
   for (const Rigid3& turn : symmetry_motions) EXPECT_NEAR((turn.rotation * kZ - kZ).norm(), 0, 1e-12);
   for (std::size_t i = 1; i < symmetry_motions.size(); ++i)
-    EXPECT_NEAR(rotation_angle_rad(symmetry_motions[i - 1].rotation, symmetry_motions[i].rotation), kPi / 18, 1e-9);
+    EXPECT_NEAR(rotation_angle_rad(symmetry_motions[i - 1].rotation, symmetry_motions[i].rotation), kHalfTurn / 18,
+                1e-9);
 }
 
 TEST(ShapeSymmetryMotions, SymmetriesOfTheTextureAreNone) {

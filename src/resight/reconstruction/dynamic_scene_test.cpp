@@ -12,7 +12,7 @@ namespace resight {
 namespace {
 
 using namespace testing_scene;
-const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
+const Box kFirstBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
 const Box kOther{{0.3, 0.1, 0.06}, {0.05, 0.05, 0.06}};
 
 Scene with(const std::vector<Box>& boxes) {
@@ -32,8 +32,8 @@ std::vector<Step> story() {
   const Rigid3 left = look_at({-0.3, -0.9, 0.8}, {0, 0, 0.05});
   const Rigid3 right = look_at({0.3, -0.9, 0.8}, {0, 0, 0.05});
   const Rigid3 away = look_at({1.6, -0.9, 0.8}, {1.6, 0, 0.05});
-  return {{with({kBox}), left},    {with({kBox}), away},         {with({}), usual_pose()},
-          {with({kOther}), right}, {with({kBox, kOther}), left}, {with({kBox}), usual_pose()}};
+  return {{with({kFirstBox}), left}, {with({kFirstBox}), away},         {with({}), usual_pose()},
+          {with({kOther}), right},   {with({kFirstBox, kOther}), left}, {with({kFirstBox}), usual_pose()}};
 }
 
 /// Alg. 1 from the raw views in every step, with the removals in a history.
@@ -104,7 +104,7 @@ TEST(DynamicScene, AgreesWithStartingFromScratchAlongAWay) {
   FromScratch twin(0);
   for (int step = 0; step < 8; ++step) {
     const double x = 1.2 * step;
-    const PreparedView view = see(with({kBox}), look_at({x, -0.9, 0.8}, {x, 0, 0.05}));
+    const PreparedView view = see(with({kFirstBox}), look_at({x, -0.9, 0.8}, {x, 0, 0.05}));
     (void)scene.add_view(view);
     (void)twin.add(view);
     ASSERT_EQ(scene.reconstruction().points, twin.reconstruction().points) << step;
@@ -116,10 +116,10 @@ TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
     DynamicSceneOptions options;
     options.detect_changes = detect;
     DynamicScene scene(options);
-    (void)scene.add_view(see(with({kBox})));
-    const int before = count_at(kBox, scene.reconstruction(), 0.002);
+    (void)scene.add_view(see(with({kFirstBox})));
+    const int before = count_at(kFirstBox, scene.reconstruction(), 0.002);
     const ChangeResult changes = scene.add_view(see(with({})));
-    const int after = count_at(kBox, scene.reconstruction(), 0.002);
+    const int after = count_at(kFirstBox, scene.reconstruction(), 0.002);
     ASSERT_GT(before, 500);
     if (detect) {
       EXPECT_LT(after, before / 2);  // The box also contains the table below it.

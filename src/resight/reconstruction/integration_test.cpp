@@ -19,18 +19,18 @@ namespace {
 using namespace testing_scene;
 using Cell = std::tuple<int, int, int>;
 
-const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
+const Box kTableBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
 
-Scene scene_with_box() {
+Scene table_with_box() {
   Scene scene = table();
-  scene.boxes = {kBox};
+  scene.boxes = {kTableBox};
   scene.spheres = {{{-0.25, 0.1, 0.06}, 0.06}};
   return scene;
 }
 
 std::vector<PreparedView> three_views() {
-  std::vector<PreparedView> views{see(scene_with_box()), see(scene_with_box(), look_at({0.8, -0.5, 0.7}, {0, 0, 0})),
-                                  see(scene_with_box(), look_at({-0.4, -0.7, 0.5}, {0, 0, 0}))};
+  std::vector<PreparedView> views{see(table_with_box()), see(table_with_box(), look_at({0.8, -0.5, 0.7}, {0, 0, 0})),
+                                  see(table_with_box(), look_at({-0.4, -0.7, 0.5}, {0, 0, 0}))};
   for (std::size_t v = 0; v < views.size(); ++v)  // Encodes the origin of a point.
     for (std::size_t i = 0; i < views[v].frame.color.size(); ++i)
       views[v].frame.color[i] = {static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(i % 251),
@@ -138,7 +138,7 @@ TEST(IntegrateViews, TiesGoToTheLaterView) {
 }
 
 TEST(IntegrateViews, EdgesAndPointsWithoutNormalsTakeNoPart) {
-  std::vector<PreparedView> views{see(scene_with_box())};
+  std::vector<PreparedView> views{see(table_with_box())};
   const std::size_t all = integrate_views(pointers(views), {.min_edge_distance_px = 0}).view.size();
   const std::size_t inner = integrate_views(pointers(views), {.min_edge_distance_px = 3}).view.size();
   EXPECT_LT(inner + 100, all);

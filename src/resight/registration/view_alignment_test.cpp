@@ -31,7 +31,7 @@ Rigid3 off(const Rigid3& pose, double shift, double rotation) {
          Rigid3{Rigid3::from_axis_angle({1, -2, 0.5}, rotation).rotation, shift * Eigen::Vector3d(0.6, -0.3, 0.742)};
 }
 
-class Alignment : public testing::Test {
+class Alignment : public ::testing::Test {
  protected:
   AlignmentView first = make_alignment_view(prepared({}, first_pose()));
   AlignmentView second = make_alignment_view(prepared({}, second_pose()));
@@ -178,7 +178,7 @@ TEST(AlignmentView, LevelsLieOverEachOther) {
   }
 }
 
-class Corrector : public testing::Test {
+class Corrector : public ::testing::Test {
  protected:
   static CorrectCameraOptions options() {
     CorrectCameraOptions o;

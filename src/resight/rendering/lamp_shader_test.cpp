@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-constexpr Camera kCamera{160, 120, 150, 150, 79.5, 59.5};
+constexpr Camera kLampCamera{160, 120, 150, 150, 79.5, 59.5};
 
 TriangleMesh block(const Eigen::Vector3d& size) {
   TextureAtlas atlas(64, 1.0);
@@ -22,8 +22,8 @@ TriangleMesh block(const Eigen::Vector3d& size) {
 }
 
 // A floor seen from above, with a post in its middle.
-struct Scene {
-  Scene() {
+struct LitScene {
+  LitScene() {
     floor = scene.add_instance(scene.add_mesh(block({4, 4, 0.01})), Rigid3::identity());
     scene.add_instance(scene.add_mesh(block({0.1, 0.1, 0.4})), Rigid3::identity());
     scene.commit();
@@ -33,10 +33,10 @@ struct Scene {
     options.lighting = lighting;
     options.linear_light = true;
     options.num_threads = num_threads;
-    return render_scene(scene, kCamera, pose, options);
+    return render_scene(scene, kLampCamera, pose, options);
   }
   [[nodiscard]] Eigen::Vector3f light_at(const RenderedView& view, double x_m, double y_m) const {
-    const Pixel pixel = *kCamera.pixel_of(pose.inverse() * Eigen::Vector3d(x_m, y_m, 0.01));
+    const Pixel pixel = *kLampCamera.pixel_of(pose.inverse() * Eigen::Vector3d(x_m, y_m, 0.01));
     return view.light(pixel.u, pixel.v);
   }
   RaycastScene scene;
@@ -53,7 +53,7 @@ Lighting two_lamps(double radius_m) {
 }
 
 TEST(LampShader, ShadowsHaveTheColourOfTheOtherLamp) {
-  const Scene scene;
+  const LitScene scene;
   const RenderedView view = scene.render(two_lamps(0));
   const Eigen::Vector3f left = scene.light_at(view, -0.2, 0);  // in the shadow of the right, red lamp
   const Eigen::Vector3f right = scene.light_at(view, 0.2, 0);  // in that of the blue lamp
@@ -68,7 +68,7 @@ TEST(LampShader, ShadowsHaveTheColourOfTheOtherLamp) {
 }
 
 TEST(LampShader, LargeLampsCastSoftShadows) {
-  const Scene scene;
+  const LitScene scene;
   const auto light_in_shadow = [&](double radius_m) {
     Lighting lighting = two_lamps(radius_m);
     lighting.lamps.pop_back();
@@ -80,7 +80,7 @@ TEST(LampShader, LargeLampsCastSoftShadows) {
 }
 
 TEST(LampShader, GlossySurfacesShowHighlights) {
-  Scene scene;
+  LitScene scene;
   Lighting lighting = two_lamps(0);
   lighting.shadows = false;
   const RenderedView matte = scene.render(lighting);
@@ -92,7 +92,7 @@ TEST(LampShader, GlossySurfacesShowHighlights) {
 }
 
 TEST(LampShader, HasTheSameBytesForAnyNumberOfThreads) {
-  const Scene scene;
+  const LitScene scene;
   const RenderedView one = scene.render(two_lamps(0.2));
   const RenderedView three = scene.render(two_lamps(0.2), 3);
   EXPECT_EQ(one.light, three.light);

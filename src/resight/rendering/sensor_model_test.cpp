@@ -15,7 +15,7 @@
 namespace resight {
 namespace {
 
-constexpr Camera kCamera{160, 120, 525, 525, 79.5, 59.5};
+constexpr Camera kSensorCamera{160, 120, 525, 525, 79.5, 59.5};
 
 SensorOptions all_off() {
   SensorOptions o;
@@ -33,7 +33,7 @@ SensorOptions all_off() {
   return o;
 }
 
-TriangleMesh block(const Eigen::Vector3d& size) {
+TriangleMesh sensed_block(const Eigen::Vector3d& size) {
   TextureAtlas atlas(64, 1.0);
   const PixelRect grey = atlas.solid({128, 128, 128});
   TriangleMesh mesh = make_box_part(size, {grey, grey, grey, grey, grey, grey}, 1);
@@ -45,12 +45,12 @@ TriangleMesh block(const Eigen::Vector3d& size) {
 struct Wall {
   explicit Wall(double z, double angle_rad = 0) {
     Rigid3 pose = Rigid3::from_translation({0, 0, z}) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitY(), angle_rad);
-    scene.add_instance(scene.add_mesh(block({4, 4, 0.1})), pose);  // its bottom (z = 0) faces the camera
+    scene.add_instance(scene.add_mesh(sensed_block({4, 4, 0.1})), pose);  // its bottom (z = 0) faces the camera
     scene.commit();
-    view = render_scene(scene, kCamera, Rigid3::identity());
+    view = render_scene(scene, kSensorCamera, Rigid3::identity());
   }
   Image<float> sense(const SensorOptions& options, std::uint64_t seed = 7, int num_threads = 1) const {
-    return sense_depth(scene, kCamera, Rigid3::identity(), view, options, seed, num_threads);
+    return sense_depth(scene, kSensorCamera, Rigid3::identity(), view, options, seed, num_threads);
   }
   RaycastScene scene;
   RenderedView view;
@@ -78,11 +78,11 @@ TEST(SenseDepth, AxialNoiseHasNguyensSigma) {
     double sum = 0;
     double sum_sq = 0;
     double expected_sq = 0;
-    for (int v = 0; v < kCamera.height; ++v)
-      for (int u = 0; u < kCamera.width; ++u) {
+    for (int v = 0; v < kSensorCamera.height; ++v)
+      for (int u = 0; u < kSensorCamera.width; ++u) {
         const double error = depth(u, v) - wall.view.depth_m(u, v);
-        const Eigen::Vector3d ray = kCamera.unproject(u, v, 1.0);
-        const double sigma = nguyen_noise(z, std::acos(1.0 / ray.norm()), kCamera.fx).axial_m;
+        const Eigen::Vector3d ray = kSensorCamera.unproject(u, v, 1.0);
+        const double sigma = nguyen_noise(z, std::acos(1.0 / ray.norm()), kSensorCamera.fx).axial_m;
         sum += error;
         sum_sq += error * error;
         expected_sq += sigma * sigma;
@@ -107,9 +107,9 @@ TEST(SenseDepth, LateralNoiseMovesSlantedSurfaces) {
     for (int u = 60; u < 100; ++u) {
       const double z = wall.view.depth_m(u, v);
       const double slope = 0.5 * (wall.view.depth_m(u + 1, v) - wall.view.depth_m(u - 1, v));  // m per px
-      const Eigen::Vector3d direction = kCamera.unproject(u, v, 1.0).normalized();
+      const Eigen::Vector3d direction = kSensorCamera.unproject(u, v, 1.0).normalized();
       const double angle = std::acos(std::abs(wall.view.normals_in_camera(u, v).cast<double>().dot(direction)));
-      const double sigma_px = nguyen_noise(z, angle, kCamera.fx).lateral_m * kCamera.fx / z;
+      const double sigma_px = nguyen_noise(z, angle, kSensorCamera.fx).lateral_m * kSensorCamera.fx / z;
       ratio_sq += std::pow((depth(u, v) - z) / (slope * sigma_px), 2);
       ++count;
     }
@@ -124,9 +124,9 @@ TEST(SenseDepth, DisparityComesInSteps) {
   const Image<float> depth = wall.sense(options);
   int distinct_from_exact = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    const double steps = kCamera.fx * options.baseline_m / depth[i] / options.disparity_step_px;
+    const double steps = kSensorCamera.fx * options.baseline_m / depth[i] / options.disparity_step_px;
     EXPECT_NEAR(steps, std::round(steps), 1e-4);
-    const double exact = kCamera.fx * options.baseline_m / wall.view.depth_m[i] / options.disparity_step_px;
+    const double exact = kSensorCamera.fx * options.baseline_m / wall.view.depth_m[i] / options.disparity_step_px;
     EXPECT_LE(std::abs(steps - exact), 0.5 + 1e-3);
     distinct_from_exact += std::abs(steps - exact) > 0.1;
   }
@@ -142,8 +142,8 @@ TEST(SenseDepth, ProjectorShadowLiesBesideTheBoxOnTheFarSide) {
   // so the strip of the wall hidden from it lies left of the box: the edge at x = -0.1 projects from x = 0.075 to x =
   // -0.275 at 2 m.
   RaycastScene scene;
-  scene.add_instance(scene.add_mesh(block({6, 6, 0.1})), Rigid3::from_translation({0, 0, 2.0}));
-  scene.add_instance(scene.add_mesh(block({0.2, 0.2, 0.001})), Rigid3::from_translation({0, 0, 1.0}));
+  scene.add_instance(scene.add_mesh(sensed_block({6, 6, 0.1})), Rigid3::from_translation({0, 0, 2.0}));
+  scene.add_instance(scene.add_mesh(sensed_block({0.2, 0.2, 0.001})), Rigid3::from_translation({0, 0, 1.0}));
   scene.commit();
   const Camera camera{320, 240, 260, 260, 159.5, 119.5};
   const RenderedView view = render_scene(scene, camera, Rigid3::identity());
@@ -170,7 +170,7 @@ TEST(SenseDepth, DropsGrazingFarNearAndEdges) {
   const Wall slanted(1.0, 80 * std::numbers::pi / 180);
   const Image<float> grazing = slanted.sense(options);
   EXPECT_GT(count_valid(slanted.view.depth_m), 1000U);
-  for (int v = 0; v < kCamera.height; ++v) EXPECT_TRUE(std::isnan(grazing(80, v)));
+  for (int v = 0; v < kSensorCamera.height; ++v) EXPECT_TRUE(std::isnan(grazing(80, v)));
 
   options = all_off();
   options.min_depth_m = 0.5;
@@ -180,13 +180,13 @@ TEST(SenseDepth, DropsGrazingFarNearAndEdges) {
   EXPECT_EQ(count_valid(Wall(3.9).sense(options)), static_cast<std::size_t>(160 * 120));
 
   RaycastScene scene;
-  scene.add_instance(scene.add_mesh(block({4, 4, 0.1})), Rigid3::from_translation({0, 0, 2}));
-  scene.add_instance(scene.add_mesh(block({0.2, 0.2, 0.1})), Rigid3::from_translation({0, 0, 1}));
+  scene.add_instance(scene.add_mesh(sensed_block({4, 4, 0.1})), Rigid3::from_translation({0, 0, 2}));
+  scene.add_instance(scene.add_mesh(sensed_block({0.2, 0.2, 0.1})), Rigid3::from_translation({0, 0, 1}));
   scene.commit();
-  const RenderedView view = render_scene(scene, kCamera, Rigid3::identity());
+  const RenderedView view = render_scene(scene, kSensorCamera, Rigid3::identity());
   options = all_off();
   options.edge_dropout = 0.5;
-  const Image<float> depth = sense_depth(scene, kCamera, Rigid3::identity(), view, options, 3);
+  const Image<float> depth = sense_depth(scene, kSensorCamera, Rigid3::identity(), view, options, 3);
   const std::size_t lost = depth.size() - count_valid(depth);
   const double edge_pixels = 2 * 4 * 0.2 * 525;  // both sides of the outline, as far as it lies within the image
   EXPECT_GT(lost, 0.25 * edge_pixels);

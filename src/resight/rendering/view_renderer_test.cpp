@@ -13,7 +13,7 @@
 namespace resight {
 namespace {
 
-constexpr Camera kCamera{160, 120, 130.0, 140.0, 77.3, 61.9};
+constexpr Camera kViewCamera{160, 120, 130.0, 140.0, 77.3, 61.9};
 
 TriangleMesh sphere(double radius) {
   TextureAtlas atlas(64, 1.0);
@@ -28,12 +28,12 @@ TEST(RenderScene, SphereHasItsClosedFormDepth) {
   RaycastScene scene;
   scene.add_instance(scene.add_mesh(sphere(kRadius)), Rigid3::from_translation(center));
   scene.commit();
-  const RenderedView view = render_scene(scene, kCamera, Rigid3::identity());
+  const RenderedView view = render_scene(scene, kViewCamera, Rigid3::identity());
   int hits = 0;
   int misses = 0;
-  for (int v = 0; v < kCamera.height; ++v)
-    for (int u = 0; u < kCamera.width; ++u) {
-      const Eigen::Vector3d ray = kCamera.unproject(u, v, 1.0);
+  for (int v = 0; v < kViewCamera.height; ++v)
+    for (int u = 0; u < kViewCamera.width; ++u) {
+      const Eigen::Vector3d ray = kViewCamera.unproject(u, v, 1.0);
       // |t ray - center| = r
       const double a = ray.squaredNorm();
       const double b = ray.dot(center);
@@ -123,9 +123,9 @@ TEST(RenderScene, SameBytesForAnyNumberOfThreads) {
   scene.commit();
   const Rigid3 pose = look_at({0.3, -0.3, 0.25}, {0, 0, 0.05});
   RenderOptions options;
-  const RenderedView serial = render_scene(scene, kCamera, pose, options);
+  const RenderedView serial = render_scene(scene, kViewCamera, pose, options);
   options.num_threads = 3;
-  const RenderedView parallel = render_scene(scene, kCamera, pose, options);
+  const RenderedView parallel = render_scene(scene, kViewCamera, pose, options);
   EXPECT_EQ(serial.color, parallel.color);
   EXPECT_EQ(serial.labels, parallel.labels);
   ASSERT_EQ(serial.depth_m.size(), parallel.depth_m.size());
@@ -146,11 +146,11 @@ TEST(RenderScene, LampCastsShadowsWhenAsked) {
   RenderOptions options;
   options.lighting.lamp_in_world_m = {1, 0, 1};
   const Rigid3 pose = look_at({-0.2, -1.2, 1.2}, {0, 0, 0});
-  const RenderedView lit = render_scene(scene, kCamera, pose, options);
+  const RenderedView lit = render_scene(scene, kViewCamera, pose, options);
   options.lighting.shadows = true;
-  const RenderedView shaded = render_scene(scene, kCamera, pose, options);
-  const Eigen::Vector2d in_shadow = kCamera.project(pose.inverse() * Eigen::Vector3d(-0.15, 0, 0.01));
-  const Eigen::Vector2d in_light = kCamera.project(pose.inverse() * Eigen::Vector3d(0.4, 0, 0.01));
+  const RenderedView shaded = render_scene(scene, kViewCamera, pose, options);
+  const Eigen::Vector2d in_shadow = kViewCamera.project(pose.inverse() * Eigen::Vector3d(-0.15, 0, 0.01));
+  const Eigen::Vector2d in_light = kViewCamera.project(pose.inverse() * Eigen::Vector3d(0.4, 0, 0.01));
   const auto at = [](const RenderedView& v, const Eigen::Vector2d& p) {
     return v.color(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y()))).r;
   };
@@ -175,10 +175,10 @@ TEST(RenderScene, RefusesBadOptions) {
   scene.commit();
   RenderOptions options;
   options.samples_per_side = 0;
-  EXPECT_THROW(static_cast<void>(render_scene(scene, kCamera, Rigid3::identity(), options)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(render_scene(scene, kViewCamera, Rigid3::identity(), options)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(render_scene(scene, Camera{}, Rigid3::identity())), std::invalid_argument);
-  const RenderedView empty = render_scene(scene, kCamera, Rigid3::identity());
-  EXPECT_EQ(std::ranges::count(empty.labels.data(), -1), kCamera.width * kCamera.height);
+  const RenderedView empty = render_scene(scene, kViewCamera, Rigid3::identity());
+  EXPECT_EQ(std::ranges::count(empty.labels.data(), -1), kViewCamera.width * kViewCamera.height);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-EvaluatedRun make_run(const std::string& preset, int k, bool clustered = true) {
+EvaluatedRun make_evaluated_run(const std::string& preset, int k, bool clustered = true) {
   EvaluatedRun run;
   run.sequence = "000001";
   run.preset = preset;
@@ -44,8 +44,8 @@ EvaluatedRun make_run(const std::string& preset, int k, bool clustered = true) {
 }
 
 std::vector<EvaluatedRun> make_runs() {
-  return {make_run("mvr", 0), make_run("mvr", 5), make_run("mvr", 5, false), make_run("mvr-chd", 0),
-          make_run("mvr-chd", 5)};
+  return {make_evaluated_run("mvr", 0), make_evaluated_run("mvr", 5), make_evaluated_run("mvr", 5, false),
+          make_evaluated_run("mvr-chd", 0), make_evaluated_run("mvr-chd", 5)};
 }
 
 // Rows of a Markdown table must have as many cells as the header.

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-TrainOptions make_quick_options() {
+TrainOptions quick_library_options() {
   TrainOptions options;
   options.turntable.step_deg = 120;
   options.turntable.both_sides = false;
@@ -48,7 +48,7 @@ TEST_F(MeshFolder, IsTrainedIntoALibraryThatAFileGivesBack) {
   ASSERT_TRUE(locations.ok()) << locations.error().message;
   ASSERT_EQ(locations->size(), 2U);
   std::vector<std::string> progress;
-  const TrainOptions options = make_quick_options();
+  const TrainOptions options = quick_library_options();
   const Result<ModelLibrary> library =
       train_library(*locations, options, [&](int index, int count, const std::string& name) {
         progress.push_back(std::to_string(index) + "/" + std::to_string(count) + " " + name);
@@ -80,7 +80,7 @@ TEST_F(MeshFolder, AnUnreadableModelNamesItsFile) {
   const Result<std::vector<ModelLocation>> locations = find_models({folder_});
   ASSERT_TRUE(locations.ok());
   fs::resize_file(locations->front().path, 20);
-  const Result<ModelLibrary> library = train_library(*locations, make_quick_options());
+  const Result<ModelLibrary> library = train_library(*locations, quick_library_options());
   ASSERT_FALSE(library.ok());
   EXPECT_THAT(library.error().message, HasSubstr(locations->front().path.filename().string()));
 }
@@ -130,7 +130,7 @@ TEST(TrainObjectFromSource, TakesOverWhatTheSourceKnows) {
   EXPECT_THAT(train_object(source).error().message,
               HasSubstr("'thing': neither training views nor a mesh nor a cloud"));
   source.mesh = object.mesh;
-  const TrainOptions options = make_quick_options();
+  const TrainOptions options = quick_library_options();
   const Result<ObjectModel> from_mesh = train_object(source, options);
   ASSERT_TRUE(from_mesh.ok()) << from_mesh.error().message;
   EXPECT_EQ(from_mesh->name, "thing");
@@ -148,7 +148,7 @@ TEST(TrainObjectFromSource, FindsSymmetriesUnlessTheyAreDeclared) {
   ModelSource source;
   source.name = "can";
   source.mesh = make_procedural_object("plain_can")->mesh;
-  TrainOptions options = make_quick_options();
+  TrainOptions options = quick_library_options();
   const Result<ObjectModel> found = train_object(source, options);
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_EQ(found->symmetries.continuous.size(), 1U);
@@ -166,7 +166,7 @@ TEST(TrainObjectFromSource, FindsWhatOnlyTheTextureDistinguishes) {
   ModelSource source;
   source.name = "soup";
   source.mesh = make_procedural_object("soup_tomato")->mesh;
-  const Result<ObjectModel> found = train_object(source, make_quick_options());
+  const Result<ObjectModel> found = train_object(source, quick_library_options());
   ASSERT_TRUE(found.ok()) << found.error().message;
   EXPECT_TRUE(found->symmetries.none());
   EXPECT_EQ(found->shape_symmetries.continuous.size(), 1U);
@@ -196,12 +196,12 @@ TEST(TrainObjectFromMesh, WithoutAnyColourOnlyItsShapeCounts) {
   object.mesh.texture = {};
   object.mesh.uvs.clear();
   object.mesh.colors.clear();
-  const Result<ObjectModel> bare = train_object("thing", object.mesh, make_quick_options());
+  const Result<ObjectModel> bare = train_object("thing", object.mesh, quick_library_options());
   ASSERT_TRUE(bare.ok()) << bare.error().message;
   EXPECT_TRUE(bare->surface.colors.empty());
   EXPECT_EQ(bare->sift.size(), 0U);
   object.mesh.colors.assign(object.mesh.vertices.size(), Rgb8{200, 30, 20});
-  const Result<ObjectModel> red = train_object("thing", object.mesh, make_quick_options());
+  const Result<ObjectModel> red = train_object("thing", object.mesh, quick_library_options());
   ASSERT_TRUE(red.ok()) << red.error().message;
   EXPECT_TRUE(red->surface.has_colors()) << "a uniform mesh colour is intentional";
   EXPECT_EQ(red->shot.points, bare->shot.points);
@@ -221,18 +221,18 @@ TEST(TrainObjectFromMesh, WithoutAnyColourOnlyItsShapeCounts) {
 }
 
 TEST(TrainObjectFromViews, OneColourInAllPixelsIsNone) {
-  std::vector<TrainingView> views = render_turntable(make_any_object().mesh, make_quick_options().turntable);
+  std::vector<TrainingView> views = render_turntable(make_any_object().mesh, quick_library_options().turntable);
   for (TrainingView& view : views) view.frame.color = Image<Rgb8>(640, 480, Rgb8{0, 0, 255});
-  const Result<ObjectModel> model = train_object("thing", views, make_quick_options());
+  const Result<ObjectModel> model = train_object("thing", views, quick_library_options());
   ASSERT_TRUE(model.ok()) << model.error().message;
   EXPECT_TRUE(model->surface.colors.empty());
   EXPECT_GT(model->surface.size(), 1000U);
   EXPECT_EQ(model->sift.size(), 0U);
   views[1].frame.color(0, 0) = {1, 2, 3};  // beside the object
-  EXPECT_TRUE(train_object("thing", views, make_quick_options())->surface.colors.empty());
+  EXPECT_TRUE(train_object("thing", views, quick_library_options())->surface.colors.empty());
   for (std::size_t i = 0; i < views[1].mask.size(); ++i)
     if (views[1].mask[i] != 0) views[1].frame.color[i] = {1, 2, 3};
-  EXPECT_TRUE(train_object("thing", views, make_quick_options())->surface.has_colors());
+  EXPECT_TRUE(train_object("thing", views, quick_library_options())->surface.has_colors());
 }
 
 ModelSource make_source_of_one_view(const ProceduralObject& object, const TrainOptions& options) {
@@ -245,7 +245,7 @@ ModelSource make_source_of_one_view(const ProceduralObject& object, const TrainO
 
 TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
   const ProceduralObject object = make_any_object();
-  const TrainOptions options = make_quick_options();
+  const TrainOptions options = quick_library_options();
   ModelSource source = make_source_of_one_view(object, options);
   const Result<ObjectModel> from_views = train_object(source, options);
   ASSERT_TRUE(from_views.ok()) << from_views.error().message;
@@ -268,7 +268,7 @@ TEST(TrainObjectFromSource, PrefersViewsForFeaturesAndTheMeshForTheSurface) {
 
 TEST(TrainObjectFromSource, TheViewsDecideWhetherASurfaceOfOneColourHasIt) {
   const ProceduralObject object = make_any_object();
-  const TrainOptions options = make_quick_options();
+  const TrainOptions options = quick_library_options();
   ModelSource source = make_source_of_one_view(object, options);
   source.surface = train_surface("thing", object.mesh, options).value();
   source.surface->colors.assign(source.surface->size(), Rgb8{200, 30, 20});

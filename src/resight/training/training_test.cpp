@@ -75,7 +75,7 @@ Eigen::Vector3f box_normal(const Eigen::Vector3f& p) {
   return n;
 }
 
-TrainOptions make_quick_options() {
+TrainOptions quick_training_options() {
   TrainOptions options;
   options.turntable.step_deg = 90;
   return options;
@@ -125,7 +125,7 @@ void expect_features_on_box(const ObjectModel& model) {
 }
 
 TEST(TrainObjectFromMesh, GivesACompleteSurfaceAndFeaturesOnIt) {
-  const Result<ObjectModel> model = train_object("box", make_printed_box(), make_quick_options());
+  const Result<ObjectModel> model = train_object("box", make_printed_box(), quick_training_options());
   ASSERT_TRUE(model.ok()) << model.error().message;
   EXPECT_EQ(model->name, "box");
   expect_surface_on_box(*model, 0.0015F);
@@ -190,7 +190,7 @@ void expect_same_bytes(const ObjectModel& a, const ObjectModel& b) {
 }
 
 TEST(TrainObject, SameBytesAgainAndForAnyNumberOfThreads) {
-  TrainOptions options = make_quick_options();
+  TrainOptions options = quick_training_options();
   options.turntable.both_sides = false;
   options.turntable.sensor_noise = true;
   const Result<ObjectModel> serial = train_object("box", make_printed_box(), options);
@@ -220,7 +220,7 @@ TEST(TrainObject, MergingLeavesFewerFeatures) {
 TEST(TrainObject, AnObjectWithOneKindOfFeatureIsTrained) {
   TriangleMesh plain = make_printed_box();
   plain.texture = Image<Rgb8>(4, 4, Rgb8{200, 40, 40});
-  TrainOptions options = make_quick_options();
+  TrainOptions options = quick_training_options();
   options.turntable.both_sides = false;
   const Result<ObjectModel> model = train_object("plain box", plain, options);
   ASSERT_TRUE(model.ok()) << model.error().message;
@@ -230,7 +230,7 @@ TEST(TrainObject, AnObjectWithOneKindOfFeatureIsTrained) {
 TEST(TrainObject, AnObjectWithoutAnyFeatureIsAnError) {
   TriangleMesh plain = make_printed_box();
   plain.texture = Image<Rgb8>(4, 4, Rgb8{200, 40, 40});
-  TrainOptions options = make_quick_options();
+  TrainOptions options = quick_training_options();
   options.turntable.both_sides = false;
   options.sift.contrast_threshold = 1e6;
   options.shot.min_neighbors = 1000000;
@@ -264,14 +264,14 @@ TEST(TrainObjectFromViews, EachBadInputHasItsLine) {
   for (const Case& c : cases) {
     std::vector<TrainingView> views = good;
     c.spoil(views);
-    const Result<ObjectModel> model = train_object("box", views, make_quick_options());
+    const Result<ObjectModel> model = train_object("box", views, quick_training_options());
     ASSERT_FALSE(model.ok()) << c.expected;
     EXPECT_THAT(model.error().message, HasSubstr(c.expected));
     EXPECT_THAT(model.error().message, HasSubstr("model 'box'"));
   }
   std::vector<TrainingView> one_empty = good;
   std::ranges::fill(one_empty[0].mask.data(), std::uint8_t{0});  // as if the object left the image
-  const Result<ObjectModel> model = train_object("box", one_empty, make_quick_options());
+  const Result<ObjectModel> model = train_object("box", one_empty, quick_training_options());
   ASSERT_TRUE(model.ok());
   EXPECT_EQ(model->sift.type, FeatureType::kSift);
   EXPECT_EQ(model->shot.type, FeatureType::kShot);
@@ -279,7 +279,7 @@ TEST(TrainObjectFromViews, EachBadInputHasItsLine) {
 
 TEST(TrainObjectFromMesh, EachBadInputHasItsLine) {
   const auto message = [](const TriangleMesh& mesh) {
-    const Result<ObjectModel> model = train_object("box", mesh, make_quick_options());
+    const Result<ObjectModel> model = train_object("box", mesh, quick_training_options());
     return model.ok() ? "trained" : model.error().message;
   };
   EXPECT_THAT(message({}), HasSubstr("model 'box': the mesh has no triangles"));
