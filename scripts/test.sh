@@ -36,7 +36,8 @@ run_clang_tidy() {
   mkdir -p build/tidy
   sed -E 's# -Winvalid-pch| -include [^ ]*cmake_pch.hxx| -Werror| -Wno-(maybe|stringop|subobject)[a-z-]*##g' \
     build/ci/compile_commands.json >build/tidy/compile_commands.json
-  grep -o '"file": "[^"]*' build/tidy/compile_commands.json | cut -d'"' -f4 | grep -E '/Unity/|/apps/|/examples/' | grep -v '_test.dir/' |
+  grep -o '"file": "[^"]*' build/tidy/compile_commands.json | cut -d'"' -f4 |
+    grep -E '/Unity/|/apps/|/examples/' | grep -v '_test.dir/' |
     xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/tidy
 }
 build_consumer() {
