@@ -29,7 +29,7 @@ Evidence classify_slowly(const Eigen::Vector3f& query, const Points& blockers, c
   return evidence;
 }
 
-Points random_points_around(int count, double extent_m, std::uint64_t seed) {
+Points random_points_within(int count, double extent_m, std::uint64_t seed) {
   Rng rng(seed);
   Points points;
   const auto next = [&] { return static_cast<float>(rng.uniform(-extent_m, extent_m)); };
@@ -47,8 +47,8 @@ int count(const std::vector<Evidence>& evidence, Evidence kind) {
 }
 
 TEST(ClassifyOcclusion, AgreesWithAllPairs) {
-  Points queries = random_points_around(2000, 2, 1);
-  Points blockers = random_points_around(1500, 2, 2);
+  Points queries = random_points_within(2000, 2, 1);
+  Points blockers = random_points_within(1500, 2, 2);
   queries[5] = {kNotANumber, 0, 1};
   queries[6] = {0, 0, 0};
   blockers[7] = {0, kNotANumber, 1};
@@ -93,7 +93,7 @@ std::vector<Evidence> classify_in_depth_image(const Points& queries_in_camera, c
 
 TEST(OcclusionTests, SerialIsParallel) {
   const PreparedView view = see(table());
-  const Points queries = random_points_around(30000, 1.5, 9);
+  const Points queries = random_points_within(30000, 1.5, 9);
   const PointCloud blockers = to_point_cloud(view.cloud, nullptr, false);
   const SphericalBins bins;
   EXPECT_EQ(classify_occlusion(queries, blockers.points, bins, 0, 3),

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "resight/evaluation/bop_average_recall.hpp"
+#include "resight/evaluation/pose_at_test.hpp"
 #include "resight/geometry/symmetry.hpp"
 
 namespace resight {
@@ -27,14 +28,13 @@ TriangleMesh plate() {
   return mesh;
 }
 
-Rigid3 bop_pose_at(double x, double y, double z) { return Rigid3::from_translation({x, y, z}); }
 Rigid3 turned(double deg) {
-  return bop_pose_at(0, 0, 1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), deg * std::numbers::pi / 180);
+  return pose_at(0, 0, 1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), deg * std::numbers::pi / 180);
 }
 
 TEST(BopErrors, SurfaceDistanceIsTheFarthestVertexs) {
   const TriangleMesh mesh = plate();
-  EXPECT_NEAR(mssd_m(bop_pose_at(0.03, 0, 1.04), bop_pose_at(0, 0, 1), mesh.vertices, kNone), 0.05, 1e-9);
+  EXPECT_NEAR(mssd_m(pose_at(0.03, 0, 1.04), pose_at(0, 0, 1), mesh.vertices, kNone), 0.05, 1e-9);
   // Rotated by 90 deg, each corner moves to the next one: the side of the square. By 180 deg: the diagonal.
   EXPECT_NEAR(mssd_m(turned(90), turned(0), mesh.vertices, kNone), 0.1, 1e-8);
   EXPECT_NEAR(mssd_m(turned(180), turned(0), mesh.vertices, kNone), 0.1 * std::numbers::sqrt2, 1e-8);
@@ -42,11 +42,11 @@ TEST(BopErrors, SurfaceDistanceIsTheFarthestVertexs) {
 
 TEST(BopErrors, ProjectionDistanceIsInPixels) {
   const TriangleMesh mesh = plate();
-  EXPECT_NEAR(mspd_px(bop_pose_at(0.03, 0, 1), bop_pose_at(0, 0, 1), mesh.vertices, kNone, kCamera), 3.0, 1e-9);
+  EXPECT_NEAR(mspd_px(pose_at(0.03, 0, 1), pose_at(0, 0, 1), mesh.vertices, kNone, kCamera), 3.0, 1e-9);
   // Twice as far: each corner moves from 5 px to 2.5 px off the centre, along both axes.
-  EXPECT_NEAR(mspd_px(bop_pose_at(0, 0, 2), bop_pose_at(0, 0, 1), mesh.vertices, kNone, kCamera),
-              2.5 * std::numbers::sqrt2, 1e-6);
-  EXPECT_TRUE(std::isinf(mspd_px(bop_pose_at(0, 0, -1), bop_pose_at(0, 0, 1), mesh.vertices, kNone, kCamera)));
+  EXPECT_NEAR(mspd_px(pose_at(0, 0, 2), pose_at(0, 0, 1), mesh.vertices, kNone, kCamera), 2.5 * std::numbers::sqrt2,
+              1e-6);
+  EXPECT_TRUE(std::isinf(mspd_px(pose_at(0, 0, -1), pose_at(0, 0, 1), mesh.vertices, kNone, kCamera)));
 }
 
 TEST(BopErrors, SymmetriesAreFree) {
@@ -110,7 +110,7 @@ TEST(BopErrors, DistancesAreAlongTheRay) {
 }
 
 TEST(BopErrors, RenderedDepthIsThePlates) {
-  const Image<float> depth_m = render_object_depth(plate(), kCamera, bop_pose_at(0.001, 0.001, 1));
+  const Image<float> depth_m = render_object_depth(plate(), kCamera, pose_at(0.001, 0.001, 1));
   EXPECT_NEAR(depth_m(10, 10), 1.0F, 1e-6);
   EXPECT_NEAR(depth_m(6, 6), 1.0F, 1e-6);
   EXPECT_TRUE(std::isnan(depth_m(4, 10)));  // The plate begins at -0.049 m, pixel 5.1.
@@ -140,10 +140,10 @@ class BopRecall : public testing::Test {
 };
 
 TEST_F(BopRecall, PerfectAndEmpty) {
-  const BopAverageRecall perfect = recall_of({truth(bop_pose_at(0, 0, 1))}, {{"plate", bop_pose_at(0, 0, 1), 1}});
+  const BopAverageRecall perfect = recall_of({truth(pose_at(0, 0, 1))}, {{"plate", pose_at(0, 0, 1), 1}});
   EXPECT_EQ(perfect.num_targets, 1);
   EXPECT_EQ(perfect.mean(), 1.0);
-  const BopAverageRecall missed = recall_of({truth(bop_pose_at(0, 0, 1))}, {});
+  const BopAverageRecall missed = recall_of({truth(pose_at(0, 0, 1))}, {});
   EXPECT_EQ(missed.num_targets, 1);
   EXPECT_EQ(missed.mean(), 0.0);
   EXPECT_TRUE(std::isnan(recall_of({}, {}).mean()));
@@ -152,33 +152,30 @@ TEST_F(BopRecall, PerfectAndEmpty) {
 TEST_F(BopRecall, CountsThresholdsPassed) {
   // 3 cm to the side: 21.2 % of the diameter passes 25 to 50 %, six of ten thresholds. 3 px pass none of the thresholds
   // of 0.16 to 1.64 px (r = 21 / 640).
-  const BopAverageRecall aside = recall_of({truth(bop_pose_at(0, 0, 1))}, {{"plate", bop_pose_at(0.03, 0, 1), 1}});
+  const BopAverageRecall aside = recall_of({truth(pose_at(0, 0, 1))}, {{"plate", pose_at(0.03, 0, 1), 1}});
   EXPECT_DOUBLE_EQ(aside.mssd, 0.6);
   EXPECT_DOUBLE_EQ(aside.mspd, 0.0);
   // 5.5 mm to the side: 3.9 % of the diameter; 0.55 px pass the thresholds of 0.66 to 1.64 px, seven of ten.
-  const BopAverageRecall near = recall_of({truth(bop_pose_at(0, 0, 1))}, {{"plate", bop_pose_at(0.0055, 0, 1), 1}});
+  const BopAverageRecall near = recall_of({truth(pose_at(0, 0, 1))}, {{"plate", pose_at(0.0055, 0, 1), 1}});
   EXPECT_DOUBLE_EQ(near.mssd, 1.0);
   EXPECT_DOUBLE_EQ(near.mspd, 0.7);
 }
 
 TEST_F(BopRecall, TheBestScoresCountAndHiddenTruthDoesNot) {
   // One target: only the estimate with the highest score counts, and it is wrong.
-  EXPECT_EQ(recall_of({truth(bop_pose_at(0, 0, 1))},
-                      {{"plate", bop_pose_at(0, 0, 1), 0.5}, {"plate", bop_pose_at(0.5, 0, 1), 0.9}})
-                .mssd,
-            0.0);
-  const BopAverageRecall hidden = recall_of({truth(bop_pose_at(0, 0, 1)), truth(bop_pose_at(0.2, 0, 1), 0.05)},
-                                            {{"plate", bop_pose_at(0, 0, 1), 0.5}});
+  EXPECT_EQ(
+      recall_of({truth(pose_at(0, 0, 1))}, {{"plate", pose_at(0, 0, 1), 0.5}, {"plate", pose_at(0.5, 0, 1), 0.9}}).mssd,
+      0.0);
+  const BopAverageRecall hidden =
+      recall_of({truth(pose_at(0, 0, 1)), truth(pose_at(0.2, 0, 1), 0.05)}, {{"plate", pose_at(0, 0, 1), 0.5}});
   EXPECT_EQ(hidden.num_targets, 1);
   EXPECT_EQ(hidden.mssd, 1.0);
   // Two instances, one found: half.
-  EXPECT_EQ(
-      recall_of({truth(bop_pose_at(0, 0, 1)), truth(bop_pose_at(0.2, 0, 1))}, {{"plate", bop_pose_at(0, 0, 1), 0.5}})
-          .mssd,
-      0.5);
+  EXPECT_EQ(recall_of({truth(pose_at(0, 0, 1)), truth(pose_at(0.2, 0, 1))}, {{"plate", pose_at(0, 0, 1), 0.5}}).mssd,
+            0.5);
   // Two estimates of one instance are one hit.
-  EXPECT_EQ(recall_of({truth(bop_pose_at(0, 0, 1)), truth(bop_pose_at(0.2, 0, 1))},
-                      {{"plate", bop_pose_at(0, 0, 1), 0.5}, {"plate", bop_pose_at(0.001, 0, 1), 0.6}})
+  EXPECT_EQ(recall_of({truth(pose_at(0, 0, 1)), truth(pose_at(0.2, 0, 1))},
+                      {{"plate", pose_at(0, 0, 1), 0.5}, {"plate", pose_at(0.001, 0, 1), 0.6}})
                 .mssd,
             0.5);
 }

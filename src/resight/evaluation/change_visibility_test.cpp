@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "resight/evaluation/pose_at_test.hpp"
+
 namespace resight {
 namespace {
 
@@ -18,12 +20,10 @@ ModelLibrary library_of_seen() {
   return library;
 }
 
-Rigid3 at(double x) { return Rigid3::from_translation({x, 0, 1}); }
-
 GroundTruthObject mug_at(double x, double visible_share) {
   GroundTruthObject mug;
   mug.object = "mug";
-  mug.camera_from_object = at(x);
+  mug.camera_from_object = pose_at(x);
   mug.visible_share = visible_share;
   return mug;
 }
@@ -31,7 +31,7 @@ GroundTruthObject mug_at(double x, double visible_share) {
 // A mug that is moved from one place to another before the second view.
 SequenceTruth move_mug(std::size_t num_views) {
   SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)}};
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, pose_at(0), pose_at(0.3)}};
   truth.views.resize(num_views);
   return truth;
 }
@@ -71,9 +71,9 @@ TEST(ChangeVisibilityFinder, AHiddenPlaceIsNotSeen) {
 TEST(ChangeVisibilityFinder, WhatWasSeenBeforeItCameBackWasNotSeen) {
   const ModelLibrary library = library_of_seen();
   SequenceTruth truth;
-  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, at(0), at(0.3)},
-                                          {2, Kind::kMoved, "mug", true, at(0.3), at(0)},
-                                          {4, Kind::kMoved, "mug", true, at(0), at(-0.3)}};
+  truth.changes = std::vector<TrueChange>{{1, Kind::kMoved, "mug", true, pose_at(0), pose_at(0.3)},
+                                          {2, Kind::kMoved, "mug", true, pose_at(0.3), pose_at(0)},
+                                          {4, Kind::kMoved, "mug", true, pose_at(0), pose_at(-0.3)}};
   truth.views.resize(5);
   truth.views[0].objects = {mug_at(0, 0.5)};
   truth.views[2].objects = truth.views[3].objects = {mug_at(0, 0.02)};

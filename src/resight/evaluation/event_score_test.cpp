@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "resight/evaluation/pose_at_test.hpp"
+
 namespace resight {
 namespace {
 
@@ -17,10 +19,8 @@ ModelLibrary library_of_changes() {
   return library;
 }
 
-Rigid3 place_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
-
-const TrueChange kMove{4, Kind::kMoved, "mug", true, place_at(0), place_at(0.3)};
-const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, place_at(-0.3), std::nullopt};
+const TrueChange kMove{4, Kind::kMoved, "mug", true, pose_at(0), pose_at(0.3)};
+const TrueChange kRemoval{6, Kind::kRemoved, "soup", true, pose_at(-0.3), std::nullopt};
 const ChangeVisibility kAtOnce{4, 5, 3, 3};
 
 EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeVisibility>& visibilities,
@@ -29,9 +29,9 @@ EventScore score(const std::vector<TrueChange>& truth, const std::vector<ChangeV
 }
 
 TEST(EventScore, RightKindPlacesAndTime) {
-  const EventScore s = score(
-      {kMove, kRemoval}, {kAtOnce, {6, -1, 5, -1}},
-      {{7, Kind::kMoved, "mug", place_at(0.01), place_at(0.29)}, {6, Kind::kRemoved, "soup", place_at(-0.3), {}}});
+  const EventScore s =
+      score({kMove, kRemoval}, {kAtOnce, {6, -1, 5, -1}},
+            {{7, Kind::kMoved, "mug", pose_at(0.01), pose_at(0.29)}, {6, Kind::kRemoved, "soup", pose_at(-0.3), {}}});
   EXPECT_EQ(s.events, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.departures, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
@@ -39,29 +39,29 @@ TEST(EventScore, RightKindPlacesAndTime) {
 }
 
 TEST(EventScore, AMoveReportedAsRemovalAndAdditionHasItsPlacesRight) {
-  const EventScore s = score(
-      {kMove}, {kAtOnce}, {{4, Kind::kRemoved, "mug", place_at(0), {}}, {5, Kind::kAdded, "mug", {}, place_at(0.3)}});
+  const EventScore s = score({kMove}, {kAtOnce},
+                             {{4, Kind::kRemoved, "mug", pose_at(0), {}}, {5, Kind::kAdded, "mug", {}, pose_at(0.3)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 2, 1}));
   EXPECT_EQ(s.departures, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(s.arrivals, (RecognitionScore{1, 0, 0}));
 }
 
 TEST(EventScore, TooEarlyElsewhereOrTwiceIsWrong) {
-  EXPECT_EQ(score({kMove}, {kAtOnce}, {{3, Kind::kMoved, "mug", place_at(0), place_at(0.3)}}).events,
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{3, Kind::kMoved, "mug", pose_at(0), pose_at(0.3)}}).events,
             (RecognitionScore{0, 1, 1}));
-  EXPECT_EQ(score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", place_at(0), place_at(0.4)}}).events,
+  EXPECT_EQ(score({kMove}, {kAtOnce}, {{5, Kind::kMoved, "mug", pose_at(0), pose_at(0.4)}}).events,
             (RecognitionScore{0, 1, 1}));
-  EXPECT_EQ(score({kMove}, {kAtOnce},
-                  {{5, Kind::kMoved, "mug", place_at(0), place_at(0.3)},
-                   {8, Kind::kMoved, "mug", place_at(0), place_at(0.3)}})
-                .events,
-            (RecognitionScore{1, 1, 0}));
+  EXPECT_EQ(
+      score({kMove}, {kAtOnce},
+            {{5, Kind::kMoved, "mug", pose_at(0), pose_at(0.3)}, {8, Kind::kMoved, "mug", pose_at(0), pose_at(0.3)}})
+          .events,
+      (RecognitionScore{1, 1, 0}));
 }
 
 TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
-  const ReportedChange as_removal{5, Kind::kRemoved, "mug", place_at(0), {}};
-  const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, place_at(0.3)};
-  const ReportedChange as_move{5, Kind::kMoved, "mug", place_at(0), place_at(0.3)};
+  const ReportedChange as_removal{5, Kind::kRemoved, "mug", pose_at(0), {}};
+  const ReportedChange as_addition{5, Kind::kAdded, "mug", {}, pose_at(0.3)};
+  const ReportedChange as_move{5, Kind::kMoved, "mug", pose_at(0), pose_at(0.3)};
   const ChangeVisibility only_left{4, -1, 3, 3};
   EXPECT_EQ(score({kMove}, {only_left}, {as_removal}).events, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(score({kMove}, {only_left}, {as_move}).events, (RecognitionScore{1, 0, 0}));
@@ -77,16 +77,16 @@ TEST(EventScore, OfAMoveTheSideThatTheViewsShowCounts) {
 TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   const ChangeVisibility nothing{-1, -1};
   EXPECT_EQ(score({kMove}, {nothing}, {}).events, (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", place_at(0), place_at(0.3)}}).events,
+  EXPECT_EQ(score({kMove}, {nothing}, {{6, Kind::kMoved, "mug", pose_at(0), pose_at(0.3)}}).events,
             (RecognitionScore{0, 0, 0}));
   const ChangeVisibility came_unseen{-1, 5, -1, -1};
-  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, place_at(0.3)}}).events,
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kAdded, "mug", {}, pose_at(0.3)}}).events,
             (RecognitionScore{0, 0, 0}));
-  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", place_at(0), {}}}).events,
+  EXPECT_EQ(score({kMove}, {came_unseen}, {{6, Kind::kRemoved, "mug", pose_at(0), {}}}).events,
             (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).events, (RecognitionScore{0, 0, 0})) << "never observed before";
   EXPECT_EQ(score({kRemoval}, {{6, -1, -1}}, {}).departures, (RecognitionScore{0, 0, 0}));
-  const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, place_at(0.3)};
+  const TrueChange addition{4, Kind::kAdded, "mug", true, std::nullopt, pose_at(0.3)};
   EXPECT_EQ(score({addition}, {{-1, 5, -1, 3}}, {}).events, (RecognitionScore{0, 0, 1}));
   const ChangeVisibility first_look{-1, 5, 0, -1};  // It may have been there.
   EXPECT_EQ(score({addition}, {first_look}, {}).events, (RecognitionScore{0, 0, 0}));
@@ -99,7 +99,7 @@ TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
   of_stranger.known = false;
   const EventScore s =
       score({of_stranger}, {{6, -1, 5, -1}},
-            {{6, Kind::kFound, "mug", {}, place_at(0)}, {6, Kind::kStillThere, "mug", place_at(0), place_at(0)}});
+            {{6, Kind::kFound, "mug", {}, pose_at(0)}, {6, Kind::kStillThere, "mug", pose_at(0), pose_at(0)}});
   EXPECT_EQ(s.events, (RecognitionScore{0, 0, 0}));
 }
 

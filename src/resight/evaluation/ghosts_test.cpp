@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "resight/evaluation/pose_at_test.hpp"
+
 namespace resight {
 namespace {
 
@@ -16,8 +18,6 @@ ModelLibrary library_of_ghosts() {
   library.objects[1].name = "tin";
   return library;
 }
-
-Rigid3 ghost_at(double x, double z = 1) { return Rigid3::from_translation({x, 0, z}); }
 
 GroundTruthObject object_at(const std::string& name, const Rigid3& camera_from_object) {
   GroundTruthObject object;
@@ -30,7 +30,7 @@ GroundTruthObject object_at(const std::string& name, const Rigid3& camera_from_o
 TruthView view_at(double camera_x, const std::vector<std::pair<std::string, double>>& object_x_in_world) {
   TruthView view;
   view.world_from_camera = Rigid3::from_translation({camera_x, 0, 0});
-  for (const auto& [name, x] : object_x_in_world) view.objects.push_back(object_at(name, ghost_at(x - camera_x)));
+  for (const auto& [name, x] : object_x_in_world) view.objects.push_back(object_at(name, pose_at(x - camera_x)));
   return view;
 }
 
@@ -39,10 +39,10 @@ std::vector<Ghost> ghosts_of(const std::vector<FormerPlace>& places, const Truth
   return find_ghosts(places, truth, view, detections, make_kinect_camera(), library_of_ghosts());
 }
 
-const std::vector<FormerPlace> kMugLeft = {{"mug", ghost_at(0.1), 2}};
+const std::vector<FormerPlace> kMugLeft = {{"mug", pose_at(0.1), 2}};
 
 TEST(FindGhosts, CountsADetectionAtTheOldPlace) {
-  const auto ghosts = ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.5), 1}, {"mug", ghost_at(0.12), 1}});
+  const auto ghosts = ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", pose_at(0.5), 1}, {"mug", pose_at(0.12), 1}});
   ASSERT_EQ(ghosts.size(), 1U);
   EXPECT_EQ(ghosts[0].detection, 1);
   EXPECT_EQ(ghosts[0].place, 0);
@@ -50,50 +50,50 @@ TEST(FindGhosts, CountsADetectionAtTheOldPlace) {
 }
 
 TEST(FindGhosts, FindsTheOldPlaceFromAMovedCamera) {
-  const auto ghosts = ghosts_of(kMugLeft, view_at(0.3, {}), 3, {{"mug", ghost_at(-0.2), 1}});
+  const auto ghosts = ghosts_of(kMugLeft, view_at(0.3, {}), 3, {{"mug", pose_at(-0.2), 1}});
   EXPECT_EQ(ghosts.size(), 1U);
 }
 
 TEST(FindGhosts, AnotherObjectOrAnotherPoseIsNoGhost) {
-  const Rigid3 upside_down = ghost_at(0.1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), std::numbers::pi);
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"tin", ghost_at(0.1), 1}}).empty());
+  const Rigid3 upside_down = pose_at(0.1) * Rigid3::from_axis_angle(Eigen::Vector3d::UnitX(), std::numbers::pi);
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"tin", pose_at(0.1), 1}}).empty());
   EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", upside_down, 1}}).empty());
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.16), 1}}).empty());
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", pose_at(0.16), 1}}).empty());
 }
 
 TEST(FindGhosts, APlaceIsFormerOnlyAfterItsLastView) {
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 2, {{"mug", ghost_at(0.1), 1}}).empty());
-  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", ghost_at(0.1), 1}}).size(), 1U);
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {}), 2, {{"mug", pose_at(0.1), 1}}).empty());
+  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {}), 3, {{"mug", pose_at(0.1), 1}}).size(), 1U);
 }
 
 TEST(FindGhosts, APresentObjectExplainsTheDetection) {
-  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {{"mug", 0.13}}), 3, {{"mug", ghost_at(0.1), 1}}).empty())
+  EXPECT_TRUE(ghosts_of(kMugLeft, view_at(0, {{"mug", 0.13}}), 3, {{"mug", pose_at(0.1), 1}}).empty())
       << "moved by 3 cm: the same detection is right";
   TruthView hidden = view_at(0, {{"mug", 0.1}});
   hidden.objects[0].visible_share = 0;
-  EXPECT_TRUE(ghosts_of(kMugLeft, hidden, 3, {{"mug", ghost_at(0.1), 1}}).empty());
-  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {{"tin", 0.1}}), 3, {{"mug", ghost_at(0.1), 1}}).size(), 1U)
+  EXPECT_TRUE(ghosts_of(kMugLeft, hidden, 3, {{"mug", pose_at(0.1), 1}}).empty());
+  EXPECT_EQ(ghosts_of(kMugLeft, view_at(0, {{"tin", 0.1}}), 3, {{"mug", pose_at(0.1), 1}}).size(), 1U)
       << "a tin in its place does not explain a mug";
 }
 
 TEST(FindGhosts, PlacesOutOfViewSayNothing) {
   const TruthView looks_elsewhere = view_at(3, {});
-  EXPECT_TRUE(ghosts_of(kMugLeft, looks_elsewhere, 3, {{"mug", ghost_at(0.1 - 3), 1}}).empty());
+  EXPECT_TRUE(ghosts_of(kMugLeft, looks_elsewhere, 3, {{"mug", pose_at(0.1 - 3), 1}}).empty());
   TruthView turned_away = view_at(0, {});
   turned_away.world_from_camera = Rigid3::from_axis_angle(Eigen::Vector3d::UnitY(), std::numbers::pi);
-  const Rigid3 behind = turned_away.world_from_camera.inverse() * ghost_at(0.1);
+  const Rigid3 behind = turned_away.world_from_camera.inverse() * pose_at(0.1);
   EXPECT_TRUE(ghosts_of(kMugLeft, turned_away, 3, {{"mug", behind, 1}}).empty());
 }
 
 TEST(FindGhosts, ChoosesTheNearestOfSeveralPlaces) {
-  const std::vector<FormerPlace> places = {{"mug", ghost_at(0.10), 0}, {"mug", ghost_at(0.14), 1}};
-  const auto ghosts = ghosts_of(places, view_at(0, {}), 2, {{"mug", ghost_at(0.13), 1}});
+  const std::vector<FormerPlace> places = {{"mug", pose_at(0.10), 0}, {"mug", pose_at(0.14), 1}};
+  const auto ghosts = ghosts_of(places, view_at(0, {}), 2, {{"mug", pose_at(0.13), 1}});
   ASSERT_EQ(ghosts.size(), 1U);
   EXPECT_EQ(ghosts[0].place, 1);
 }
 
 TEST(FindGhosts, RefusesNonsense) {
-  EXPECT_THROW((void)ghosts_of({}, view_at(0, {}), 0, {{"lamp", ghost_at(0), 1}}), std::invalid_argument);
+  EXPECT_THROW((void)ghosts_of({}, view_at(0, {}), 0, {{"lamp", pose_at(0), 1}}), std::invalid_argument);
   EXPECT_THROW((void)find_ghosts({}, {}, 0, {}, Camera{}, library_of_ghosts()), std::invalid_argument);
 }
 

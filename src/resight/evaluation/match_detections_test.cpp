@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "resight/core/random.hpp"
+#include "resight/evaluation/pose_at_test.hpp"
 
 namespace resight {
 namespace {
@@ -37,7 +38,6 @@ ModelLibrary library_to_match() {
   return library;
 }
 
-Rigid3 pose_at(double x, double y = 0, double z = 1) { return Rigid3::from_translation({x, y, z}); }
 Rigid3 pose_turned(double angle_deg, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) {
   return Rigid3::from_axis_angle(axis, angle_deg * kPi / 180);
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "resight/evaluation/out_of_image.hpp"
+#include "resight/evaluation/pose_at_test.hpp"
 
 namespace resight {
 namespace {
@@ -21,7 +22,6 @@ ModelLibrary make_library() {
   return library;
 }
 
-Rigid3 scored_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
 Rigid3 turned(const Rigid3& pose, double deg) {
   return pose * Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), deg * std::numbers::pi / 180);
 }
@@ -41,8 +41,8 @@ EvaluatedView score(const std::vector<GroundTruthObject>& truth, const std::vect
 }
 
 TEST(ScoreView, PerfectIsAllFoundAtBothTolerances) {
-  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))},
-                                   {{"mug", scored_at(0), 0.9}, {"soup", turned(scored_at(0.304), 3), 0.8}});
+  const EvaluatedView view = score({object("mug", pose_at(0)), object("soup", pose_at(0.3))},
+                                   {{"mug", pose_at(0), 0.9}, {"soup", turned(pose_at(0.304), 3), 0.8}});
   EXPECT_EQ(view.score, (RecognitionScore{2, 0, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{2, 0, 0}));
   ASSERT_EQ(view.truth.size(), 2U);
@@ -54,14 +54,14 @@ TEST(ScoreView, PerfectIsAllFoundAtBothTolerances) {
 }
 
 TEST(ScoreView, NothingReportedIsAllMissed) {
-  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))}, {});
+  const EvaluatedView view = score({object("mug", pose_at(0)), object("soup", pose_at(0.3))}, {});
   EXPECT_EQ(view.score, (RecognitionScore{0, 0, 2}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{0, 0, 2}));
   EXPECT_TRUE(std::isnan(view.truth[0].center_error_m));
 }
 
 TEST(ScoreView, BetweenTheTolerances) {
-  const EvaluatedView view = score({object("mug", scored_at(0))}, {{"mug", scored_at(0.02), 1}});
+  const EvaluatedView view = score({object("mug", pose_at(0))}, {{"mug", pose_at(0.02), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 0, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{0, 1, 1}));
   EXPECT_TRUE(view.truth[0].found);
@@ -69,29 +69,29 @@ TEST(ScoreView, BetweenTheTolerances) {
 }
 
 TEST(ScoreView, SwappedIdentitiesCostTwice) {
-  const EvaluatedView view = score({object("mug", scored_at(0)), object("soup", scored_at(0.3))},
-                                   {{"soup", scored_at(0), 1}, {"mug", scored_at(0.3), 1}});
+  const EvaluatedView view = score({object("mug", pose_at(0)), object("soup", pose_at(0.3))},
+                                   {{"soup", pose_at(0), 1}, {"mug", pose_at(0.3), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{0, 2, 2}));
 }
 
 TEST(ScoreView, ASecondDetectionOfOneObjectIsWrong) {
   const EvaluatedView view =
-      score({object("mug", scored_at(0))}, {{"mug", scored_at(0.01), 0.9}, {"mug", scored_at(0), 0.2}});
+      score({object("mug", pose_at(0))}, {{"mug", pose_at(0.01), 0.9}, {"mug", pose_at(0), 0.2}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kCorrect);  // The nearer one.
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kFalsePositive);
 }
 
 TEST(ScoreView, RotationsAboutASymmetryAxisAreFree) {
-  EXPECT_EQ(score({object("can", scored_at(0))}, {{"can", turned(scored_at(0), 137), 1}}).strict_score,
+  EXPECT_EQ(score({object("can", pose_at(0))}, {{"can", turned(pose_at(0), 137), 1}}).strict_score,
             (RecognitionScore{1, 0, 0}));
-  EXPECT_EQ(score({object("mug", scored_at(0))}, {{"mug", turned(scored_at(0), 137), 1}}).score,
+  EXPECT_EQ(score({object("mug", pose_at(0))}, {{"mug", turned(pose_at(0), 137), 1}}).score,
             (RecognitionScore{0, 1, 1}));
 }
 
 TEST(ScoreView, HiddenTruthIsNeitherHitNorMiss) {
   const EvaluatedView view =
-      score({object("mug", scored_at(0), 0.04), object("soup", scored_at(0.3), 0.04)}, {{"mug", scored_at(0), 1}});
+      score({object("mug", pose_at(0), 0.04), object("soup", pose_at(0.3), 0.04)}, {{"mug", pose_at(0), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{0, 0, 0}));
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kIgnored);
   EXPECT_FALSE(view.truth[0].counts);
@@ -99,18 +99,18 @@ TEST(ScoreView, HiddenTruthIsNeitherHitNorMiss) {
 }
 
 TEST(ScoreView, TwoOfAKindAreTwo) {
-  const std::vector<GroundTruthObject> twins{object("mug", scored_at(0)), object("mug", scored_at(0.3), 1, 1)};
-  EXPECT_EQ(score(twins, {{"mug", scored_at(0.3), 1}, {"mug", scored_at(0), 1}}).score, (RecognitionScore{2, 0, 0}));
-  const EvaluatedView one = score(twins, {{"mug", scored_at(0.3), 1}});
+  const std::vector<GroundTruthObject> twins{object("mug", pose_at(0)), object("mug", pose_at(0.3), 1, 1)};
+  EXPECT_EQ(score(twins, {{"mug", pose_at(0.3), 1}, {"mug", pose_at(0), 1}}).score, (RecognitionScore{2, 0, 0}));
+  const EvaluatedView one = score(twins, {{"mug", pose_at(0.3), 1}});
   EXPECT_EQ(one.score, (RecognitionScore{1, 0, 1}));
   EXPECT_FALSE(one.truth[0].found);
   EXPECT_TRUE(one.truth[1].found);
 }
 
 TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
-  const EvaluatedView view = score({object("stranger", scored_at(-0.3)), object("mug", scored_at(0)),
-                                    object("stranger", scored_at(0.1)), object("soup", scored_at(0.3))},
-                                   {{"soup", scored_at(0.3), 1}});
+  const EvaluatedView view = score({object("stranger", pose_at(-0.3)), object("mug", pose_at(0)),
+                                    object("stranger", pose_at(0.1)), object("soup", pose_at(0.3))},
+                                   {{"soup", pose_at(0.3), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 0, 1}));
   ASSERT_EQ(view.truth.size(), 2U);
   EXPECT_EQ(view.truth[1].object, "soup");
@@ -119,8 +119,8 @@ TEST(ScoreView, TruthOfUnknownObjectsIsLeftOutAndMixesNothingUp) {
 
 // The Kinect covers +-0.61 m at a distance of 1 m.
 TEST(ScoreView, ObjectsOutsideTheImageAreNotScored) {
-  const EvaluatedView view = score({object("mug", scored_at(0))},
-                                   {{"mug", scored_at(0), 1}, {"soup", scored_at(0.7), 1}, {"can", scored_at(0.5), 1}});
+  const EvaluatedView view =
+      score({object("mug", pose_at(0))}, {{"mug", pose_at(0), 1}, {"soup", pose_at(0.7), 1}, {"can", pose_at(0.5), 1}});
   EXPECT_EQ(view.score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.strict_score, (RecognitionScore{1, 1, 0}));
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kIgnored);
@@ -131,15 +131,15 @@ TEST(ShareInImage, CountsSurfacePointsWithinTheBorder) {
   ObjectModel model;
   for (int i = 0; i < 10; ++i) model.surface.points.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   // The right border is at x = 320 / 525 = 0.6095 m: of 0.56 to 0.65 m, the first five are inside.
-  EXPECT_DOUBLE_EQ(share_in_image(model, scored_at(0.56), make_kinect_camera()), 0.5);
-  EXPECT_EQ(share_in_image(model, scored_at(0), make_kinect_camera()), 1.0);
+  EXPECT_DOUBLE_EQ(share_in_image(model, pose_at(0.56), make_kinect_camera()), 0.5);
+  EXPECT_EQ(share_in_image(model, pose_at(0), make_kinect_camera()), 1.0);
   EXPECT_EQ(share_in_image(model, Rigid3::from_translation({0, 0, -1}), make_kinect_camera()), 0.0);
 }
 
 TEST(ScoreView, ADetectionAtAPlaceLeftIsAGhost) {
-  const std::vector<FormerPlace> left{{"mug", scored_at(0), 3}};
+  const std::vector<FormerPlace> left{{"mug", pose_at(0), 3}};
   const EvaluatedView view =
-      score({object("soup", scored_at(0.3))}, {{"mug", scored_at(0.01), 1}, {"mug", scored_at(-0.3), 1}}, left);
+      score({object("soup", pose_at(0.3))}, {{"mug", pose_at(0.01), 1}, {"mug", pose_at(-0.3), 1}}, left);
   EXPECT_EQ(view.detections[0].verdict, DetectionVerdict::kGhost);
   EXPECT_EQ(view.detections[1].verdict, DetectionVerdict::kFalsePositive);
   EXPECT_EQ(view.score, (RecognitionScore{0, 2, 1}));

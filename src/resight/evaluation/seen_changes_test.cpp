@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "resight/evaluation/event_score.hpp"
+#include "resight/evaluation/pose_at_test.hpp"
 
 namespace resight {
 namespace {
 
 using Kind = ObjectEventKind;
 
-Rigid3 seen_at(double x) { return Rigid3::from_translation({x, 0, 1}); }
-const Rigid3 kA = seen_at(0), kB = seen_at(0.3), kC = seen_at(-0.3), kD = seen_at(0.6);
+const Rigid3 kA = pose_at(0), kB = pose_at(0.3), kC = pose_at(-0.3), kD = pose_at(0.6);
 
 class SeenChangesTest : public ::testing::Test {
  protected:
