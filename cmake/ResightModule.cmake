@@ -47,7 +47,8 @@ endfunction()
 # anonymous namespaces must therefore be unique among the sources of a module, and among its tests.
 function(resight_speed_up_build target)
   cmake_parse_arguments(ARG "" "REUSE_FROM" "" ${ARGN})
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RESIGHT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 12)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${RESIGHT_UNITY_BUILD}
+                                             UNITY_BUILD_BATCH_SIZE ${RESIGHT_UNITY_BATCH_SIZE})
   if(RESIGHT_PRECOMPILED_HEADERS AND ARG_REUSE_FROM)
     target_precompile_headers(${target} REUSE_FROM ${ARG_REUSE_FROM})
     target_include_directories(${target} SYSTEM PRIVATE # of the precompiled header, for tools that read it anew

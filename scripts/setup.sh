@@ -17,7 +17,7 @@ packages=(
 )
 for option in "$@"; do
   case "$option" in
-    --tests) packages+=(libgtest-dev libgmock-dev clang-format clang-tidy graphviz) ;;
+    --tests) packages+=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format clang-tidy graphviz) ;;
     --bench) packages+=(libbenchmark-dev) ;;
     --baselines) packages+=(libpcl-dev libopencv-flann-dev) ;;
     *) echo "setup.sh: unknown option '$option' (expected --tests, --bench or --baselines)" >&2; exit 2 ;;

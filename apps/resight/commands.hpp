@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "resight/core/result.hpp"
+#include "resight/io/sequence.hpp"
 
 namespace resight::app {
 
@@ -25,6 +26,11 @@ T value_or_throw(Result<T> result) {
 }
 inline void value_or_throw(const Result<void>& result) {
   if (!result.ok()) throw InputError(result.error().message);
+}
+
+/// The format of `--format`, whose values the command line has checked.
+inline DatasetFormat to_format(const std::string& name) {
+  return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
 }
 
 /// Three decimals, or "-" for NaN.

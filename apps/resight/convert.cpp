@@ -18,8 +18,6 @@ namespace {
 constexpr double kSurfaceVoxel_m = 0.002;  // Of 3D_model.pcd.
 constexpr double kSamplesPerSquareMetre = 4 / (kSurfaceVoxel_m * kSurfaceVoxel_m);
 
-DatasetFormat to_format(const std::string& name) { return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw; }
-
 // A TUW model consists of views, so a mesh is rendered on a virtual turntable.
 std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& models,
                                            const ConvertArguments& arguments) {

@@ -22,8 +22,6 @@ constexpr const char* kTurntableRecording = "turntable-recording";
 constexpr const char* kWalkRecording = "walk-recording";
 constexpr const char* kRecordedObject = "milk_carton";
 
-DatasetFormat to_format(const std::string& name) { return name == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw; }
-
 WriteSimulationOptions write_options(const SimulateArguments& arguments, Progress& progress) {
   WriteSimulationOptions options;
   options.turntable.num_threads = arguments.num_threads;

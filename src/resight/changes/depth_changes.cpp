@@ -7,25 +7,19 @@
 #include <utility>
 
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/rigid3.hpp"
 #include "resight/sensor/pixel_components.hpp"
 
 namespace resight {
 namespace {
 
-constexpr double kSamePose = 1e-6;  // Metres and radians: far below a pixel.
-constexpr int kMaxGap_px = 2;       // Within a region: the pixels of one view do not cover all of another's.
+constexpr int kMaxGap_px = 2;  // Within a region: the pixels of one view do not cover all of another's.
 
 /// What a view and an earlier one say about each other.
 struct PairEvidence {
   Image<Evidence> of_view;     ///< What the earlier view says about the pixels of the view.
   Image<Evidence> of_earlier;  ///< The reverse.
 };
-
-/// Then pixels of both views show the same rays.
-bool is_same_pose(const Rigid3& a, const Rigid3& b) {
-  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kSamePose &&
-         (a.translation - b.translation).norm() < kSamePose;
-}
 
 PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
                                int num_threads) {

@@ -65,6 +65,14 @@ struct Rigid3f {
   return std::atan2(0.5 * skew.norm(), 0.5 * (r.trace() - 1.0));
 }
 
+/// Whether two cameras at these poses see the same rays: equal within 1e-6 (m, and entries of the rotation), which is
+/// far below a pixel.
+[[nodiscard]] inline bool is_same_pose(const Rigid3& a, const Rigid3& b) {
+  constexpr double kTolerance = 1e-6;
+  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kTolerance &&
+         (a.translation - b.translation).cwiseAbs().maxCoeff() < kTolerance;
+}
+
 /// The nearest proper rotation (by SVD), for matrices read from text with few digits.
 [[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m);
 

@@ -75,6 +75,13 @@ TEST(Rigid3, IsRigidRefusesWhatIsNone) {
   EXPECT_TRUE(scaled.is_rigid(0.1));
 }
 
+TEST(Rigid3, SamePoseIgnoresRoundingOnly) {
+  const Rigid3 pose{Rigid3::from_axis_angle({1, 2, 3}, 0.7).rotation, {0.1, -2, 3}};
+  EXPECT_TRUE(is_same_pose(pose, pose.inverse().inverse()));
+  EXPECT_FALSE(is_same_pose(pose, pose * Rigid3::from_translation({0, 1e-5, 0})));
+  EXPECT_FALSE(is_same_pose(pose, pose * Rigid3::from_axis_angle({0, 0, 1}, 1e-5)));
+}
+
 // The quaternion of a very small angle keeps the angle in its vector part without loss.
 TEST(RotationAngle, IsExactFromZeroToPi) {
   Rng rng(3);

@@ -19,7 +19,7 @@ namespace {
 constexpr double kThin_m = 0.005;
 // Samples of the mesh per point of the cloud.
 constexpr double kSamplesPerPoint = 4;
-constexpr int kCropMargin_px = 10;
+constexpr int kTrainingMargin_px = 10;
 
 double degrees(double rad) { return rad * 180 / std::numbers::pi; }
 
@@ -81,7 +81,7 @@ double count_keypoints(std::span<const TrainingView> views, std::span<const int>
   if (key_views.empty()) return 0;
   std::vector<double> counts(key_views.size());
   parallel_for(key_views.size(), options.num_threads, [&](std::size_t k) {
-    TrainingView part = crop_to_object(views[key_views[k]], kCropMargin_px);
+    TrainingView part = crop_to_object(views[key_views[k]], kTrainingMargin_px);
     if (part.mask.empty()) return;
     counts[k] = static_cast<double>(extract_sift(prepare_view(std::move(part.frame)), options.sift, &part.mask).size());
   });

@@ -21,12 +21,6 @@ constexpr double kMaxCostRatio = 0.9;
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
 constexpr double kBrightnessSigma = 12;
 
-bool is_same_pose(const Rigid3& a, const Rigid3& b) {
-  constexpr double kRounding = 1e-9;
-  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kRounding &&
-         (a.translation - b.translation).cwiseAbs().maxCoeff() < kRounding;
-}
-
 }  // namespace
 
 CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_(options) {

@@ -245,25 +245,28 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
   return all;
 }
 
-// Orthonormal basis of the motions that the information constrains, one per column.
-Eigen::Matrix<double, 6, Eigen::Dynamic> known_motions(const Matrix6& information) {
+// Projection onto the motions that the information constrains.
+Matrix6 onto_known_motions(const Matrix6& information) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
-  int num_open = 0;
-  while (num_open < 6 && !(solver.eigenvalues()[num_open] > kMinEigenvalueRatio * solver.eigenvalues()[5])) ++num_open;
-  return solver.eigenvectors().rightCols(6 - num_open);
+  Matrix6 projection = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const Twist motion = solver.eigenvectors().col(i);
+    if (solver.eigenvalues()[i] > kMinEigenvalueRatio * solver.eigenvalues()[5])
+      projection += motion * motion.transpose();
+  }
+  return projection;
 }
 
 // Least-squares step. Directions that neither data nor prior constrain stay unchanged.
 Twist solve_step(const Matrix6& h, const Matrix6& unbiased, const Twist& g) {
-  const auto motions = known_motions(unbiased);
-  if (motions.cols() == 0) return Twist::Zero();
-  return -motions * (motions.transpose() * h * motions).ldlt().solve(motions.transpose() * g);
+  const Matrix6 known = onto_known_motions(unbiased);
+  const Matrix6 regular = known * h * known + (Matrix6::Identity() - known);
+  return -known * Twist(regular.ldlt().solve(known * g));
 }
 
 Matrix6 known_information(const Matrix6& unbiased) {
-  const auto motions = known_motions(unbiased);
-  const Matrix6 onto_known = motions * motions.transpose();
-  return onto_known * unbiased * onto_known;
+  const Matrix6 known = onto_known_motions(unbiased);
+  return known * unbiased * known;
 }
 
 Twist prior_information(const AlignViewOptions& options) {

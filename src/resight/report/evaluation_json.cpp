@@ -5,19 +5,15 @@
 #include <numeric>
 
 #include "resight/report/evaluation_report.hpp"
+#include "resight/report/internal/score_json.hpp"
 
 namespace resight {
 namespace {
 
+using report::score_json;
 using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json score_json(const RecognitionScore& score) {
-  return {{"true_positives", score.true_positives},   {"false_positives", score.false_positives},
-          {"false_negatives", score.false_negatives}, {"precision", number(score.precision())},
-          {"recall", number(score.recall())},         {"f_score", number(score.f_score())}};
-}
 
 Json points_json(const ChangePointScore& score) {
   return {{"reported", score.reported},

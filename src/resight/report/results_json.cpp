@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/core/check.hpp"
+#include "resight/report/internal/score_json.hpp"
 #include "resight/report/results.hpp"
 
 namespace resight {
 namespace {
 
+using report::score_json;
 using Json = nlohmann::ordered_json;
 
 const ObjectModel& model_of(int object, const ModelLibrary& library) {
@@ -76,15 +78,6 @@ Json event_json(const ObjectEvent& event, const ModelLibrary& library) {
           {"world_from_object_before", optional_pose_json(event.world_from_object_before)},
           {"world_from_object_after", optional_pose_json(event.world_from_object_after)},
           {"confidence", event.confidence}};
-}
-
-Json score_json(const RecognitionScore& score) {
-  return {{"true_positives", score.true_positives},
-          {"false_positives", score.false_positives},
-          {"false_negatives", score.false_negatives},
-          {"precision", score.precision()},
-          {"recall", score.recall()},
-          {"f_score", score.f_score()}};
 }
 
 Json stage_times_json(const StageTimes& times, int num_views) {
