@@ -63,14 +63,14 @@ build_asan() {
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   find build/asan-ubsan/src/resight -name 'resight_*_test' -type f -executable |
-    xargs -P "$num_jobs" -I{} {} --gtest_brief=1
+    xargs -P "$num_jobs" -n 1 sh -c '"$0" --gtest_brief=1'
 }
 build_tsan() {
   cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
     cmake --build build/tsan -j "$num_jobs" --target resight_app resight_core_test
 }
 run_tsan() {
-  export TSAN_OPTIONS=halt_on_error=1
+  export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/tsan_suppressions.txt"
   build/tsan/src/resight/core/resight_core_test --gtest_brief=1 && tests/threads_test.sh build/tsan/apps/resight/resight
 }
 

@@ -38,7 +38,7 @@ struct RefinementContest {
 };
 
 Eigen::Vector3d random_direction(Rng& rng) {
-  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+  return Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
 }
 
 // Rotated about the centre of the object, then shifted.

@@ -32,7 +32,7 @@ double median(std::vector<double> values) {
 }
 
 Eigen::Vector3d random_direction(Rng& rng) {
-  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+  return Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ const std::vector<Trouble> kTroubles = {
 };
 
 Eigen::Vector3d random_direction(Rng& rng) {
-  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+  return Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
 }
 
 void punch_holes(double share, Rng& rng, Image<float>& depth_m) {

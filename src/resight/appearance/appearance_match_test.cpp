@@ -24,8 +24,8 @@ TEST(ColorPairs, AreFittedAndAdaptedToTheLightOfTheScene) {
   Rng rng(1);
   ColorPairs pairs;
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3f color(static_cast<float>(rng.uniform(0.1, 0.6)), static_cast<float>(rng.uniform(0.1, 0.6)),
-                                static_cast<float>(rng.uniform(0.1, 0.6)));
+    const Eigen::Vector3f color{static_cast<float>(rng.uniform(0.1, 0.6)), static_cast<float>(rng.uniform(0.1, 0.6)),
+                                static_cast<float>(rng.uniform(0.1, 0.6))};
     pairs.model.push_back(color);
     pairs.scene.push_back(1.4F * color);
   }

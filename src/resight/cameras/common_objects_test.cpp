@@ -46,7 +46,7 @@ struct TwoSides {
   void see(int view, int object, const Rigid3& world_from_this) {
     const double turn = object == 1 ? rng.uniform(0, 6) : object == 2 ? 3.14159265 * (view % 2) : 0;
     const Rigid3 symmetry = Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), turn);
-    const Eigen::Vector3d noise(rng.normal(), rng.normal(), rng.normal());
+    const Eigen::Vector3d noise{rng.normal(), rng.normal(), rng.normal()};
     const Rigid3 error = {Rigid3::from_axis_angle(noise.cross(Eigen::Vector3d(1, 2, 3)), 0.01).rotation, 0.002 * noise};
     observed.push_back(
         {view, object,

@@ -10,9 +10,9 @@ namespace resight {
 namespace {
 
 Rigid3 random_pose(Rng& rng, double shift_m, double turn_rad) {
-  const Eigen::Vector3d axis(rng.normal(), rng.normal(), rng.normal());
+  const Eigen::Vector3d axis{rng.normal(), rng.normal(), rng.normal()};
   return {Rigid3::from_axis_angle(axis, turn_rad * rng.normal()).rotation,
-          shift_m * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal())};
+          shift_m * Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}};
 }
 
 PoseEdge edge_between(const std::vector<Rigid3>& poses, int a, int b, double sigma = 0.01) {

@@ -125,7 +125,7 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
   std::vector<Rigid3> truth, given;
   for (int v = 0; v < 6; ++v) {
     truth.push_back(walk(v, 9));
-    const Eigen::Vector3d noise(rng.normal(), rng.normal(), rng.normal());
+    const Eigen::Vector3d noise{rng.normal(), rng.normal(), rng.normal()};
     given.push_back(v == 0 ? truth[0]
                            : truth[static_cast<std::size_t>(v)] *
                                  Rigid3{Rigid3::from_axis_angle({noise.y(), 1, 0}, 0.01).rotation, 0.007 * noise});

@@ -23,7 +23,7 @@ Points clumps(int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     if (i % 8 == 0) center = {rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5), rng.uniform(-0.2, 2)};
     points.push_back(
-        (center + 0.03 * Eigen::Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1))).cast<float>());
+        (center + 0.03 * Eigen::Vector3d{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)}).cast<float>());
   }
   return points;
 }

@@ -176,7 +176,8 @@ TEST(MatchDetections, OrderOfInputDoesNotMatter) {
     std::vector<GroundTruthObject> truth;
     std::vector<DetectedObject> detections;
     for (int i = 0; i < 5; ++i) {
-      truth.push_back(truth_of(i % 2 ? "mug" : "tin", pose_at(rng.uniform() * 0.2), rng.uniform() < 0.2 ? 0.0 : 1.0));
+      const double visible_share = rng.uniform() < 0.2 ? 0.0 : 1.0;
+      truth.push_back(truth_of(i % 2 ? "mug" : "tin", pose_at(rng.uniform() * 0.2), visible_share));
       detections.push_back(detection_of(i % 2 ? "mug" : "tin", pose_at(rng.uniform() * 0.2)));
     }
     const RecognitionScore forward = match(truth, detections).score;

@@ -24,7 +24,7 @@ PointCloud bumpy_object(int num_points, std::uint64_t seed) {
   PointCloud cloud;
   Rng rng(seed);
   for (int i = 0; i < num_points; ++i) {
-    const Eigen::Vector3d d = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+    const Eigen::Vector3d d = Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
     const Eigen::Vector3d a = d.unitOrthogonal();
     const Eigen::Vector3d b = d.cross(a);
     const auto at = [&](const Eigen::Vector3d& direction) -> Eigen::Vector3d {

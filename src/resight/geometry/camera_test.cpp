@@ -38,7 +38,7 @@ TEST(Camera, PixelOfIsTheNearestCentreWithinTheImage) {
   Rng rng(2);
   int num_inside = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3d p(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-1, 3));
+    const Eigen::Vector3d p{rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-1, 3)};
     const std::optional<Pixel> pixel = camera.pixel_of(p);
     const bool is_seen = p.z() > 0 && camera.contains(camera.project(p));
     ASSERT_EQ(pixel.has_value(), is_seen);

@@ -27,7 +27,7 @@ Surface make_sphere(int count, double radius_m) {
   Surface sphere;
   Rng rng(1);
   for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d n = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+    const Eigen::Vector3d n = Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
     add(sphere, Eigen::Vector3d(0.3, 0, 1) + radius_m * n, n);
   }
   return sphere;
@@ -94,7 +94,7 @@ TEST(OutwardNormals, NoiseDoesNotFlipThem) {
   Surface box = make_box(0.002);
   Rng rng(2);
   for (Eigen::Vector3f& p : box.points)
-    p += 0.0004F * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).cast<float>();
+    p += 0.0004F * Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.cast<float>();
   EXPECT_GT(agreement(box, estimate_outward_normals(box.points), 60), 0.97);
 }
 

@@ -14,7 +14,8 @@ namespace {
 Eigen::Vector3d random_vector(Rng& rng) { return {rng.normal(), rng.normal(), rng.normal()}; }
 
 Rigid3 random_motion(Rng& rng) {
-  Rigid3 motion = Rigid3::from_axis_angle(random_vector(rng), rng.uniform(-3.1, 3.1));
+  const double angle_rad = rng.uniform(-3.1, 3.1);
+  Rigid3 motion = Rigid3::from_axis_angle(random_vector(rng), angle_rad);
   motion.translation = random_vector(rng);
   return motion;
 }

@@ -33,7 +33,7 @@ TEST(SphericalBins, AgreesWithTheAnglesInDoublePrecision) {
   const double size = 2 * kDegree;
   int num_checked = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Eigen::Vector3d p(rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-2, 2));
+    const Eigen::Vector3d p{rng.uniform(-2, 2), rng.uniform(-2, 2), rng.uniform(-2, 2)};
     const double theta = std::acos(p.y() / p.norm()) / size;
     const double phi = (std::numbers::pi + std::atan2(p.x(), p.z())) / size;
     const auto near_border = [](double x) { return std::abs(x - std::round(x)) < 1e-3; };
@@ -55,8 +55,8 @@ TEST(SphericalBins, DependsOnTheDirectionOnly) {
   const SphericalBins bins;
   Rng rng(5);
   for (int i = 0; i < 1000; ++i) {
-    const Eigen::Vector3f p(static_cast<float>(rng.uniform(-1, 1)), static_cast<float>(rng.uniform(-1, 1)),
-                            static_cast<float>(rng.uniform(-1, 1)));
+    const Eigen::Vector3f p{static_cast<float>(rng.uniform(-1, 1)), static_cast<float>(rng.uniform(-1, 1)),
+                            static_cast<float>(rng.uniform(-1, 1))};
     EXPECT_EQ(bins.bin(p), bins.bin(4 * p));  // multiplying by 4 is exact
   }
 }

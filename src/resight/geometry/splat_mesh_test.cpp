@@ -45,8 +45,8 @@ TEST(SplatMesh, CoversAPlaneWithoutGapsAndFacesItsNormal) {
   }
   Rng rng(1);
   for (int i = 0; i < 500; ++i) {
-    const Eigen::Vector2f p(static_cast<float>(rng.uniform(0, 19 * kSpacing_m)),
-                            static_cast<float>(rng.uniform(0, 19 * kSpacing_m)));
+    const Eigen::Vector2f p{static_cast<float>(rng.uniform(0, 19 * kSpacing_m)),
+                            static_cast<float>(rng.uniform(0, 19 * kSpacing_m))};
     EXPECT_TRUE(std::ranges::any_of(mesh.faces, [&](const auto& f) { return is_inside(mesh, f, p); })) << p.transpose();
   }
 }

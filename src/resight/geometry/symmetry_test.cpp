@@ -16,7 +16,8 @@ constexpr double kPi = std::numbers::pi;
 Eigen::Vector3d random_direction(Rng& rng) { return {rng.normal(), rng.normal(), rng.normal()}; }
 
 Rigid3 random_pose(Rng& rng) {
-  Rigid3 pose = Rigid3::from_axis_angle(random_direction(rng), rng.uniform(-3.1, 3.1));
+  const double angle_rad = rng.uniform(-3.1, 3.1);
+  Rigid3 pose = Rigid3::from_axis_angle(random_direction(rng), angle_rad);
   pose.translation = random_direction(rng);
   return pose;
 }

@@ -141,8 +141,8 @@ TEST(Diameter, IsExactForFewPoints) {
   Rng rng(1);
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500; ++i)
-    points.emplace_back(static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
-                        static_cast<float>(rng.normal()));
+    points.push_back({static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
+                        static_cast<float>(rng.normal())});
   EXPECT_NEAR(diameter(points), brute_force_diameter(points), 1e-5);
 }
 
@@ -150,12 +150,12 @@ TEST(Diameter, IsExactForFewPoints) {
 TEST(Diameter, OfManyPointsIsNearlyExactAndNeverTooLarge) {
   Rng rng(2);
   for (int shape = 0; shape < 6; ++shape) {
-    const Eigen::Vector3f half(static_cast<float>(rng.uniform(0.02, 0.2)), static_cast<float>(rng.uniform(0.02, 0.2)),
-                               static_cast<float>(rng.uniform(0.02, 0.2)));
+    const Eigen::Vector3f half{static_cast<float>(rng.uniform(0.02, 0.2)), static_cast<float>(rng.uniform(0.02, 0.2)),
+                               static_cast<float>(rng.uniform(0.02, 0.2))};
     std::vector<Eigen::Vector3f> points;
     for (int i = 0; i < 2500; ++i) {
-      const Eigen::Vector3f p(static_cast<float>(rng.uniform(-1, 1)), static_cast<float>(rng.uniform(-1, 1)),
-                              static_cast<float>(rng.uniform(-1, 1)));
+      const Eigen::Vector3f p{static_cast<float>(rng.uniform(-1, 1)), static_cast<float>(rng.uniform(-1, 1)),
+                              static_cast<float>(rng.uniform(-1, 1))};
       points.emplace_back(half.cwiseProduct(shape % 2 == 0 ? p : Eigen::Vector3f(p.normalized())));
     }
     const float exact = brute_force_diameter(points);

@@ -39,8 +39,8 @@ TEST(ViewFrustum, AgreesWithProjection) {
       const ViewFrustum frustum{.camera = camera, .margin_rad = margin};
       int num_inside = 0;
       for (int i = 0; i < 20000; ++i) {
-        const Eigen::Vector3f p(static_cast<float>(rng.uniform(-4, 4)), static_cast<float>(rng.uniform(-4, 4)),
-                                static_cast<float>(rng.uniform(-1, 5)));
+        const Eigen::Vector3f p{static_cast<float>(rng.uniform(-4, 4)), static_cast<float>(rng.uniform(-4, 4)),
+                                static_cast<float>(rng.uniform(-1, 5))};
         const bool inside = frustum.contains(p);
         EXPECT_EQ(inside, contains_by_projection(frustum, p.cast<double>())) << "point " << p.transpose();
         num_inside += inside ? 1 : 0;

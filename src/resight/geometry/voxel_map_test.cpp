@@ -36,7 +36,8 @@ TEST(VoxelMap, AgreesWithUnorderedMap) {
     VoxelMap map(0);
     std::unordered_map<std::uint64_t, int> oracle;
     for (int i = 0; i < 20000; ++i) {
-      const std::uint64_t key = voxel_key(static_cast<int>(rng.below(range)) - 20, static_cast<int>(rng.below(3)), -1);
+      const int y = static_cast<int>(rng.below(3));
+      const std::uint64_t key = voxel_key(static_cast<int>(rng.below(range)) - 20, y, -1);
       ASSERT_EQ(map.find(key), oracle.contains(key) ? oracle[key] : VoxelMap::kNotFound);
       const int expected = oracle.emplace(key, static_cast<int>(oracle.size())).first->second;
       ASSERT_EQ(map.insert(key), expected);

@@ -45,7 +45,7 @@ Hypothesis make_hypothesis(Rng& rng, std::uint64_t id, int object, const Rigid3&
     c.model_point = m.point.cast<float>();
     c.model_normal = m.normal.cast<float>();
     c.scene_point =
-        (pose * m.point + noise_m * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal())).cast<float>();
+        (pose * m.point + noise_m * Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}).cast<float>();
     c.scene_normal = (pose.rotation * m.normal).cast<float>();
     c.model_feature = c.scene_feature = static_cast<int>(id) * 100 + i;
     h.correspondences.push_back(c);
@@ -65,10 +65,12 @@ std::vector<Hypothesis> crowded_scene(Rng& rng, int num_places, int per_place) {
     pose.translation += Eigen::Vector3d(place, 0, 0);
     for (int i = 0; i < per_place; ++i) {
       const auto object = static_cast<int>(rng.below(3));
-      Rigid3 near = pose * Rigid3::from_axis_angle(testing::random_direction(rng), rng.uniform(0, 0.15));
+      const double angle_rad = rng.uniform(0, 0.15);
+      Rigid3 near = pose * Rigid3::from_axis_angle(testing::random_direction(rng), angle_rad);
       near.translation += 0.012 * testing::random_direction(rng);
-      hypotheses.push_back(make_hypothesis(rng, hypotheses.size(), object, near, static_cast<int>(rng.below(5)),
-                                           5 + static_cast<int>(rng.below(20)), 0.002));
+      const auto view = static_cast<int>(rng.below(5));
+      const int num_points = 5 + static_cast<int>(rng.below(20));
+      hypotheses.push_back(make_hypothesis(rng, hypotheses.size(), object, near, view, num_points, 0.002));
     }
   }
   return hypotheses;

@@ -155,7 +155,7 @@ TEST(CloudModel, AllSidesOfAnObjectAreItsSurface) {
     Rng rng(1);
     PointCloud ball;
     for (int i = 0; i < 4000; ++i) {
-      const Eigen::Vector3d n = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+      const Eigen::Vector3d n = Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
       ball.points.emplace_back((0.05 * n).cast<float>() + Eigen::Vector3f(0, 0, z));
       ball.colors.push_back({200, 100, 50});
     }

@@ -26,7 +26,7 @@ struct Pairs {
 Pairs exact_pairs(Rng& rng, const Rigid3& pose, int n) {
   Pairs pairs;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d m(rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1));
+    const Eigen::Vector3d m{rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1)};
     pairs.model.push_back(m.cast<float>());
     pairs.scene.push_back((pose * m.cast<float>().cast<double>().eval()).cast<float>());
   }
@@ -72,7 +72,7 @@ TEST(FitRigid, WeightedSolutionIsAMinimum) {
   Pairs pairs = exact_pairs(rng, random_pose(rng), 10);
   std::vector<double> weights;
   for (auto& p : pairs.scene) {
-    p += 0.01F * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).cast<float>();
+    p += 0.01F * Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.cast<float>();
     weights.push_back(rng.uniform(0.1, 2.0));
   }
   const auto fit = fit_rigid(pairs.model, pairs.scene, weights);

@@ -27,9 +27,11 @@ constexpr double kSigma_m = 0.002;
 StepEquations noisy_equations(std::uint64_t seed, int num_points) {
   Rng rng(seed);
   StepEquations equations;
-  for (int i = 0; i < num_points; ++i)
-    equations.add(kRadius_m * random_vector(rng).normalized(), random_vector(rng).normalized(), kSigma_m * rng.normal(),
-                  0.5, kRadius_m);
+  for (int i = 0; i < num_points; ++i) {
+    const Eigen::Vector3d point = kRadius_m * random_vector(rng).normalized();
+    const Eigen::Vector3d normal = random_vector(rng).normalized();
+    equations.add(point, normal, kSigma_m * rng.normal(), 0.5, kRadius_m);
+  }
   return equations;
 }
 

@@ -55,8 +55,8 @@ TEST(RaycastScene, AgreesWithBruteForceOverPosedInstances) {
   int hits = 0;
   int misses = 0;
   for (int i = 0; i < 600; ++i) {
-    const Eigen::Vector3d origin(rng.uniform(-2, 2), rng.uniform(-2, 2), -2.5);
-    const Eigen::Vector3d direction = Eigen::Vector3d(0.3 * rng.normal(), 0.3 * rng.normal(), 1.0) -
+    const Eigen::Vector3d origin{rng.uniform(-2, 2), rng.uniform(-2, 2), -2.5};
+    const Eigen::Vector3d direction = Eigen::Vector3d{0.3 * rng.normal(), 0.3 * rng.normal(), 1.0} -
                                       0.35 * Eigen::Vector3d(origin.x(), origin.y(), 0);
     double nearest = std::numeric_limits<double>::infinity();
     int instance = -1;

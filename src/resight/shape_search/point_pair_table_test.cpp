@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxLength_m = 0.2;
 
 Eigen::Vector3f random_direction(Rng& rng) {
-  return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized().cast<float>();
+  return Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized().cast<float>();
 }
 
 OrientedPointPair random_point_pair(Rng& rng) {
@@ -28,7 +28,8 @@ OrientedPointPair moved(const Rigid3f& motion, const OrientedPointPair& d) {
 }
 
 Rigid3f random_motion(Rng& rng) {
-  Rigid3 motion = Rigid3::from_axis_angle(random_direction(rng).cast<double>(), rng.uniform(0, 3.1));
+  const double angle_rad = rng.uniform(0, 3.1);
+  Rigid3 motion = Rigid3::from_axis_angle(random_direction(rng).cast<double>(), angle_rad);
   motion.translation = random_direction(rng).cast<double>();
   return Rigid3f(motion);
 }

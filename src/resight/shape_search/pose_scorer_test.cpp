@@ -102,7 +102,7 @@ TEST(PoseScorer, CountsLikeClassifySurface) {
   options.max_samples = options.max_wrong = 1000000;  // Counts all samples.
   Rng rng(5);
   const auto random = [&](double limit) {
-    return Eigen::Vector3d(rng.uniform(-limit, limit), rng.uniform(-limit, limit), rng.uniform(-limit, limit));
+    return Eigen::Vector3d{rng.uniform(-limit, limit), rng.uniform(-limit, limit), rng.uniform(-limit, limit)};
   };
   std::array<int, 4> sum{};
   for (int trial = 0; trial < 60; ++trial) {

@@ -115,9 +115,11 @@ ProceduralObject make_toy_house() {
     canvas.fill({228, 205, 170});
     Rng rng = style.stream(part);
     for (int row = 0; row < 10; ++row)  // bricks
-      for (double x = row % 2 == 0 ? 0 : -9; x < canvas.width(); x += 18)
-        canvas.rounded_rect(x + 0.6, row * 8 + 0.6, 16.5, 6.8, 0.8,
-                            hsv_color(12 + rng.uniform(0, 14), 0.6, rng.uniform(0.55, 0.8)));
+      for (double x = row % 2 == 0 ? 0 : -9; x < canvas.width(); x += 18) {
+        const double value = rng.uniform(0.55, 0.8);
+        const double hue_deg = rng.uniform(12, 26);
+        canvas.rounded_rect(x + 0.6, row * 8 + 0.6, 16.5, 6.8, 0.8, hsv_color(hue_deg, 0.6, value));
+      }
     for (double x = 10; x + 22 < canvas.width(); x += 34) {
       const bool is_door = has_door && x == 10;
       canvas.rect(x, is_door ? 30 : 20, 22, is_door ? 50 : 26, {245, 245, 240});
@@ -137,8 +139,11 @@ ProceduralObject make_toy_house() {
   canvas.fill({150, 45, 35});
   Rng rng = style.stream(9);
   for (double y = 0; y < 150; y += 10)
-    for (double x = 0; x < canvas.width(); x += 12)
-      canvas.ellipse(x + 6, y + 4, 5.6, 7, 0, hsv_color(5 + rng.uniform(0, 20), 0.75, rng.uniform(0.35, 0.8)));
+    for (double x = 0; x < canvas.width(); x += 12) {
+      const double value = rng.uniform(0.35, 0.8);
+      const double hue_deg = rng.uniform(5, 25);
+      canvas.ellipse(x + 6, y + 4, 5.6, 7, 0, hsv_color(hue_deg, 0.75, value));
+    }
   const PixelRect gable = atlas.allocate(130, 55);
   TextureCanvas gable_canvas = atlas.canvas(gable);
   gable_canvas.fill({240, 225, 190});
@@ -188,7 +193,8 @@ ProceduralObject make_sponge() {
       const double y = rng.uniform(0, canvas.height());
       const double r = rng.uniform(0.6, 3.0);
       const double slimness = rng.uniform(0.5, 1);
-      canvas.ellipse(x, y, r, r * slimness, rng.uniform(0, 3), hsv_color(45, 0.8, rng.uniform(0.35, 0.65)));
+      const double value = rng.uniform(0.35, 0.65);
+      canvas.ellipse(x, y, r, r * slimness, rng.uniform(0, 3), hsv_color(45, 0.8, value));
     }
     return region;
   };

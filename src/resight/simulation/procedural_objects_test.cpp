@@ -108,10 +108,10 @@ void expect_outward(const TriangleMesh& mesh) {
   int back_faces = 0;
   int wrong_shading = 0;
   for (int i = 0; i < 4000; ++i) {
-    const Eigen::Vector3f from = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized().cast<float>();
+    const Eigen::Vector3f from = Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized().cast<float>();
     const Eigen::Vector3f target =
         center +
-        0.3F * radius * Eigen::Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)).cast<float>();
+        0.3F * radius * Eigen::Vector3d{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)}.cast<float>();
     const Ray ray{center + 2 * radius * from, target - (center + 2 * radius * from)};
     const RayHit hit = scene.cast(ray);
     if (!hit.has_hit()) continue;
@@ -157,9 +157,9 @@ TEST(ProceduralObjects, SymmetriesMapThemOntoThemselves) {
     for (const Rigid3& motion : enumerate_symmetries(o.symmetries, 1.0)) {
       // Equal rays before and after the motion have equal lengths.
       for (int i = 0; i < 60; ++i) {
-        const Eigen::Vector3d origin = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+        const Eigen::Vector3d origin = Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();
         const Eigen::Vector3d target =
-            (0.5F * (b.low + b.high)).cast<double>() + 0.02 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
+            (0.5F * (b.low + b.high)).cast<double>() + 0.02 * Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()};
         const Eigen::Vector3d direction = target - origin;
         const RayHit one = scene.cast({origin.cast<float>(), direction.cast<float>()});
         const RayHit other = scene.cast({(motion * origin).cast<float>(), (motion.rotation * direction).cast<float>()});

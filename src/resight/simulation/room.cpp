@@ -159,7 +159,9 @@ void paint_wall(TextureCanvas canvas, Rng rng, Rgb8 paint, std::uint64_t seed) {
     const double y = rng.uniform(0.25, 0.45) * canvas.height();
     canvas.rect(x - 25, y - 25, w + 50, h + 50, {60, 45, 35});
     TextureCanvas picture = canvas.part(x, y, w, h);
-    picture.gradient(hsv_color(rng.uniform(0, 360), 0.4, 0.9), hsv_color(rng.uniform(0, 360), 0.5, 0.6));
+    const double hue_below_deg = rng.uniform(0, 360);
+    const double hue_above_deg = rng.uniform(0, 360);
+    picture.gradient(hsv_color(hue_above_deg, 0.4, 0.9), hsv_color(hue_below_deg, 0.5, 0.6));
     print_blobs(picture, Rng::stream(seed, 70 + i), rng.uniform(0, 360), 30, 10, 90);
   }
 }

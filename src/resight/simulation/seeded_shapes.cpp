@@ -134,7 +134,9 @@ ProceduralObject make_composite_object(const std::string& name, Rng rng) {
   const TextureStyle style = random_style(rng);
   TextureAtlas atlas(1024, 2.0);
   ProceduralObject object{name, {}, {}, "textured"};
-  Vector3d size(rng.uniform(0.08, 0.15), rng.uniform(0.06, 0.1), rng.uniform(0.03, 0.07));
+  const double height_m = rng.uniform(0.03, 0.07);
+  const double depth_m = rng.uniform(0.06, 0.1);
+  Vector3d size(rng.uniform(0.08, 0.15), depth_m, height_m);
   Vector3d at = Vector3d::Zero();
   const int num_parts = 3 + static_cast<int>(rng.below(3));
   for (int i = 0; i < num_parts; ++i) {

@@ -17,8 +17,11 @@ class Furnisher {
   Furnisher(Rng& rng, SceneScript& script) : rng_(rng), script_(script) {}
 
   TabletopStage furnish(TabletopTheme theme) {
-    script_.room_size_m = Vector3d(rng_.uniform(4.6, 5.4), rng_.uniform(4.6, 5.4), 2.6);
-    script_.lighting.lamp_in_world_m = Vector3d(rng_.uniform(-1.5, 1.5), rng_.uniform(-1.5, 1.0), 2.5);
+    // One draw per statement: compilers differ in the order of arguments. Frozen versions drew the last one first.
+    const double room_y_m = rng_.uniform(4.6, 5.4);
+    script_.room_size_m = Vector3d(rng_.uniform(4.6, 5.4), room_y_m, 2.6);
+    const double lamp_y_m = rng_.uniform(-1.5, 1.0);
+    script_.lighting.lamp_in_world_m = Vector3d(rng_.uniform(-1.5, 1.5), lamp_y_m, 2.5);
     script_.lighting.ambient = rng_.uniform(0.45, 0.6);
     switch (theme) {
       case TabletopTheme::kDesk:
@@ -56,10 +59,12 @@ class Furnisher {
 
   void add_papers(int count) {
     for (int i = 0; i < count; ++i) {
-      const Vector2d at(rng_.uniform(-0.5, 0.5), rng_.uniform(-0.25, 0.1));
+      const double y_m = rng_.uniform(-0.25, 0.1);
+      const double x_m = rng_.uniform(-0.5, 0.5);
+      const double yaw_rad = rng_.uniform(-std::numbers::pi, std::numbers::pi);
       // Papers are so thin that objects may stand on them.
-      add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, stage_.surfaces[0].support, at,
-                    rng_.uniform(-std::numbers::pi, std::numbers::pi));
+      add_furniture("papers" + std::to_string(i), "papers", {0.21, 0.297, 0.001}, stage_.surfaces[0].support,
+                    {x_m, y_m}, yaw_rad);
     }
   }
 
@@ -68,8 +73,10 @@ class Furnisher {
     add_furniture("desk", "table", size, "", {0, 0});
     add_furniture("shelf", "shelf", {1.0, 0.3, 1.7}, "", {rng_.uniform(-1.2, 1.2), 2.0});
     stage_.surfaces.push_back({"desk", -1, Vector2d(0.5 * size.x() - 0.06, 0.38), {}});
-    add_obstacle("monitor", {0.50, 0.18, 0.38}, {rng_.uniform(-0.35, 0.35), 0.28}, rng_.uniform(-0.25, 0.25));
-    add_obstacle("keyboard", {0.36, 0.13, 0.02}, {rng_.uniform(-0.2, 0.2), -0.28}, rng_.uniform(-0.2, 0.2));
+    const double monitor_yaw_rad = rng_.uniform(-0.25, 0.25);
+    add_obstacle("monitor", {0.50, 0.18, 0.38}, {rng_.uniform(-0.35, 0.35), 0.28}, monitor_yaw_rad);
+    const double keyboard_yaw_rad = rng_.uniform(-0.2, 0.2);
+    add_obstacle("keyboard", {0.36, 0.13, 0.02}, {rng_.uniform(-0.2, 0.2), -0.28}, keyboard_yaw_rad);
     add_papers(1);
     stage_.look_at_point_m = {0, -0.02, 0.80};
     stage_.pan_m = {0.25, 0};

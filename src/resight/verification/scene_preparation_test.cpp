@@ -149,11 +149,11 @@ TEST(PrepareScene, PlanesFollowATiltedWorldAndNoise) {
   PointCloud cloud = box_and_ball_scene();
   Rng rng(5);
   for (Eigen::Vector3f& p : cloud.points)
-    p += 0.002F * Eigen::Vector3f(static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
-                                  static_cast<float>(rng.normal()));
+    p += 0.002F * Eigen::Vector3f{static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
+                                  static_cast<float>(rng.normal())};
   for (Eigen::Vector3f& n : cloud.normals)
-    n = (n + 0.05F * Eigen::Vector3f(static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
-                                     static_cast<float>(rng.normal())))
+    n = (n + 0.05F * Eigen::Vector3f{static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
+                                     static_cast<float>(rng.normal())})
             .normalized();
   const Rigid3 tilt = Rigid3::from_translation({1, 2, 3}) * Rigid3::from_axis_angle({1, 2, 0.5}, 0.8);
   const PreparedScene scene = prepare_scene(transform(tilt, cloud), {});
@@ -256,8 +256,8 @@ TEST(LocalScene, VisitsExactlyThePointsWithinTheRadius) {
   Rng rng(2);
   std::vector<Eigen::Vector3f> scene;
   for (int i = 0; i < 4000; ++i)
-    scene.emplace_back(static_cast<float>(rng.uniform(-0.3, 0.3)), static_cast<float>(rng.uniform(-0.3, 0.3)),
-                       static_cast<float>(rng.uniform(-0.3, 0.3)));
+    scene.push_back({static_cast<float>(rng.uniform(-0.3, 0.3)), static_cast<float>(rng.uniform(-0.3, 0.3)),
+                       static_cast<float>(rng.uniform(-0.3, 0.3))});
   const BlockGrid blocks(scene, 0.06);
   const std::vector<Eigen::Vector3f> around = {{-0.1F, 0, 0.05F}, {0.1F, 0.12F, -0.07F}};
   const LocalScene local(scene, blocks, around, 0.04F, 0.015F);

@@ -70,10 +70,12 @@ TEST(VerifyHypotheses, GivesTheSameBytesForAnyNumberOfThreads) {
       circle_of_cameras(4));
   std::vector<Hypothesis> hypotheses;
   Rng rng(11);
-  for (int i = 0; i < 16; ++i)
-    hypotheses.push_back(make_hypothesis(
-        i % 3, disturb(on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065),
-                       {rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0}, kZ, rng.uniform(-0.3, 0.3))));
+  for (int i = 0; i < 16; ++i) {
+    const Eigen::Vector3d shift{rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02), 0};
+    const double yaw_rad = rng.uniform(-0.3, 0.3);
+    const Rigid3 pose = on_table(i % 2 == 0 ? 0 : 0.2, i % 2 == 0 ? 0 : 0.1, 0.065);
+    hypotheses.push_back(make_hypothesis(i % 3, disturb(pose, shift, kZ, yaw_rad)));
+  }
   const VerifyResult serial =
       f.verify(hypotheses, make_library(),
                {.selection = {.max_exact_hypotheses = 2}, .acceptance = {.min_explained_share = 0.35}});

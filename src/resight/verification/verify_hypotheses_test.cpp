@@ -21,7 +21,7 @@ TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
   std::vector<Hypothesis> hypotheses;
   Rng rng(3);
   for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d shift(rng.uniform(0.02, 0.06), rng.uniform(-0.06, 0.06), 0);
+    const Eigen::Vector3d shift{rng.uniform(0.02, 0.06), rng.uniform(-0.06, 0.06), 0};
     hypotheses.push_back(make_hypothesis(kBox, disturb(truth, shift, kZ, rng.uniform(0.3, 2.0))));
   }
   hypotheses.push_back(make_hypothesis(kCylinder, on_table(0, 0, 0.06)));

@@ -11,15 +11,16 @@ namespace resight::testing {
 
 inline Eigen::Vector3d random_direction(Rng& rng) {
   for (;;) {
-    const Eigen::Vector3d v(rng.normal(), rng.normal(), rng.normal());
+    const Eigen::Vector3d v{rng.normal(), rng.normal(), rng.normal()};
     if (v.norm() > 1e-3) return v.normalized();
   }
 }
 
 inline Rigid3 random_pose(Rng& rng, double max_offset_m = 0.3) {
-  Rigid3 pose = Rigid3::from_axis_angle(random_direction(rng), rng.uniform(0, 3.14159));
-  pose.translation = Eigen::Vector3d(rng.uniform(-max_offset_m, max_offset_m), rng.uniform(-max_offset_m, max_offset_m),
-                                     1.0 + rng.uniform(-max_offset_m, max_offset_m));
+  const double angle_rad = rng.uniform(0, 3.14159);
+  Rigid3 pose = Rigid3::from_axis_angle(random_direction(rng), angle_rad);
+  pose.translation = Eigen::Vector3d{rng.uniform(-max_offset_m, max_offset_m), rng.uniform(-max_offset_m, max_offset_m),
+                                     1.0 + rng.uniform(-max_offset_m, max_offset_m)};
   return pose;
 }
 
@@ -45,7 +46,7 @@ inline SurfacePoint random_surface_point(Rng& rng, bool box) {
   const auto axis = static_cast<Eigen::Index>(rng.below(3));
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   normal[axis] = rng.below(2) == 0 ? 1.0 : -1.0;
-  Eigen::Vector3d p(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+  Eigen::Vector3d p{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)};
   p[axis] = normal[axis];
   return {p.cwiseProduct(half), normal};
 }
@@ -84,7 +85,7 @@ class ProblemMaker {
         add(problem, i, m, {pose * m.point, pose.rotation * m.normal});
       }
     while (static_cast<int>(problem.correspondences.size()) < options_.num_correspondences)
-      add(problem, -1, random_surface_point(rng_, box_), outlier_scene_point(problem));
+      add_outlier(problem);
     shuffle(problem);
     return problem;
   }
@@ -112,14 +113,19 @@ class ProblemMaker {
       return {pose * m.point, pose.rotation * m.normal};
     }
     // A table top, with clutter of any orientation on it.
-    const Eigen::Vector3d p(rng_.uniform(-0.5, 0.5), 0.2, 1.0 + rng_.uniform(-0.5, 0.5));
+    const Eigen::Vector3d p{rng_.uniform(-0.5, 0.5), 0.2, 1.0 + rng_.uniform(-0.5, 0.5)};
     if (rng_.below(2) == 0) return {p, -Eigen::Vector3d::UnitY()};
     return {p - Eigen::Vector3d(0, rng_.uniform(0, 0.25), 0), random_direction(rng_)};
   }
 
+  void add_outlier(Problem& problem) {
+    const SurfacePoint model = random_surface_point(rng_, box_);
+    add(problem, -1, model, outlier_scene_point(problem));
+  }
+
   void add(Problem& problem, int instance, const SurfacePoint& model, const SurfacePoint& scene) {
     const auto noise = [&](double sigma) {
-      return Eigen::Vector3d(sigma * rng_.normal(), sigma * rng_.normal(), sigma * rng_.normal());
+      return Eigen::Vector3d{sigma * rng_.normal(), sigma * rng_.normal(), sigma * rng_.normal()};
     };
     Correspondence c;
     c.model_point = model.point.cast<float>();

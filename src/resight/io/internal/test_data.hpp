@@ -47,7 +47,8 @@ inline std::string read_text(const std::filesystem::path& file) {
 }
 
 inline Rigid3 random_pose(Rng& rng) {
-  Rigid3 pose = Rigid3::from_axis_angle({rng.normal(), rng.normal(), rng.normal()}, rng.uniform(0, 3));
+  const double angle_rad = rng.uniform(0, 3);
+  Rigid3 pose = Rigid3::from_axis_angle({rng.normal(), rng.normal(), rng.normal()}, angle_rad);
   pose.translation = {rng.normal(), rng.normal(), rng.normal()};
   return pose;
 }
