@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands.hpp"
 #include "progress.hpp"
 #include "recognition_run.hpp"
+#include "resight/changes/change_regions.hpp"
 #include "resight/core/files.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/recognition/stage_options.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
-#include "resight/registration/camera_corrector.hpp"
 #include "resight/report/overlay.hpp"
+#include "resight/report/scene_changes.hpp"
 
 namespace resight::app {
 namespace {
@@ -41,6 +44,13 @@ void write_masks(const std::filesystem::path& folder, const RgbdFrame& frame, co
   write("removed", changes.removed_mask);
 }
 
+std::string count_regions(const ViewChangeRecord& view) {
+  const auto num_novel =
+      std::ranges::count_if(view.regions, [](const ChangeRegion& r) { return r.kind == ChangeKind::kNovel; });
+  return fmt::format("{} regions removed, {} novel", static_cast<std::ptrdiff_t>(view.regions.size()) - num_novel,
+                     num_novel);
+}
+
 }  // namespace
 
 // Alg. 1 without models: compares each view with the reconstruction from the views before it.
@@ -51,21 +61,22 @@ void run_changes(const ChangesArguments& arguments) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   DynamicSceneOptions options = scene_options(config);
   options.detect_changes = true;  // Whatever the preset: this is what the command is for.
-  CameraCorrector corrector(correction_options(config));
   DynamicScene scene(options);
+  SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
-    PreparedView view = prepare_view(value_or_throw(sequence->read_view(v)), config.prepare);
-    view.frame.world_from_camera = corrector.add_view(view);
-    const ChangeResult changes = scene.add_view(std::move(view));
+    const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
     write_masks(folder.path(), frame, changes);
     value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
-    progress.report(v + 1,
-                    fmt::format("{}: {} removed, {} novel points{}", frame.name, changes.removed_in_world.size(),
-                                changes.novel_in_world.size(), changes.pose_suspect ? ", camera pose suspect" : ""));
+    record.views.push_back({frame.name, frame.camera.width, frame.world_from_camera, changes.changed_share,
+                            changes.pose_suspect,
+                            find_change_regions(frame, changes, config.changes.detection.voxel_m)});
+    progress.report(v + 1, fmt::format("{}: {}{}", frame.name, count_regions(record.views.back()),
+                                       changes.pose_suspect ? ", camera pose suspect" : ""));
   }
+  value_or_throw(write_file(folder.path() / "changes.json", format_scene_changes_json(record)));
   value_or_throw(folder.commit());
   fmt::print("{} views: {}\n", sequence->num_views(), arguments.out.string());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of changes and reconstruction alone (Algorithm 1), view by view, and a checksum of all results. Optimisations of
-// the stage must not change the checksum. Needs no models.
+// Time of Algorithm 1 alone (poses, changes, reconstruction), view by view, and a checksum of all results.
+// Optimisations of the stage must not change the checksum. Needs no models.
 //   bench_scene_times sequence [preset] [K] [threads] [passes]
 #include <fmt/format.h>
 

@@ -7,7 +7,6 @@
 // A camera in a static scene: whatever is reported as changed is false.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -74,20 +73,27 @@ LabelledView read_labelled_view(const Sequence& sequence, int view, const std::f
 // Nearer than before by more than the threshold: added. Farther: removed.
 ReportedChanges find_depth_difference(const Image<float>& before_m, const Image<float>& after_m) {
   const Mask none(after_m.width(), after_m.height(), 0);
-  ReportedChanges reported{{none, none}};
+  ReportedChanges reported{{none, none}, {}};
   for (std::size_t i = 0; i < none.size(); ++i) {
     reported.masks[kAdded][i] = before_m[i] - after_m[i] > kPlainThreshold_m;
     reported.masks[kRemoved][i] = after_m[i] - before_m[i] > kPlainThreshold_m;
   }
+  for (const Side side : kSides) reported.regions[side] = find_components(reported.masks[side]);
   return reported;
 }
 
-ReportedChanges to_masks(const ChangeRun& run, const ChangeResult& changes) {
+ReportedChanges to_reported(const ChangeRun& run, const ChangeResult& changes) {
   const Camera& camera = run.frame().camera;
-  ReportedChanges reported{{changes.novel_mask, Mask(camera.width, camera.height, 0)}};
-  if (reported.masks[kAdded].empty()) reported.masks[kAdded] = Mask(camera.width, camera.height, 0);
-  const Image<float> removed_m = run.project_removed(changes);
-  for (std::size_t i = 0; i < removed_m.size(); ++i) reported.masks[kRemoved][i] = !std::isnan(removed_m[i]);
+  const Components none{{}, Image<int>(camera.width, camera.height, -1)};
+  const Mask empty(camera.width, camera.height, 0);
+  ReportedChanges reported{{changes.novel_mask.empty() ? empty : changes.novel_mask,
+                            changes.removed_mask.empty() ? empty : changes.removed_mask},
+                           {none, none}};
+  for (ChangeRegion& region : run.find_regions(changes)) {
+    Components& of_side = reported.regions[region.kind == ChangeKind::kNovel ? kAdded : kRemoved];
+    for (const int pixel : region.pixels) of_side.numbers[pixel] = static_cast<int>(of_side.regions.size());
+    of_side.regions.push_back(std::move(region.pixels));
+  }
   return reported;
 }
 
@@ -152,7 +158,7 @@ void run_still(const Arguments& arguments) {
     if (before) {
       const ChangeTruth truth = find_change_truth(*before, after);
       score_changes(truth, find_depth_difference(before->frame.depth_m, after.frame.depth_m), plain, nullptr);
-      const ReportedChanges reported = to_masks(run, changes);
+      const ReportedChanges reported = to_reported(run, changes);
       std::vector<Mistake> mistakes;
       score_changes(truth, reported, detected, arguments.pictures.empty() ? nullptr : &mistakes);
       for (const Mistake& mistake : mistakes) sheets.add(*before, after, truth, reported, mistake);
@@ -178,8 +184,8 @@ void run_static(const Arguments& arguments) {
     num_suspect += changes.pose_suspect ? 1 : 0;
     if (v == 0) continue;  // Nothing to compare with.
     const Image<float>& depth_m = run.frame().depth_m;
-    const double novel_share = novel.add_view(depth_m, keep_depth_in(depth_m, changes.novel_mask));
-    const double removed_share = removed.add_view(depth_m, run.project_removed(changes));
+    const double novel_share = novel.add_view(depth_m, changes.novel_mask);
+    const double removed_share = removed.add_view(depth_m, changes.removed_mask);
     fmt::print("{}: {:.2f} % novel, {:.2f} % removed{}\n", run.frame().name, 100 * novel_share, 100 * removed_share,
                changes.pose_suspect ? ", camera pose suspect" : "");
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "resight/changes/change_regions.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
 
@@ -15,14 +16,15 @@ class ChangeRun {
   ChangeResult add_view(RgbdFrame frame);
   /// The view that was added last, at its corrected pose.
   [[nodiscard]] const RgbdFrame& frame() const { return scene_.window().back().raw; }
-  /// Depth of the removed points in the view that was added last, metres; NaN: nothing was removed from this pixel.
-  [[nodiscard]] Image<float> project_removed(const ChangeResult& changes) const;
+  /// Regions of the changes of the view that was added last.
+  [[nodiscard]] std::vector<ChangeRegion> find_regions(const ChangeResult& changes) const {
+    return find_change_regions(frame(), changes, voxel_m_);
+  }
   [[nodiscard]] int num_corrected() const { return num_corrected_; }
 
  private:
   PrepareViewOptions prepare_;
   double voxel_m_;
-  CameraCorrector corrector_;
   DynamicScene scene_;
   int num_corrected_ = 0;
 };

@@ -105,7 +105,7 @@ void score_changes(const ChangeTruth& truth, const ReportedChanges& reported, Ch
     const SideTruth& true_side = truth.sides[side];
     const Mask& mask = reported.masks[side];
     score_pixels(truth, side, mask, score);
-    const Components regions = find_components(mask);
+    const Components& regions = reported.regions[side];
     for (const ChangedObject& object : true_side.objects)
       score_object(object, side, mask, regions, score.sides[side], mistakes);
     for (const Region& region : regions.regions) score_region(region, side, true_side, score.sides[side], mistakes);

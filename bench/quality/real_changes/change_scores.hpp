@@ -39,7 +39,8 @@ struct ChangeScore {
 
 /// What a method reports between two views.
 struct ReportedChanges {
-  std::array<Mask, 2> masks;  ///< By Side, both in the pixels of the still camera.
+  std::array<Mask, 2> masks;          ///< By Side, both in the pixels of the still camera.
+  std::array<Components, 2> regions;  ///< By Side: pixels of the masks that belong together.
 };
 
 /// A miss, or a false report.

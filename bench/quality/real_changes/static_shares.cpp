@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace resight::bench {
@@ -25,13 +24,13 @@ std::string title_of_range(int range) {
 
 }  // namespace
 
-double FalseShares::add_view(const Image<float>& depth_m, const Image<float>& called_m) {
+double FalseShares::add_view(const Image<float>& depth_m, const Mask& called) {
   Count of_view;
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
     if (std::isnan(depth_m[i])) continue;
-    const bool called = !std::isnan(called_m[i]);
-    of_view.add(called);
-    by_range_[static_cast<std::size_t>(range_of(called ? called_m[i] : depth_m[i]))].add(called);
+    const bool is_called = !called.empty() && called[i] != 0;
+    of_view.add(is_called);
+    by_range_[static_cast<std::size_t>(range_of(depth_m[i]))].add(is_called);
   }
   shares_.push_back(of_view.total > 0 ? of_view.share() : 0.0);
   return shares_.back();
@@ -46,13 +45,6 @@ double FalseShares::largest() const { return shares_.empty() ? 0 : *std::ranges:
 
 int FalseShares::num_bad_views() const {
   return static_cast<int>(std::ranges::count_if(shares_, [](double share) { return share > kBadShare; }));
-}
-
-Image<float> keep_depth_in(const Image<float>& depth_m, const Mask& mask) {
-  Image<float> kept(depth_m.width(), depth_m.height(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < mask.size(); ++i)
-    if (mask[i] != 0) kept[i] = depth_m[i];
-  return kept;
 }
 
 void print_false_shares(const std::vector<std::pair<std::string, FalseShares>>& methods) {

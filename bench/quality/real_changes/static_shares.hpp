@@ -12,8 +12,8 @@ namespace resight::bench {
 /// Shares of pixels with depth that are called changed in a static scene, where this is always false.
 class FalseShares {
  public:
-  /// `called_m`: depth of what is called changed, NaN where nothing is. Returns the share of this view.
-  double add_view(const Image<float>& depth_m, const Image<float>& called_m);
+  /// An empty mask calls nothing changed. Returns the share of this view.
+  double add_view(const Image<float>& depth_m, const Mask& called);
   /// Mean over the views.
   [[nodiscard]] double mean() const;
   [[nodiscard]] double largest() const;
@@ -23,16 +23,13 @@ class FalseShares {
 
   static constexpr int kNumRanges = 8;
   static constexpr double kRange_m = 0.5;
-  /// By range: the depth of what is called changed, otherwise that of the view. The last is open.
+  /// By depth of the pixel. The last range is open.
   [[nodiscard]] const std::array<Count, kNumRanges>& by_range() const { return by_range_; }
 
  private:
   std::vector<double> shares_;  // By view.
   std::array<Count, kNumRanges> by_range_{};
 };
-
-/// The depth at non-zero pixels of the mask, NaN elsewhere. An empty mask is zero everywhere.
-[[nodiscard]] Image<float> keep_depth_in(const Image<float>& depth_m, const Mask& mask);
 
 /// Prints two tables with a row per method: shares per view and shares by range.
 void print_false_shares(const std::vector<std::pair<std::string, FalseShares>>& methods);

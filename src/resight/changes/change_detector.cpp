@@ -2,6 +2,7 @@
 #include "resight/changes/change_detector.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,9 @@
 
 namespace resight {
 namespace {
+
+constexpr double kMinDepth_m = 0.05;
+constexpr double kDiscRadius_voxels = 0.6;  // Discs of neighbouring voxels overlap a little.
 
 double share(std::size_t part, std::size_t rest) {
   return part == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(part + rest);
@@ -29,13 +33,26 @@ PointCloud cloud_of_pixels(const std::vector<int>& pixels, const PreparedView& v
   return cloud_in_world;
 }
 
-/// Pixels of the view at which these points are.
-Image<std::uint8_t> mask_of_points(const PointCloud& cloud_in_world, const PreparedView& view) {
+/// Sets the pixels whose centre is in the disc, and the one that holds its centre.
+void draw_disc(const Camera& camera, const Eigen::Vector2d& center_px, double radius_px, Image<std::uint8_t>& mask) {
+  const auto first = [](double from) { return static_cast<int>(std::ceil(std::max(from, 0.0))); };
+  const auto last = [](double to, int size) { return static_cast<int>(std::floor(std::min(to, size - 1.0))); };
+  for (int v = first(center_px.y() - radius_px); v <= last(center_px.y() + radius_px, mask.height()); ++v)
+    for (int u = first(center_px.x() - radius_px); u <= last(center_px.x() + radius_px, mask.width()); ++u)
+      if ((Eigen::Vector2d(u, v) - center_px).norm() <= radius_px) mask(u, v) = 1;
+  if (const auto pixel = camera.pixel_at(center_px)) mask(pixel->u, pixel->v) = 1;
+}
+
+/// Pixels of the view at which the surface is that these points, one per voxel, were sampled from.
+Image<std::uint8_t> mask_of_points(const PointCloud& cloud_in_world, const PreparedView& view, double voxel_m) {
+  const Camera& camera = view.frame.camera;
   Image<std::uint8_t> mask(view.cloud.width(), view.cloud.height());
-  const Rigid3f camera_from_world(view.frame.world_from_camera.inverse());
-  for (const Eigen::Vector3f& p : cloud_in_world.points)
-    if (const auto pixel = view.frame.camera.pixel_of((camera_from_world * p).cast<double>()))
-      mask(pixel->u, pixel->v) = 1;
+  const Rigid3 camera_from_world = view.frame.world_from_camera.inverse();
+  for (const Eigen::Vector3f& p_in_world : cloud_in_world.points) {
+    const Eigen::Vector3d p = camera_from_world * p_in_world.cast<double>().eval();
+    if (p.z() > kMinDepth_m)
+      draw_disc(camera, camera.project(p), kDiscRadius_voxels * voxel_m * camera.fx / p.z(), mask);
+  }
   return mask;
 }
 
@@ -66,7 +83,7 @@ ChangeResult detect_by_points(const PointCloud& previous_in_world, const Prepare
   const PointChanges changes =
       find_point_changes({previous_in_world, psi_in_world}, view, earlier_views, test, options.num_threads);
   ChangeResult result = make_result(view, changes.novel, select(psi_in_world, changes.removed), options);
-  result.removed_mask = mask_of_points(result.removed_in_world, view);
+  result.removed_mask = mask_of_points(result.removed_in_world, view, options.voxel_m);
   result.evidence_count = changes.evidence_count;
   result.changed_share = share(changes.removed.size(), num_present(changes.evidence_count));
   result.novel_share = share(changes.novel.size(), changes.num_explained);

@@ -9,7 +9,6 @@
 #include "resight/recognition/stage_options.hpp"
 #include "resight/recognition/time_budget.hpp"
 #include "resight/recognition/view_hypothesis_source.hpp"
-#include "resight/registration/camera_corrector.hpp"
 #include "resight/verification/hypothesis_verifier.hpp"
 
 namespace resight {
@@ -21,7 +20,6 @@ struct SceneRecognizer::Impl {
   Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> store, Clock clock)
       : library(models),
         config(checked_and_seeded(std::move(settings))),
-        corrector(correction_options(config)),
         scene(scene_options(config)),
         planner(make_search_planner(models, config)),
         source(models, config, std::move(store)),
@@ -43,7 +41,6 @@ struct SceneRecognizer::Impl {
 
   const ModelLibrary& library;
   RecognizerConfig config;
-  CameraCorrector corrector;
   DynamicScene scene;
   SearchPlanner planner;
   ViewHypothesisSource source;
@@ -85,13 +82,8 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
     const ScopedTimer timer(update.times, "prepare");
     view = prepare_view(std::move(frame), config.prepare);
   }
-  {
-    const ScopedTimer timer(update.times, "poses");
-    view.frame.world_from_camera = corrector.add_view(view);
-  }
-  update.world_from_camera = view.frame.world_from_camera;
-  const ScopedTimer timer(update.times, "changes and reconstruction");
-  update.changes = scene.add_view(std::move(view));
+  update.changes = scene.add_view(std::move(view), &update.times);
+  update.world_from_camera = scene.window().back().raw.world_from_camera;
   update.reconstruction_points = scene.reconstruction().size();
   update.searched = planner.needs_search(scene.window().back().cleared, update.changes);
 }

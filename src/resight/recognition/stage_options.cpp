@@ -13,15 +13,10 @@ DynamicSceneOptions scene_options(const RecognizerConfig& config) {
   return {.num_previous_views = config.num_previous_views,
           .detect_changes = config.changes.enabled,
           .clear_tolerance_m = config.changes.clear_tolerance_m,
+          .poses = config.poses,
           .prepare = config.prepare,
           .changes = config.changes.detection,
           .integrate = config.integrate};
-}
-
-CorrectCameraOptions correction_options(const RecognizerConfig& config) {
-  CorrectCameraOptions options = config.poses;
-  options.correct &= config.num_previous_views > 0;
-  return options;
 }
 
 SearchPlanner make_search_planner(const ModelLibrary& library, const RecognizerConfig& config) {

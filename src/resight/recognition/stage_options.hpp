@@ -11,8 +11,6 @@ namespace resight {
 
 /// Options of single stages that depend on several settings of the recogniser.
 [[nodiscard]] DynamicSceneOptions scene_options(const RecognizerConfig& config);
-/// No correction for single views: they have nothing to be aligned to.
-[[nodiscard]] CorrectCameraOptions correction_options(const RecognizerConfig& config);
 /// Searches every view everywhere unless objects are remembered.
 [[nodiscard]] SearchPlanner make_search_planner(const ModelLibrary& library, const RecognizerConfig& config);
 

@@ -23,17 +23,39 @@ void clear(const PointCloud& removed_in_world, const DynamicSceneOptions& option
     update_voxels(view.cleared, view.voxels, options.integrate);
 }
 
+/// A single view has nothing to be aligned to.
+CorrectCameraOptions correction_options(const DynamicSceneOptions& options) {
+  CorrectCameraOptions correction = options.poses;
+  correction.correct &= options.num_previous_views > 0;
+  return correction;
+}
+
 }  // namespace
 
 void DynamicSceneOptions::check() const {
   check_not_negative("DynamicSceneOptions.num_previous_views", num_previous_views);
   check_positive("DynamicSceneOptions.clear_tolerance_m", clear_tolerance_m);
+  poses.check();
   prepare.check();
   changes.check();
   integrate.check();
 }
 
-DynamicScene::DynamicScene(const DynamicSceneOptions& options) : options_(options) { options_.check(); }
+DynamicScene::DynamicScene(const DynamicSceneOptions& options)
+    : options_(options), corrector_(correction_options(options)) {
+  options_.check();
+}
+
+ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
+  StageTimes own;
+  StageTimes& measured = times != nullptr ? *times : own;
+  {
+    const ScopedTimer timer(measured, "poses");
+    view.frame.world_from_camera = corrector_.add_view(view);
+  }
+  const ScopedTimer timer(measured, "changes and reconstruction");
+  return add_at_pose(std::move(view));
+}
 
 ChangeResult DynamicScene::find_changes(const PreparedView& view) const {
   // Psi_{k-1} is reconstructed from the last K views. With K = 0 there is nothing to compare with.
@@ -51,7 +73,7 @@ void DynamicScene::clear_from_window(const PointCloud& removed_in_world) {
                [&](std::size_t i) { clear(removed_in_world, options_, window_[i]); });
 }
 
-ChangeResult DynamicScene::add_view(PreparedView view) {
+ChangeResult DynamicScene::add_at_pose(PreparedView view) {
   ChangeResult changes;
   ViewVoxels voxels;
   // Runs both at once: change detection and clearing number no voxels, and clearing does not affect the new view.

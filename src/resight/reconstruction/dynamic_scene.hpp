@@ -3,7 +3,9 @@
 #include <deque>
 
 #include "resight/changes/change_detector.hpp"
+#include "resight/core/timing.hpp"
 #include "resight/reconstruction/integration.hpp"
+#include "resight/registration/camera_corrector.hpp"
 #include "resight/sensor/prepared_view.hpp"
 
 namespace resight {
@@ -12,6 +14,7 @@ struct DynamicSceneOptions {
   int num_previous_views = 5;       ///< K: the reconstruction is made of the current view and up to K before it.
   bool detect_changes = true;       ///< Off: a static world, nothing is ever cleared.
   double clear_tolerance_m = 0.02;  ///< Points this near to removed ones are cleared from older views (V4R: 2 cm).
+  CorrectCameraOptions poses;       ///< Without views to compare with (K = 0), given poses stay.
   PrepareViewOptions prepare;       ///< As the views were prepared: cleared ones are prepared again.
   DetectChangesOptions changes;
   IntegrateOptions integrate;
@@ -24,7 +27,7 @@ class DynamicScene {
   /// A view of the window.
   struct View {
     int number = 0;               ///< Number of the view, counted from 0.
-    RgbdFrame raw;                ///< The frame as recorded.
+    RgbdFrame raw;                ///< The frame as recorded, at its corrected pose.
     PreparedView cleared;         ///< The view without points that later views observed as removed.
     PointCloud removed_in_world;  ///< Points that this view observed as removed; world frame.
     /// Points that this view observed as novel; world frame.
@@ -35,11 +38,12 @@ class DynamicScene {
   /// Throws std::invalid_argument if the options are invalid.
   explicit DynamicScene(const DynamicSceneOptions& options = {});
 
-  /// Processes the next view (same world frame): finds its changes against the current reconstruction, clears the
-  /// removed points from all earlier views, drops views that leave the window, and reconstructs. Later views are not
-  /// cleared, so that an object put back at its former place persists. Without change detection, or for the first view,
-  /// the changes are empty. Throws std::invalid_argument if the view is not prepared or has no normals.
-  ChangeResult add_view(PreparedView view);
+  /// Processes the next view (same world frame): corrects its pose, finds its changes against the current
+  /// reconstruction, clears the removed points from all earlier views, drops views that leave the window, and
+  /// reconstructs. Later views are not cleared, so that an object put back at its former place persists. Without change
+  /// detection, or for the first view, the changes are empty. Adds the times of the steps to `times` unless it is null.
+  /// Throws std::invalid_argument if the view is not prepared or has no normals.
+  ChangeResult add_view(PreparedView view, StageTimes* times = nullptr);
 
   /// Views of the window, oldest first; the current view is the last.
   [[nodiscard]] const std::deque<View>& window() const { return window_; }
@@ -47,11 +51,13 @@ class DynamicScene {
   [[nodiscard]] const PointCloud& reconstruction() const { return reconstruction_.cloud_in_world; }
 
  private:
+  ChangeResult add_at_pose(PreparedView view);
   [[nodiscard]] ChangeResult find_changes(const PreparedView& view) const;
   void clear_from_window(const PointCloud& removed_in_world);
   void reconstruct();
 
   DynamicSceneOptions options_;
+  CameraCorrector corrector_;
   std::deque<View> window_;
   VoxelNumbers numbers_;  // Of the voxels of the window and of some earlier ones.
   // Number of blocks when numbering last restarted, with the voxels of the window alone.

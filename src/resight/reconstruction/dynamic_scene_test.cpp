@@ -111,6 +111,31 @@ TEST(DynamicScene, AgreesWithStartingFromScratchAlongAWay) {
   }
 }
 
+// The second camera is said to be 12 mm beside where it is. Where K = 0, there is nothing to compare it with.
+TEST(DynamicScene, CorrectsGivenPosesBeforeItComparesViews) {
+  const Rigid3 true_pose = look_at({0.3, -0.9, 0.8}, {0, 0, 0.05});
+  const Rigid3 given_pose = Rigid3::from_translation({0.012, 0, 0}) * true_pose;
+  for (const int num_previous_views : {0, 3}) {
+    DynamicSceneOptions options;
+    options.num_previous_views = num_previous_views;
+    options.poses.correct = true;
+    DynamicScene scene(options);
+    (void)scene.add_view(see(with({kFirstBox, kOther})));
+    PreparedView view = see(with({kFirstBox, kOther}), true_pose);
+    view.frame.world_from_camera = given_pose;
+    StageTimes times;
+    (void)scene.add_view(std::move(view), &times);
+    const Rigid3& corrected = scene.window().back().raw.world_from_camera;
+    const double error_m = (corrected.translation - true_pose.translation).norm();
+    if (num_previous_views > 0)
+      EXPECT_LT(error_m, 0.002);
+    else
+      EXPECT_TRUE(is_same_pose(corrected, given_pose));
+    ASSERT_EQ(times.stages().size(), 2U);
+    EXPECT_EQ(times.stages()[0].stage, "poses");
+  }
+}
+
 TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
   for (const bool detect : {false, true}) {
     DynamicSceneOptions options;

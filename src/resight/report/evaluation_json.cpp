@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "resight/report/evaluation_report.hpp"
-#include "resight/report/internal/score_json.hpp"
+#include "resight/report/internal/json_values.hpp"
 
 namespace resight {
 namespace {

@@ -3,28 +3,21 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/core/check.hpp"
-#include "resight/report/internal/score_json.hpp"
+#include "resight/report/internal/json_values.hpp"
 #include "resight/report/results.hpp"
 
 namespace resight {
 namespace {
 
+using report::pose_json;
 using report::score_json;
+using report::to_text;
 using Json = nlohmann::ordered_json;
 
 const ObjectModel& model_of(int object, const ModelLibrary& library) {
   require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
           "results: an object is not in the library");
   return library.objects[static_cast<std::size_t>(object)];
-}
-
-Json pose_json(const Rigid3& pose) {
-  Json rotation = Json::array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) rotation.push_back(pose.rotation(row, column));
-  }
-  return {{"rotation", rotation},
-          {"translation_m", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
 }
 
 Json optional_pose_json(const std::optional<Rigid3>& pose) { return pose ? pose_json(*pose) : Json(nullptr); }
@@ -92,8 +85,6 @@ Json stage_times_json(const StageTimes& times, int num_views) {
 }
 
 Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
-
-std::string to_text(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json header(const ReportRun& run) {
   return {{"version", run.version}, {"preset", run.preset}, {"sequence", run.sequence}};
