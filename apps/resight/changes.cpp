@@ -46,7 +46,7 @@ void write_masks(const std::filesystem::path& folder, const RgbdFrame& frame, co
 
 std::string count_regions(const ViewChangeRecord& view) {
   const auto num_novel =
-      std::ranges::count_if(view.regions, [](const ChangeRegion& r) { return r.kind == ChangeKind::kNovel; });
+      std::ranges::count_if(view.regions, [](const ChangeRegion& r) { return r.kind == RegionKind::kNovel; });
   return fmt::format("{} regions removed, {} novel", static_cast<std::ptrdiff_t>(view.regions.size()) - num_novel,
                      num_novel);
 }

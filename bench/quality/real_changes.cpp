@@ -90,7 +90,7 @@ ReportedChanges to_reported(const ChangeRun& run, const ChangeResult& changes) {
                             changes.removed_mask.empty() ? empty : changes.removed_mask},
                            {none, none}};
   for (ChangeRegion& region : run.find_regions(changes)) {
-    Components& of_side = reported.regions[region.kind == ChangeKind::kNovel ? kAdded : kRemoved];
+    Components& of_side = reported.regions[region.kind == RegionKind::kNovel ? kAdded : kRemoved];
     for (const int pixel : region.pixels) of_side.numbers[pixel] = static_cast<int>(of_side.regions.size());
     of_side.regions.push_back(std::move(region.pixels));
   }

@@ -64,7 +64,7 @@ void assign_pixels(const RgbdFrame& frame, const Image<std::uint8_t>& mask, std:
 }
 
 void add_regions(const RgbdFrame& frame, const PointCloud& changed_in_world, const Image<std::uint8_t>& mask,
-                 ChangeKind kind, double max_gap_m, std::vector<ChangeRegion>& regions) {
+                 RegionKind kind, double max_gap_m, std::vector<ChangeRegion>& regions) {
   const std::size_t first = regions.size();
   for (const std::vector<int>& indices : connect_points(changed_in_world.points, max_gap_m)) {
     ChangeRegion region{kind, select(changed_in_world, indices), {}, {}};
@@ -76,7 +76,7 @@ void add_regions(const RgbdFrame& frame, const PointCloud& changed_in_world, con
 
 }  // namespace
 
-const char* to_string(ChangeKind kind) { return kind == ChangeKind::kNovel ? "novel" : "removed"; }
+const char* to_string(RegionKind kind) { return kind == RegionKind::kNovel ? "novel" : "removed"; }
 
 OrientedBox fit_box(const PointCloud& cloud_in_world) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -109,8 +109,8 @@ OrientedBox fit_box(const PointCloud& cloud_in_world) {
 std::vector<ChangeRegion> find_change_regions(const RgbdFrame& frame, const ChangeResult& changes, double voxel_m) {
   const double max_gap_m = kMaxGap_voxels * voxel_m;
   std::vector<ChangeRegion> regions;
-  add_regions(frame, changes.novel_in_world, changes.novel_mask, ChangeKind::kNovel, max_gap_m, regions);
-  add_regions(frame, changes.removed_in_world, changes.removed_mask, ChangeKind::kRemoved, max_gap_m, regions);
+  add_regions(frame, changes.novel_in_world, changes.novel_mask, RegionKind::kNovel, max_gap_m, regions);
+  add_regions(frame, changes.removed_in_world, changes.removed_mask, RegionKind::kRemoved, max_gap_m, regions);
   return regions;
 }
 

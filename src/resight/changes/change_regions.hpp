@@ -7,8 +7,8 @@
 
 namespace resight {
 
-enum class ChangeKind { kNovel, kRemoved };
-[[nodiscard]] const char* to_string(ChangeKind kind);
+enum class RegionKind { kNovel, kRemoved };
+[[nodiscard]] const char* to_string(RegionKind kind);
 
 /// A box around points, along their principal axes. Its x axis is the longest side, its z axis the shortest.
 struct OrientedBox {
@@ -18,7 +18,7 @@ struct OrientedBox {
 
 /// Connected surface that came or left between two views: as a rule, one thing.
 struct ChangeRegion {
-  ChangeKind kind = ChangeKind::kNovel;
+  RegionKind kind = RegionKind::kNovel;
   PointCloud surface_in_world;  ///< One point per voxel of DetectChangesOptions::voxel_m.
   std::vector<int> pixels;      ///< Of the view, ascending: those of the mask that show the region, or see through it.
   OrientedBox box;

@@ -72,8 +72,8 @@ TEST(ChangeRegions, OneThingIsOneRegion) {
   const ChangeResult changes = changes_between(see(table_with({left}), usual_pose()), after);
   const std::vector<ChangeRegion> regions = find_change_regions(after.frame, changes, kVoxel_m);
   ASSERT_EQ(regions.size(), 2U);
-  EXPECT_EQ(regions[0].kind, ChangeKind::kNovel);
-  EXPECT_EQ(regions[1].kind, ChangeKind::kRemoved);
+  EXPECT_EQ(regions[0].kind, RegionKind::kNovel);
+  EXPECT_EQ(regions[1].kind, RegionKind::kRemoved);
   EXPECT_NEAR(regions[0].box.world_from_box.translation.x(), came.center.x(), 0.06);
   EXPECT_NEAR(regions[1].box.world_from_box.translation.x(), left.center.x(), 0.06);
 }

@@ -9,15 +9,15 @@ namespace resight {
 namespace {
 
 TEST(SceneChangesJson, NumbersRegionsAcrossViews) {
-  const ChangeRegion came{ChangeKind::kNovel, {{{0, 0, 1}}, {}, {}}, {12, 15, 23, 31}, {{}, {0.3, 0.2, 0.1}}};
-  const ChangeRegion left{ChangeKind::kRemoved, {{{0, 0, 1}, {0, 0, 2}}, {}, {}}, {}, {}};
+  const ChangeRegion came{RegionKind::kNovel, {{{0, 0, 1}}, {}, {}}, {12, 15, 23, 31}, {{}, {0.3, 0.2, 0.1}}};
+  const ChangeRegion left{RegionKind::kRemoved, {{{0, 0, 1}, {0, 0, 2}}, {}, {}}, {}, {}};
   const SceneChanges changes{
       "1.0", "default", "desk", {{"first", 10, {}, 0, false, {}}, {"second", 10, {}, 0.25, true, {came, left}}}};
-  const auto json = nlohmann::json::parse(format_scene_changes_json(changes));
-  EXPECT_EQ(json["preset"], "default");
-  ASSERT_EQ(json["views"].size(), 2U);
-  EXPECT_TRUE(json["views"][0]["regions"].empty());
-  const auto& second = json["views"][1];
+  const auto parsed = nlohmann::json::parse(format_scene_changes_json(changes));
+  EXPECT_EQ(parsed["preset"], "default");
+  ASSERT_EQ(parsed["views"].size(), 2U);
+  EXPECT_TRUE(parsed["views"][0]["regions"].empty());
+  const auto& second = parsed["views"][1];
   EXPECT_EQ(second["view"], 1);
   EXPECT_EQ(second["changed_share"], 0.25);
   EXPECT_EQ(second["pose_suspect"], true);
