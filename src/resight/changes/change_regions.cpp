@@ -8,12 +8,16 @@
 #include <utility>
 
 #include "resight/geometry/kd_tree.hpp"
+#include "resight/sensor/pixel_components.hpp"
 
 namespace resight {
 namespace {
 
 // Points of one surface are up to 1.7 voxels apart (the diagonal); noise and grazing angles leave further gaps.
 constexpr double kMaxGap_voxels = 4;
+// Smaller pieces beside a larger one in the image are flakes at a depth edge, and belong to it.
+constexpr std::size_t kFewPoints = 10;
+constexpr int kFlakeGap_px = 2;
 
 // Indices of the points of each region, ascending.
 std::vector<std::vector<int>> connect_points(std::span<const Eigen::Vector3f> points, double max_gap_m) {
@@ -63,15 +67,49 @@ void assign_pixels(const RgbdFrame& frame, const Image<std::uint8_t>& mask, std:
   }
 }
 
+// Joins pieces of few points with the largest region of their connected pixels.
+void join_flakes(const Image<std::uint8_t>& mask, std::size_t first, std::vector<ChangeRegion>& regions) {
+  Image<int> component(mask.width(), mask.height(), -1);
+  std::vector<std::size_t> largest;  // Region of each component. Regions are in descending order of size.
+  for (const std::vector<int>& pixels : find_pixel_components(mask, kFlakeGap_px)) {
+    for (const int i : pixels) component[static_cast<std::size_t>(i)] = static_cast<int>(largest.size());
+    largest.push_back(regions.size());
+  }
+  std::vector<ChangeRegion> kept;
+  for (std::size_t r = first; r < regions.size(); ++r) {
+    ChangeRegion& region = regions[r];
+    for (const int i : region.pixels) {
+      std::size_t& of_component = largest[static_cast<std::size_t>(component[static_cast<std::size_t>(i)])];
+      of_component = std::min(of_component, first + kept.size());
+    }
+    const bool is_flake = region.surface_in_world.size() < kFewPoints && !region.pixels.empty();
+    const std::size_t home =
+        is_flake ? largest[static_cast<std::size_t>(component[static_cast<std::size_t>(region.pixels.front())])]
+                 : first + kept.size();
+    if (home == first + kept.size()) {
+      kept.push_back(std::move(region));
+      continue;
+    }
+    ChangeRegion& larger = kept[home - first];
+    larger.surface_in_world.append(region.surface_in_world);
+    larger.pixels.insert(larger.pixels.end(), region.pixels.begin(), region.pixels.end());
+  }
+  regions.resize(first);
+  for (ChangeRegion& region : kept) {
+    std::ranges::sort(region.pixels);
+    regions.push_back(std::move(region));
+  }
+}
+
 void add_regions(const RgbdFrame& frame, const PointCloud& changed_in_world, const Image<std::uint8_t>& mask,
                  RegionKind kind, double max_gap_m, std::vector<ChangeRegion>& regions) {
   const std::size_t first = regions.size();
   for (const std::vector<int>& indices : connect_points(changed_in_world.points, max_gap_m)) {
-    ChangeRegion region{kind, select(changed_in_world, indices), {}, {}};
-    region.box = fit_box(region.surface_in_world);
-    regions.push_back(std::move(region));
+    regions.push_back({kind, select(changed_in_world, indices), {}, {}});
   }
   assign_pixels(frame, mask, std::span(regions).subspan(first));
+  join_flakes(mask, first, regions);
+  for (ChangeRegion& region : std::span(regions).subspan(first)) region.box = fit_box(region.surface_in_world);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ constexpr int kMaxGap_px = 2;  // Within a region: the pixels of one view do not
 struct PairEvidence {
   Image<Evidence> of_view;     ///< What the earlier view says about the pixels of the view.
   Image<Evidence> of_earlier;  ///< The reverse.
+  double noise_scale = 1;
 };
 
 PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
@@ -26,7 +27,8 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
   const bool camera_moved = !is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera);
   const CompareViewsOptions compare{options.sigmas, camera_moved ? options.neighborhood_px : 0, num_threads};
   const double noise_scale = estimate_noise_scale(view, earlier);
-  return {compare_views(view, earlier, noise_scale, compare), compare_views(earlier, view, noise_scale, compare)};
+  return {compare_views(view, earlier, noise_scale, compare), compare_views(earlier, view, noise_scale, compare),
+          noise_scale};
 }
 
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
@@ -45,10 +47,34 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
   return novel;
 }
 
-void drop_small_regions(int min_region_px, Image<std::uint8_t>& mask) {
-  for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px))
-    if (static_cast<int>(region.size()) < min_region_px)
+/// Mean over the earlier views that see through a novel surface, in standard deviations; 0 at other pixels.
+Image<float> measure_novel(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
+                           std::span<const PairEvidence> pairs, const Image<std::uint8_t>& novel) {
+  Image<float> sum(novel.width(), novel.height());
+  Image<std::uint16_t> num(novel.width(), novel.height());
+  for (std::size_t e = 0; e < pairs.size(); ++e) {
+    std::vector<int> pixels;
+    for (std::size_t i = 0; i < novel.size(); ++i)
+      if (novel[i] != 0 && pairs[e].of_view[i] == Evidence::kSeenThrough) pixels.push_back(static_cast<int>(i));
+    const std::vector<float> sigmas = measure_contradiction(view, *earlier_views[e], pixels, pairs[e].noise_scale);
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      sum[static_cast<std::size_t>(pixels[k])] += sigmas[k];
+      ++num[static_cast<std::size_t>(pixels[k])];
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (num[i] > 0) sum[i] /= static_cast<float>(num[i]);
+  return sum;
+}
+
+/// Neighbouring errors of depth are alike, so that many pixels that are off by little may be noise, but not by much.
+void drop_weak_regions(const Image<float>& sigmas, const DepthTestOptions& options, Image<std::uint8_t>& mask) {
+  for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px)) {
+    double mass = 0;
+    for (const int i : region) mass += std::clamp(sigmas[static_cast<std::size_t>(i)] / options.sigmas - 1, 0.0, 1.0);
+    if (mass < options.min_region_px)
       for (const int i : region) mask[static_cast<std::size_t>(i)] = 0;
+  }
 }
 
 /// Pixels of an earlier view that the view sees through, and where in the view they are.
@@ -62,9 +88,13 @@ struct GonePixels {
 class RemovedSurface {
  public:
   explicit RemovedSurface(const PreparedView& view)
-      : view_(view), decided_(view.cloud.width(), view.cloud.height()), removed_(decided_) {}
+      : view_(view),
+        decided_(view.cloud.width(), view.cloud.height()),
+        removed_(decided_),
+        sigmas_(view.cloud.width(), view.cloud.height()) {}
 
-  [[nodiscard]] GonePixels add(const PreparedView& earlier, const Image<Evidence>& evidence) {
+  [[nodiscard]] GonePixels add(const PreparedView& earlier, const PairEvidence& pair) {
+    const Image<Evidence>& evidence = pair.of_earlier;
     const Rigid3f view_from_earlier(view_.frame.world_from_camera.inverse() * earlier.frame.world_from_camera);
     GonePixels gone;
     std::vector<std::size_t> present;
@@ -81,14 +111,22 @@ class RemovedSurface {
       gone.in_view.push_back(static_cast<int>(at));
     }
     for (const std::size_t at : present) decided_[at] = 1;
+    const std::vector<float> sigmas = measure_contradiction(earlier, view_, gone.in_earlier, pair.noise_scale);
+    for (std::size_t k = 0; k < sigmas.size(); ++k) {
+      float& strongest = sigmas_[static_cast<std::size_t>(gone.in_view[k])];
+      strongest = std::max(strongest, sigmas[k]);
+    }
     return gone;
   }
   Image<std::uint8_t>& mask() { return removed_; }
+  /// Of the removed pixels, in standard deviations.
+  [[nodiscard]] const Image<float>& sigmas() const { return sigmas_; }
 
  private:
   const PreparedView& view_;
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
+  Image<float> sigmas_;
 };
 
 }  // namespace
@@ -100,17 +138,17 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
   for (const PreparedView* earlier : earlier_views)
     pairs.push_back(compare_both_ways(view, *earlier, options, num_threads));
   changes.novel = find_novel(view, pairs, changes.num_explained);
-  drop_small_regions(options.min_region_px, changes.novel);
+  drop_weak_regions(measure_novel(view, earlier_views, pairs, changes.novel), options, changes.novel);
 
   RemovedSurface removed(view);
   std::vector<GonePixels> gone(pairs.size());
   for (std::size_t e = pairs.size(); e-- > 0;) {
     for (const Evidence evidence : pairs[e].of_earlier.data())
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
-    gone[e] = removed.add(*earlier_views[e], pairs[e].of_earlier);
+    gone[e] = removed.add(*earlier_views[e], pairs[e]);
   }
   changes.removed = std::move(removed.mask());
-  drop_small_regions(options.min_region_px, changes.removed);
+  drop_weak_regions(removed.sigmas(), options, changes.removed);
   for (const GonePixels& pixels : gone) {
     std::vector<int>& kept = changes.gone_pixels.emplace_back();
     for (std::size_t i = 0; i < pixels.in_view.size(); ++i)

@@ -11,9 +11,9 @@ namespace resight {
 
 /// The statistical test of changes: depth against depth.
 struct DepthTestOptions {
-  double sigmas = 3;
+  double sigmas = 2.5;
   int neighborhood_px = 2;
-  int min_region_px = 25;
+  int min_region_px = 40;
 };
 
 inline void declare(OptionVisitor& v, DepthTestOptions& o) {
@@ -25,7 +25,11 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
       "neighborhood_px", o.neighborhood_px, between(0, 100),
       "If the camera moved, no measurement within this many rows and columns may explain the surface: poses are never "
       "exact. A still camera sees the same surface at the same pixel.");
-  v.field("min_region_px", o.min_region_px, at_least(1), "Smaller connected regions are noise.");
+  v.field(
+      "min_region_px", o.min_region_px, at_least(1),
+      "Smaller connected regions are noise. A pixel counts in full from twice `sigmas` on, and less the nearer it is "
+      "to `sigmas`.",
+      "ours; cluster mass of Bullmore et al. 1999");
 }
 
 /// Pixels that changed between earlier views and a view.
@@ -40,8 +44,9 @@ struct DepthChanges {
 /// Compares each pixel of the view with every earlier view, and the reverse (compare_views()).
 ///
 /// Novel: no earlier view has the surface, and at least one saw free space there. Removed: the view sees through the
-/// surface of an earlier view. Both need neighbours: regions of fewer than `min_region_px` pixels are noise. The noise
-/// is scaled to what the two views show of it (estimate_noise_scale()). Views must not be null.
+/// surface of an earlier view. Both need neighbours, because neighbouring errors of depth are alike: a region is noise
+/// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). The noise is scaled to
+/// what the two views show of it (estimate_noise_scale()). Views must not be null.
 [[nodiscard]] DepthChanges find_depth_changes(const PreparedView& view,
                                               std::span<const PreparedView* const> earlier_views,
                                               const DepthTestOptions& options, int num_threads);

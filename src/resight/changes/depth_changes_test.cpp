@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
@@ -50,6 +51,24 @@ TEST(DepthChanges, AnUnchangedSceneHasNone) {
     EXPECT_TRUE(changes.removed_in_world.empty());
     EXPECT_GT(changes.evidence_count[static_cast<std::size_t>(Evidence::kPresent)], 10000);
   }
+}
+
+// A step of the table by so many standard deviations of the difference, in a square.
+ChangeResult detect_step(float num_sigmas, int side_px) {
+  const PreparedView before = see(scene_with({}));
+  RgbdFrame frame = before.frame;
+  for (int v = 100; v < 100 + side_px; ++v)
+    for (int u = 100; u < 100 + side_px; ++u)
+      frame.depth_m(u, v) -= num_sigmas * std::sqrt(2.0F) * before.noise.axial_m(u, v);
+  return detect(before, prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}}));
+}
+
+// Neighbouring errors are alike: a small region must differ by much, a large one by little more than the threshold.
+TEST(DepthChanges, ASmallRegionMustDifferByMore) {
+  constexpr float kMarginal = 2.1F;  // 3 sigmas: without noise, its scale is 0.7.
+  EXPECT_EQ(count(detect_step(kMarginal, 7).novel_mask), 0);
+  EXPECT_GT(count(detect_step(kMarginal, 20).novel_mask), 20 * 20 / 2);
+  EXPECT_GT(count(detect_step(20, 7).novel_mask), 7 * 7 / 2);
 }
 
 TEST(DepthChanges, NoiseIsNoChange) {

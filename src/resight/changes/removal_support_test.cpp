@@ -40,7 +40,7 @@ TEST(ClusterPoints, AgreesWithFlooding) {
   Points points;
   for (int i = 0; i < 1200; ++i)
     points.push_back({static_cast<float>(rng.uniform(-0.3, 0.3)), static_cast<float>(rng.uniform(-0.3, 0.3)),
-                        static_cast<float>(rng.uniform(-0.05, 0.05))});
+                      static_cast<float>(rng.uniform(-0.05, 0.05))});
   points[3] = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   for (const double distance : {0.005, 0.015, 0.02, 0.03, 0.2}) {
     for (const int min_points : {1, 3, 40}) {

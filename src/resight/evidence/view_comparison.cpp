@@ -66,15 +66,15 @@ class ViewComparison {
     return agree_in_window(surface, *pixel, radius_px, center);
   }
 
-  /// Normalised distance of the surface to the measurement where it projects to; NaN if there is none.
-  [[nodiscard]] float normalized_distance(std::size_t i) const {
+  /// Distance of the surface to the measurement where it projects to, in standard deviations; NaN if there is none.
+  [[nodiscard]] float normalized_distance(std::size_t i, float max_distance_m) const {
     SurfaceInView surface;
     if (!pose(i, surface)) return kNaN;
     const std::optional<Pixel> pixel = pixel_of(surface);
     if (!pixel) return kNaN;
     const std::size_t j = view_.frame.depth_m.index(pixel->u, pixel->v);
     const float distance_m = (view_.frame.depth_m[j] - surface.position.z()) * surface.slope;
-    return std::abs(distance_m) < kMaxScaleDistance_m ? distance_m / sigma(surface, j) : kNaN;
+    return std::abs(distance_m) < max_distance_m ? distance_m / sigma(surface, j) : kNaN;
   }
 
  private:
@@ -137,6 +137,19 @@ Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& 
   return evidence;
 }
 
+std::vector<float> measure_contradiction(const PreparedView& surfaces, const PreparedView& view,
+                                         std::span<const int> pixels, double noise_scale) {
+  check_positive("noise_scale", noise_scale);
+  check_view(surfaces);
+  check_view(view);
+  const ViewComparison comparison(surfaces, view, 1);
+  std::vector<float> sigmas;
+  for (const int i : pixels)
+    sigmas.push_back(comparison.normalized_distance(static_cast<std::size_t>(i), std::numeric_limits<float>::max()) /
+                     static_cast<float>(noise_scale));
+  return sigmas;
+}
+
 double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& view) {
   check_view(surfaces);
   check_view(view);
@@ -144,7 +157,7 @@ double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& vi
   std::vector<float> distances;
   for (int v = 0; v < surfaces.cloud.height(); v += kScaleStep_px)
     for (int u = 0; u < surfaces.cloud.width(); u += kScaleStep_px) {
-      const float distance = comparison.normalized_distance(surfaces.cloud.z.index(u, v));
+      const float distance = comparison.normalized_distance(surfaces.cloud.z.index(u, v), kMaxScaleDistance_m);
       if (!std::isnan(distance)) distances.push_back(std::abs(distance));
     }
   if (distances.size() < kMinScaleSamples) return 1;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
+#include <vector>
+
 #include "resight/core/options.hpp"
 #include "resight/evidence/surface_evidence.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -30,6 +33,13 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
 /// the measurements of a depth edge. Both poses must be in one world frame.
 [[nodiscard]] Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
                                             const CompareViewsOptions& options = {});
+
+/// By how many standard deviations a view contradicts the surfaces at these pixels: the distances of compare_views(),
+/// divided by the noise and by `noise_scale`. Positive if the view sees through the surface, negative if it sees
+/// something in front of it; NaN where it says nothing. One value per pixel of `pixels`, which are indices into the
+/// images of `surfaces`.
+[[nodiscard]] std::vector<float> measure_contradiction(const PreparedView& surfaces, const PreparedView& view,
+                                                       std::span<const int> pixels, double noise_scale);
 
 /// How much larger the differences between two views are than the noise of the model: a robust standard deviation (1.48
 /// times the median absolute value) of the normalised distances of compare_views(), at least 0.7. Poses that are

@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "resight/core/random.hpp"
 
@@ -95,6 +97,27 @@ TEST(CompareViews, SerialIsParallel) {
   const PreparedView surface = see_wall(1.0, 0.3, 1, 1);
   const PreparedView view = see_wall(1.005, 0.3, 1, 2);
   EXPECT_EQ(compare_views(surface, view, 1, {.num_threads = 3}), compare_views(surface, view, 1));
+}
+
+// 10 mm, of which sqrt(2) * 1.9 mm are one standard deviation.
+TEST(MeasureContradiction, CountsStandardDeviations) {
+  const PreparedView surface = see_wall(1.0);
+  const std::vector<int> pixels{60 * 160 + 80, 61 * 160 + 81};
+  const auto near_in_all = [](const std::vector<float>& sigmas, float expected) {
+    return sigmas.size() == 2 && std::abs(sigmas[0] - expected) < 0.2F && std::abs(sigmas[1] - expected) < 0.2F;
+  };
+  EXPECT_TRUE(near_in_all(measure_contradiction(surface, see_wall(1.01), pixels, 1), 3.72F));
+  EXPECT_TRUE(near_in_all(measure_contradiction(surface, see_wall(0.99), pixels, 1), -3.72F));
+  EXPECT_TRUE(near_in_all(measure_contradiction(surface, see_wall(1.01), pixels, 2), 1.86F));
+}
+
+TEST(MeasureContradiction, IsUnknownWithoutDepth) {
+  RgbdFrame frame = see_wall(1.0).frame;
+  frame.depth_m(80, 60) = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<int> pixels{60 * 160 + 80};
+  const std::vector<float> sigmas = measure_contradiction(see_wall(1.0), prepare_view(std::move(frame)), pixels, 1);
+  ASSERT_EQ(sigmas.size(), 1U);
+  EXPECT_TRUE(std::isnan(sigmas[0]));
 }
 
 TEST(EstimateNoiseScale, GrowsWithTheNoise) {

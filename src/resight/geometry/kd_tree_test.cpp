@@ -14,8 +14,8 @@ namespace {
 std::vector<Eigen::Vector3f> random_points(int count, Rng& rng) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < count; ++i)
-    points.push_back({static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform()),
-                        static_cast<float>(rng.uniform())});
+    points.push_back(
+        {static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform()), static_cast<float>(rng.uniform())});
   return points;
 }
 

@@ -141,8 +141,8 @@ TEST(Diameter, IsExactForFewPoints) {
   Rng rng(1);
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500; ++i)
-    points.push_back({static_cast<float>(rng.normal()), static_cast<float>(rng.normal()),
-                        static_cast<float>(rng.normal())});
+    points.push_back(
+        {static_cast<float>(rng.normal()), static_cast<float>(rng.normal()), static_cast<float>(rng.normal())});
   EXPECT_NEAR(diameter(points), brute_force_diameter(points), 1e-5);
 }
 

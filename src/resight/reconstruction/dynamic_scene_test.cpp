@@ -111,10 +111,10 @@ TEST(DynamicScene, AgreesWithStartingFromScratchAlongAWay) {
   }
 }
 
-// The second camera is said to be 12 mm beside where it is. Where K = 0, there is nothing to compare it with.
+// The second camera is said to be 12 mm above where it is. Where K = 0, there is nothing to compare it with.
 TEST(DynamicScene, CorrectsGivenPosesBeforeItComparesViews) {
   const Rigid3 true_pose = look_at({0.3, -0.9, 0.8}, {0, 0, 0.05});
-  const Rigid3 given_pose = Rigid3::from_translation({0.012, 0, 0}) * true_pose;
+  const Rigid3 given_pose = Rigid3::from_translation({0, 0, 0.012}) * true_pose;
   for (const int num_previous_views : {0, 3}) {
     DynamicSceneOptions options;
     options.num_previous_views = num_previous_views;

@@ -257,7 +257,7 @@ TEST(LocalScene, VisitsExactlyThePointsWithinTheRadius) {
   std::vector<Eigen::Vector3f> scene;
   for (int i = 0; i < 4000; ++i)
     scene.push_back({static_cast<float>(rng.uniform(-0.3, 0.3)), static_cast<float>(rng.uniform(-0.3, 0.3)),
-                       static_cast<float>(rng.uniform(-0.3, 0.3))});
+                     static_cast<float>(rng.uniform(-0.3, 0.3))});
   const BlockGrid blocks(scene, 0.06);
   const std::vector<Eigen::Vector3f> around = {{-0.1F, 0, 0.05F}, {0.1F, 0.12F, -0.07F}};
   const LocalScene local(scene, blocks, around, 0.04F, 0.015F);

@@ -84,8 +84,7 @@ class ProblemMaker {
         const SurfacePoint m = visible_point(pose);
         add(problem, i, m, {pose * m.point, pose.rotation * m.normal});
       }
-    while (static_cast<int>(problem.correspondences.size()) < options_.num_correspondences)
-      add_outlier(problem);
+    while (static_cast<int>(problem.correspondences.size()) < options_.num_correspondences) add_outlier(problem);
     shuffle(problem);
     return problem;
   }
