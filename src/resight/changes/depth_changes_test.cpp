@@ -58,8 +58,11 @@ ChangeResult detect_step(float num_sigmas, int side_px) {
   const PreparedView before = see(scene_with({}));
   RgbdFrame frame = before.frame;
   for (int v = 100; v < 100 + side_px; ++v)
-    for (int u = 100; u < 100 + side_px; ++u)
-      frame.depth_m(u, v) -= num_sigmas * std::sqrt(2.0F) * before.noise.axial_m(u, v);
+    for (int u = 100; u < 100 + side_px; ++u) {
+      const std::size_t i = frame.depth_m.index(u, v);
+      const float normal_per_depth = std::abs(before.cloud.normal(i).dot(before.cloud.point(i))) / frame.depth_m[i];
+      frame.depth_m[i] -= num_sigmas * std::sqrt(2.0F) * before.noise.normal_m[i] / normal_per_depth;
+    }
   return detect(before, prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}}));
 }
 
