@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # `resight evaluate` from end to end, on two small sequences: shards merge to the same bytes as one run, finished runs
-# are not computed again, and a missing run is named. Usage: evaluate_test.sh PATH_OF_RESIGHT
+# are not computed again, a missing run is named, and mvr-chd has fewer ghosts than mvr.
+# Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
@@ -39,6 +40,18 @@ for picture in $pictures; do
 done
 [[ $(find "$work/whole/runs" -name '*.json' | wc -l) == 16 ]] || fail "expected 16 runs, there are: $(ls "$work/whole/runs")"
 grep -q '"true_positives": [1-9]' "$work/whole/results.json" || fail "nothing was recognised"
+
+# The point of the paper (Section III-B): with change detection, no ghost of the removed object remains, and precision
+# rises. Columns of "Recognition over K": preset, K, precision, .., ghosts, ghosts per former place.
+ghosts_and_precision() { # ghosts_and_precision PRESET: at K = 2, with clustering
+  awk -F ' *[|] *' -v preset="\`$1\`" '$2 == preset && $3 == 2 { print $(NF - 2), $4; exit }' "$work/whole/tables.md"
+}
+read -r static_ghosts static_precision <<<"$(ghosts_and_precision mvr)"
+read -r dynamic_ghosts dynamic_precision <<<"$(ghosts_and_precision mvr-chd)"
+[[ $static_ghosts -gt 0 && $dynamic_ghosts -eq 0 ]] ||
+  fail "mvr has $static_ghosts ghosts, mvr-chd $dynamic_ghosts: expected some, and none"
+awk "BEGIN { exit !($dynamic_precision > $static_precision) }" ||
+  fail "precision of mvr-chd, $dynamic_precision, is not above that of mvr, $static_precision"
 
 for shard in 1/2 2/2; do
   [[ -e $work/parts/results.json ]] && fail "results were written before all parts were there"
