@@ -72,6 +72,12 @@ after=$(stat -c %Y.%i "$work"/whole/runs/*)
 [[ $(comm -12 <(sort <<<"$before") <(sort <<<"$after") | wc -l) == 15 ]] || fail "finished runs were computed again"
 cmp -s "$work/whole/results.json" "$work/parts/results.json" || fail "a second run gave other results"
 
+# Results of other data are stale.
+echo >>"$work/data/test/000002/scene_gt.json"
+evaluate whole --without-clustering --merge
+[[ $? == 2 ]] || fail "results of other data were merged"
+sed -i '$d' "$work/data/test/000002/scene_gt.json"
+
 evaluate whole --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
 grep -qE '^[|] `mvr` [|] 0 [|] (0\.[1-9]|1\.0)' "$work/whole/bop.md" || fail "bop.md holds no recall: $(cat "$work/whole/bop.md")"
 

@@ -63,17 +63,42 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   return sequences;
 }
 
-// Hash of settings, models and version. Stored runs with another fingerprint are stale.
-std::string fingerprint(const RecognizerConfig& config, const std::string& models_hash) {
-  std::string text = std::string(RESIGHT_VERSION) + "\n" + models_hash + "\n";
-  for (const auto& [name, value] : config.to_settings()) text += name + "=" + value + "\n";
-  return fmt::format("{:016x}", hash_text(text));
+// Chained with the hash before. A file that cannot be read counts as empty.
+std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes;
+  std::error_code unknown;
+  if (const auto size = fs::file_size(file, unknown); stream && !unknown) {
+    bytes.resize(size);
+    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  }
+  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, hash);
 }
 
-std::string hash_of_file(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  return fmt::format("{:016x}", checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
+// Names and contents of all files of a folder; 0 files if there is none.
+std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, none))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::ranges::sort(files);
+  for (const fs::path& file : files) hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
+  return hash;
+}
+
+// Of what all runs depend on: the program and the model library.
+std::uint64_t hash_program(const fs::path& models) { return hash_file(models, hash_file("/proc/self/exe", kHashSeed)); }
+
+// Of the views and the truth of a sequence.
+std::uint64_t hash_sequence(const EvaluationSequence& sequence, std::uint64_t hash) {
+  return hash_folder(sequence.unknown_models, hash_file(sequence.events_file, hash_folder(sequence.folder, hash)));
+}
+
+// Stored runs with another fingerprint are stale.
+std::string fingerprint(const RecognizerConfig& config, std::uint64_t hash) {
+  std::string text;
+  for (const auto& [name, value] : config.to_settings()) text += name + "=" + value + "\n";
+  return fmt::format("{:016x}", hash_text(text, hash));
 }
 
 std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
@@ -126,18 +151,19 @@ void parse_shard(const std::string& text, int& shard, int& num_shards) {
 EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
   EvaluationPlan plan;
   plan.dataset_name = fs::absolute(arguments.dataset / "").parent_path().filename().string();
-  const std::string models_hash = hash_of_file(arguments.models);
+  const std::uint64_t program_hash = hash_program(arguments.models);
   const std::vector<RecognizerConfig> configs = make_configs(arguments);
   int num_groups = 0;
   for (const EvaluationSequence& sequence : find_sequences(arguments.dataset)) {
+    const std::uint64_t hash = hash_sequence(sequence, program_hash);
     std::map<std::string, int> group_of;
     for (const RecognizerConfig& config : configs) {
       const auto [entry, is_new] = group_of.try_emplace(generation_settings(config), num_groups);
       num_groups += is_new ? 1 : 0;
       const std::string name = fmt::format("{}.{}.k{}{}", sequence.name, config.preset, config.num_previous_views,
                                            config.hypotheses.cluster ? "" : ".unclustered");
-      plan.units.push_back({name, fingerprint(config, models_hash), sequence, config, entry->second,
-                            entry->second % arguments.num_shards + 1});
+      plan.units.push_back(
+          {name, fingerprint(config, hash), sequence, config, entry->second, entry->second % arguments.num_shards + 1});
     }
   }
   const fs::path data = plan.units.front().sequence.folder.parent_path();

@@ -19,7 +19,7 @@ struct EvaluationSequence {
 /// One configuration on one sequence.
 struct EvaluationUnit {
   std::string name;         ///< Unique; also the name of its file.
-  std::string fingerprint;  ///< Hash of everything its result depends on except the views.
+  std::string fingerprint;  ///< Hash of everything its result depends on: program, settings, models, views, truth.
   EvaluationSequence sequence;
   RecognizerConfig config;
   int group = 0;  ///< Units of one group share the hypotheses of each view and are consecutive.

@@ -60,7 +60,7 @@ struct EvaluatedRun {
   std::string preset;
   int num_previous_views = 0;  ///< K.
   bool is_clustered = true;
-  std::string fingerprint;  ///< Hash of version, settings and models; results with another fingerprint are stale.
+  std::string fingerprint;  ///< Hash of program, settings, models, views and truth; results with another one are stale.
   int num_threads = 1;      ///< Number of threads while times were measured.
   /// Places that library objects left; ghosts are counted per former place.
   int num_former_places = 0;
