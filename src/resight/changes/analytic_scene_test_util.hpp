@@ -12,6 +12,8 @@
 
 namespace resight::testing_scene {
 
+inline constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
+
 /// A box with a vertical axis: `half_m` half its size, turned by `yaw_rad` about z.
 struct Box {
   Eigen::Vector3d center;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <tuple>
 
@@ -16,7 +15,6 @@ namespace resight {
 namespace {
 
 using namespace testing_scene;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 const Box kBox{{0, 0, 0.1}, {0.12, 0.05, 0.1}, 0.4};
 
 Scene with(const std::vector<Box>& boxes) {
@@ -216,7 +214,7 @@ TEST_F(DetectChanges, EverythingRemovedLiesInTheViewVolume) {
 TEST_F(DetectChanges, NoReturnsRemoveNothing) {
   const PreparedView before = see(with({kBox}));
   RgbdFrame blind = render(table(), small_camera(), usual_pose());
-  std::ranges::fill(blind.depth_m.data(), kNaN);
+  std::ranges::fill(blind.depth_m.data(), kNoDepth);
   const ChangeResult result = detect_changes(world_cloud(before), prepare_view(blind), options);
   EXPECT_TRUE(result.removed_in_world.empty());
   EXPECT_TRUE(result.novel_in_world.empty());
@@ -230,7 +228,7 @@ RgbdFrame with_holes(const PreparedView& before) {
   RgbdFrame frame = render(table(), small_camera(), usual_pose());
   for (int v = 0; v < frame.camera.height; ++v)
     for (int u = 0; u < frame.camera.width; ++u)
-      if (((u / 8) + (v / 8)) % 2 == 0 && frame.depth_m(u, v) != before.frame.depth_m(u, v)) frame.depth_m(u, v) = kNaN;
+      if (((u / 8) + (v / 8)) % 2 == 0 && frame.depth_m(u, v) != before.frame.depth_m(u, v)) frame.depth_m(u, v) = kNoDepth;
   return frame;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
 #include "resight/changes/change_detector.hpp"
@@ -131,7 +130,7 @@ TEST(DepthChanges, NoReturnIsNoEvidence) {
   const PreparedView before = see(scene_with({kCarton}));
   RgbdFrame frame = render(table(), small_camera(), usual_pose());
   for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
-    if (frame.depth_m[i] != before.frame.depth_m[i]) frame.depth_m[i] = std::numeric_limits<float>::quiet_NaN();
+    if (frame.depth_m[i] != before.frame.depth_m[i]) frame.depth_m[i] = kNoDepth;
   const ChangeResult changes = detect(before, prepare_view(std::move(frame)));
   EXPECT_TRUE(changes.removed_in_world.empty());
   EXPECT_TRUE(changes.novel_in_world.empty());

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <limits>
 #include <stdexcept>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
@@ -15,7 +14,6 @@ namespace {
 
 using namespace testing_scene;
 using Points = std::vector<Eigen::Vector3f>;
-constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 /// The slow twin of the z-buffer: every query against every blocker, as the text of Sec. III-B1 goes.
 Evidence classify_slowly(const Eigen::Vector3f& query, const Points& blockers, const SphericalBins& bins,
@@ -49,9 +47,9 @@ int count(const std::vector<Evidence>& evidence, Evidence kind) {
 TEST(ClassifyOcclusion, AgreesWithAllPairs) {
   Points queries = random_points_within(2000, 2, 1);
   Points blockers = random_points_within(1500, 2, 2);
-  queries[5] = {kNotANumber, 0, 1};
+  queries[5] = {kNoDepth, 0, 1};
   queries[6] = {0, 0, 0};
-  blockers[7] = {0, kNotANumber, 1};
+  blockers[7] = {0, kNoDepth, 1};
   for (const double size : {0.0349066, 0.2}) {
     const SphericalBins bins(size);
     for (const float margin : {0.0F, 0.3F}) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
@@ -15,7 +14,6 @@ namespace {
 
 using namespace testing_scene;
 using Points = std::vector<Eigen::Vector3f>;
-constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 PreparedView view_of_boxes() {
   Scene scene = table();

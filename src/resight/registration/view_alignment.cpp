@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -210,9 +211,11 @@ class LevelTarget {
   float min_cosine_;
 };
 
+enum class CostOfPairs : std::uint8_t { kSkipped, kComputed };
+
 Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
                const Rigid3& world_from_camera, double gate_m, const AlignViewOptions& options,
-               bool with_cost = false) {
+               CostOfPairs cost_of_pairs = CostOfPairs::kSkipped) {
   std::vector<LevelTarget> seen;
   for (const AlignmentTarget& target : targets)
     seen.emplace_back(target.view->levels[level], target.world_from_camera.inverse() * world_from_camera, options,
@@ -230,7 +233,7 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
       }
       sums.num_matched += pair;
       sums.num_seen_through += in_front && !pair && !hidden;
-      if (!with_cost) continue;
+      if (cost_of_pairs == CostOfPairs::kSkipped) continue;
       std::optional<float> least;
       for (const LevelTarget& target : seen)
         if (const std::optional<float> cost = target.cost(samples, s)) least = least ? std::min(*least, *cost) : cost;
@@ -326,7 +329,8 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
   options.check();
   check_targets(view, targets);
   const Samples samples = draw_samples(view.levels[0], options.max_samples);
-  const Sums sums = sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, true);
+  const Sums sums =
+      sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, CostOfPairs::kComputed);
   AlignedView aligned;
   aligned.world_from_camera = world_from_camera;
   aligned.information = options.information_per_pair * known_information(sums.unbiased);
