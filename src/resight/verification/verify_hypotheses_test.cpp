@@ -36,9 +36,12 @@ TEST(VerifyHypotheses, AcceptsTheRightOneOfMany) {
     EXPECT_EQ(result.evidence[i].accepted, result.evidence[i].verdict == Verdict::kAccepted) << i;
     EXPECT_GE(result.evidence[i].fit, 0);
     EXPECT_LE(result.evidence[i].fit, 1);
-    if (result.evidence[i].verdict == Verdict::kSuppressed) {
-      EXPECT_EQ(result.evidence[i].suppressed_by, 4);
-    }
+    if (result.evidence[i].verdict != Verdict::kSuppressed) continue;
+    // By the winner, or by one that refinement has led to the same wrong pose.
+    const auto by = static_cast<std::size_t>(result.evidence[i].suppressed_by);
+    ASSERT_LT(by, hypotheses.size());
+    const Rigid3& pose = result.evidence[i].world_from_object;
+    EXPECT_TRUE(by == 4 || (pose.translation - result.evidence[by].world_from_object.translation).norm() < 0.005) << i;
   }
 }
 
