@@ -228,7 +228,8 @@ RgbdFrame with_holes(const PreparedView& before) {
   RgbdFrame frame = render(table(), small_camera(), usual_pose());
   for (int v = 0; v < frame.camera.height; ++v)
     for (int u = 0; u < frame.camera.width; ++u)
-      if (((u / 8) + (v / 8)) % 2 == 0 && frame.depth_m(u, v) != before.frame.depth_m(u, v)) frame.depth_m(u, v) = kNoDepth;
+      if (((u / 8) + (v / 8)) % 2 == 0 && frame.depth_m(u, v) != before.frame.depth_m(u, v))
+        frame.depth_m(u, v) = kNoDepth;
   return frame;
 }
 
