@@ -69,7 +69,9 @@ struct HypothesisEvidence {
   HypothesisCosts costs;
   Verdict verdict = Verdict::kTooFewVisible;
   PoseUncertainty uncertainty;  ///< Of accepted ones.
-  int suppressed_by = -1;  ///< Index of the accepted hypothesis that it conflicts with most; -1 for other verdicts.
+  /// Index of the accepted hypothesis that it conflicts with most, or of the one that refinement has led to the same
+  /// pose; -1 for other verdicts.
+  int suppressed_by = -1;
 };
 
 struct VerifyResult {
