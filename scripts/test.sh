@@ -45,7 +45,7 @@ check_headers() {
   local clang=(clang++-14 -std=c++20 -march=x86-64-v3 -isystem /usr/include/eigen3)
   printf '#include <Eigen/Core>\n#include <Eigen/Geometry>\n' >build/clang/eigen.hpp
   "${clang[@]}" -x c++-header build/clang/eigen.hpp -o build/clang/eigen.pch &&
-    find src -name '*.hpp' ! -path '*/testing/*' ! -name '*test*.hpp' -print0 |
+    find src -name '*.hpp' ! -path '*/internal/*' ! -path '*/testing/*' ! -name '*test*.hpp' -print0 |
     xargs -0 -P "$num_jobs" -I{} "${clang[@]}" -fsyntax-only -x c++ -Isrc -include-pch build/clang/eigen.pch \
       -Wno-pragma-once-outside-header {}
 }
