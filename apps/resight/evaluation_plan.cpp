@@ -75,7 +75,7 @@ std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
   return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, hash);
 }
 
-// Names and contents of all files of a folder; 0 files if there is none.
+// Names and contents of all files of a folder. A folder that does not exist counts as empty.
 std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
   std::vector<fs::path> files;
   std::error_code none;
@@ -86,12 +86,14 @@ std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
   return hash;
 }
 
-// Of what all runs depend on: the program and the model library.
-std::uint64_t hash_program(const fs::path& models) { return hash_file(models, hash_file("/proc/self/exe", kHashSeed)); }
+// What all runs depend on: the program, the model library, and the unknown objects of the data set.
+std::uint64_t hash_common(const fs::path& models, const fs::path& unknown_models) {
+  return hash_folder(unknown_models, hash_file(models, hash_file("/proc/self/exe", kHashSeed)));
+}
 
-// Of the views and the truth of a sequence.
+// The views and the truth of a sequence.
 std::uint64_t hash_sequence(const EvaluationSequence& sequence, std::uint64_t hash) {
-  return hash_folder(sequence.unknown_models, hash_file(sequence.events_file, hash_folder(sequence.folder, hash)));
+  return hash_file(sequence.events_file, hash_folder(sequence.folder, hash));
 }
 
 // Stored runs with another fingerprint are stale.
@@ -151,11 +153,12 @@ void parse_shard(const std::string& text, int& shard, int& num_shards) {
 EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
   EvaluationPlan plan;
   plan.dataset_name = fs::absolute(arguments.dataset / "").parent_path().filename().string();
-  const std::uint64_t program_hash = hash_program(arguments.models);
   const std::vector<RecognizerConfig> configs = make_configs(arguments);
   int num_groups = 0;
-  for (const EvaluationSequence& sequence : find_sequences(arguments.dataset)) {
-    const std::uint64_t hash = hash_sequence(sequence, program_hash);
+  const std::vector<EvaluationSequence> sequences = find_sequences(arguments.dataset);
+  const std::uint64_t common_hash = hash_common(arguments.models, sequences.front().unknown_models);
+  for (const EvaluationSequence& sequence : sequences) {
+    const std::uint64_t hash = hash_sequence(sequence, common_hash);
     std::map<std::string, int> group_of;
     for (const RecognizerConfig& config : configs) {
       const auto [entry, is_new] = group_of.try_emplace(generation_settings(config), num_groups);

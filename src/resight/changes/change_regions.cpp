@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/changes/change_regions.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
+#include <functional>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -15,9 +15,9 @@ namespace {
 
 // Points of one surface are up to 1.7 voxels apart (the diagonal); noise and grazing angles leave further gaps.
 constexpr double kMaxGap_voxels = 4;
-// Smaller pieces beside a larger one in the image are flakes at a depth edge, and belong to it.
+// A smaller region beside a larger one in the image is a fragment at a depth edge, and belongs to it.
 constexpr std::size_t kFewPoints = 10;
-constexpr int kFlakeGap_px = 2;
+constexpr int kFragmentGap_px = 2;
 
 // Indices of the points of each region, ascending.
 std::vector<std::vector<int>> connect_points(std::span<const Eigen::Vector3f> points, double max_gap_m) {
@@ -67,88 +67,60 @@ void assign_pixels(const RgbdFrame& frame, const Image<std::uint8_t>& mask, std:
   }
 }
 
-// Joins pieces of few points with the largest region of their connected pixels.
-void join_flakes(const Image<std::uint8_t>& mask, std::size_t first, std::vector<ChangeRegion>& regions) {
-  Image<int> component(mask.width(), mask.height(), -1);
-  std::vector<std::size_t> largest;  // Region of each component. Regions are in descending order of size.
-  for (const std::vector<int>& pixels : find_pixel_components(mask, kFlakeGap_px)) {
-    for (const int i : pixels) component[static_cast<std::size_t>(i)] = static_cast<int>(largest.size());
-    largest.push_back(regions.size());
+// Joins each fragment with the largest region of its connected pixels. Regions are in descending order of size.
+std::vector<ChangeRegion> join_fragments(std::vector<ChangeRegion> regions, const Image<std::uint8_t>& mask) {
+  constexpr int kNone = -1;
+  Image<int> component_of(mask.width(), mask.height());
+  std::vector<int> largest_of;  // Number in `joined`, by component.
+  for (const std::vector<int>& pixels : find_pixel_components(mask, kFragmentGap_px)) {
+    for (const int i : pixels) component_of[static_cast<std::size_t>(i)] = static_cast<int>(largest_of.size());
+    largest_of.push_back(kNone);
   }
-  std::vector<ChangeRegion> kept;
-  for (std::size_t r = first; r < regions.size(); ++r) {
-    ChangeRegion& region = regions[r];
-    for (const int i : region.pixels) {
-      std::size_t& of_component = largest[static_cast<std::size_t>(component[static_cast<std::size_t>(i)])];
-      of_component = std::min(of_component, first + kept.size());
-    }
-    const bool is_flake = region.surface_in_world.size() < kFewPoints && !region.pixels.empty();
-    const std::size_t home =
-        is_flake ? largest[static_cast<std::size_t>(component[static_cast<std::size_t>(region.pixels.front())])]
-                 : first + kept.size();
-    if (home == first + kept.size()) {
-      kept.push_back(std::move(region));
+  const auto largest_at = [&](int pixel) -> int& {
+    return largest_of[static_cast<std::size_t>(component_of[static_cast<std::size_t>(pixel)])];
+  };
+  std::vector<ChangeRegion> joined;
+  for (ChangeRegion& region : regions) {
+    const int larger = region.pixels.empty() ? kNone : largest_at(region.pixels.front());
+    if (region.surface_in_world.size() < kFewPoints && larger != kNone) {
+      ChangeRegion& home = joined[static_cast<std::size_t>(larger)];
+      home.surface_in_world.append(region.surface_in_world);
+      home.pixels.insert(home.pixels.end(), region.pixels.begin(), region.pixels.end());
       continue;
     }
-    ChangeRegion& larger = kept[home - first];
-    larger.surface_in_world.append(region.surface_in_world);
-    larger.pixels.insert(larger.pixels.end(), region.pixels.begin(), region.pixels.end());
+    for (const int pixel : region.pixels)
+      if (largest_at(pixel) == kNone) largest_at(pixel) = static_cast<int>(joined.size());
+    joined.push_back(std::move(region));
   }
-  regions.resize(first);
-  for (ChangeRegion& region : kept) {
-    std::ranges::sort(region.pixels);
-    regions.push_back(std::move(region));
-  }
+  return joined;
 }
 
-void add_regions(const RgbdFrame& frame, const PointCloud& changed_in_world, const Image<std::uint8_t>& mask,
-                 RegionKind kind, double max_gap_m, std::vector<ChangeRegion>& regions) {
-  const std::size_t first = regions.size();
-  for (const std::vector<int>& indices : connect_points(changed_in_world.points, max_gap_m)) {
+std::vector<ChangeRegion> find_regions(const RgbdFrame& frame, const PointCloud& changed_in_world,
+                                       const Image<std::uint8_t>& mask, RegionKind kind, double max_gap_m) {
+  std::vector<ChangeRegion> regions;
+  for (const std::vector<int>& indices : connect_points(changed_in_world.points, max_gap_m))
     regions.push_back({kind, select(changed_in_world, indices), {}, {}});
+  assign_pixels(frame, mask, regions);
+  regions = join_fragments(std::move(regions), mask);
+  for (ChangeRegion& region : regions) {
+    std::ranges::sort(region.pixels);
+    region.box = fit_box(region.surface_in_world);
   }
-  assign_pixels(frame, mask, std::span(regions).subspan(first));
-  join_flakes(mask, first, regions);
-  for (ChangeRegion& region : std::span(regions).subspan(first)) region.box = fit_box(region.surface_in_world);
+  std::ranges::stable_sort(regions, std::greater{}, [](const ChangeRegion& r) { return r.surface_in_world.size(); });
+  return regions;
 }
 
 }  // namespace
 
 const char* to_string(RegionKind kind) { return kind == RegionKind::kNovel ? "novel" : "removed"; }
 
-OrientedBox fit_box(const PointCloud& cloud_in_world) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : cloud_in_world.points) mean += p.cast<double>();
-  mean /= static_cast<double>(cloud_in_world.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3f& p : cloud_in_world.points) {
-    const Eigen::Vector3d d = p.cast<double>() - mean;
-    scatter += d * d.transpose();
-  }
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors();
-  Eigen::Vector3d low = Eigen::Vector3d::Zero();
-  Eigen::Vector3d high = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : cloud_in_world.points) {
-    const Eigen::Vector3d along = axes.transpose() * (p.cast<double>() - mean);
-    low = low.cwiseMin(along);
-    high = high.cwiseMax(along);
-  }
-  // Sides from the longest to the shortest; a third axis that makes the frame right-handed.
-  std::array<int, 3> order{0, 1, 2};
-  const Eigen::Vector3d size_m = high - low;
-  std::ranges::stable_sort(order, [&](int a, int b) { return size_m[a] > size_m[b]; });
-  OrientedBox box;
-  for (int i = 0; i < 3; ++i) box.size_m[i] = size_m[order[static_cast<std::size_t>(i)]];
-  box.world_from_box.translation = mean + axes * (low + high) / 2;
-  box.world_from_box.rotation << axes.col(order[0]), axes.col(order[1]), axes.col(order[0]).cross(axes.col(order[1]));
-  return box;
-}
-
 std::vector<ChangeRegion> find_change_regions(const RgbdFrame& frame, const ChangeResult& changes, double voxel_m) {
   const double max_gap_m = kMaxGap_voxels * voxel_m;
-  std::vector<ChangeRegion> regions;
-  add_regions(frame, changes.novel_in_world, changes.novel_mask, RegionKind::kNovel, max_gap_m, regions);
-  add_regions(frame, changes.removed_in_world, changes.removed_mask, RegionKind::kRemoved, max_gap_m, regions);
+  std::vector<ChangeRegion> regions =
+      find_regions(frame, changes.novel_in_world, changes.novel_mask, RegionKind::kNovel, max_gap_m);
+  std::vector<ChangeRegion> removed =
+      find_regions(frame, changes.removed_in_world, changes.removed_mask, RegionKind::kRemoved, max_gap_m);
+  std::ranges::move(removed, std::back_inserter(regions));
   return regions;
 }
 

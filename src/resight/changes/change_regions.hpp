@@ -3,18 +3,13 @@
 #include <vector>
 
 #include "resight/changes/change_detector.hpp"
+#include "resight/geometry/oriented_box.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 
 enum class RegionKind { kNovel, kRemoved };
 [[nodiscard]] const char* to_string(RegionKind kind);
-
-/// A box around points, along their principal axes. Its x axis is the longest side, its z axis the shortest.
-struct OrientedBox {
-  Rigid3 world_from_box;                             ///< The origin is the centre of the box.
-  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< Length of the sides.
-};
 
 /// Connected surface that came or left between two views: as a rule, one thing.
 struct ChangeRegion {
@@ -23,9 +18,6 @@ struct ChangeRegion {
   std::vector<int> pixels;      ///< Of the view, ascending: those of the mask that show the region, or see through it.
   OrientedBox box;
 };
-
-/// The smallest box with the axes of a principal component analysis. The cloud must not be empty.
-[[nodiscard]] OrientedBox fit_box(const PointCloud& cloud_in_world);
 
 /// Groups changed points of a view (at its corrected pose) into regions: points are connected if they are at most
 /// four voxels apart. Holes in the depth and occluding things therefore do not part a region, as they would in the

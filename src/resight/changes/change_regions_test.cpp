@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
-#include "resight/core/random.hpp"
 
 namespace resight {
 namespace {
@@ -14,16 +13,6 @@ namespace {
 using namespace testing_scene;
 
 constexpr double kVoxel_m = 0.005;
-
-PointCloud random_box(const Rigid3& world_from_box, const Eigen::Vector3d& size_m, int num_points, std::uint64_t seed) {
-  Rng rng(seed);
-  PointCloud cloud;
-  for (int i = 0; i < num_points; ++i) {
-    const Eigen::Vector3d p(rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5));
-    cloud.points.push_back((world_from_box * p.cwiseProduct(size_m).eval()).cast<float>());
-  }
-  return cloud;
-}
 
 Scene table_with(const std::vector<Box>& boxes) {
   Scene scene = table();
@@ -38,34 +27,6 @@ ChangeResult changes_between(const PreparedView& before, const PreparedView& aft
 
 double count_set(const Image<std::uint8_t>& mask) {
   return static_cast<double>(std::ranges::count_if(mask.data(), [](auto m) { return m != 0; }));
-}
-
-TEST(FitBox, FindsPoseAndSizeOfABox) {
-  const Rigid3 world_from_box{Rigid3::from_axis_angle({1, -2, 0.5}, 0.8).rotation, {0.3, -1, 2}};
-  const OrientedBox box = fit_box(random_box(world_from_box, {0.1, 0.3, 0.2}, 20000, 1));
-  EXPECT_NEAR(box.size_m.x(), 0.3, 0.01);
-  EXPECT_NEAR(box.size_m.y(), 0.2, 0.01);
-  EXPECT_NEAR(box.size_m.z(), 0.1, 0.01);
-  EXPECT_LT((box.world_from_box.translation - world_from_box.translation).norm(), 0.005);
-  EXPECT_GT(std::abs(box.world_from_box.rotation.col(0).dot(world_from_box.rotation.col(1))), 0.999);
-  EXPECT_GT(std::abs(box.world_from_box.rotation.col(2).dot(world_from_box.rotation.col(0))), 0.999);
-  EXPECT_TRUE(box.world_from_box.is_rigid());
-}
-
-TEST(FitBox, HoldsAllPoints) {
-  const PointCloud cloud = random_box({}, {0.1, 0.3, 0.2}, 50, 2);
-  const OrientedBox box = fit_box(cloud);
-  const Rigid3 box_from_world = box.world_from_box.inverse();
-  for (const Eigen::Vector3f& p : cloud.points) {
-    const Eigen::Vector3d in_box = (box_from_world * p.cast<double>().eval()).cwiseAbs();
-    EXPECT_TRUE((in_box.array() <= box.size_m.array() / 2 + 1e-6).all());
-  }
-}
-
-TEST(FitBox, APointIsABoxWithoutSize) {
-  const OrientedBox box = fit_box({{{1, 2, 3}}, {}, {}});
-  EXPECT_EQ(box.size_m, Eigen::Vector3d::Zero());
-  EXPECT_EQ(box.world_from_box.translation, Eigen::Vector3d(1, 2, 3));
 }
 
 // A carton that came, and another that left, are one region each, but for a few pixels at depth edges. Boxes lie where

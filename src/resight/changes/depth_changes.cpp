@@ -67,7 +67,8 @@ Image<float> measure_novel(const PreparedView& view, std::span<const PreparedVie
   return sum;
 }
 
-/// Neighbouring errors of depth are alike, so that many pixels that are off by little may be noise, but not by much.
+/// Neighbouring errors of depth are alike. A region of noise may therefore have many pixels that are off by little, but
+/// not many that are off by much.
 void drop_weak_regions(const Image<float>& sigmas, const DepthTestOptions& options, Image<std::uint8_t>& mask) {
   for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px)) {
     double mass = 0;

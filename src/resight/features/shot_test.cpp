@@ -162,8 +162,7 @@ TEST(DescribeShot, GivesUnitDescriptorsOfTheKeptKeypoints) {
   std::vector<int> kept{99};
   const FeatureSet features = describe_shot(support, keypoints, kDescribeFlat, &kept);
   EXPECT_EQ(features.type, FeatureType::kShot);
-  ASSERT_EQ(features.size(), kept.size());
-  ASSERT_GT(features.size(), keypoints.size() * 95 / 100) << "more was lost than what has no neighbours or no frame";
+  ASSERT_EQ(features.size(), keypoints.size() - 2);
   ASSERT_EQ(features.descriptors.size(), features.size() * 352);
   for (std::size_t i = 0; i < features.size(); ++i) {
     ASSERT_NE(kept[i], 3);

@@ -359,8 +359,11 @@ class SequenceBuilder {
       const double swing_m = 0.5 * (options_.max_distance_m - options_.min_distance_m);
       const double distance = middle_m + swing_m * wave(1.1, phase_distance);
       const double pan = wave(1.7, phase_pan);
-      const Vector3d target = stage_.look_at_point_m + Vector3d(pan * stage_.pan_m.x() + jitter(0.02),
-                                                                pan * stage_.pan_m.y() + jitter(0.02), jitter(0.02));
+      // One draw per statement: compilers differ in the order of arguments. Frozen versions drew the last one first.
+      const double target_z_m = jitter(0.02);
+      const double target_y_m = pan * stage_.pan_m.y() + jitter(0.02);
+      const double target_x_m = pan * stage_.pan_m.x() + jitter(0.02);
+      const Vector3d target = stage_.look_at_point_m + Vector3d(target_x_m, target_y_m, target_z_m);
       const Vector3d eye = target + distance * Vector3d(std::cos(elevation) * std::cos(azimuth),
                                                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       script_.world_from_camera.push_back(look_at(eye, target) *
