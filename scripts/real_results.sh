@@ -12,7 +12,7 @@ build=${3:-build/real}
 presets=(mvr-chd default)
 previous_views=5
 still_sets=(hots-table hots-more/table_8 hots-more/office_5)
-static_sets=(seven-scenes-kitchen)
+static_sets=(seven-scenes-kitchen tum-fr1-xyz apc-bin/scene-0000)
 tracking_sets=(seven-scenes-kitchen tum-fr1-xyz apc-bin/scene-0000)
 # Sequence, models and the values of K.
 recognition_sets=(
@@ -148,7 +148,8 @@ write_static_rows() {
     for preset in "${presets[@]}"; do
       file=$parts/static-$(file_name "$set")-$preset.txt
       [[ -e $file ]] || continue
-      sed -n "/^| $1 |/,/^\$/p" "$file" | sed '/^$/d' | tail -n "+$first_row"
+      sed -n "/^| $1 |/,/^\$/p" "$file" | sed '/^$/d' | tail -n "+$first_row" |
+        awk -v set="$set" '/^[|]---/ { print "|---" $0; next } { print "| " (/^[|] called/ ? "set" : set) " " $0 }'
       first_row=3  # Once with the head of the table.
     done
   done
