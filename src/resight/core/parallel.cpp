@@ -20,7 +20,8 @@ namespace resight {
 namespace {
 
 // oneTBB is not instrumented, so ThreadSanitizer does not see that blocks start after the call and end before its
-// return. Two tokens: blocks stay unordered among each other.
+// return. Two tokens: blocks stay unordered among each other. The second one is passed by destructors, because a block
+// may also end with an exception, which the caller then reads.
 #if defined(RESIGHT_THREAD_SANITIZER)
 void mark_before(char& token) { __tsan_release(&token); }
 void mark_after(char& token) { __tsan_acquire(&token); }
@@ -28,6 +29,15 @@ void mark_after(char& token) { __tsan_acquire(&token); }
 void mark_before(char& /*token*/) {}
 void mark_after(char& /*token*/) {}
 #endif
+
+template <void (*mark)(char&)>
+struct MarkOnExit {
+  char& token;
+  explicit MarkOnExit(char& marked) : token(marked) {}
+  MarkOnExit(const MarkOnExit&) = delete;
+  MarkOnExit& operator=(const MarkOnExit&) = delete;
+  ~MarkOnExit() { mark(token); }
+};
 
 // One arena per number of threads, kept until the program ends: oneTBB 2021.8 leaks about a kilobyte per destroyed
 // arena, and a view needs hundreds of calls.
@@ -58,15 +68,15 @@ void parallel_for_blocks(std::size_t count, std::size_t grain, int num_threads,
   char start = 0;
   char end = 0;
   mark_before(start);
+  const MarkOnExit<mark_after> call(end);
   arena_of(num_workers).execute([&] {
     const auto run_marked = [&](std::size_t block) {
       mark_after(start);
+      const MarkOnExit<mark_before> marked_block(end);
       run_block(block);
-      mark_before(end);
     };
     tbb::parallel_for(std::size_t{0}, num_blocks, run_marked, tbb::simple_partitioner());
   });
-  mark_after(end);
 }
 
 int num_hardware_threads() {
