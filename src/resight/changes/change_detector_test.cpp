@@ -319,7 +319,6 @@ TEST(DetectChangesInput, RefusesNonsense) {
   };
   refuses({.test = PointTestOptions{.tolerance_m = 0}});
   refuses({.test = DepthTestOptions{.sigmas = 0}});
-  refuses({.test = DepthTestOptions{.neighborhood_px = -1}});
   refuses({.test = DepthTestOptions{.min_region_px = 0}});
   refuses({.voxel_m = -1});
   refuses({.test = PointTestOptions{.bin_size_rad = 0}});

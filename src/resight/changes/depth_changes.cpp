@@ -13,6 +13,7 @@
 namespace resight {
 namespace {
 
+constexpr int kMinRadius_px = 2;
 constexpr int kMaxGap_px = 2;  // Within a region: the pixels of one view do not cover all of another's.
 
 /// What a view and an earlier one say about each other.
@@ -22,11 +23,19 @@ struct PairEvidence {
   double noise_scale = 1;
 };
 
+/// Poses are never exact: if the camera moved, no measurement within this many rows and columns may explain a surface.
+/// A still camera sees the same surface at the same pixel.
+int comparison_radius_px(const PreparedView& view, const PreparedView& earlier, double noise_scale, double sigmas) {
+  if (is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera)) return 0;
+  return std::max({kMinRadius_px, estimate_misregistration_px(view, earlier, noise_scale, sigmas),
+                   estimate_misregistration_px(earlier, view, noise_scale, sigmas)});
+}
+
 PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
                                int num_threads) {
-  const bool camera_moved = !is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera);
-  const CompareViewsOptions compare{options.sigmas, camera_moved ? options.neighborhood_px : 0, num_threads};
   const double noise_scale = estimate_noise_scale(view, earlier);
+  const CompareViewsOptions compare{options.sigmas, comparison_radius_px(view, earlier, noise_scale, options.sigmas),
+                                    num_threads};
   return {compare_views(view, earlier, noise_scale, compare), compare_views(earlier, view, noise_scale, compare),
           noise_scale};
 }

@@ -12,7 +12,6 @@ namespace resight {
 /// The statistical test of changes: depth against depth.
 struct DepthTestOptions {
   double sigmas = 2.5;
-  int neighborhood_px = 2;
   int min_region_px = 40;
 };
 
@@ -21,10 +20,6 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "A surface has changed if it differs from what another view measured by more than this many standard "
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
-  v.field(
-      "neighborhood_px", o.neighborhood_px, between(0, 100),
-      "If the camera moved, no measurement within this many rows and columns may explain the surface: poses are never "
-      "exact. A still camera sees the same surface at the same pixel.");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
       "Smaller connected regions are noise. A pixel counts in full from twice `sigmas` on, and less the nearer it is "
@@ -46,7 +41,8 @@ struct DepthChanges {
 /// Novel: no earlier view has the surface, and at least one saw free space there. Removed: the view sees through the
 /// surface of an earlier view. Both need neighbours, because neighbouring errors of depth are alike: a region is noise
 /// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). The noise is scaled to
-/// what the two views show of it (estimate_noise_scale()). Views must not be null.
+/// what the two views show of it (estimate_noise_scale()). If the camera moved, the errors of its poses and its lens
+/// are as large as the contours of both views show (estimate_misregistration_px()). Views must not be null.
 [[nodiscard]] DepthChanges find_depth_changes(const PreparedView& view,
                                               std::span<const PreparedView* const> earlier_views,
                                               const DepthTestOptions& options, int num_threads);

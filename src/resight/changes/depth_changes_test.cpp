@@ -108,6 +108,25 @@ TEST(DepthChanges, AnAddedBoxIsNovel) {
   }
 }
 
+/// The scene as it looks from the usual pose, with a pose that is 2 cm off along the table.
+PreparedView see_from_wrong_pose(const Scene& scene) {
+  PreparedView view = see(scene, usual_pose());
+  view.frame.world_from_camera.translation.x() += 0.02;
+  return view;
+}
+
+TEST(DepthChanges, AWrongPoseMakesNoFringes) {
+  const Box upright{{-0.1, 0, 0.1}, {0.1, 0.05, 0.1}};
+  const Box flat{{0.2, 0, 0.02}, {0.05, 0.08, 0.02}};
+  const ChangeResult unchanged = detect(see(scene_with({upright})), see_from_wrong_pose(scene_with({upright})));
+  EXPECT_EQ(count(unchanged.novel_mask), 0);
+  EXPECT_EQ(count(unchanged.removed_mask), 0);
+  const ChangeResult added = detect(see(scene_with({upright})), see_from_wrong_pose(scene_with({upright, flat})));
+  EXPECT_GT(count(added.novel_mask), 300);
+  const ChangeResult removed = detect(see(scene_with({upright, flat})), see_from_wrong_pose(scene_with({upright})));
+  EXPECT_GT(count(removed.removed_mask), 300);
+}
+
 TEST(DepthChanges, ThinThingsAreFoundDespiteNoise) {
   const Box thin{{0, 0, 0.0075}, {0.1, 0.04, 0.0075}};  // 15 mm high, 1.2 m away
   const ChangeResult added =

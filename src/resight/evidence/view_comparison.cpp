@@ -2,6 +2,7 @@
 #include "resight/evidence/view_comparison.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,6 +22,11 @@ constexpr float kMinViewingCosine = 0.05F;     // 87 deg: at more grazing angles
 constexpr double kNormalizedMad = 1.4826;      // Standard deviation of a normal distribution / median |x|.
 // Depth is quantised: the median of small differences may be 0, though the noise is not.
 constexpr double kMinNoiseScale = 0.7;
+constexpr int kContourWidth_px = 2;
+constexpr float kContourStep = 1.05F;      // Depth behind a contour / depth of the contour.
+constexpr int kMaxMisregistration_px = 8;  // Beyond, other surfaces agree by chance.
+constexpr double kExplainedShare = 0.9;    // The rest agree by chance.
+constexpr int kMinContourPixels = 50;      // With fewer, the share says little.
 
 /// A measured surface in front of the other camera.
 struct SurfaceInView {
@@ -66,6 +72,19 @@ class ViewComparison {
     return agree_in_window(surface, *pixel, radius_px, center);
   }
 
+  /// The smallest window around the pixel that the surface projects to with a measurement that agrees with it, in rows
+  /// and columns on each side. 0: the measurement of the pixel itself agrees. Nothing if none within the largest does,
+  /// or if the pixel has no measurement.
+  [[nodiscard]] std::optional<int> find_agreeing_radius(std::size_t i, int max_radius_px) const {
+    SurfaceInView surface;
+    if (!pose(i, surface)) return std::nullopt;
+    const std::optional<Pixel> pixel = pixel_of(surface);
+    if (!pixel || std::isnan(view_.frame.depth_m(pixel->u, pixel->v))) return std::nullopt;
+    for (int radius_px = 0; radius_px <= max_radius_px; ++radius_px)
+      if (agrees_on_ring(surface, *pixel, radius_px)) return radius_px;
+    return std::nullopt;
+  }
+
   /// Distance of the surface to the measurement where it projects to, in standard deviations; NaN if there is none.
   [[nodiscard]] float normalized_distance(std::size_t i, float max_distance_m) const {
     SurfaceInView surface;
@@ -89,6 +108,21 @@ class ViewComparison {
     return compare_depth(surface.position.z(), view_.frame.depth_m[j], sigmas_ * sigma(surface, j) / surface.slope);
   }
 
+  /// Whether a measurement at this Chebyshev distance from the pixel agrees with the surface.
+  [[nodiscard]] bool agrees_on_ring(const SurfaceInView& surface, Pixel center, int radius_px) const {
+    const Image<float>& depth_m = view_.frame.depth_m;
+    const auto agrees_at = [&](int u, int v) {
+      return u >= 0 && v >= 0 && u < depth_m.width() && v < depth_m.height() &&
+             compare(surface, depth_m.index(u, v)) == Evidence::kPresent;
+    };
+    if (radius_px == 0) return agrees_at(center.u, center.v);
+    for (int step = -radius_px; step < radius_px; ++step)  // each corner once
+      if (agrees_at(center.u + step, center.v - radius_px) || agrees_at(center.u + radius_px, center.v + step) ||
+          agrees_at(center.u - step, center.v + radius_px) || agrees_at(center.u - radius_px, center.v - step))
+        return true;
+    return false;
+  }
+
   /// The evidence of the pixel if no neighbour explains or contradicts it.
   [[nodiscard]] Evidence agree_in_window(const SurfaceInView& surface, Pixel center, int radius_px,
                                          Evidence evidence) const {
@@ -108,6 +142,20 @@ class ViewComparison {
   Rigid3f view_from_surfaces_;
   float sigmas_;
 };
+
+/// Whether the pixel is on the near side of a depth edge with a measured far side.
+bool is_occluding_contour(const PreparedView& view, std::size_t i) {
+  if (!(view.edge_distance_px[i] <= kContourWidth_px)) return false;
+  const Image<float>& z = view.cloud.z;
+  const int u = static_cast<int>(i) % z.width();
+  const int v = static_cast<int>(i) / z.width();
+  const float behind_m = kContourStep * z[i];
+  for (const int step : {-kContourWidth_px, kContourWidth_px}) {
+    if (u + step >= 0 && u + step < z.width() && z(u + step, v) > behind_m) return true;
+    if (v + step >= 0 && v + step < z.height() && z(u, v + step) > behind_m) return true;
+  }
+  return false;
+}
 
 void check_view(const PreparedView& view) {
   const auto has_size = [&](const auto& image) {
@@ -164,6 +212,28 @@ double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& vi
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(*middle));
+}
+
+int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
+                                double sigmas) {
+  check_positive("noise_scale", noise_scale);
+  check_view(surfaces);
+  check_view(view);
+  const ViewComparison comparison(surfaces, view, static_cast<float>(sigmas * noise_scale));
+  std::array<int, kMaxMisregistration_px + 1> num_at_radius{};
+  int num_explained = 0;
+  for (std::size_t i = 0; i < surfaces.cloud.z.size(); ++i) {
+    if (!is_occluding_contour(surfaces, i)) continue;
+    const std::optional<int> radius_px = comparison.find_agreeing_radius(i, kMaxMisregistration_px);
+    if (!radius_px) continue;
+    ++num_at_radius[static_cast<std::size_t>(*radius_px)];
+    ++num_explained;
+  }
+  if (num_explained < kMinContourPixels) return 0;
+  int radius_px = 0;
+  for (int num_within = num_at_radius[0]; num_within < kExplainedShare * num_explained;)
+    num_within += num_at_radius[static_cast<std::size_t>(++radius_px)];
+  return radius_px;
 }
 
 }  // namespace resight

@@ -138,6 +138,39 @@ TEST(EstimateNoiseScale, IsNotMovedByChangesAndHasALowerLimit) {
   EXPECT_LT(exact, 1);
 }
 
+/// A board 60 px wide in front of a wall, moved to the right by so many pixels. Nothing tells the pose that it moved.
+PreparedView see_board(int shift_px, double board_m = 1.0) {
+  RgbdFrame frame = see_wall(1.5).frame;
+  for (int v = 30; v < 90; ++v)
+    for (int u = 50; u < 110; ++u) frame.depth_m(u + shift_px, v) = static_cast<float>(board_m);
+  return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+}
+
+TEST(EstimateMisregistration, IsTheShiftOfContours) {
+  EXPECT_EQ(estimate_misregistration_px(see_board(0), see_board(0), 1, 2.5), 0);
+  for (const int shift_px : {1, 3, 6}) {
+    EXPECT_EQ(estimate_misregistration_px(see_board(0), see_board(shift_px), 1, 2.5), shift_px);
+    EXPECT_EQ(estimate_misregistration_px(see_board(shift_px), see_board(0), 1, 2.5), shift_px);
+  }
+}
+
+TEST(EstimateMisregistration, IsNotMovedByChanges) {
+  // Most contours are of something that was not there before.
+  PreparedView before = see_board(0);
+  RgbdFrame frame = before.frame;
+  for (int v = 5; v < 115; ++v)
+    for (int u = 5; u < 155; ++u)
+      if (v < 25 || v >= 95 || u < 40 || u >= 120) frame.depth_m(u, v) = 0.7F;
+  const PreparedView after = prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+  EXPECT_EQ(estimate_misregistration_px(after, before, 1, 2.5), 0);
+  EXPECT_EQ(estimate_misregistration_px(before, after, 1, 2.5), 0);
+}
+
+TEST(EstimateMisregistration, IsZeroWithoutContours) {
+  EXPECT_EQ(estimate_misregistration_px(see_wall(1.0), see_wall(1.0), 1, 2.5), 0);
+  EXPECT_EQ(estimate_misregistration_px(see_board(0), see_wall(1.5), 1, 2.5), 0);
+}
+
 TEST(CompareViews, RefusesNonsense) {
   const PreparedView view = see_wall(1.0);
   EXPECT_THROW((void)compare_views(view, view, 0), std::invalid_argument);
