@@ -10,7 +10,7 @@ namespace resight {
 
 struct MatchViewsOptions {
   double max_ratio = 0.85;  ///< Of the distances to the best and the second best descriptor (Lowe 2004).
-  EstimatePoseOptions pose{.inlier_distance_m = 0.02, .max_normal_angle_rad = 0.8, .min_inliers = 10};
+  EstimatePoseOptions pose{.inlier_distance_m = 0.03, .max_normal_angle_rad = 0.8, .min_inliers = 6};
   void check() const;
 };
 

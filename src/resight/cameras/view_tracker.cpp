@@ -77,6 +77,7 @@ struct ViewTracker::Impl {
 
   [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int component, const Rigid3& pose) const;
   [[nodiscard]] std::vector<AlignmentTarget> targets_of(const std::vector<std::size_t>& chosen) const;
+  [[nodiscard]] bool fits(const AlignedView& aligned, double min_overlap) const;
   [[nodiscard]] bool is_plausible(const AlignedView& aligned, double min_overlap) const;
   [[nodiscard]] std::optional<Join> follow(const AlignmentView& view) const;
   [[nodiscard]] std::optional<Join> find_by_features(const AlignmentView& view, const ViewFeatures& features) const;
@@ -119,10 +120,14 @@ std::vector<AlignmentTarget> ViewTracker::Impl::targets_of(const std::vector<std
   return targets;
 }
 
-bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
+bool ViewTracker::Impl::fits(const AlignedView& aligned, double min_overlap) const {
   return aligned.num_pairs > 0 && aligned.overlap >= min_overlap &&
-         aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap) &&
-         !(aligned.brightness_correlation < options.plausible.min_correlation);
+         aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap);
+}
+
+// Where no features vouch for a pose, the brightness must. Exposure and gloss differ too much between views far apart.
+bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
+  return fits(aligned, min_overlap) && !(aligned.brightness_correlation < options.plausible.min_correlation);
 }
 
 // Tracks the camera from the last view, once from the same pose and once at constant velocity.
@@ -160,9 +165,9 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
   Join join{static_cast<int>(keyframe), align_view(view, targets, pose_of(k) * match->a_from_b, align),
             match->num_inliers};
   join.information = join.aligned.information + feature_information();
-  if (!is_plausible(join.aligned, options.plausible.min_overlap)) return std::nullopt;
+  if (!fits(join.aligned, options.plausible.min_overlap)) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&view, join.aligned.world_from_camera}};
-  if (!is_plausible(evaluate_alignment(k.alignment, back, pose_of(k), align), options.plausible.min_overlap))
+  if (!fits(evaluate_alignment(k.alignment, back, pose_of(k), align), options.plausible.min_overlap))
     return std::nullopt;
   return join;
 }
@@ -298,12 +303,12 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
       align.prior_sigma_rad = kFeatureSigma_rad;
       const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
       information += feature_information();
-      if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
+      if (fits(aligned, options.plausible.min_overlap)) best = aligned;
     }
   }
   if (!best) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
-  if (!is_plausible(evaluate_alignment(a.alignment, back, pose_of(a), align), options.plausible.min_overlap))
+  if (!fits(evaluate_alignment(a.alignment, back, pose_of(a), align), options.plausible.min_overlap))
     return std::nullopt;
   return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
                   edge_information(best->information + information)};

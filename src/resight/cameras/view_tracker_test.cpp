@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
@@ -65,6 +67,20 @@ TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
   EXPECT_LT(error.max_rad, 0.006);
   EXPECT_GT(track.num_loops, 0);
   EXPECT_EQ(track.views[0].world_from_camera.matrix(), Eigen::Matrix4d::Identity());
+}
+
+TEST(ViewTracker, FeaturesNeedNoSimilarBrightness) {
+  TrackViewsOptions options;
+  options.plausible.min_correlation = 1;
+  ViewTracker tracker(options);
+  const Rigid3 a = walk(4, 9);
+  const Rigid3 b = walk(5, 9);
+  tracker.add_view(see({}, a, 1));
+  const TrackedView second = tracker.add_view(see({}, b, 2));
+  EXPECT_EQ(second.component, 0);
+  EXPECT_GT(second.num_matches, 0);
+  EXPECT_LT(test::shift_m(second.world_from_camera, a.inverse() * b), 0.01);
+  EXPECT_EQ(tracker.finish().num_components, 1);
 }
 
 TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {

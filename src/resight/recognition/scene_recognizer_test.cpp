@@ -43,7 +43,7 @@ TEST(SceneRecognizer, AnInaccuratePoseIsCorrected) {
     const SceneUpdate update = recognizer.add_view(second);
     const double off_m = (update.world_from_camera.translation - truth.translation).norm();
     EXPECT_EQ(off_m < 0.005, correct) << off_m;  // given: 9 mm off; little but the box tells along the table
-    EXPECT_EQ(update.changes.removed_in_world.size() < 20, correct) << update.changes.removed_in_world.size();
+    EXPECT_LT(update.changes.removed_in_world.size(), 20U);
   }
 }
 
@@ -73,8 +73,13 @@ TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
   c.config.remember_objects = false;
   c.config.search = {};
   c.config.hypotheses.min_carried_share = 0;  // Within the sleeve little of the box is seen.
+  // Its contours show that the poses are right. Otherwise a thin sleeve might be an error of the poses.
+  Solid post = placed(make_box(), c.world.solids[0].world_from_object * Rigid3::from_translation({0.25, 0.2, 0}));
+  post.size_m += Eigen::Vector3d(-0.02, 0.03, 0.05);
+  post.paint = plain({160, 160, 160});
+  c.world.solids.push_back(post);
   const World with_box = c.world;
-  Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, a little wider.
+  Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, wider.
   sleeve.size_m += Eigen::Vector3d(0.03, 0.03, -0.05);
   sleeve.paint = plain({90, 90, 90});
   World with_sleeve = with_box;

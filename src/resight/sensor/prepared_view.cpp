@@ -6,8 +6,15 @@
 namespace resight {
 namespace {
 
+constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
+
+void drop_nearer_depth(double min_depth_m, Image<float>& depth_m) {
+  const auto limit_m = static_cast<float>(min_depth_m);
+  for (float& z : depth_m.data())
+    if (z < limit_m) z = kInvalid;
+}
+
 void drop_farther_points(double max_depth_m, OrganizedCloud& cloud) {
-  constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
   const auto limit_m = static_cast<float>(max_depth_m);
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
     if (!(cloud.z[i] > limit_m)) continue;
@@ -22,6 +29,7 @@ PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
   if (const Result<void> valid = check_frame(frame); !valid) throw std::invalid_argument(valid.error().message);
   PreparedView view;
   view.frame = std::move(frame);
+  if (options.min_depth_m) drop_nearer_depth(*options.min_depth_m, view.frame.depth_m);
   view.cloud = back_project(view.frame.camera, view.frame.depth_m);
   ComputeNormalsOptions normals = options.normals;
   normals.num_threads = options.num_threads;

@@ -13,6 +13,7 @@ namespace resight {
 struct PrepareViewOptions {
   ComputeNormalsOptions normals{};
   DepthEdgeOptions edges{};
+  std::optional<double> min_depth_m = 0.15;
   std::optional<double> max_depth_m{};
   int num_threads = 1;  ///< Of all steps (normals.num_threads is not used). Same bits for any value >= 1.
   void check() const { check_options("PrepareViewOptions", *this); }
@@ -21,6 +22,10 @@ struct PrepareViewOptions {
 inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
   v.group("normals", o.normals);
   v.group("edges", o.edges);
+  v.field(
+      "min_depth_m", o.min_depth_m, positive(),
+      "Nearer measurements are dropped, like missing ones: no depth camera but one for close range measures there, and "
+      "what is that near is often a part of the robot. off: all are kept.");
   v.field(
       "max_depth_m", o.max_depth_m, positive(),
       "Farther points are dropped from the point cloud. The depth image stays whole: beyond, it is still evidence of "
@@ -37,7 +42,8 @@ struct PreparedView {
   NoiseImages noise;  ///< Axial and lateral sigma in metres; NaN where there is no point.
 };
 
-/// Computes cloud, normals, depth edges and noise of a frame. Throws std::invalid_argument if check_frame() fails.
+/// Computes cloud, normals, depth edges and noise of a frame, without what is too near to be measured. Throws
+/// std::invalid_argument if check_frame() fails.
 [[nodiscard]] PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options = {});
 
 }  // namespace resight

@@ -92,9 +92,21 @@ TEST(PrepareView, TakesAFrameWithoutAnyMeasurement) {
   EXPECT_TRUE(to_point_cloud(view.cloud, &view.frame.color, false).empty());
 }
 
+TEST(PrepareView, DropsWhatIsTooNearToBeMeasured) {
+  const Camera camera = small_camera();
+  RgbdFrame frame = make_frame(camera, Image<float>(camera.width, camera.height, 1.0F));
+  for (int v = 0; v < 20; ++v)
+    for (int u = 0; u < 30; ++u) frame.depth_m(u, v) = 0.11F;  // a gripper in the corner of the image
+  const PreparedView view = prepare_view(frame);
+  EXPECT_EQ(count_valid(view.cloud.z), camera.width * camera.height - 20 * 30);
+  EXPECT_EQ(count_valid(view.frame.depth_m), camera.width * camera.height - 20 * 30);
+  EXPECT_EQ(count_valid(prepare_view(frame, {.min_depth_m = std::nullopt}).cloud.z), camera.width * camera.height);
+}
+
 TEST(PrepareView, RefusesAnInvalidFrameAndBadOptions) {
   const Camera camera = small_camera();
   RgbdFrame frame = make_frame(camera, Image<float>(camera.width, camera.height, 1.0F));
+  EXPECT_THROW((void)prepare_view(frame, {.min_depth_m = 0}), std::invalid_argument);
   EXPECT_THROW((void)prepare_view(frame, {.max_depth_m = -1}), std::invalid_argument);
   EXPECT_THROW((void)prepare_view(frame, {.num_threads = 0}), std::invalid_argument);
   EXPECT_THROW((void)prepare_view(frame, {.normals = {.window_radius_px = 0}}), std::invalid_argument);
