@@ -9,7 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 data=${1:-../shared/data}
 out=${2:-out/real}
 build=${3:-build/real}
-presets=(mvr-chd default)
+presets=(mvr mvr-chd default)
+change_presets=(mvr-chd default)  # mvr finds no changes
 previous_views=5
 still_sets=(hots-table hots-more/table_8 hots-more/office_5)
 static_sets=(seven-scenes-kitchen tum-fr1-xyz apc-bin/scene-0000)
@@ -65,14 +66,14 @@ measure_changes() {
   local set preset
   for set in "${still_sets[@]}"; do
     has_set "$set" || continue
-    for preset in "${presets[@]}"; do
+    for preset in "${change_presets[@]}"; do
       part "changes-$(file_name "$set")-$preset" "$build/bench/bench_real_changes" still "$data/$set" \
         "$data/$set/class_png" "$preset" - $previous_views --pictures "$parts/pictures/$(file_name "$set")-$preset"
     done
   done
   for set in "${static_sets[@]}"; do
     has_set "$set" || continue
-    for preset in "${presets[@]}"; do
+    for preset in "${change_presets[@]}"; do
       part "static-$(file_name "$set")-$preset" "$build/bench/bench_real_changes" static "$data/$set" "$preset" - \
         $previous_views
     done
@@ -110,7 +111,7 @@ measure_tracking() {
 write_still_rows() {
   local set preset file
   for set in "${still_sets[@]}"; do
-    for preset in "${presets[@]}"; do
+    for preset in "${change_presets[@]}"; do
       file=$parts/changes-$(file_name "$set")-$preset.txt
       [[ ! -e $file ]] || sed -n "s#^counts #$set #p" "$file"
     done
@@ -145,7 +146,7 @@ write_still_rows() {
 write_static_rows() {
   local set preset file first_row=1
   for set in "${static_sets[@]}"; do
-    for preset in "${presets[@]}"; do
+    for preset in "${change_presets[@]}"; do
       file=$parts/static-$(file_name "$set")-$preset.txt
       [[ -e $file ]] || continue
       sed -n "/^| $1 |/,/^\$/p" "$file" | sed '/^$/d' | tail -n "+$first_row" |
