@@ -10,6 +10,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/sensor/occluding_contour.hpp"
 
 namespace resight {
 namespace {
@@ -22,9 +23,7 @@ constexpr float kMinViewingCosine = 0.05F;     // 87 deg: at more grazing angles
 constexpr double kNormalizedMad = 1.4826;      // Standard deviation of a normal distribution / median |x|.
 // Depth is quantised: the median of small differences may be 0, though the noise is not.
 constexpr double kMinNoiseScale = 0.7;
-constexpr int kContourWidth_px = 2;
 constexpr int kContourRowStep = 2;         // One row in two is enough for a share.
-constexpr float kContourStep = 1.05F;      // Depth behind a contour / depth of the contour.
 constexpr int kMaxMisregistration_px = 8;  // Beyond, other surfaces agree by chance.
 constexpr double kExplainedShare = 0.9;    // The rest agree by chance.
 constexpr int kMinContourPixels = 50;      // With fewer, the share says little.
@@ -144,16 +143,9 @@ class ViewComparison {
   float sigmas_;
 };
 
-/// Whether the pixel is on the near side of a depth edge with a measured far side.
-bool is_occluding_contour(const PreparedView& view, int u, int v) {
-  if (!(view.edge_distance_px(u, v) <= kContourWidth_px)) return false;
-  const Image<float>& z = view.cloud.z;
-  const float behind_m = kContourStep * z(u, v);
-  for (const int step : {-kContourWidth_px, kContourWidth_px}) {
-    if (u + step >= 0 && u + step < z.width() && z(u + step, v) > behind_m) return true;
-    if (v + step >= 0 && v + step < z.height() && z(u, v + step) > behind_m) return true;
-  }
-  return false;
+/// Whether the surface of the pixel ends there, before one behind it.
+bool is_contour(const Image<float>& depth_m, int u, int v) {
+  return std::ranges::any_of(kPixelSteps, [&](PixelStep step) { return is_occluding_contour(depth_m, u, v, step); });
 }
 
 void check_view(const PreparedView& view) {
@@ -223,7 +215,8 @@ int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView
   int num_explained = 0;
   for (int v = 0; v < surfaces.cloud.height(); v += kContourRowStep)
     for (int u = 0; u < surfaces.cloud.width(); ++u) {
-      if (!is_occluding_contour(surfaces, u, v)) continue;
+      if (!surfaces.cloud.has_point(surfaces.cloud.z.index(u, v)) || !is_contour(surfaces.frame.depth_m, u, v))
+        continue;
       const std::optional<int> radius_px =
           comparison.find_agreeing_radius(surfaces.cloud.z.index(u, v), kMaxMisregistration_px);
       if (!radius_px) continue;

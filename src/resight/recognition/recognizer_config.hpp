@@ -18,6 +18,7 @@
 #include "resight/recognition/search_planner_options.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/registration/camera_corrector.hpp"
+#include "resight/sensor/color_offset.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/shape_search/shape_search.hpp"
 #include "resight/verification/verify_options.hpp"
@@ -36,6 +37,17 @@ inline void declare(OptionVisitor& v, RunOptions& o) {
       "deadline_ms", o.deadline_ms, positive(),
       "Time per view, from its arrival on. Work that cannot be done until then is left out, and the results depend on "
       "the machine. off: no limit.");
+}
+
+/// Errors of the camera that its views show: of its poses, and between its colours and its depth.
+struct CameraOptions {
+  CorrectCameraOptions poses{};
+  ColorOffsetOptions color_offset{};
+};
+
+inline void declare(OptionVisitor& v, CameraOptions& o) {
+  v.group("poses", o.poses);
+  v.group("color_offset", o.color_offset);
 }
 
 /// Features of a view, and their matches in the models.
@@ -111,13 +123,14 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the
-/// names of these fields, but for hypotheses.generate and changes.detection, whose fields stand in the table itself.
+/// names of these fields, but for camera, hypotheses.generate and changes.detection, whose fields stand in the table
+/// itself.
 struct RecognizerConfig {
   std::string preset = "default";
   int num_previous_views = 5;
   bool remember_objects = false;
   RunOptions run{};
-  CorrectCameraOptions poses{};
+  CameraOptions camera{};
   PrepareViewOptions prepare{};
   FeatureOptions features{};
   HypothesisOptions hypotheses{};
@@ -157,7 +170,7 @@ inline void declare(OptionVisitor& v, RecognizerConfig& o) {
           "Recognised objects remain hypotheses until a view sees their place empty, not only for K views (K > 0).",
           "ours");
   v.group("run", o.run);
-  v.group("poses", o.poses);
+  v.merge(o.camera);
   v.group("prepare", o.prepare);
   v.group("features", o.features);
   v.group("hypotheses", o.hypotheses);

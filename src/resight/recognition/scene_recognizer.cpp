@@ -20,6 +20,7 @@ struct SceneRecognizer::Impl {
   Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> store, Clock clock)
       : library(models),
         config(checked_and_seeded(std::move(settings))),
+        color_offset(config.camera.color_offset),
         scene(scene_options(config)),
         planner(make_search_planner(models, config)),
         source(models, config, std::move(store)),
@@ -41,6 +42,7 @@ struct SceneRecognizer::Impl {
 
   const ModelLibrary& library;
   RecognizerConfig config;
+  ColorOffsetCorrector color_offset;
   DynamicScene scene;
   SearchPlanner planner;
   ViewHypothesisSource source;
@@ -80,6 +82,7 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
+    update.color_offset = color_offset.correct(frame);
     view = prepare_view(std::move(frame), config.prepare);
   }
   update.changes = scene.add_view(std::move(view), &update.times);

@@ -37,7 +37,7 @@ TEST(SceneRecognizer, AnInaccuratePoseIsCorrected) {
   second.world_from_camera =
       truth * Rigid3{Rigid3::from_axis_angle({1, 2, 0}, 0.015).rotation, Eigen::Vector3d(0.008, -0.004, 0.003)};
   for (const bool correct : {true, false}) {
-    c.config.poses.correct = correct;
+    c.config.camera.poses.correct = correct;
     SceneRecognizer recognizer(c.library, c.config, c.store);
     recognizer.add_view(render(c.world, c.cameras[0]).frame);
     const SceneUpdate update = recognizer.add_view(second);

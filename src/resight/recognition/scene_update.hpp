@@ -10,6 +10,7 @@
 #include "resight/history/object_event.hpp"
 #include "resight/history/object_observation.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
+#include "resight/sensor/color_offset.hpp"
 
 namespace resight {
 
@@ -55,7 +56,8 @@ struct HypothesisCounts {
 struct SceneUpdate {
   int view = 0;  ///< Number in the sequence, from 0.
   std::string view_name;
-  Rigid3 world_from_camera;  ///< As given, or corrected (RecognizerConfig::poses).
+  Rigid3 world_from_camera;  ///< As given, or corrected (RecognizerConfig::camera).
+  ColorOffset color_offset;  ///< Of the views so far; zero unless RecognizerConfig::camera corrects it.
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.

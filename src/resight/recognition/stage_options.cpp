@@ -13,7 +13,7 @@ DynamicSceneOptions scene_options(const RecognizerConfig& config) {
   return {.num_previous_views = config.num_previous_views,
           .detect_changes = config.changes.enabled,
           .clear_tolerance_m = config.changes.clear_tolerance_m,
-          .poses = config.poses,
+          .poses = config.camera.poses,
           .prepare = config.prepare,
           .changes = config.changes.detection,
           .integrate = config.integrate};

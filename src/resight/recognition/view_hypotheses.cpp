@@ -24,6 +24,7 @@ std::string generation_settings(const RecognizerConfig& config) {
   // All but what follows the hypotheses of a view is as it is by default.
   RecognizerConfig counted;
   counted.run = config.run;
+  counted.camera.color_offset = config.camera.color_offset;
   counted.prepare = config.prepare;
   counted.features = config.features;
   counted.hypotheses.generate = config.hypotheses.generate;

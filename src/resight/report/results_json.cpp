@@ -84,6 +84,16 @@ Json stage_times_json(const StageTimes& times, int num_views) {
   return json;
 }
 
+// Null if no view showed it.
+Json color_offset_json(const ReportRun& run) {
+  if (run.views.empty() || run.views.back().update.color_offset.num_views == 0) return nullptr;
+  const ColorOffset& offset = run.views.back().update.color_offset;
+  return {{"offset_px", {offset.offset_px.x(), offset.offset_px.y()}},
+          {"spread_px", {offset.spread_px.x(), offset.spread_px.y()}},
+          {"num_views", offset.num_views},
+          {"moved_px", {offset.moved_px.x(), offset.moved_px.y()}}};
+}
+
 Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
 
 Json header(const ReportRun& run) {
@@ -144,6 +154,7 @@ std::string format_summary_json(const ReportRun& run) {
   json["mean_view_wall_s"] = summary.mean_view_wall_s;
   json["median_view_wall_s"] = summary.median_view_wall_s;
   json["stages"] = stage_times_json(summary.times, summary.num_views);
+  json["color_offset"] = color_offset_json(run);
   json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
   if (summary.num_scored_views > 0) {
     json["evaluation"] = {{"num_views", summary.num_scored_views},

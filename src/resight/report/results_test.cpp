@@ -139,6 +139,12 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
   EXPECT_EQ(parsed["evaluation"]["score"]["false_negatives"], 2);
   EXPECT_EQ(parsed["evaluation"]["score"]["recall"], 0.0);
   EXPECT_TRUE(parsed["evaluation"]["score"]["precision"].is_null());
+
+  EXPECT_TRUE(parsed.at("color_offset").is_null());
+  run.views.back().update.color_offset = {{2.25, -1.5}, {0.25, 0.5}, 7, {2, -1}};
+  parsed = json::parse(format_summary_json(run));
+  EXPECT_EQ(parsed.at("color_offset"), json::parse(R"({"offset_px": [2.25, -1.5], "spread_px": [0.25, 0.5],
+                                                      "num_views": 7, "moved_px": [2, -1]})"));
 }
 
 TEST(FormatResults, RefusesObjectsThatAreNotInTheLibrary) {
