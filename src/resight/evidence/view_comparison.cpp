@@ -23,10 +23,9 @@ constexpr float kMinViewingCosine = 0.05F;     // 87 deg: at more grazing angles
 constexpr double kNormalizedMad = 1.4826;      // Standard deviation of a normal distribution / median |x|.
 // Depth is quantised: the median of small differences may be 0, though the noise is not.
 constexpr double kMinNoiseScale = 0.7;
-constexpr int kContourRowStep = 2;         // One row in two is enough for a share.
 constexpr int kMaxMisregistration_px = 8;  // Beyond, other surfaces agree by chance.
 constexpr double kExplainedShare = 0.9;    // The rest agree by chance.
-constexpr int kMinContourPixels = 50;      // With fewer, the share says little.
+constexpr int kMinContourPixels = 25;      // With fewer, the share says little.
 
 /// A measured surface in front of the other camera.
 struct SurfaceInView {
@@ -213,8 +212,8 @@ int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView
   const ViewComparison comparison(surfaces, view, static_cast<float>(sigmas * noise_scale));
   std::array<int, kMaxMisregistration_px + 1> num_at_radius{};
   int num_explained = 0;
-  for (int v = 0; v < surfaces.cloud.height(); v += kContourRowStep)
-    for (int u = 0; u < surfaces.cloud.width(); ++u) {
+  for (int v = 0; v < surfaces.cloud.height(); ++v)
+    for (int u = v % 2; u < surfaces.cloud.width(); u += 2) {  // Half of the pixels is enough for a share.
       if (!surfaces.cloud.has_point(surfaces.cloud.z.index(u, v)) || !is_contour(surfaces.frame.depth_m, u, v))
         continue;
       const std::optional<int> radius_px =

@@ -73,11 +73,15 @@ TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
   c.config.remember_objects = false;
   c.config.search = {};
   c.config.hypotheses.min_carried_share = 0;  // Within the sleeve little of the box is seen.
-  // Its contours show that the poses are right. Otherwise a thin sleeve might be an error of the poses.
-  Solid post = placed(make_box(), c.world.solids[0].world_from_object * Rigid3::from_translation({0.25, 0.2, 0}));
-  post.size_m += Eigen::Vector3d(-0.02, 0.03, 0.05);
-  post.paint = plain({160, 160, 160});
-  c.world.solids.push_back(post);
+  // Their contours show that the poses are right. Otherwise a thin sleeve might be an error of the poses.
+  const Rigid3 world_from_box = c.world.solids[0].world_from_object;
+  for (const Eigen::Vector3d& beside_m :
+       {Eigen::Vector3d(0.25, 0.2, 0), Eigen::Vector3d(-0.25, 0.1, 0), Eigen::Vector3d(0, -0.3, 0)}) {
+    Solid post = placed(make_box(), world_from_box * Rigid3::from_translation(beside_m));
+    post.size_m += Eigen::Vector3d(-0.02, 0.03, 0.05);
+    post.paint = plain({160, 160, 160});
+    c.world.solids.push_back(post);
+  }
   const World with_box = c.world;
   Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, wider.
   sleeve.size_m += Eigen::Vector3d(0.03, 0.03, -0.05);

@@ -20,7 +20,6 @@ constexpr int kNumErosions = kMaxErosion_px - kMinErosion_px + 1;
 constexpr float kMaxSlope = 0.03F;      // Change of depth over two pixels of the near surface.
 constexpr float kMaxContrast = 40;      // Grey levels. Stronger edges count no more.
 constexpr int kBlock_px = 64;           // The halves of a view are the fields of a chequerboard.
-constexpr int kRowStep = 2;             // One row in two is enough for a mean.
 constexpr int kMinContourPixels = 100;  // Per half.
 constexpr double kMaxHalfDistance_px = 1;
 constexpr std::size_t kMaxViews = 32;         // The newest ones count.
@@ -119,8 +118,8 @@ void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
 std::optional<Eigen::Vector2d> measure_color_offset(const RgbdFrame& frame) {
   const EdgeImages edges = find_color_edges(frame.color);
   std::array<ContourContrast, 2> halves;
-  for (int v = 0; v < frame.depth_m.height(); v += kRowStep)
-    for (int u = 0; u < frame.depth_m.width(); ++u) {
+  for (int v = 0; v < frame.depth_m.height(); ++v)
+    for (int u = v % 2; u < frame.depth_m.width(); u += 2) {  // Half of the pixels is enough for a mean.
       if (std::isnan(frame.depth_m(u, v))) continue;
       const auto half = static_cast<std::size_t>((u / kBlock_px + v / kBlock_px) % 2);
       for (const PixelStep to : kPixelSteps)
