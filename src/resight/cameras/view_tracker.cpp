@@ -290,6 +290,7 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
 std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
   const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
   std::optional<AlignedView> best;
+  bool has_matches = false;
   TwistMatrix information = TwistMatrix::Zero();
   AlignViewOptions align = options.align;
   align.num_threads = 1;  // Pairs are measured in parallel.
@@ -303,12 +304,15 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
       align.prior_sigma_rad = kFeatureSigma_rad;
       const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
       information += feature_information();
+      has_matches = true;
       if (fits(aligned, options.plausible.min_overlap)) best = aligned;
     }
   }
   if (!best) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
-  if (!fits(evaluate_alignment(a.alignment, back, pose_of(a), align), options.plausible.min_overlap))
+  const AlignedView reverse = evaluate_alignment(a.alignment, back, pose_of(a), align);
+  if (!(has_matches ? fits(reverse, options.plausible.min_overlap)
+                    : is_plausible(reverse, options.plausible.min_overlap)))
     return std::nullopt;
   return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
                   edge_information(best->information + information)};

@@ -23,8 +23,8 @@ struct PairEvidence {
   double noise_scale = 1;
 };
 
-/// Poses are never exact: if the camera moved, no measurement within this many rows and columns may explain a surface.
-/// A still camera sees the same surface at the same pixel.
+/// A measurement within this many rows and columns may explain a surface. A still camera sees a surface at the same
+/// pixel; after a move it may lie beside it, because poses are never exact.
 int comparison_radius_px(const PreparedView& view, const PreparedView& earlier, double noise_scale, double sigmas) {
   if (is_same_pose(view.frame.world_from_camera, earlier.frame.world_from_camera)) return 0;
   return std::max({kMinRadius_px, estimate_misregistration_px(view, earlier, noise_scale, sigmas),

@@ -82,8 +82,8 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
-    update.color_offset = color_offset.correct(frame);
     view = prepare_view(std::move(frame), config.prepare);
+    update.color_offset = color_offset.correct(view.frame);
   }
   update.changes = scene.add_view(std::move(view), &update.times);
   update.world_from_camera = scene.window().back().raw.world_from_camera;

@@ -34,8 +34,8 @@ struct ColorOffset {
 };
 
 /// Measures the offset in one view: the shift that puts the occluding contours of the depth onto the strongest edges of
-/// the colours. Depth near contours is lost or smeared alike on all sides, so that the distance of the contours from
-/// the measured depth is estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is
+/// the colours. Depth may end before a contour or reach beyond it, by the same distance on all sides; this distance is
+/// estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is
 /// larger than 4 px.
 [[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const RgbdFrame& frame);
 
