@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "resight/core/parallel.hpp"
@@ -20,6 +19,7 @@ constexpr int kMaxGap_px = 2;  // Within a region: the pixels of one view do not
 struct PairEvidence {
   Image<Evidence> of_view;     ///< What the earlier view says about the pixels of the view.
   Image<Evidence> of_earlier;  ///< The reverse.
+  Image<int> earlier_in_view;  ///< Pixel of the view to which each one of the earlier view projects; -1: none.
   double noise_scale = 1;
 };
 
@@ -33,25 +33,27 @@ int comparison_radius_px(const PreparedView& view, const PreparedView& earlier, 
 
 PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& earlier, const DepthTestOptions& options,
                                int num_threads) {
-  const double noise_scale = estimate_noise_scale(view, earlier);
-  const CompareViewsOptions compare{options.sigmas, comparison_radius_px(view, earlier, noise_scale, options.sigmas),
-                                    num_threads};
-  return {compare_views(view, earlier, noise_scale, compare), compare_views(earlier, view, noise_scale, compare),
-          noise_scale};
+  PairEvidence pair;
+  pair.noise_scale = estimate_noise_scale(view, earlier);
+  const CompareViewsOptions compare{options.sigmas,
+                                    comparison_radius_px(view, earlier, pair.noise_scale, options.sigmas), num_threads};
+  pair.of_view = compare_views(view, earlier, pair.noise_scale, compare);
+  pair.of_earlier = compare_views(earlier, view, pair.noise_scale, compare, &pair.earlier_in_view);
+  return pair;
 }
 
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
                                std::size_t& num_explained) {
   Image<std::uint8_t> novel(view.cloud.width(), view.cloud.height());
-  for (std::size_t i = 0; i < novel.size(); ++i) {
-    bool explained = false;
-    bool free_before = false;
-    for (const PairEvidence& pair : pairs) {
-      explained |= pair.of_view[i] == Evidence::kPresent;
-      free_before |= pair.of_view[i] == Evidence::kSeenThrough;
+  Image<std::uint8_t> explained(novel);
+  for (const PairEvidence& pair : pairs)
+    for (std::size_t i = 0; i < novel.size(); ++i) {
+      if (pair.of_view[i] == Evidence::kPresent) explained[i] = 1;
+      if (pair.of_view[i] == Evidence::kSeenThrough) novel[i] = 1;
     }
-    num_explained += explained ? 1 : 0;
-    novel[i] = free_before && !explained ? 1 : 0;
+  for (std::size_t i = 0; i < novel.size(); ++i) {
+    num_explained += explained[i];
+    if (explained[i] != 0) novel[i] = 0;
   }
   return novel;
 }
@@ -105,15 +107,11 @@ class RemovedSurface {
 
   [[nodiscard]] GonePixels add(const PreparedView& earlier, const PairEvidence& pair) {
     const Image<Evidence>& evidence = pair.of_earlier;
-    const Rigid3f view_from_earlier(view_.frame.world_from_camera.inverse() * earlier.frame.world_from_camera);
     GonePixels gone;
     std::vector<std::size_t> present;
     for (std::size_t i = 0; i < evidence.size(); ++i) {
       if (!is_observed(evidence[i])) continue;
-      const Eigen::Vector3f p = view_from_earlier * earlier.cloud.point(i);
-      const std::optional<Pixel> pixel = view_.frame.camera.pixel_of(p.cast<double>());
-      if (!pixel) continue;
-      const std::size_t at = view_.cloud.z.index(pixel->u, pixel->v);
+      const auto at = static_cast<std::size_t>(pair.earlier_in_view[i]);
       if (evidence[i] == Evidence::kPresent) present.push_back(at);
       if (evidence[i] == Evidence::kPresent || decided_[at] != 0) continue;
       removed_[at] = 1;

@@ -35,7 +35,12 @@ struct DepthMargin {
   double noise_sigmas = 3;
 
   /// In metres, for a surface at this depth; `focal_px` as in nguyen_noise().
-  [[nodiscard]] float at(float z_m, double focal_px) const;
+  [[nodiscard]] float at(float z_m, double focal_px) const {
+    return noise_sigmas > 0 ? with_noise(z_m, focal_px) : static_cast<float>(base_m);
+  }
+
+ private:
+  [[nodiscard]] float with_noise(float z_m, double focal_px) const;
 };
 
 inline void declare(OptionVisitor& v, DepthMargin& o) {

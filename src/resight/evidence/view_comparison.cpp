@@ -29,9 +29,71 @@ constexpr int kMinContourPixels = 25;      // With fewer, the share says little.
 
 /// A measured surface in front of the other camera.
 struct SurfaceInView {
-  Eigen::Vector3f position;  ///< In that camera.
-  float slope;               ///< Distance along the normal per metre along z.
-  float variance;            ///< Of the distance along the normal; m^2.
+  float z_m;       ///< In that camera.
+  float slope;     ///< Distance along the normal per metre along z.
+  float variance;  ///< Of the distance along the normal; m^2.
+  int u, v;        ///< Pixel that shows it; -1: none, or at too grazing an angle.
+
+  [[nodiscard]] bool is_visible() const { return u >= 0; }
+};
+
+/// From surfaces in one camera's frame to the pixels of another camera.
+struct Reprojection {
+  Reprojection(const Rigid3& transform, const Camera& camera)
+      : view_from_surfaces(transform),
+        fx(static_cast<float>(camera.fx)),
+        fy(static_cast<float>(camera.fy)),
+        left_px(static_cast<float>(camera.cx + 0.5)),
+        top_px(static_cast<float>(camera.cy + 0.5)),
+        width_px(static_cast<float>(camera.width)),
+        height_px(static_cast<float>(camera.height)) {}
+
+  Rigid3f view_from_surfaces;
+  float fx, fy;
+  float left_px, top_px;  ///< From the corner of the image to the principal point.
+  float width_px, height_px;
+};
+
+/// Passes pointers as parameters, because compilers honour __restrict only there; otherwise the loop is not vectorised.
+void reproject(const Reprojection& to, int num, const float* __restrict x, const float* __restrict y,
+               const float* __restrict z, const float* __restrict nx, const float* __restrict ny,
+               const float* __restrict nz, const float* __restrict sigma_m, float* __restrict out_z_m,
+               float* __restrict out_slope, float* __restrict out_variance, int* __restrict out_u,
+               int* __restrict out_v) {
+  const Eigen::Matrix3f r = to.view_from_surfaces.rotation;
+  const Eigen::Vector3f t = to.view_from_surfaces.translation;
+  const Reprojection c = to;
+  for (int i = 0; i < num; ++i) {
+    const float px = r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i] + t[0];
+    const float py = r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i] + t[1];
+    const float pz = r(2, 0) * x[i] + r(2, 1) * y[i] + r(2, 2) * z[i] + t[2];
+    const float along_x = (r(0, 0) * nx[i] + r(0, 1) * ny[i] + r(0, 2) * nz[i]) * px;
+    const float along_y = (r(1, 0) * nx[i] + r(1, 1) * ny[i] + r(1, 2) * nz[i]) * py;
+    const float along_z = (r(2, 0) * nx[i] + r(2, 1) * ny[i] + r(2, 2) * nz[i]) * pz;
+    const float slope = std::abs(along_x + along_y + along_z) / pz;
+    const float u = c.fx * px / pz + c.left_px;
+    const float v = c.fy * py / pz + c.top_px;
+    const bool has_normal = slope == slope;
+    const bool is_visible = (pz > 0) & (!has_normal | (slope > kMinViewingCosine)) & (u >= 0) & (v >= 0) &
+                            (u < c.width_px) & (v < c.height_px);  // false for NaN
+    out_z_m[i] = pz;
+    out_slope[i] = has_normal ? slope : 1.0F;
+    out_variance[i] = sigma_m[i] * sigma_m[i];
+    out_u[i] = static_cast<int>(is_visible ? u : -1.0F);
+    out_v[i] = static_cast<int>(is_visible ? v : -1.0F);
+  }
+}
+
+/// Surfaces of pixels in a row, as a structure of arrays.
+struct PosedRow {
+  explicit PosedRow(int num) : z_m(static_cast<std::size_t>(num)), slope(z_m), variance(z_m), u(z_m.size()), v(u) {}
+  [[nodiscard]] SurfaceInView operator[](int column) const {
+    const auto i = static_cast<std::size_t>(column);
+    return {z_m[i], slope[i], variance[i], u[i], v[i]};
+  }
+
+  std::vector<float> z_m, slope, variance;
+  std::vector<int> u, v;
 };
 
 class ViewComparison {
@@ -39,76 +101,76 @@ class ViewComparison {
   ViewComparison(const PreparedView& surfaces, const PreparedView& view, float sigmas)
       : surfaces_(surfaces),
         view_(view),
-        view_from_surfaces_(view.frame.world_from_camera.inverse() * surfaces.frame.world_from_camera),
-        sigmas_(sigmas) {}
+        reprojection_(view.frame.world_from_camera.inverse() * surfaces.frame.world_from_camera, view.frame.camera),
+        sigmas_sq_(sigmas * sigmas) {}
 
-  /// False if the pixel has no surface, or one behind the other camera or seen at too grazing an angle.
-  bool pose(std::size_t i, SurfaceInView& surface) const {
-    const OrganizedCloud& cloud = surfaces_.cloud;
-    if (!cloud.has_point(i)) return false;
-    const Eigen::Vector3f p = view_from_surfaces_ * cloud.point(i);
-    if (!(p.z() > 0)) return false;
-    surface.position = p;
-    surface.slope = 1;
-    const float sigma_m = surfaces_.noise.normal_m[i];
-    surface.variance = sigma_m * sigma_m;
-    if (!cloud.has_normal(i)) return true;
-    surface.slope = std::abs((view_from_surfaces_.rotation * cloud.normal(i)).dot(p)) / p.z();
-    return surface.slope > kMinViewingCosine;
+  [[nodiscard]] SurfaceInView pose(std::size_t i) const {
+    SurfaceInView s{};
+    reproject_from(i, 1, &s.z_m, &s.slope, &s.variance, &s.u, &s.v);
+    return s;
   }
 
-  [[nodiscard]] std::optional<Pixel> pixel_of(const SurfaceInView& surface) const {
-    return view_.frame.camera.pixel_of(surface.position.cast<double>());
+  void pose_row(int row, PosedRow& posed) const {
+    reproject_from(surfaces_.cloud.z.index(0, row), surfaces_.cloud.width(), posed.z_m.data(), posed.slope.data(),
+                   posed.variance.data(), posed.u.data(), posed.v.data());
   }
-
-  [[nodiscard]] Evidence classify(std::size_t i, int radius_px) const {
-    SurfaceInView surface;
-    if (!pose(i, surface)) return Evidence::kUnobserved;
-    const std::optional<Pixel> pixel = pixel_of(surface);
-    if (!pixel) return Evidence::kUnobserved;
-    const Evidence center = compare(surface, view_.frame.depth_m.index(pixel->u, pixel->v));
+  [[nodiscard]] int index(const SurfaceInView& surface) const {
+    return surface.is_visible() ? static_cast<int>(view_.frame.depth_m.index(surface.u, surface.v)) : -1;
+  }
+  [[nodiscard]] Evidence classify(const SurfaceInView& surface, int radius_px) const {
+    if (!surface.is_visible()) return Evidence::kUnobserved;
+    const Evidence center = compare(surface, view_.frame.depth_m.index(surface.u, surface.v));
     if (center == Evidence::kPresent) return center;
-    return agree_in_window(surface, *pixel, radius_px, center);
+    return agree_in_window(surface, radius_px, center);
   }
 
   /// The smallest window around the pixel that the surface projects to with a measurement that agrees with it, in rows
   /// and columns on each side. 0: the measurement of the pixel itself agrees. Nothing if none within the largest does,
   /// or if the pixel has no measurement.
   [[nodiscard]] std::optional<int> find_agreeing_radius(std::size_t i, int max_radius_px) const {
-    SurfaceInView surface;
-    if (!pose(i, surface)) return std::nullopt;
-    const std::optional<Pixel> pixel = pixel_of(surface);
-    if (!pixel || std::isnan(view_.frame.depth_m(pixel->u, pixel->v))) return std::nullopt;
+    const SurfaceInView surface = pose(i);
+    if (!surface.is_visible() || std::isnan(view_.frame.depth_m(surface.u, surface.v))) return std::nullopt;
     for (int radius_px = 0; radius_px <= max_radius_px; ++radius_px)
-      if (agrees_on_ring(surface, *pixel, radius_px)) return radius_px;
+      if (agrees_on_ring(surface, radius_px)) return radius_px;
     return std::nullopt;
   }
 
   /// Distance of the surface to the measurement where it projects to, in standard deviations; NaN if there is none.
-  [[nodiscard]] float normalized_distance(std::size_t i, float max_distance_m) const {
-    SurfaceInView surface;
-    if (!pose(i, surface)) return kNaN;
-    const std::optional<Pixel> pixel = pixel_of(surface);
-    if (!pixel) return kNaN;
-    const std::size_t j = view_.frame.depth_m.index(pixel->u, pixel->v);
-    const float distance_m = (view_.frame.depth_m[j] - surface.position.z()) * surface.slope;
-    return std::abs(distance_m) < max_distance_m ? distance_m / sigma(surface, j) : kNaN;
+  [[nodiscard]] float normalized_distance(const SurfaceInView& surface, float max_distance_m) const {
+    if (!surface.is_visible()) return kNaN;
+    const std::size_t j = view_.frame.depth_m.index(surface.u, surface.v);
+    const float behind_m = distance_m(surface, j);
+    return std::abs(behind_m) < max_distance_m ? behind_m / std::sqrt(variance(surface, j)) : kNaN;
   }
 
  private:
   static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-  [[nodiscard]] float sigma(const SurfaceInView& surface, std::size_t j) const {
+  void reproject_from(std::size_t first, int num, float* z_m, float* slope, float* variance, int* u, int* v) const {
+    const OrganizedCloud& c = surfaces_.cloud;
+    reproject(reprojection_, num, &c.x[first], &c.y[first], &c.z[first], &c.nx[first], &c.ny[first], &c.nz[first],
+              &surfaces_.noise.normal_m[first], z_m, slope, variance, u, v);
+  }
+  /// How far the measurement lies behind the surface, along its normal.
+  [[nodiscard]] float distance_m(const SurfaceInView& surface, std::size_t j) const {
+    return (view_.frame.depth_m[j] - surface.z_m) * surface.slope;
+  }
+  [[nodiscard]] float variance(const SurfaceInView& surface, std::size_t j) const {
     const float sigma_m = view_.noise.normal_m[j];
     // Beyond prepare.max_depth_m there is depth, but no noise. Such a measurement is far behind.
-    return std::sqrt(surface.variance + (std::isnan(sigma_m) ? 0.0F : sigma_m * sigma_m));
+    return surface.variance + (std::isnan(sigma_m) ? 0.0F : sigma_m * sigma_m);
   }
+  /// compare_depth() along the normal; of squares, because a root for each pixel takes time.
   [[nodiscard]] Evidence compare(const SurfaceInView& surface, std::size_t j) const {
-    return compare_depth(surface.position.z(), view_.frame.depth_m[j], sigmas_ * sigma(surface, j) / surface.slope);
+    const float behind_m = distance_m(surface, j);
+    if (std::isnan(behind_m)) return Evidence::kUnobserved;
+    if (!(behind_m * behind_m > sigmas_sq_ * variance(surface, j))) return Evidence::kPresent;
+    return behind_m > 0 ? Evidence::kSeenThrough : Evidence::kOccluded;
   }
 
   /// Whether a measurement at this Chebyshev distance from the pixel agrees with the surface.
-  [[nodiscard]] bool agrees_on_ring(const SurfaceInView& surface, Pixel center, int radius_px) const {
+  [[nodiscard]] bool agrees_on_ring(const SurfaceInView& surface, int radius_px) const {
+    const Pixel center{surface.u, surface.v};
     const Image<float>& depth_m = view_.frame.depth_m;
     const auto agrees_at = [&](int u, int v) {
       return u >= 0 && v >= 0 && u < depth_m.width() && v < depth_m.height() &&
@@ -123,8 +185,8 @@ class ViewComparison {
   }
 
   /// The evidence of the pixel if no neighbour explains or contradicts it.
-  [[nodiscard]] Evidence agree_in_window(const SurfaceInView& surface, Pixel center, int radius_px,
-                                         Evidence evidence) const {
+  [[nodiscard]] Evidence agree_in_window(const SurfaceInView& surface, int radius_px, Evidence evidence) const {
+    const Pixel center{surface.u, surface.v};
     const Image<float>& depth_m = view_.frame.depth_m;
     bool agrees = true;
     for (int v = std::max(center.v - radius_px, 0); v <= std::min(center.v + radius_px, depth_m.height() - 1); ++v)
@@ -138,13 +200,15 @@ class ViewComparison {
 
   const PreparedView& surfaces_;
   const PreparedView& view_;
-  Rigid3f view_from_surfaces_;
-  float sigmas_;
+  Reprojection reprojection_;
+  float sigmas_sq_;
 };
 
-/// Whether the surface of the pixel ends there, before one behind it.
-bool is_contour(const Image<float>& depth_m, int u, int v) {
-  return std::ranges::any_of(kPixelSteps, [&](PixelStep step) { return is_occluding_contour(depth_m, u, v, step); });
+/// Whether the surface of the pixel ends there, before one behind it. Every contour is a depth edge.
+bool is_contour(const PreparedView& view, int u, int v) {
+  if (view.edge_distance_px(u, v) > 0 || std::isnan(view.cloud.z(u, v))) return false;
+  return std::ranges::any_of(kPixelSteps,
+                             [&](PixelStep step) { return is_occluding_contour(view.frame.depth_m, u, v, step); });
 }
 
 void check_view(const PreparedView& view) {
@@ -152,25 +216,31 @@ void check_view(const PreparedView& view) {
     return image.width() == view.frame.camera.width && image.height() == view.frame.camera.height;
   };
   require(view.frame.camera.is_valid() && has_size(view.frame.depth_m) && has_size(view.cloud.z) &&
-              has_size(view.noise.normal_m),
+              has_size(view.cloud.nx) && has_size(view.edge_distance_px) && has_size(view.noise.normal_m),
           "compare_views: a view is not prepared (its images have not its camera's size)");
 }
 
 }  // namespace
 
 Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
-                              const CompareViewsOptions& options) {
+                              const CompareViewsOptions& options, Image<int>* pixels) {
   options.check();
   check_positive("noise_scale", noise_scale);
   check_view(surfaces);
   check_view(view);
   const ViewComparison comparison(surfaces, view, static_cast<float>(options.sigmas * noise_scale));
   Image<Evidence> evidence(surfaces.cloud.width(), surfaces.cloud.height(), Evidence::kUnobserved);
+  if (pixels != nullptr) *pixels = Image<int>(evidence.width(), evidence.height());
   parallel_for_blocks(static_cast<std::size_t>(evidence.height()), kComparedRows, options.num_threads,
                       [&](std::size_t begin, std::size_t end) {
-                        const auto width = static_cast<std::size_t>(evidence.width());
-                        for (std::size_t i = begin * width; i < end * width; ++i)
-                          evidence[i] = comparison.classify(i, options.window_radius_px);
+                        PosedRow posed(evidence.width());
+                        for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+                          comparison.pose_row(v, posed);
+                          for (int u = 0; u < evidence.width(); ++u)
+                            evidence(u, v) = comparison.classify(posed[u], options.window_radius_px);
+                          if (pixels == nullptr) continue;
+                          for (int u = 0; u < evidence.width(); ++u) (*pixels)(u, v) = comparison.index(posed[u]);
+                        }
                       });
   return evidence;
 }
@@ -183,7 +253,8 @@ std::vector<float> measure_contradiction(const PreparedView& surfaces, const Pre
   const ViewComparison comparison(surfaces, view, 1);
   std::vector<float> sigmas;
   for (const int i : pixels)
-    sigmas.push_back(comparison.normalized_distance(static_cast<std::size_t>(i), std::numeric_limits<float>::max()) /
+    sigmas.push_back(comparison.normalized_distance(comparison.pose(static_cast<std::size_t>(i)),
+                                                    std::numeric_limits<float>::max()) /
                      static_cast<float>(noise_scale));
   return sigmas;
 }
@@ -193,11 +264,14 @@ double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& vi
   check_view(view);
   const ViewComparison comparison(surfaces, view, 1);
   std::vector<float> distances;
-  for (int v = 0; v < surfaces.cloud.height(); v += kScaleStep_px)
+  PosedRow posed(surfaces.cloud.width());
+  for (int v = 0; v < surfaces.cloud.height(); v += kScaleStep_px) {
+    comparison.pose_row(v, posed);
     for (int u = 0; u < surfaces.cloud.width(); u += kScaleStep_px) {
-      const float distance = comparison.normalized_distance(surfaces.cloud.z.index(u, v), kMaxScaleDistance_m);
+      const float distance = comparison.normalized_distance(posed[u], kMaxScaleDistance_m);
       if (!std::isnan(distance)) distances.push_back(std::abs(distance));
     }
+  }
   if (distances.size() < kMinScaleSamples) return 1;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
@@ -214,8 +288,7 @@ int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView
   int num_explained = 0;
   for (int v = 0; v < surfaces.cloud.height(); ++v)
     for (int u = v % 2; u < surfaces.cloud.width(); u += 2) {  // Half of the pixels is enough for a share.
-      if (!surfaces.cloud.has_point(surfaces.cloud.z.index(u, v)) || !is_contour(surfaces.frame.depth_m, u, v))
-        continue;
+      if (!is_contour(surfaces, u, v)) continue;
       const std::optional<int> radius_px =
           comparison.find_agreeing_radius(surfaces.cloud.z.index(u, v), kMaxMisregistration_px);
       if (!radius_px) continue;

@@ -30,9 +30,10 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
 /// statistical: the distance between the surface and the measurement, along the normal of the surface, is compared
 /// with the noise of both views, which depends on range and angle (NoiseImages::normal_m). `noise_scale` multiplies
 /// it; see estimate_noise_scale(). Pixels without depth in either view are kUnobserved, and so is what projects between
-/// the measurements of a depth edge. Both poses must be in one world frame.
+/// the measurements of a depth edge. Both poses must be in one world frame. `pixels`, if given, receives the index of
+/// the pixel of `view` that each surface projects to; -1: none.
 [[nodiscard]] Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
-                                            const CompareViewsOptions& options = {});
+                                            const CompareViewsOptions& options = {}, Image<int>* pixels = nullptr);
 
 /// By how many standard deviations a view contradicts the surfaces at these pixels: the distances of compare_views(),
 /// divided by the noise and by `noise_scale`. Positive if the view sees through the surface, negative if it sees

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -75,6 +76,29 @@ TEST(CompareViews, AMovedCameraSeesTheSameSurface) {
   const Image<Evidence> evidence = compare_views(surface, see_wall(1.0, 0, 0, 1, beside), 1);
   EXPECT_EQ(count(evidence, Evidence::kPresent) + count(evidence, Evidence::kUnobserved), kNumPixels);
   EXPECT_NEAR(count(evidence, Evidence::kUnobserved), 14 * kTwoViewCamera.height, 2 * kTwoViewCamera.height);
+}
+
+TEST(CompareViews, TellsWhereSurfacesAreInTheOtherView) {
+  const PreparedView surface = see_wall(1.2, 0.4);
+  Rigid3 moved = Rigid3::identity();
+  moved.translation = {0.11, -0.07, 0.2};
+  moved.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const PreparedView view = see_wall(1.0, 0.4, 0, 1, moved);
+  Image<int> pixels;
+  (void)compare_views(surface, view, 1, {}, &pixels);
+  ASSERT_EQ(pixels.size(), surface.cloud.z.size());
+  int num_visible = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector3d p = moved.inverse() * surface.cloud.point(i).cast<double>().eval();
+    const Eigen::Vector2d position_px = kTwoViewCamera.project(p);
+    // Rounding may choose either pixel on the border between two.
+    const Eigen::Vector2d from_border = ((position_px.array() + 0.5) - (position_px.array() + 0.5).round()).abs();
+    if (from_border.minCoeff() < 1e-3) continue;
+    const std::optional<Pixel> pixel = kTwoViewCamera.pixel_of(p);
+    ASSERT_EQ(pixels[i], pixel ? static_cast<int>(pixels.index(pixel->u, pixel->v)) : -1) << i;
+    num_visible += pixel ? 1 : 0;
+  }
+  EXPECT_GT(num_visible, kNumPixels / 4);
 }
 
 TEST(CompareViews, ANeighborExplainsAndContradicts) {
