@@ -83,7 +83,7 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   {
     const ScopedTimer timer(update.times, "prepare");
     view = prepare_view(std::move(frame), config.prepare);
-    update.color_offset = color_offset.correct(view.frame);
+    update.color_offset = color_offset.correct(view);
   }
   update.changes = scene.add_view(std::move(view), &update.times);
   update.world_from_camera = scene.window().back().raw.world_from_camera;

@@ -115,12 +115,13 @@ void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> measure_color_offset(const RgbdFrame& frame) {
+std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view) {
+  const RgbdFrame& frame = view.frame;
   const EdgeImages edges = find_color_edges(frame.color);
   std::array<ContourContrast, 2> halves;
   for (int v = 0; v < frame.depth_m.height(); ++v)
     for (int u = v % 2; u < frame.depth_m.width(); u += 2) {  // Half of the pixels is enough for a mean.
-      if (std::isnan(frame.depth_m(u, v))) continue;
+      if (view.edge_distance_px(u, v) > 0 || std::isnan(frame.depth_m(u, v))) continue;  // Contours are edges.
       const auto half = static_cast<std::size_t>((u / kBlock_px + v / kBlock_px) % 2);
       for (const PixelStep to : kPixelSteps)
         if (is_sharp_contour(frame.depth_m, u, v, to)) halves[half].add(edges, u, v, to);
@@ -136,16 +137,16 @@ std::optional<Eigen::Vector2d> measure_color_offset(const RgbdFrame& frame) {
 
 ColorOffsetCorrector::ColorOffsetCorrector(const ColorOffsetOptions& options) : options_(options) { options_.check(); }
 
-ColorOffset ColorOffsetCorrector::correct(RgbdFrame& frame) {
+ColorOffset ColorOffsetCorrector::correct(PreparedView& view) {
   ColorOffset offset;
   if (!options_.correct) return offset;
-  if (const std::optional<Eigen::Vector2d> measured = measure_color_offset(frame)) measured_px_.push_back(*measured);
+  if (const std::optional<Eigen::Vector2d> measured = measure_color_offset(view)) measured_px_.push_back(*measured);
   if (measured_px_.size() > kMaxViews) measured_px_.pop_front();
   offset.num_views = static_cast<int>(measured_px_.size());
   if (measured_px_.empty()) return offset;
   for (int axis = 0; axis < 2; ++axis) {
     std::vector<double> values;
-    for (const Eigen::Vector2d& view : measured_px_) values.push_back(view[axis]);
+    for (const Eigen::Vector2d& measured_px : measured_px_) values.push_back(measured_px[axis]);
     offset.offset_px[axis] = median(values);
     for (double& value : values) value = std::abs(value - offset.offset_px[axis]);
     offset.spread_px[axis] = kNormalizedMad * median(values);
@@ -157,7 +158,7 @@ ColorOffset ColorOffsetCorrector::correct(RgbdFrame& frame) {
     const double sure_px = std::floor(std::max(0.0, std::abs(offset.offset_px[axis]) + 0.5 - error_px));
     offset.moved_px[axis] = static_cast<int>(std::copysign(sure_px, offset.offset_px[axis]));
   }
-  move_colors(offset.moved_px, frame.color);
+  move_colors(offset.moved_px, view.frame.color);
   return offset;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "resight/core/options.hpp"
-#include "resight/sensor/rgbd_frame.hpp"
+#include "resight/sensor/prepared_view.hpp"
 
 namespace resight {
 
@@ -37,16 +37,16 @@ struct ColorOffset {
 /// the colours. Depth may end before a contour or reach beyond it, by the same distance on all sides; this distance is
 /// estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is
 /// larger than 4 px.
-[[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const RgbdFrame& frame);
+[[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view);
 
 /// Estimates the offset of a camera from its views so far, and corrects each view.
 class ColorOffsetCorrector {
  public:
   explicit ColorOffsetCorrector(const ColorOffsetOptions& options = {});
 
-  /// Measures the frame and moves its colours by as many whole pixels as the views so far are sure of (two standard
+  /// Measures the view and moves its colours by as many whole pixels as the views so far are sure of (two standard
   /// errors, with a systematic one of 0.15 px). At the border, colours repeat.
-  ColorOffset correct(RgbdFrame& frame);
+  ColorOffset correct(PreparedView& view);
 
  private:
   ColorOffsetOptions options_;

@@ -42,7 +42,7 @@ RgbdFrame see_boards(Eigen::Vector2i offset_px, int lost_px = 0, std::uint64_t s
 TEST(MeasureColorOffset, FindsTheShiftOfTheColors) {
   for (const Eigen::Vector2i& offset_px : {Eigen::Vector2i(0, 0), Eigen::Vector2i(2, -1), Eigen::Vector2i(-3, 2)})
     for (const int lost_px : {0, 2}) {
-      const auto measured = measure_color_offset(see_boards(offset_px, lost_px));
+      const auto measured = measure_color_offset(prepare_view(see_boards(offset_px, lost_px)));
       ASSERT_TRUE(measured.has_value()) << offset_px.transpose() << ", lost " << lost_px;
       EXPECT_LT((*measured - offset_px.cast<double>()).norm(), 0.2) << measured->transpose() << ", lost " << lost_px;
     }
@@ -51,25 +51,25 @@ TEST(MeasureColorOffset, FindsTheShiftOfTheColors) {
 TEST(MeasureColorOffset, NothingWithoutContoursColorsOrAgreement) {
   RgbdFrame flat = see_boards({0, 0});
   std::ranges::fill(flat.depth_m.data(), 1.5F);
-  EXPECT_FALSE(measure_color_offset(flat).has_value());
+  EXPECT_FALSE(measure_color_offset(prepare_view(flat)).has_value());
   RgbdFrame grey = see_boards({0, 0});
   std::ranges::fill(grey.color.data(), Rgb8{90, 90, 90});
-  EXPECT_FALSE(measure_color_offset(grey).has_value());
+  EXPECT_FALSE(measure_color_offset(prepare_view(grey)).has_value());
   RgbdFrame blind = see_boards({0, 0});
   std::ranges::fill(blind.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
-  EXPECT_FALSE(measure_color_offset(blind).has_value());
-  EXPECT_FALSE(measure_color_offset(see_boards({9, 0})).has_value()) << "beyond the reach of the search";
+  EXPECT_FALSE(measure_color_offset(prepare_view(blind)).has_value());
+  EXPECT_FALSE(measure_color_offset(prepare_view(see_boards({9, 0}))).has_value()) << "beyond the reach of the search";
 }
 
 TEST(ColorOffsetCorrector, MovesTheColorsOntoTheDepthOnceItIsSure) {
   ColorOffsetCorrector corrector({.correct = true});
   for (std::uint64_t view = 1; view <= 4; ++view) {
-    RgbdFrame frame = see_boards({2, -1}, 1, view);
-    const ColorOffset offset = corrector.correct(frame);
+    PreparedView prepared = prepare_view(see_boards({2, -1}, 1, view));
+    const ColorOffset offset = corrector.correct(prepared);
     EXPECT_EQ(offset.num_views, static_cast<int>(view));
     const bool sure = view >= 3;
     EXPECT_EQ(offset.moved_px, sure ? Eigen::Vector2i(2, -1) : Eigen::Vector2i(0, 0));
-    EXPECT_NEAR(frame.color(31, 60).r, sure ? 150 : 90, 20) << "a pixel of a board, near its left border";
+    EXPECT_NEAR(prepared.frame.color(31, 60).r, sure ? 150 : 90, 20) << "a pixel of a board, near its left border";
   }
 }
 
@@ -79,17 +79,17 @@ TEST(ColorOffsetCorrector, LeavesColorsThatAreRightOrUncertain) {
   ColorOffsetCorrector off;
   for (int view = 0; view < 6; ++view) {
     const auto seed = static_cast<std::uint64_t>(view + 1);
-    const RgbdFrame right = see_boards({0, 0}, 1, seed);
-    RgbdFrame frame = right;
-    (void)exact.correct(frame);
-    EXPECT_EQ(frame.color, right.color);
-    const RgbdFrame jumping = see_boards({view % 3 - 3, 0}, 1, seed);
-    frame = jumping;
-    EXPECT_GT(uncertain.correct(frame).num_views, 0);
-    EXPECT_EQ(frame.color, jumping.color);
-    frame = jumping;
-    EXPECT_EQ(off.correct(frame).num_views, 0);
-    EXPECT_EQ(frame.color, jumping.color);
+    const PreparedView right = prepare_view(see_boards({0, 0}, 1, seed));
+    PreparedView seen = right;
+    (void)exact.correct(seen);
+    EXPECT_EQ(seen.frame.color, right.frame.color);
+    const PreparedView jumping = prepare_view(see_boards({view % 3 - 3, 0}, 1, seed));
+    seen = jumping;
+    EXPECT_GT(uncertain.correct(seen).num_views, 0);
+    EXPECT_EQ(seen.frame.color, jumping.frame.color);
+    seen = jumping;
+    EXPECT_EQ(off.correct(seen).num_views, 0);
+    EXPECT_EQ(seen.frame.color, jumping.frame.color);
   }
 }
 
