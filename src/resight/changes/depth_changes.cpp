@@ -142,9 +142,9 @@ class RemovedSurface {
 DepthChanges find_depth_changes(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
                                 const DepthTestOptions& options, int num_threads) {
   DepthChanges changes;
-  std::vector<PairEvidence> pairs;
-  for (const PreparedView* earlier : earlier_views)
-    pairs.push_back(compare_both_ways(view, *earlier, options, num_threads));
+  std::vector<PairEvidence> pairs(earlier_views.size());
+  parallel_for(pairs.size(), num_threads,
+               [&](std::size_t e) { pairs[e] = compare_both_ways(view, *earlier_views[e], options, num_threads); });
   changes.novel = find_novel(view, pairs, changes.num_explained);
   drop_weak_regions(measure_novel(view, earlier_views, pairs, changes.novel), options, changes.novel);
 
