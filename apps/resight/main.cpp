@@ -134,12 +134,13 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
 std::function<void()> add_simulate(CLI::App& app, SimulateArguments& a) {
   CLI::App* command =
       app.add_subcommand("simulate", "Render a scripted, changing scene as RGB-D views with ground truth");
-  CLI::Option* preset = command->add_option("--preset", a.preset,
-                                            "Built-in scene: demo, tabletop, crowded, twins, plain; "
-                                            "dynamic-tabletop (benchmark of 9 sequences, version 3; dynamic-tabletop-2 "
-                                            "is version 2); dynamic-tabletop-recordings (of half of its objects), "
-                                            "turntable-recording or walk-recording (both sides of one object), for "
-                                            "'resight model'");
+  CLI::Option* preset =
+      command->add_option("--preset", a.preset,
+                          "Built-in scene: demo, tabletop, crowded, twins, plain; sparse-views (for 'resight track'); "
+                          "dynamic-tabletop (benchmark of 9 sequences, version 3; dynamic-tabletop-2 "
+                          "is version 2); dynamic-tabletop-recordings (of half of its objects), "
+                          "turntable-recording or walk-recording (both sides of one object), for "
+                          "'resight model'");
   CLI::Option* script = command->add_option("scene", a.script, "Scene script (TOML)");
   preset->excludes(script);
   command->add_option("--object", a.object,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera poses from the views alone, compared with those of the sequence. Prints one line per view, then the error of
-// the trajectory. With a library (and every view), also after the joint adjustment of objects and cameras, and the
-// errors of the objects before (each observation alone) and after it.
+// the trajectory and the edges that are wrong. With a library (and every view), also after the joint adjustment of
+// objects and cameras, and the errors of the objects before (each observation alone) and after it.
 //   bench_track_views SEQUENCE [every n-th view] [LIBRARY]
 #include <fmt/format.h>
 
@@ -83,6 +83,23 @@ void print_joint_adjustment(const Sequence& sequence, const ModelLibrary& librar
   print_object_error("objects, adjusted", sequence, library, after);
 }
 
+// Edges between views that are farther off than any drift.
+void print_wrong_edges(const CameraTrack& track, std::span<const Rigid3> truth) {
+  constexpr double kWrong_m = 0.1;
+  constexpr double kWrong_rad = 0.1;
+  int num_wrong = 0;
+  for (const PoseEdge& e : track.edges) {
+    const Rigid3 true_a_from_b = truth[static_cast<std::size_t>(e.a)].inverse() * truth[static_cast<std::size_t>(e.b)];
+    const double off_m = (e.a_from_b.translation - true_a_from_b.translation).norm();
+    const double off_rad = rotation_angle_rad(e.a_from_b.rotation, true_a_from_b.rotation);
+    if (off_m < kWrong_m && off_rad < kWrong_rad) continue;
+    ++num_wrong;
+    fmt::print("wrong: {} to {}, {:.0f} mm, {:.1f} deg\n", track.views[static_cast<std::size_t>(e.a)].name,
+               track.views[static_cast<std::size_t>(e.b)].name, 1000 * off_m, kDegPerRad * off_rad);
+  }
+  fmt::print("{} wrong edges; ", num_wrong);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -121,6 +138,7 @@ int main(int argc, char** argv) {
       fmt::print(" {:.0f}", 1000 * ((moved * of_component[v]).translation - true_of_component[v].translation).norm());
     fmt::print(" mm\n");
   }
+  print_wrong_edges(track, truth);
   fmt::print("{} edges, {} loops; ", track.edges.size(), track.num_loops);
   for (const StageTime& t : times.stages()) fmt::print("{} {:.2f} s  ", t.stage, t.wall_s);
   fmt::print("\n");

@@ -78,7 +78,8 @@ struct ViewTracker::Impl {
   [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int component, const Rigid3& pose) const;
   [[nodiscard]] std::vector<AlignmentTarget> targets_of(const std::vector<std::size_t>& chosen) const;
   [[nodiscard]] bool fits(const AlignedView& aligned, double min_overlap) const;
-  [[nodiscard]] bool is_plausible(const AlignedView& aligned, double min_overlap) const;
+  [[nodiscard]] bool agrees_with_matches(const AlignedView& aligned, int num_matches) const;
+  [[nodiscard]] bool is_plausible(const AlignedView& aligned) const;
   [[nodiscard]] std::optional<Join> follow(const AlignmentView& view) const;
   [[nodiscard]] std::optional<Join> find_by_features(const AlignmentView& view, const ViewFeatures& features) const;
   [[nodiscard]] std::optional<Join> join_to(std::size_t keyframe, const AlignmentView& view,
@@ -125,9 +126,17 @@ bool ViewTracker::Impl::fits(const AlignedView& aligned, double min_overlap) con
          aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap);
 }
 
-// Where no features vouch for a pose, the brightness must. Exposure and gloss differ too much between views far apart.
-bool ViewTracker::Impl::is_plausible(const AlignedView& aligned, double min_overlap) const {
-  return fits(aligned, min_overlap) && !(aligned.brightness_correlation < options.plausible.min_correlation);
+// Exposure and gloss differ too much between views far apart for the brightness to decide where many matches agree.
+bool ViewTracker::Impl::agrees_with_matches(const AlignedView& aligned, int num_matches) const {
+  return fits(aligned, options.plausible.min_overlap) &&
+         (num_matches > options.few_matches.max_matches ||
+          aligned.brightness_correlation >= options.few_matches.min_correlation);
+}
+
+// Where no matches support a pose, the brightness must.
+bool ViewTracker::Impl::is_plausible(const AlignedView& aligned) const {
+  return fits(aligned, options.plausible.min_overlap) &&
+         !(aligned.brightness_correlation < options.plausible.min_correlation);
 }
 
 // Tracks the camera from the last view, once from the same pose and once at constant velocity.
@@ -146,7 +155,9 @@ std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
     const Rigid3 step = start.inverse() * join.aligned.world_from_camera;
     const bool small = step.translation.norm() < options.follow.max_step_m &&
                        rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()) < options.follow.max_step_rad;
-    if (!small || !is_plausible(join.aligned, options.follow.min_overlap)) continue;
+    if (!small || !fits(join.aligned, options.follow.min_overlap) ||
+        join.aligned.brightness_correlation < options.follow.min_correlation)
+      continue;
     if (sigma_of(join.information).maxCoeff() > kMaxOpenSigma) continue;
     if (!best || join.score() > best->score()) best = std::move(join);
   }
@@ -165,9 +176,9 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
   Join join{static_cast<int>(keyframe), align_view(view, targets, pose_of(k) * match->a_from_b, align),
             match->num_inliers};
   join.information = join.aligned.information + feature_information();
-  if (!fits(join.aligned, options.plausible.min_overlap)) return std::nullopt;
+  if (!agrees_with_matches(join.aligned, match->num_inliers)) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&view, join.aligned.world_from_camera}};
-  if (!fits(evaluate_alignment(k.alignment, back, pose_of(k), align), options.plausible.min_overlap))
+  if (!agrees_with_matches(evaluate_alignment(k.alignment, back, pose_of(k), align), match->num_inliers))
     return std::nullopt;
   return join;
 }
@@ -206,7 +217,7 @@ void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, cons
     if (static_cast<int>(k) == join.keyframe) continue;
     const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
     const AlignedView aligned = align_view(alignment, target, pose, near);
-    if (!is_plausible(aligned, options.plausible.min_overlap)) continue;
+    if (!is_plausible(aligned)) continue;
     edges.push_back({keyframes[k].view, view, pose_of(keyframes[k]).inverse() * aligned.world_from_camera,
                      edge_information(aligned.information)});
   }
@@ -290,13 +301,13 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
 std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
   const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
   std::optional<AlignedView> best;
-  bool has_matches = false;
+  int num_matches = 0;
   TwistMatrix information = TwistMatrix::Zero();
   AlignViewOptions align = options.align;
   align.num_threads = 1;  // Pairs are measured in parallel.
   if (component_of(a) == component_of(b) && evaluate_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
     const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
-    if (is_plausible(aligned, options.plausible.min_overlap)) best = aligned;
+    if (is_plausible(aligned)) best = aligned;
   }
   if (!best && match) {
     if (const std::optional<ViewMatch> found = match_views(a.features, b.features, options.match)) {
@@ -304,16 +315,14 @@ std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const
       align.prior_sigma_rad = kFeatureSigma_rad;
       const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
       information += feature_information();
-      has_matches = true;
-      if (fits(aligned, options.plausible.min_overlap)) best = aligned;
+      num_matches = found->num_inliers;
+      if (agrees_with_matches(aligned, num_matches)) best = aligned;
     }
   }
   if (!best) return std::nullopt;
   const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
   const AlignedView reverse = evaluate_alignment(a.alignment, back, pose_of(a), align);
-  if (!(has_matches ? fits(reverse, options.plausible.min_overlap)
-                    : is_plausible(reverse, options.plausible.min_overlap)))
-    return std::nullopt;
+  if (!(num_matches > 0 ? agrees_with_matches(reverse, num_matches) : is_plausible(reverse))) return std::nullopt;
   return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
                   edge_information(best->information + information)};
 }
@@ -405,6 +414,9 @@ void TrackViewsOptions::check() const {
   check_positive("follow.max_step_rad", follow.max_step_rad);
   plausible.check();
   check_in_range("follow.min_overlap", follow.min_overlap, 0, 1);
+  check_in_range("follow.min_correlation", follow.min_correlation, -1, 1);
+  check_not_negative("few_matches.max_matches", few_matches.max_matches);
+  check_in_range("few_matches.min_correlation", few_matches.min_correlation, -1, 1);
   check_positive("max_edge_error_sq", max_edge_error_sq);
   check_not_negative("max_feature_pairs", max_feature_pairs);
   sift.check();

@@ -22,7 +22,15 @@ struct KeyframeOptions {
 struct FollowOptions {
   double max_step_m = 0.02;  ///< Largest step of a camera that is followed.
   double max_step_rad = 0.03;
-  double min_overlap = 0.5;  ///< Least overlap of a view that is followed.
+  double min_overlap = 0.5;       ///< Least overlap of a view that is followed.
+  double min_correlation = 0.65;  ///< Least brightness correlation, where there is texture.
+};
+
+/// Places that look alike, such as the two ends of a table, have some features in common. Where only few agree, the
+/// brightness must agree, too.
+struct FewMatchesOptions {
+  int max_matches = 11;
+  double min_correlation = 0.65;  ///< Of brightness.
 };
 
 struct TrackViewsOptions {
@@ -34,6 +42,7 @@ struct TrackViewsOptions {
   int max_feature_pairs = 3000;   ///< Pairs of keyframes that are matched by features to close loops.
   SiftOptions sift{.root_sift = true};
   MatchViewsOptions match;
+  FewMatchesOptions few_matches;
   AlignmentViewOptions view;
   AlignViewOptions align;
   PoseGraphOptions graph;

@@ -69,9 +69,9 @@ TEST(ViewTracker, FollowsAWalkWhileThingsMove) {
   EXPECT_EQ(track.views[0].world_from_camera.matrix(), Eigen::Matrix4d::Identity());
 }
 
-TEST(ViewTracker, FeaturesNeedNoSimilarBrightness) {
+TEST(ViewTracker, ManyFeaturesNeedNoSimilarBrightness) {
   TrackViewsOptions options;
-  options.plausible.min_correlation = 1;
+  options.plausible.min_correlation = options.few_matches.min_correlation = options.follow.min_correlation = 1;
   ViewTracker tracker(options);
   const Rigid3 a = walk(4, 9);
   const Rigid3 b = walk(5, 9);
@@ -81,6 +81,20 @@ TEST(ViewTracker, FeaturesNeedNoSimilarBrightness) {
   EXPECT_GT(second.num_matches, 0);
   EXPECT_LT(test::shift_m(second.world_from_camera, a.inverse() * b), 0.01);
   EXPECT_EQ(tracker.finish().num_components, 1);
+}
+
+TEST(ViewTracker, FewFeaturesNeedSimilarBrightness) {
+  TrackViewsOptions options;
+  options.few_matches.max_matches = 10000;  // All are few.
+  const auto num_components = [&](double min_correlation) {
+    options.few_matches.min_correlation = min_correlation;
+    ViewTracker tracker(options);
+    tracker.add_view(see({}, walk(4, 9), 1));
+    tracker.add_view(see({}, walk(5, 9), 2));
+    return tracker.finish().num_components;
+  };
+  EXPECT_EQ(num_components(0.65), 1);
+  EXPECT_EQ(num_components(1), 2);
 }
 
 TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {

@@ -8,6 +8,7 @@
 
 #include "resight/core/random.hpp"
 #include "resight/geometry/angle.hpp"
+#include "resight/simulation/realistic_recording.hpp"
 
 namespace resight {
 namespace {
@@ -62,7 +63,37 @@ SceneScript make_office() {
   return script;
 }
 
+const std::vector<std::string>& plain_models() {
+  static const std::vector<std::string> models{"plain_mug", "bowl", "plain_can", "paper_roll", "brick", "plain_box"};
+  return models;
+}
+
 }  // namespace
+
+SceneScript make_sparse_views(std::uint64_t seed) {
+  constexpr double kStep_m = 0.3;
+  constexpr double kStep_deg = 15;
+  RandomTabletopOptions options;
+  options.num_distractors = 0;
+  options.num_changes = 0;
+  if (seed % 2 == 1) {
+    options.models = plain_models();
+    options.num_known = 3;
+  }
+  SceneScript script = make_random_tabletop(seed, options);
+  Rng rng(seed);
+  script.sensor = draw_sensor(rng);
+  script.color_lens = draw_lens(rng);
+  script.lighting = draw_lighting(rng);
+  OrbitScript orbit;
+  orbit.radius_m = 0.5 * kStep_m / std::sin(radians(0.5 * kStep_deg));
+  orbit.height_m = rng.uniform(0.5, 0.7);
+  orbit.num_views = static_cast<int>(360 / kStep_deg);
+  orbit.start_rad = rng.uniform(0, 2 * std::numbers::pi);
+  orbit.end_rad = orbit.start_rad + radians(360 - kStep_deg);
+  script.world_from_camera = make_orbit(orbit);
+  return script;
+}
 
 SceneScript make_demo_scene(std::uint64_t seed) {
   Rng rng(seed);
@@ -95,7 +126,7 @@ SceneScript make_demo_scene(std::uint64_t seed) {
 }
 
 const std::vector<std::string>& preset_scene_names() {
-  static const std::vector<std::string> names{"demo", "tabletop", "crowded", "twins", "plain"};
+  static const std::vector<std::string> names{"demo", "tabletop", "crowded", "twins", "plain", "sparse-views"};
   return names;
 }
 
@@ -108,14 +139,14 @@ Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed)
   } else if (name == "twins") {
     options.models = {"cereal_red", "cereal_blue", "soup_tomato", "soup_pea"};
   } else if (name == "plain") {
-    options.models = {"plain_mug", "bowl", "plain_can", "paper_roll", "brick", "plain_box"};
+    options.models = plain_models();
     options.num_known = 6;
-  } else if (name != "tabletop") {
+  } else if (name != "tabletop" && name != "sparse-views") {
     std::string known;
     for (const std::string& n : preset_scene_names()) known += (known.empty() ? "" : ", ") + n;
     return Error{"no preset scene '" + std::string(name) + "' (known: " + known + ")"};
   }
-  SceneScript script = make_random_tabletop(seed, options);
+  SceneScript script = name == "sparse-views" ? make_sparse_views(seed) : make_random_tabletop(seed, options);
   script.name = name;
   return script;
 }

@@ -33,8 +33,13 @@ struct RandomTabletopOptions {
 /// equal scripts. If the table is full, it has fewer objects than requested (see SceneScript.objects).
 [[nodiscard]] SceneScript make_random_tabletop(std::uint64_t seed, const RandomTabletopOptions& options = {});
 
+/// Makes a recording of few views, for tracking: 24 views around a table, 30 cm and 15 deg apart, without changes, from
+/// a drawn device (realistic_recording.hpp) with exact poses. Odd seeds have three untextured objects, even ones eight
+/// of any kind.
+[[nodiscard]] SceneScript make_sparse_views(std::uint64_t seed);
+
 /// Names of the preset scenes: "demo", "tabletop", "crowded" (closely packed, much occlusion), "twins" (similar objects
-/// side by side), "plain" (untextured objects).
+/// side by side), "plain" (untextured objects), "sparse-views".
 [[nodiscard]] const std::vector<std::string>& preset_scene_names();
 /// Makes a preset scene. The error for an unknown name lists the known names.
 [[nodiscard]] Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed = 1);

@@ -298,12 +298,27 @@ TEST(Presets, AllAreGoodAndUnknownOnesAreErrors) {
     const auto script = make_preset_scene(name, 3);
     ASSERT_TRUE(script.ok());
     EXPECT_TRUE(check_script(*script).ok()) << name;
-    EXPECT_GE(script->objects.size(), 6U) << name;
-    EXPECT_GE(script->changes.size(), 3U) << name;
+    const bool is_sparse = name == "sparse-views";
+    EXPECT_GE(script->objects.size(), is_sparse ? 3U : 6U) << name;
+    EXPECT_GE(script->changes.size(), is_sparse ? 0U : 3U) << name;
   }
   const auto unknown = make_preset_scene("moon", 1);
   ASSERT_FALSE(unknown.ok());
   EXPECT_NE(unknown.error().message.find("demo"), std::string::npos);
+}
+
+TEST(Presets, SparseViewsLieFarApart) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const SceneScript script = make_sparse_views(seed);
+    const std::vector<Rigid3>& poses = script.world_from_camera;
+    ASSERT_EQ(poses.size(), 24U);
+    for (std::size_t v = 0; v < poses.size(); ++v) {
+      const Rigid3 step = poses[v].inverse() * poses[(v + 1) % poses.size()];
+      EXPECT_NEAR(step.translation.norm(), 0.3, 1e-6);
+      EXPECT_NEAR(rotation_angle_rad(step.rotation, Eigen::Matrix3d::Identity()), radians(15), 0.05);
+    }
+    EXPECT_EQ(script.objects.size(), seed == 1 ? 3U : 8U);
+  }
 }
 
 TEST(Simulation, WrongScriptsAndIndicesAreRefused) {
