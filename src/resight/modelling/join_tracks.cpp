@@ -252,7 +252,7 @@ Result<ObjectTrack> join_tracks(ObjectTrack first, ObjectTrack second, const Tra
   std::ranges::move(second.views, std::back_inserter(joined.views));
   joined.drift_m = std::fmax(joined.drift_m, second.drift_m);
   refine_on_model(joined.views, options, options.num_refinements);
-  joined.closure_error_m = measure_closure(joined.views, joined.loops, options);
+  joined.closure_error_m = measure_closure(joined.views, joined.loops, StartKind::kGuess, options);
   return joined;
 }
 

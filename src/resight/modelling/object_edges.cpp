@@ -30,18 +30,20 @@ TwistMatrix match_information(const TrackObjectOptions& options) {
 const Rigid3& pose_of(const TrainingView& view) { return view.frame.world_from_camera; }
 
 std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<const TrackView> parts, int a, int b,
-                                     const TrackObjectOptions& options) {
-  std::vector<AlignmentStart> starts{{poses[b], false}};
-  if (const auto match = match_views(parts[a].features, parts[b].features, options.features.match))
-    starts.push_back({poses[a] * match->a_from_b, true});
+                                     StartKind kind, const TrackObjectOptions& options) {
+  std::vector<AlignmentStart> starts{{poses[b], kind}};
+  const std::optional<ViewMatch> match = match_views(parts[a].features, parts[b].features, options.features.match);
+  // The lit side of a plain object on a turntable stays where it is: its matches say that the object does not turn.
+  if (match && !(kind == StartKind::kGiven && contradicts(poses[a] * match->a_from_b, poses[b], options)))
+    starts.push_back({poses[a] * match->a_from_b, StartKind::kMatched});
   const std::vector<AlignmentTarget> target{{&parts[a].alignment, poses[a]}};
   std::optional<AlignedView> best;
   for (const AlignmentStart& start : starts) {
-    AlignViewOptions align = align_options(options, start.is_matched);
+    AlignViewOptions align = align_options(options, start.kind);
     align.num_threads = 1;  // Pairs are measured in parallel.
     AlignedView aligned = align_view(parts[b].alignment, target, start.pose, align);
     if (!is_plausible(aligned, options) || (best && alignment_score(aligned) <= alignment_score(*best))) continue;
-    if (start.is_matched) aligned.information += match_information(options);
+    if (start.kind == StartKind::kMatched) aligned.information += match_information(options);
     best = aligned;
   }
   if (!best) return std::nullopt;
@@ -64,13 +66,21 @@ double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object)
 
 }  // namespace
 
-AlignViewOptions align_options(const TrackObjectOptions& options, bool is_matched) {
+bool contradicts(const Rigid3& matched, const Rigid3& given, const TrackObjectOptions& options) {
+  constexpr double kSigmas = 3;
+  const Rigid3 difference = given.inverse() * matched;
+  return difference.translation.norm() > kSigmas * std::hypot(options.given.sigma_m, options.features.sigma_m) ||
+         rotation_angle_rad(difference.rotation, Eigen::Matrix3d::Identity()) >
+             kSigmas * std::hypot(options.given.sigma_rad, options.features.sigma_rad);
+}
+
+AlignViewOptions align_options(const TrackObjectOptions& options, StartKind kind) {
   AlignViewOptions align = options.align;
   align.num_threads = options.num_threads;
-  if (is_matched) {
-    align.prior_sigma_m = options.features.sigma_m;
-    align.prior_sigma_rad = options.features.sigma_rad;
-  }
+  if (kind == StartKind::kGuess) return align;
+  const bool is_given = kind == StartKind::kGiven;
+  align.prior_sigma_m = is_given ? options.given.sigma_m : options.features.sigma_m;
+  align.prior_sigma_rad = is_given ? options.given.sigma_rad : options.features.sigma_rad;
   return align;
 }
 
@@ -86,10 +96,11 @@ double alignment_score(const AlignedView& aligned) {
 }
 
 std::vector<PoseEdge> measure_edges(std::span<const Rigid3> object_from_camera, std::span<const TrackView> parts,
-                                    std::span<const std::pair<int, int>> pairs, const TrackObjectOptions& options) {
+                                    std::span<const std::pair<int, int>> pairs, StartKind kind,
+                                    const TrackObjectOptions& options) {
   std::vector<std::optional<PoseEdge>> measured(pairs.size());
   parallel_for(pairs.size(), options.num_threads, [&](std::size_t p) {
-    measured[p] = measure_edge(object_from_camera, parts, pairs[p].first, pairs[p].second, options);
+    measured[p] = measure_edge(object_from_camera, parts, pairs[p].first, pairs[p].second, kind, options);
   });
   std::vector<PoseEdge> edges;
   for (const auto& edge : measured)
@@ -106,7 +117,7 @@ double median_error_m(std::span<const TrainingView> views, std::span<const PoseE
   return errors[errors.size() / 2];
 }
 
-double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops,
+double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops, StartKind kind,
                        const TrackObjectOptions& options) {
   std::vector<int> used;
   for (const auto& [a, b] : loops) used.insert(used.end(), {a, b});
@@ -117,7 +128,7 @@ double measure_closure(std::span<const TrainingView> views, std::span<const std:
   const auto place = [&](int view) { return static_cast<int>(std::ranges::lower_bound(used, view) - used.begin()); };
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [a, b] : loops) pairs.emplace_back(place(a), place(b));
-  std::vector<PoseEdge> edges = measure_edges(poses, make_track_views(views, used, options), pairs, options);
+  std::vector<PoseEdge> edges = measure_edges(poses, make_track_views(views, used, options), pairs, kind, options);
   for (PoseEdge& edge : edges) {
     edge.a = used[edge.a];
     edge.b = used[edge.b];

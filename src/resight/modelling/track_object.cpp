@@ -8,9 +8,11 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "resight/core/check.hpp"
 #include "resight/modelling/internal/object_edges.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {
@@ -50,6 +52,11 @@ Rigid3 make_object_frame(const ObjectRegion& region_in_camera) {
   return camera_from_object.inverse();
 }
 
+struct MatchedPose {
+  Rigid3 pose;
+  int num_matches = 0;
+};
+
 class ObjectTracker {
  public:
   ObjectTracker(const TrackObjectOptions& options, const TrackObjectProgress& progress)
@@ -68,7 +75,7 @@ class ObjectTracker {
     }
     close_loops();
     refine_on_model(track_.views, options_, options_.num_refinements);
-    track_.closure_error_m = measure_closure(track_.views, track_.loops, options_);
+    track_.closure_error_m = measure_closure(track_.views, track_.loops, kind_of_poses(), options_);
     return std::move(track_);
   }
 
@@ -76,8 +83,17 @@ class ObjectTracker {
   [[nodiscard]] Rigid3& pose(std::size_t i) { return track_.views[i].frame.world_from_camera; }
   [[nodiscard]] const std::string& name(std::size_t i) const { return track_.views[i].frame.name; }
 
+  [[nodiscard]] bool has_given_poses() const { return !is_same_pose(given_.front(), given_.back()); }
+  // Given poses of something else than the object fit few views.
+  [[nodiscard]] StartKind kind_of_poses() const {
+    return 2 * num_given_ >= track_.views.size() ? StartKind::kGiven : StartKind::kGuess;
+  }
+  // Of view i relative to its predecessor.
+  [[nodiscard]] Rigid3 given_step(std::size_t i) const { return given_[i - 1].inverse() * given_[i]; }
+
   // Masks of all views.
   Result<void> segment(std::vector<RgbdFrame> frames) {
+    for (const RgbdFrame& frame : frames) given_.push_back(frame.world_from_camera);
     std::optional<ObjectRegion> region;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].camera.width < kMinColumns)
@@ -88,7 +104,8 @@ class ObjectTracker {
         track_.is_camera_still =
             still_share(track_.views[0].frame, view.frame, track_.views[0].mask) >= options_.min_still_share;
       if (!region || !track_.is_camera_still) {
-        const ObjectRegion last = region.value_or(ObjectRegion{});
+        ObjectRegion last = region.value_or(ObjectRegion{});
+        if (region && !track_.is_camera_still) last = transform(given_step(i).inverse(), last);
         std::optional<ObjectRegion> found = find_object_region(view, options_.region, region ? &last : nullptr);
         if (!found && !region)
           return Error{fmt::format("view {}: no object stands on a level surface near the middle of the image",
@@ -108,22 +125,11 @@ class ObjectTracker {
   [[nodiscard]] AlignedView align(std::size_t i, const AlignmentStart& start, std::size_t first_target) {
     std::vector<AlignmentTarget> targets;
     for (std::size_t k = first_target; k < i; ++k) targets.push_back({&parts_[k].alignment, pose(k)});
-    return align_view(parts_[i].alignment, targets, start.pose, align_options(options_, start.is_matched));
+    return align_view(parts_[i].alignment, targets, start.pose, align_options(options_, start.kind));
   }
 
-  // Aligns the view from feature matches, from constant motion and from the previous pose; the best alignment wins.
-  Result<void> follow(std::size_t i) {
-    std::vector<AlignmentStart> starts;
-    int num_matches = 0;
-    for (std::size_t k = i; k-- > (i > 2 ? i - 2 : 0);) {
-      const std::optional<ViewMatch> match =
-          match_views(parts_[k].features, parts_[i].features, options_.features.match);
-      if (!match) continue;
-      num_matches = std::max(num_matches, match->num_inliers);
-      starts.push_back({pose(k) * match->a_from_b, true});
-    }
-    if (i > 1) starts.push_back({pose(i - 1) * (pose(i - 2).inverse() * pose(i - 1)), false});
-    starts.push_back({pose(i - 1), false});
+  // The best plausible alignment; none if the object is lost.
+  [[nodiscard]] std::optional<AlignedView> align_from(std::size_t i, std::span<const AlignmentStart> starts) {
     const auto num_targets = static_cast<std::size_t>(options_.num_targets);
     std::optional<AlignedView> best;
     for (const AlignmentStart& start : starts) {
@@ -131,6 +137,40 @@ class ObjectTracker {
       if (is_plausible(aligned, options_) && (!best || alignment_score(aligned) > alignment_score(*best)))
         best = aligned;
     }
+    return best;
+  }
+
+  // Poses of view i from matches with its two predecessors.
+  [[nodiscard]] std::vector<MatchedPose> match(std::size_t i) {
+    std::vector<MatchedPose> matched;
+    for (std::size_t k = i; k-- > (i > 2 ? i - 2 : 0);)
+      if (const auto found = match_views(parts_[k].features, parts_[i].features, options_.features.match))
+        matched.push_back({pose(k) * found->a_from_b, found->num_inliers});
+    return matched;
+  }
+
+  [[nodiscard]] std::optional<AlignedView> align_from_given(std::size_t i, std::span<const MatchedPose> matched) {
+    if (!has_given_poses()) return std::nullopt;
+    const AlignmentStart start{pose(i - 1) * given_step(i), StartKind::kGiven};
+    for (const MatchedPose& m : matched)
+      if (m.num_matches >= options_.given.min_matches && contradicts(m.pose, start.pose, options_)) return std::nullopt;
+    return align_from(i, std::span(&start, 1));
+  }
+
+  Result<void> follow(std::size_t i) {
+    const std::vector<MatchedPose> matched = match(i);
+    std::optional<AlignedView> best = align_from_given(i, matched);
+    if (best) {
+      ++num_given_;
+    } else {
+      std::vector<AlignmentStart> starts;
+      for (const MatchedPose& m : matched) starts.push_back({m.pose, StartKind::kMatched});
+      if (i > 1) starts.push_back({pose(i - 1) * (pose(i - 2).inverse() * pose(i - 1)), StartKind::kGuess});
+      starts.push_back({pose(i - 1), StartKind::kGuess});
+      best = align_from(i, starts);
+    }
+    int num_matches = 0;
+    for (const MatchedPose& m : matched) num_matches = std::max(num_matches, m.num_matches);
     if (!best) return Error{fmt::format("lost at view {}: {} matches", name(i), num_matches)};
     pose(i) = best->world_from_camera;
     return {};
@@ -151,18 +191,24 @@ class ObjectTracker {
           pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
     std::vector<Rigid3> poses;
     for (std::size_t i = 0; i < parts_.size(); ++i) poses.push_back(pose(i));
-    const std::vector<PoseEdge> edges = measure_edges(poses, parts_, pairs, options_);
+    std::vector<PoseEdge> edges = measure_edges(poses, parts_, pairs, kind_of_poses(), options_);
     std::vector<PoseEdge> loops;
     for (const PoseEdge& edge : edges)
       if (edge.b - edge.a >= kMinSteps) loops.push_back(edge);
     for (const PoseEdge& loop : loops) track_.loops.emplace_back(loop.a, loop.b);
     track_.drift_m = median_error_m(track_.views, loops);
+    if (kind_of_poses() == StartKind::kGiven)  // The surface of a round object does not determine its rotation.
+      for (std::size_t i = 1; i < parts_.size(); ++i)
+        edges.push_back({0, static_cast<int>(i), given_.front().inverse() * given_[i],
+                         twist_information(options_.given.sigma_rad, options_.given.sigma_m)});
     const PoseGraph graph = adjust_pose_graph(std::move(poses), edges, options_.graph);
     for (std::size_t i = 0; i < parts_.size(); ++i) pose(i) = graph.world_from_node[i];
   }
 
   const TrackObjectOptions& options_;
   const TrackObjectProgress& progress_;
+  std::vector<Rigid3> given_;  // Of the cameras, in the recording's frame.
+  std::size_t num_given_ = 0;  // Views that fit them.
   ObjectTrack track_;
   ObjectRegion first_region_;
   std::vector<TrackView> parts_;
@@ -182,6 +228,9 @@ void TrackObjectOptions::check() const {
   plausible.check();
   check_positive("TrackObjectOptions.features.sigma_m", features.sigma_m);
   check_positive("TrackObjectOptions.features.sigma_rad", features.sigma_rad);
+  check_positive("TrackObjectOptions.given.sigma_m", given.sigma_m);
+  check_positive("TrackObjectOptions.given.sigma_rad", given.sigma_rad);
+  check_positive("TrackObjectOptions.given.min_matches", given.min_matches);
   check_in_range("TrackObjectOptions.max_edge_angle_rad", max_edge_angle_rad, 0, std::numbers::pi);
   check_in_range("TrackObjectOptions.min_still_share", min_still_share, 0, 1);
   check_not_negative("TrackObjectOptions.num_refinements", num_refinements);

@@ -25,6 +25,13 @@ struct TrackFeaturesOptions {
   double sigma_rad = 0.006;  ///< The same of its rotation.
 };
 
+/// Given poses, of a view relative to its predecessor.
+struct GivenPoseOptions {
+  double sigma_m = 0.005;   ///< Standard deviation of a position.
+  double sigma_rad = 0.01;  ///< The same of the rotation.
+  int min_matches = 12;     ///< As many matches that contradict a given pose refute it.
+};
+
 /// How a second recording is joined to the first.
 struct JoinOptions {
   int num_views = 10;         ///< Views of the second recording that are aligned to the model of the first.
@@ -36,6 +43,7 @@ struct TrackObjectOptions {
   ObjectRegionOptions region;
   SegmentObjectOptions segment;
   TrackFeaturesOptions features;
+  GivenPoseOptions given;
   AlignmentViewOptions view{.num_levels = 2, .min_edge_distance_px = 2, .mean_radius = 0.0125};
   AlignViewOptions align{.max_distance_m = 0.02, .min_distance_m = 0.006, .brightness_sigma = 25};
   PoseGraphOptions graph;
@@ -70,9 +78,10 @@ struct ObjectTrack {
 using TrackObjectProgress = std::function<void(int done, const std::string& view)>;
 
 /// Tracks the object, not the background, through a recording. Either the object turns on a turntable in front of a
-/// static camera, or the camera moves around the object. Only object points count, and the given poses of the frames
-/// are ignored. Each view is aligned to its predecessors, starting from feature matches, constant motion or no motion.
-/// Then loops are closed, all poses are adjusted jointly (adjust_pose_graph()) and aligned to the fused model.
+/// static camera, or the camera moves around the object. Only object points count. Each view is aligned to its
+/// predecessors, starting from feature matches and from the given poses of the frames, if these differ; otherwise, or
+/// if the given poses do not fit, from constant motion and from no motion. Then loops are closed, all poses are
+/// adjusted jointly (adjust_pose_graph()) and aligned to the fused model.
 ///
 /// Errors name the place of the failure: no object in the first view, or "lost at view 00037: 11 matches".
 [[nodiscard]] Result<ObjectTrack> track_object(std::vector<RgbdFrame> frames, const TrackObjectOptions& options = {},

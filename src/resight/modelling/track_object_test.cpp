@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "resight/cameras/trajectory_error.hpp"
+#include "resight/core/random.hpp"
 #include "resight/modelling/build_model.hpp"
 #include "resight/modelling/recorded_object_test_util.hpp"
 
@@ -70,6 +71,40 @@ TEST(TrackObject, BothSidesOfATurntableRecordingMakeOneModel) {
   EXPECT_LT(model->report.holes.open_share, 0.02);
   const TriangleMesh mesh = make_procedural_object("milk_carton")->mesh;
   EXPECT_NEAR(model->report.diameter_m, static_cast<double>(diameter(mesh.vertices)), 0.004);
+}
+
+// Largest error of the rotation of a recorded can without texture. The given poses are off by some mm and tenths of a
+// degree.
+double rotation_error_of_plain_can(bool is_given) {
+  Recording recording = split(test::record("plain_can", 45));
+  Rng rng(5);
+  for (std::size_t v = 0; v < recording.frames.size(); ++v) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+    Rigid3 off = Rigid3::from_axis_angle(axis, 0.003 * rng.normal());
+    off.translation = 0.003 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
+    Rigid3& given = recording.frames[v].world_from_camera;
+    given = is_given ? recording.object_from_camera[v] * off : Rigid3::identity();
+  }
+  const auto track = track_object(std::move(recording.frames), track_on_two_threads());
+  return track.ok() ? find_trajectory_error(recording.object_from_camera, poses_of(*track)).max_rad : 100;
+}
+
+TEST(TrackObject, GivenPosesFollowARoundObjectWithoutTexture) {
+  EXPECT_LT(rotation_error_of_plain_can(true), 0.02);
+  EXPECT_GT(rotation_error_of_plain_can(false), 0.5) << "nothing tells how far it has turned";
+}
+
+TEST(TrackObject, GivenPosesOfSomethingElseDoNoHarm) {
+  Rng rng(6);
+  const Recording recording = split(test::record("milk_carton", 24));
+  for (const double size_m : {0.001, 300.0}) {  // A camera that stands still but for its tracker's noise; nonsense.
+    std::vector<RgbdFrame> frames = recording.frames;
+    for (RgbdFrame& frame : frames)
+      for (double& coordinate : frame.world_from_camera.translation) coordinate = size_m * rng.normal();
+    const auto track = track_object(std::move(frames), track_on_two_threads());
+    ASSERT_TRUE(track.ok()) << track.error().message;
+    EXPECT_LT(find_trajectory_error(recording.object_from_camera, poses_of(*track)).max_rad, 0.06) << size_m;
+  }
 }
 
 TEST(TrackObject, SaysWhereItIsLost) {

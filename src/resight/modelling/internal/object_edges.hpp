@@ -8,14 +8,21 @@
 
 namespace resight {
 
-/// Initial pose of an alignment. On round objects, feature matches determine the rotation better than the surface does.
+/// Where the initial pose of an alignment comes from.
+enum class StartKind { kGuess, kMatched, kGiven };
+
+/// Initial pose of an alignment. On round objects, feature matches and given poses determine the rotation better than
+/// the surface does.
 struct AlignmentStart {
   Rigid3 pose;
-  bool is_matched = false;
+  StartKind kind = StartKind::kGuess;
 };
 
-/// Alignment options; after feature matching, with a prior at the initial pose.
-[[nodiscard]] AlignViewOptions align_options(const TrackObjectOptions& options, bool is_matched);
+/// Whether the pose from matches is farther from the given one than the errors of both explain.
+[[nodiscard]] bool contradicts(const Rigid3& matched, const Rigid3& given, const TrackObjectOptions& options);
+
+/// Alignment options; with a prior at the initial pose unless it is a guess.
+[[nodiscard]] AlignViewOptions align_options(const TrackObjectOptions& options, StartKind kind);
 
 /// Whether overlap, free space and brightness correlation are within the limits. NaN correlation passes.
 [[nodiscard]] bool is_plausible(const AlignedView& aligned, const TrackObjectOptions& options);
@@ -24,10 +31,11 @@ struct AlignmentStart {
 [[nodiscard]] double alignment_score(const AlignedView& aligned);
 
 /// Measures the relative pose of each pair independently, starting from `object_from_camera` and from feature matches.
-/// Pairs that cannot be aligned are skipped. `parts` has one entry per pose.
+/// Pairs that cannot be aligned are skipped. `parts` has one entry per pose. `kind`: of the poses. Matches that
+/// contradict given poses are not used.
 [[nodiscard]] std::vector<PoseEdge> measure_edges(std::span<const Rigid3> object_from_camera,
                                                   std::span<const TrackView> parts,
-                                                  std::span<const std::pair<int, int>> pairs,
+                                                  std::span<const std::pair<int, int>> pairs, StartKind kind,
                                                   const TrackObjectOptions& options);
 
 /// Distance between the object's surfaces as placed by the two views of an edge: median over the edges, metres; NaN
@@ -36,6 +44,6 @@ struct AlignmentStart {
 
 /// Measures the pairs again from their current poses and returns median_error_m() of their edges.
 [[nodiscard]] double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops,
-                                     const TrackObjectOptions& options);
+                                     StartKind kind, const TrackObjectOptions& options);
 
 }  // namespace resight
