@@ -2,8 +2,9 @@
 // Accuracy of object models built from recordings: both sides of generated objects on a turntable, 36 views each, with
 // sensor noise, compared with the generated meshes. --true-poses skips tracking and joining and tests fusion alone. The
 // models in --out are in the frames of the meshes, so that both results can be compared. --tabletop records the objects
-// of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed.
-//   bench_model_objects [--true-poses] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
+// of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed. --given gives
+// poses with so many mm, and mrad, of independent noise.
+//   bench_model_objects [--true-poses | --given MM] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -18,6 +19,7 @@
 
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/random.hpp"
 #include "resight/modelling/build_model.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/modelling/track_object.hpp"
@@ -37,6 +39,8 @@ const std::vector<std::string> kObjects{"cereal_red",  "tea_box",    "milk_carto
 
 struct Plan {
   bool true_poses = false;
+  std::optional<double> given_noise_mm;
+  bool one_side = false;
   RecordingKind kind = RecordingKind::kTurntable;
   std::filesystem::path out;
   std::optional<std::uint64_t> tabletop_seed;
@@ -59,6 +63,15 @@ struct Side {
   std::vector<Rigid3> object_from_camera;
 };
 
+void give_poses(double noise_mm, Side& side) {
+  Rng rng(1);
+  for (std::size_t i = 0; i < side.frames.size(); ++i) {
+    Twist off;
+    for (double& component : off) component = 0.001 * noise_mm * rng.normal();
+    side.frames[i].world_from_camera = side.object_from_camera[i] * from_twist(off);
+  }
+}
+
 Side record(const ProceduralObject& object, const Plan& plan, bool upside_down) {
   RecordingOptions options = recording_options(object, plan);
   options.upside_down = upside_down;
@@ -67,6 +80,7 @@ Side record(const ProceduralObject& object, const Plan& plan, bool upside_down) 
     side.frames.push_back(std::move(view.frame));
     side.object_from_camera.push_back(view.camera_from_object.inverse());
   }
+  if (plan.given_noise_mm) give_poses(*plan.given_noise_mm, side);
   return side;
 }
 
@@ -90,6 +104,7 @@ Result<ObjectTrack> track_both(const ProceduralObject& object, const Plan& plan,
   options.num_threads = num_hardware_threads();
   std::vector<ObjectTrack> tracks;
   for (const bool upside_down : {false, true}) {
+    if (upside_down && plan.one_side) return std::move(tracks[0]);
     Side side = record(object, plan, upside_down);
     truth.insert(truth.end(), side.object_from_camera.begin(), side.object_from_camera.end());
     auto track =
@@ -182,10 +197,14 @@ int main(int argc, char** argv) {
     const std::string_view argument = argv[i];
     if (argument == "--out" && i + 1 < argc) {
       plan.out = argv[++i];
+    } else if (argument == "--given" && i + 1 < argc) {
+      plan.given_noise_mm = std::strtod(argv[++i], nullptr);
     } else if (argument == "--tabletop" && i + 1 < argc) {
       plan.tabletop_seed = std::strtoull(argv[++i], nullptr, 10);
     } else if (argument == "--true-poses") {
       plan.true_poses = true;
+    } else if (argument == "--one-side") {
+      plan.one_side = true;
     } else if (argument == "--walk") {
       plan.kind = RecordingKind::kWalk;
     } else {

@@ -27,8 +27,8 @@ struct TrackFeaturesOptions {
 
 /// Given poses, of a view relative to its predecessor.
 struct GivenPoseOptions {
-  double sigma_m = 0.005;   ///< Standard deviation of a position.
-  double sigma_rad = 0.01;  ///< The same of the rotation.
+  double sigma_m = 0.01;    ///< Standard deviation of a position.
+  double sigma_rad = 0.02;  ///< The same of the rotation.
   int min_matches = 12;     ///< As many matches that contradict a given pose refute it.
 };
 
