@@ -104,6 +104,7 @@ Json view_json(const EvaluatedView& view) {
           {"detections", detections},
           {"score", score_json(view.score)},
           {"strict_score", score_json(view.strict_score)},
+          {"num_detected_former_places", view.num_detected_former_places},
           {"counts", counts_json(view.counts)},
           {"removed_points", points_json(view.points.removed)},
           {"novel_points", points_json(view.points.novel)},
@@ -125,6 +126,7 @@ EvaluatedView view_from(const Json& j) {
                                probability_from(d.at("score")), verdict_from(d.at("verdict").get<std::string>())});
   view.score = score_from(j.at("score"));
   view.strict_score = score_from(j.at("strict_score"));
+  view.num_detected_former_places = j.at("num_detected_former_places").get<int>();
   view.counts = counts_from(j.at("counts"));
   view.points = {points_from(j.at("removed_points")), points_from(j.at("novel_points"))};
   for (const Json& t : j.at("times"))

@@ -49,6 +49,7 @@ struct EvaluatedView {
   std::vector<EvaluatedDetection> detections;
   RecognitionScore score;
   RecognitionScore strict_score;
+  int num_detected_former_places = 0;  ///< count_detected_former_places().
   HypothesisCounts counts;
   ChangePointScores points;
   StageTimes times;

@@ -57,6 +57,7 @@ class Summarizer {
     ++summary_.num_views;
     summary_.score += view.score;
     summary_.strict_score += view.strict_score;
+    summary_.ghosts.num_by_published_rule += view.num_detected_former_places;
     summary_.counts.correspondences += view.counts.correspondences;
     summary_.counts.generated += view.counts.generated;
     summary_.counts.merged += view.counts.merged;

@@ -37,6 +37,7 @@ struct PoseErrorSummary {
 struct GhostSummary {
   int num_detections = 0;
   int num_former_places = 0;
+  int num_by_published_rule = 0;  ///< count_detected_former_places(), summed over the views.
   /// Ghost detections per former place: the number of views in which an object is still reported at a place it has left
   /// (paper, Fig. 5).
   [[nodiscard]] double per_former_place() const;

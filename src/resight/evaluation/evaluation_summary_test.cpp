@@ -36,6 +36,7 @@ EvaluatedRun make_run(const std::string& sequence, const std::string& preset, in
                      {"soup", Rigid3::from_translation({0.1, 0.2, 0.3}), 0.25, DetectionVerdict::kGhost}};
   view.score = {1, 1, 1};
   view.strict_score = {1, 1, 1};
+  view.num_detected_former_places = 2;
   view.counts = {100, 10, 20, 5, 2};
   view.points.removed = {10, 5, 8, 4};
   view.times.add("sift", 0.25, 0.5);
@@ -53,6 +54,7 @@ TEST(EvaluatedRun, ComesBackToTheBit) {
   EXPECT_EQ(back->views[0].detections[0].camera_from_object.rotation,
             run.views[0].detections[0].camera_from_object.rotation);
   EXPECT_EQ(back->num_ghosts(), 2);
+  EXPECT_EQ(back->views[0].num_detected_former_places, 2);
   EXPECT_EQ(back->events.delays, run.events.delays);
 }
 
@@ -84,6 +86,7 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_DOUBLE_EQ(c.score.recall(), 2.0 / 11);
   EXPECT_EQ(c.ghosts.num_detections, 3);
   EXPECT_DOUBLE_EQ(c.ghosts.per_former_place(), 0.75);
+  EXPECT_EQ(c.ghosts.num_by_published_rule, 6);
   EXPECT_EQ(c.counts.merged, 60);
   EXPECT_EQ(c.changes.events.events, (RecognitionScore{2, 4, 6}));
   EXPECT_DOUBLE_EQ(c.changes.points.removed.recall(), 0.5);

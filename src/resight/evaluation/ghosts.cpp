@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "resight/core/check.hpp"
 
@@ -91,6 +92,21 @@ std::vector<Ghost> find_ghosts(std::span<const FormerPlace> places, const TruthV
     if (nearest) ghosts.push_back(*nearest);
   }
   return ghosts;
+}
+
+int count_detected_former_places(std::span<const FormerPlace> places, const Rigid3& world_from_camera, int view,
+                                 std::span<const DetectedObject> detections, const ModelLibrary& library,
+                                 const MatchDetectionsOptions& options) {
+  const Rigid3 camera_from_world = world_from_camera.inverse();
+  std::vector<GroundTruthObject> former;
+  for (const FormerPlace& place : places) {
+    if (place.last_view >= view) continue;
+    GroundTruthObject object;
+    object.object = place.object;
+    object.camera_from_object = camera_from_world * place.world_from_object;
+    former.push_back(std::move(object));
+  }
+  return static_cast<int>(match_detections(former, detections, library, options).matches.size());
 }
 
 }  // namespace resight

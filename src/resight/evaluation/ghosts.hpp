@@ -56,4 +56,11 @@ struct Ghost {
                                              std::span<const DetectedObject> detections, const Camera& camera,
                                              const ModelLibrary& library, const MatchDetectionsOptions& options = {});
 
+/// Number of former places at which an object is detected, as the tool published with the paper counts them (Fig. 5):
+/// in every later view, former placements are the ground truth to which detections are matched. Unlike find_ghosts(),
+/// places outside the image count, and so do places at which an object of the same name stands now.
+[[nodiscard]] int count_detected_former_places(std::span<const FormerPlace> places, const Rigid3& world_from_camera,
+                                               int view, std::span<const DetectedObject> detections,
+                                               const ModelLibrary& library, const MatchDetectionsOptions& options = {});
+
 }  // namespace resight

@@ -92,6 +92,17 @@ TEST(FindGhosts, ChoosesTheNearestOfSeveralPlaces) {
   EXPECT_EQ(ghosts[0].place, 1);
 }
 
+TEST(CountDetectedFormerPlaces, CountsOutsideTheImageAndUnderTheSameObject) {
+  const auto count = [](double camera_x, int view, const std::vector<DetectedObject>& detections) {
+    return count_detected_former_places(kMugLeft, Rigid3::from_translation({camera_x, 0, 0}), view, detections,
+                                        library_of_ghosts());
+  };
+  EXPECT_EQ(count(0, 3, {{"mug", pose_at(0.12), 1}, {"mug", pose_at(0.11), 1}}), 1) << "one place, twice detected";
+  EXPECT_EQ(count(0, 2, {{"mug", pose_at(0.1), 1}}), 0) << "the mug is still there";
+  EXPECT_EQ(count(0, 3, {{"tin", pose_at(0.1), 1}, {"mug", pose_at(0.3), 1}}), 0);
+  EXPECT_EQ(count(5, 3, {{"mug", pose_at(-4.9), 1}}), 1) << "outside the image";
+}
+
 TEST(FindGhosts, RefusesNonsense) {
   EXPECT_THROW((void)ghosts_of({}, view_at(0, {}), 0, {{"lamp", pose_at(0), 1}}), std::invalid_argument);
   EXPECT_THROW((void)find_ghosts({}, {}, 0, {}, Camera{}, library_of_ghosts()), std::invalid_argument);

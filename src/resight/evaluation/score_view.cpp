@@ -63,6 +63,8 @@ EvaluatedView score_view(int view_number, const TruthView& truth, std::span<cons
     view.detections[static_cast<std::size_t>(d)].verdict = DetectionVerdict::kIgnored;
   for (const Ghost& ghost : find_ghosts(former_places, truth, view_number, detections, camera, library, options))
     view.detections[static_cast<std::size_t>(ghost.detection)].verdict = DetectionVerdict::kGhost;
+  view.num_detected_former_places =
+      count_detected_former_places(former_places, truth.world_from_camera, view_number, detections, library, options);
   return view;
 }
 

@@ -62,7 +62,6 @@ void reproject(const Reprojection& to, int num, const float* __restrict x, const
                int* __restrict out_v) {
   const Eigen::Matrix3f r = to.view_from_surfaces.rotation;
   const Eigen::Vector3f t = to.view_from_surfaces.translation;
-  const Reprojection c = to;
   for (int i = 0; i < num; ++i) {
     const float px = r(0, 0) * x[i] + r(0, 1) * y[i] + r(0, 2) * z[i] + t[0];
     const float py = r(1, 0) * x[i] + r(1, 1) * y[i] + r(1, 2) * z[i] + t[1];
@@ -71,11 +70,11 @@ void reproject(const Reprojection& to, int num, const float* __restrict x, const
     const float along_y = (r(1, 0) * nx[i] + r(1, 1) * ny[i] + r(1, 2) * nz[i]) * py;
     const float along_z = (r(2, 0) * nx[i] + r(2, 1) * ny[i] + r(2, 2) * nz[i]) * pz;
     const float slope = std::abs(along_x + along_y + along_z) / pz;
-    const float u = c.fx * px / pz + c.left_px;
-    const float v = c.fy * py / pz + c.top_px;
+    const float u = to.fx * px / pz + to.left_px;
+    const float v = to.fy * py / pz + to.top_px;
     const bool has_normal = slope == slope;
     const bool is_visible = (pz > 0) & (!has_normal | (slope > kMinViewingCosine)) & (u >= 0) & (v >= 0) &
-                            (u < c.width_px) & (v < c.height_px);  // false for NaN
+                            (u < to.width_px) & (v < to.height_px);  // false for NaN
     out_z_m[i] = pz;
     out_slope[i] = has_normal ? slope : 1.0F;
     out_variance[i] = sigma_m[i] * sigma_m[i];
