@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "resight/core/statistics.hpp"
+
 namespace resight::bench {
 namespace {
 
@@ -18,11 +20,6 @@ constexpr double kEnoughTime_s = 10.0;  // CPU time after which kMinRuns suffice
 bool has_run_enough(const std::vector<double>& times_s) {
   return times_s.size() >= kNumRuns ||
          (times_s.size() >= kMinRuns && std::accumulate(times_s.begin(), times_s.end(), 0.0) > kEnoughTime_s);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

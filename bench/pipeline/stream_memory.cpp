@@ -14,6 +14,7 @@
 #include "../quality/arguments.hpp"
 #include "memory_in_use.hpp"
 #include "resight/core/allocator.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/scene_recognizer.hpp"
@@ -23,13 +24,6 @@ namespace {
 using namespace resight;
 
 constexpr int kRows = 20;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // 0 1 2 1 0 1 ...
 std::size_t frame_at(std::size_t view, std::size_t num_frames) {

@@ -11,6 +11,7 @@
 
 #include "arguments.hpp"
 #include "resight/core/random.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/registration/view_alignment.hpp"
@@ -24,12 +25,6 @@ struct PastView {
   AlignmentView view;
   Rigid3 world_from_camera;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
 
 Eigen::Vector3d random_direction(Rng& rng) {
   return Eigen::Vector3d{rng.normal(), rng.normal(), rng.normal()}.normalized();

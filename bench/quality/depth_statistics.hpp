@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "resight/core/statistics.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
@@ -39,17 +40,21 @@ class DepthStatistics {
   }
 
   /// Median over flat windows of the residual to the local plane, surfaces slanted less than 50 deg.
-  [[nodiscard]] double noise_m(std::size_t range) const { return median(noise_by_range_[range]); }
+  [[nodiscard]] double noise_m(std::size_t range) const { return median_of_enough(noise_by_range_[range]); }
   /// Median ratio of the residual to that of surfaces that face the camera: residual divided by z^2.
-  [[nodiscard]] double noise_per_z_sq(std::size_t angle) const { return median(noise_by_angle_[angle]); }
+  [[nodiscard]] double noise_per_z_sq(std::size_t angle) const { return median_of_enough(noise_by_angle_[angle]); }
   /// Correlation of the residuals of neighbouring pixels.
-  [[nodiscard]] double correlation() const { return median(correlation_); }
+  [[nodiscard]] double correlation() const { return median_of_enough(correlation_); }
   [[nodiscard]] double hole_share() const { return all_.share(); }
   [[nodiscard]] double hole_share_at_angle(std::size_t i) const { return by_angle_[i].share(); }
   [[nodiscard]] double hole_share_at_edge_distance(std::size_t i) const { return by_edge_[i].share(); }
   [[nodiscard]] double hole_share_at_brightness(std::size_t i) const { return by_brightness_[i].share(); }
 
  private:
+  static double median_of_enough(const std::vector<double>& values) {
+    constexpr std::size_t kEnough = 10;
+    return values.size() < kEnough ? std::nan("") : median(values);
+  }
   static constexpr int kWindow_px = 21;
   static constexpr double kMaxResidualShare = 0.01;  // of z^2; twice the RMS beyond which a window is no plane,
   static constexpr double kMaxRms_m = 0.004;         // unless it is below this
@@ -62,12 +67,6 @@ class DepthStatistics {
     double correlation = 0;
     double valid_share = 0;
   };
-
-  static double median(std::vector<double> values) {
-    if (values.size() < 10) return std::nan("");
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
-  }
 
   template <std::size_t N, typename T>
   static int bin_of(const std::array<T, N>& limits, double value) {

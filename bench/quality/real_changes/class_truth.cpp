@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "resight/core/statistics.hpp"
 #include "resight/io/images.hpp"
 
 namespace resight::bench {
@@ -30,12 +31,6 @@ Mask find_valid_pixels(const LabelledView& before, const LabelledView& after) {
       valid(u, v) = !std::isnan(before.frame.depth_m(u, v)) && !std::isnan(after.frame.depth_m(u, v)) &&
                     !is_at_border(before.classes, u, v) && !is_at_border(after.classes, u, v);
   return valid;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 // One side of the changes before the other side is considered. `shows`: the view that shows the objects.

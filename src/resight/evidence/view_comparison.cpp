@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/sensor/occluding_contour.hpp"
 
 namespace resight {
@@ -20,7 +22,6 @@ constexpr int kScaleStep_px = 4;               // One pixel in 16 is enough for 
 constexpr std::size_t kMinScaleSamples = 500;  // With fewer, the median says little.
 constexpr float kMaxScaleDistance_m = 0.1F;    // Larger differences are other surfaces.
 constexpr float kMinViewingCosine = 0.05F;     // 87 deg: at more grazing angles depth says nothing about a surface.
-constexpr double kNormalizedMad = 1.4826;      // Standard deviation of a normal distribution / median |x|.
 // Depth is quantised: the median of small differences may be 0, though the noise is not.
 constexpr double kMinNoiseScale = 0.7;
 constexpr int kMaxMisregistration_px = 8;  // Beyond, other surfaces agree by chance.
@@ -272,9 +273,7 @@ double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& vi
     }
   }
   if (distances.size() < kMinScaleSamples) return 1;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(*middle));
+  return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(median(std::move(distances))));
 }
 
 int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView& view, double noise_scale,

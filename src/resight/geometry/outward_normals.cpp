@@ -9,6 +9,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/voxel_map.hpp"
@@ -75,13 +76,6 @@ class HeightImage {
   VoxelMap cells_;
   std::vector<float> heights_;
 };
-
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 // For each point, the sum of n . d over the directions d from which it is visible. Positive if these lie on the side of
 // its normal.

@@ -8,6 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/geometry/kd_tree.hpp"
 
 namespace resight {
@@ -95,12 +96,10 @@ TriangleMesh make_splat_mesh(const PointCloud& cloud, const SplatMeshOptions& op
       radii[i] = disc_radius(neighbors[i]);
     }
   });
-  std::vector<float> sorted = radii;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  const float max_radius = *middle * static_cast<float>(options.max_growth);
+  const float median_radius = median(radii);
+  const float max_radius = median_radius * static_cast<float>(options.max_growth);
   require(max_radius > 0, "make_splat_mesh: most points coincide");
-  const float min_radius = *middle / static_cast<float>(options.max_growth);
+  const float min_radius = median_radius / static_cast<float>(options.max_growth);
 
   TriangleMesh mesh;
   mesh.vertices.resize(cloud.size() * kVertices);

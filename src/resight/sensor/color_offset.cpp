@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "resight/core/statistics.hpp"
 #include "resight/sensor/occluding_contour.hpp"
 
 namespace resight {
@@ -24,7 +25,6 @@ constexpr int kMinContourPixels = 100;  // Per half.
 constexpr double kMaxHalfDistance_px = 1;
 constexpr std::size_t kMaxViews = 32;         // The newest ones count.
 constexpr double kSystematicError_px = 0.15;  // As on scenes with known offsets.
-constexpr double kNormalizedMad = 1.4826;
 
 /// Contrast between a pixel and its next neighbour in the row and in the column.
 struct EdgeImages {
@@ -97,12 +97,6 @@ class ContourContrast {
   std::vector<float> sums_ = std::vector<float>(kNumErosions * kNumShifts * kNumShifts);
   int num_pixels_ = 0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
   if (by_px.isZero()) return;

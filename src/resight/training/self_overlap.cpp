@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/registration/point_to_plane.hpp"
 
@@ -50,12 +51,6 @@ std::vector<double> find_areas(const PointCloud& surface, const KdTree& tree, in
           std::numbers::pi * tree.nearest(surface.points[i], kAreaNeighbors + 1).back().distance_sq / kAreaNeighbors;
   });
   return areas;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Selects `count` points that represent equal areas (low-variance resampling).
