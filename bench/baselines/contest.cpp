@@ -32,9 +32,9 @@ void compare(const std::string& stage, const std::vector<Contestant>& contestant
     for (std::size_t c = 0; c < contestants.size(); ++c)
       if (!has_run_enough(times_s[c])) times_s[c].push_back(contestants[c].run());
   for (std::size_t c = 0; c < contestants.size(); ++c) {
-    const double cpu_s = median(times_s[c]);
+    const double cpu_s = upper_median(times_s[c]);
     fmt::print("| {} | {} | {:.1f} | {:.2f} | {} |\n", c == 0 ? stage : "", contestants[c].name, 1e3 * cpu_s,
-               cpu_s / median(times_s[0]), contestants[c].accuracy());
+               cpu_s / upper_median(times_s[0]), contestants[c].accuracy());
   }
   std::fflush(stdout);
 }

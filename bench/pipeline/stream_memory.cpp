@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
     if ((v + 1) * kRows / num_views == v * kRows / num_views) continue;
     const std::size_t count = row.searched_ms.size() + row.quiet_ms.size();
     fmt::print("| {} | {:.0f} | {:.1f} | {:.1f} | {} | {:.2f} | {} |\n", v + 1, memory_in_use_mb(),
-               median(row.quiet_ms), median(row.searched_ms), row.searched_ms.size(),
+               upper_median(row.quiet_ms), upper_median(row.searched_ms), row.searched_ms.size(),
                static_cast<double>(row.detections) / static_cast<double>(count), row.changes);
     std::fflush(stdout);
     row = {};

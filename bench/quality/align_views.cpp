@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
     if (past.size() > num_previous) past.pop_front();
   }
   fmt::print("median {:.2f} mm, {:.3f} deg; largest {:.2f} mm, {:.3f} deg; pyramid {:.1f} ms, alignment {:.1f} ms\n",
-             median(errors_mm), median(errors_deg), *std::ranges::max_element(errors_mm),
-             *std::ranges::max_element(errors_deg), median(pyramid_ms), median(align_ms));
+             upper_median(errors_mm), upper_median(errors_deg), *std::ranges::max_element(errors_mm),
+             *std::ranges::max_element(errors_deg), upper_median(pyramid_ms), upper_median(align_ms));
   return 0;
 }

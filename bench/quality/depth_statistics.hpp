@@ -53,7 +53,7 @@ class DepthStatistics {
  private:
   static double median_of_enough(const std::vector<double>& values) {
     constexpr std::size_t kEnough = 10;
-    return values.size() < kEnough ? std::nan("") : median(values);
+    return values.size() < kEnough ? std::nan("") : upper_median(values);
   }
   static constexpr int kWindow_px = 21;
   static constexpr double kMaxResidualShare = 0.01;  // of z^2; twice the RMS beyond which a window is no plane,

@@ -3,8 +3,8 @@
 // sensor noise, compared with the generated meshes. --true-poses skips tracking and joining and tests fusion alone. The
 // models in --out are in the frames of the meshes, so that both results can be compared. --tabletop records the objects
 // of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed. --given gives
-// poses with so many mm, and mrad, of independent noise.
-//   bench_model_objects [--true-poses | --given MM] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
+// poses with so many mm, and mrad, of independent noise; --one-side leaves the other side out.
+//   bench_model_objects [--true-poses | --given MM] [--one-side] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>

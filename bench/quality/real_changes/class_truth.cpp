@@ -59,7 +59,7 @@ RawSide find_raw_side(const LabelledView& shows, const LabelledView& other, cons
       rises_m.push_back(rise_at(pixel));
     }
     if (object.pixels.empty()) continue;
-    object.rise_m = median(std::move(rises_m));
+    object.rise_m = upper_median(std::move(rises_m));
     const bool is_flat = object.rise_m < kMinRise_m;
     for (const int pixel : region) side.is_flat[pixel] = is_flat;
     if (is_flat) continue;

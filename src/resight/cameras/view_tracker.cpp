@@ -126,7 +126,7 @@ bool ViewTracker::Impl::fits(const AlignedView& aligned, double min_overlap) con
          aligned.seen_through <= options.plausible.max_seen_through * std::min(1.0, 2 * aligned.overlap);
 }
 
-// Exposure and gloss differ too much between views far apart for the brightness to decide where many matches agree.
+// Between views far apart, exposure and gloss change the brightness: it decides only where few matches agree.
 bool ViewTracker::Impl::agrees_with_matches(const AlignedView& aligned, int num_matches) const {
   return fits(aligned, options.plausible.min_overlap) &&
          (num_matches > options.few_matches.max_matches ||

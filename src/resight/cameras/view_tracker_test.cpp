@@ -97,6 +97,18 @@ TEST(ViewTracker, FewFeaturesNeedSimilarBrightness) {
   EXPECT_EQ(num_components(1), 2);
 }
 
+TEST(ViewTracker, AFollowedViewNeedsSimilarBrightness) {
+  const auto num_matches = [&](double min_correlation) {
+    TrackViewsOptions options;
+    options.follow.min_correlation = min_correlation;
+    ViewTracker tracker(options);
+    tracker.add_view(see({}, walk(4, 9), 1));
+    return tracker.add_view(see({}, walk(4, 9), 2)).num_matches;
+  };
+  EXPECT_EQ(num_matches(0.65), -1) << "followed";
+  EXPECT_GT(num_matches(1), 0) << "found by its features";
+}
+
 TEST(ViewTracker, WhatCannotBeJoinedIsAPartOfItsOwn) {
   BallScene other;
   other.textured = false;

@@ -10,18 +10,18 @@
 namespace resight {
 namespace {
 
-TEST(Median, IsTheMiddleValue) {
-  EXPECT_EQ(median(std::vector<double>{3, 1, 2}), 2);
-  EXPECT_EQ(median(std::vector<float>{4, 1, 3, 2}), 3) << "the upper one of two";
-  EXPECT_EQ(median(std::vector<double>{7}), 7);
-  EXPECT_TRUE(std::isnan(median(std::vector<double>{})));
+TEST(UpperMedian, IsTheMiddleValue) {
+  EXPECT_EQ(upper_median(std::vector<double>{3, 1, 2}), 2);
+  EXPECT_EQ(upper_median(std::vector<float>{4, 1, 3, 2}), 3) << "the upper one of two";
+  EXPECT_EQ(upper_median(std::vector<double>{7}), 7);
+  EXPECT_TRUE(std::isnan(upper_median(std::vector<double>{})));
 }
 
-TEST(Median, NormalizedDeviationIsThatOfANormalDistribution) {
+TEST(UpperMedian, NormalizedDeviationIsThatOfANormalDistribution) {
   Rng rng(1);
   std::vector<double> deviations;
   for (int i = 0; i < 20001; ++i) deviations.push_back(std::abs(2 * rng.normal()));
-  EXPECT_NEAR(kNormalizedMad * median(deviations), 2, 0.05);
+  EXPECT_NEAR(kNormalizedMad * upper_median(deviations), 2, 0.05);
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ class ViewComparison {
       : surfaces_(surfaces),
         view_(view),
         reprojection_(view.frame.world_from_camera.inverse() * surfaces.frame.world_from_camera, view.frame.camera),
-        sigmas_sq_(sigmas * sigmas) {}
+        sigmas_(sigmas) {}
 
   [[nodiscard]] SurfaceInView pose(std::size_t i) const {
     SurfaceInView s{};
@@ -140,7 +140,7 @@ class ViewComparison {
     if (!surface.is_visible()) return kNaN;
     const std::size_t j = view_.frame.depth_m.index(surface.u, surface.v);
     const float behind_m = distance_m(surface, j);
-    return std::abs(behind_m) < max_distance_m ? behind_m / std::sqrt(variance(surface, j)) : kNaN;
+    return std::abs(behind_m) < max_distance_m ? behind_m / sigma_m(surface, j) : kNaN;
   }
 
  private:
@@ -155,17 +155,14 @@ class ViewComparison {
   [[nodiscard]] float distance_m(const SurfaceInView& surface, std::size_t j) const {
     return (view_.frame.depth_m[j] - surface.z_m) * surface.slope;
   }
-  [[nodiscard]] float variance(const SurfaceInView& surface, std::size_t j) const {
-    const float sigma_m = view_.noise.normal_m[j];
+  [[nodiscard]] float sigma_m(const SurfaceInView& surface, std::size_t j) const {
+    const float of_view_m = view_.noise.normal_m[j];
     // Beyond prepare.max_depth_m there is depth, but no noise. Such a measurement is far behind.
-    return surface.variance + (std::isnan(sigma_m) ? 0.0F : sigma_m * sigma_m);
+    return std::sqrt(surface.variance + (std::isnan(of_view_m) ? 0.0F : of_view_m * of_view_m));
   }
-  /// compare_depth() along the normal; of squares, because a root for each pixel takes time.
+  /// Along the normal.
   [[nodiscard]] Evidence compare(const SurfaceInView& surface, std::size_t j) const {
-    const float behind_m = distance_m(surface, j);
-    if (std::isnan(behind_m)) return Evidence::kUnobserved;
-    if (!(behind_m * behind_m > sigmas_sq_ * variance(surface, j))) return Evidence::kPresent;
-    return behind_m > 0 ? Evidence::kSeenThrough : Evidence::kOccluded;
+    return compare_depth(0, distance_m(surface, j), sigmas_ * sigma_m(surface, j));
   }
 
   /// Whether a measurement at this Chebyshev distance from the pixel agrees with the surface.
@@ -201,10 +198,11 @@ class ViewComparison {
   const PreparedView& surfaces_;
   const PreparedView& view_;
   Reprojection reprojection_;
-  float sigmas_sq_;
+  float sigmas_;
 };
 
-/// Whether the surface of the pixel ends there, before one behind it. Every contour is a depth edge.
+/// Whether the surface of the pixel ends there, before one behind it. Contours are depth edges, with the
+/// default of prepare.edges.max_depth_jump: looking only there saves most of the time.
 bool is_contour(const PreparedView& view, int u, int v) {
   if (view.edge_distance_px(u, v) > 0 || std::isnan(view.cloud.z(u, v))) return false;
   return std::ranges::any_of(kPixelSteps,
@@ -273,7 +271,7 @@ double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& vi
     }
   }
   if (distances.size() < kMinScaleSamples) return 1;
-  return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(median(std::move(distances))));
+  return std::max(kMinNoiseScale, kNormalizedMad * static_cast<double>(upper_median(std::move(distances))));
 }
 
 int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView& view, double noise_scale,

@@ -138,7 +138,7 @@ std::vector<Eigen::Vector3f> estimate_outward_normals(std::span<const Eigen::Vec
           std::sqrt(near.back().distance_sq * static_cast<float>(std::numbers::pi) / static_cast<float>(near.size()));
     }
   });
-  const double spacing_m = median(std::move(spacings));
+  const double spacing_m = upper_median(std::move(spacings));
   if (!(spacing_m > 0)) return normals;
   const std::vector<float> votes = vote_for_sides(points, normals, spacing_m, options);
   const Eigen::Vector3f center = centroid(points);

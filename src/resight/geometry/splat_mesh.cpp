@@ -96,7 +96,7 @@ TriangleMesh make_splat_mesh(const PointCloud& cloud, const SplatMeshOptions& op
       radii[i] = disc_radius(neighbors[i]);
     }
   });
-  const float median_radius = median(radii);
+  const float median_radius = upper_median(radii);
   const float max_radius = median_radius * static_cast<float>(options.max_growth);
   require(max_radius > 0, "make_splat_mesh: most points coincide");
   const float min_radius = median_radius / static_cast<float>(options.max_growth);

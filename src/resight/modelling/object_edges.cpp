@@ -34,7 +34,7 @@ std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<co
   std::vector<AlignmentStart> starts{{poses[b], kind}};
   const std::optional<ViewMatch> match = match_views(parts[a].features, parts[b].features, options.features.match);
   // The lit side of a plain object on a turntable stays where it is: its matches say that the object does not turn.
-  if (match && !(kind == StartKind::kGiven && contradicts(poses[a] * match->a_from_b, poses[b], options)))
+  if (match && !(kind == StartKind::kGiven && contradicts(poses[a] * match->a_from_b, poses[b], kMatchSigmas, options)))
     starts.push_back({poses[a] * match->a_from_b, StartKind::kMatched});
   const std::vector<AlignmentTarget> target{{&parts[a].alignment, poses[a]}};
   std::optional<AlignedView> best;
@@ -66,12 +66,11 @@ double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object)
 
 }  // namespace
 
-bool contradicts(const Rigid3& matched, const Rigid3& given, const TrackObjectOptions& options) {
-  constexpr double kSigmas = 3;
-  const Rigid3 difference = given.inverse() * matched;
-  return difference.translation.norm() > kSigmas * std::hypot(options.given.sigma_m, options.features.sigma_m) ||
+bool contradicts(const Rigid3& pose, const Rigid3& given, double sigmas, const TrackObjectOptions& options) {
+  const Rigid3 difference = given.inverse() * pose;
+  return difference.translation.norm() > sigmas * std::hypot(options.given.sigma_m, options.features.sigma_m) ||
          rotation_angle_rad(difference.rotation, Eigen::Matrix3d::Identity()) >
-             kSigmas * std::hypot(options.given.sigma_rad, options.features.sigma_rad);
+             sigmas * std::hypot(options.given.sigma_rad, options.features.sigma_rad);
 }
 
 AlignViewOptions align_options(const TrackObjectOptions& options, StartKind kind) {

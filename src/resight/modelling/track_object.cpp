@@ -22,7 +22,8 @@ using Eigen::Vector3d;
 constexpr double kStillDepthShare = 0.02;  // Share of z. A pixel whose depth changes by less is static.
 constexpr int kMinSteps = 6;               // Least number of views between two views whose edge closes a loop.
 constexpr std::size_t kMinMaskPixels = 150;
-constexpr int kMinColumns = 160;  // Narrower images have nothing left to align at half resolution.
+constexpr double kMaxDriftSigmas = 10;  // Of the track from given poses.
+constexpr int kMinColumns = 160;        // Narrower images have nothing left to align at half resolution.
 
 std::size_t count_set(const Image<std::uint8_t>& mask) {
   return mask.size() - static_cast<std::size_t>(std::ranges::count(mask.data(), 0));
@@ -83,13 +84,18 @@ class ObjectTracker {
   [[nodiscard]] Rigid3& pose(std::size_t i) { return track_.views[i].frame.world_from_camera; }
   [[nodiscard]] const std::string& name(std::size_t i) const { return track_.views[i].frame.name; }
 
-  [[nodiscard]] bool has_given_poses() const { return !is_same_pose(given_.front(), given_.back()); }
-  // Given poses of something else than the object fit few views.
+  [[nodiscard]] bool has_given_poses() const {
+    return std::ranges::any_of(given_, [&](const Rigid3& given) { return !is_same_pose(given, given_.front()); });
+  }
+  // Whether the track has followed the given poses to view i, but for its drift.
+  [[nodiscard]] bool is_near_given(std::size_t i) {
+    const Rigid3 expected = pose(0) * (given_.front().inverse() * given_[i]);
+    return !contradicts(pose(i), expected, kMaxDriftSigmas, options_);
+  }
+  // The poses of something else than the object, such as a still camera, are near in few views.
   [[nodiscard]] StartKind kind_of_poses() const {
     return 2 * num_given_ >= track_.views.size() ? StartKind::kGiven : StartKind::kGuess;
   }
-  // Of view i relative to its predecessor.
-  [[nodiscard]] Rigid3 given_step(std::size_t i) const { return given_[i - 1].inverse() * given_[i]; }
 
   // Masks of all views.
   Result<void> segment(std::vector<RgbdFrame> frames) {
@@ -104,8 +110,7 @@ class ObjectTracker {
         track_.is_camera_still =
             still_share(track_.views[0].frame, view.frame, track_.views[0].mask) >= options_.min_still_share;
       if (!region || !track_.is_camera_still) {
-        ObjectRegion last = region.value_or(ObjectRegion{});
-        if (region && !track_.is_camera_still) last = transform(given_step(i).inverse(), last);
+        const ObjectRegion last = region.value_or(ObjectRegion{});
         std::optional<ObjectRegion> found = find_object_region(view, options_.region, region ? &last : nullptr);
         if (!found && !region)
           return Error{fmt::format("view {}: no object stands on a level surface near the middle of the image",
@@ -151,18 +156,17 @@ class ObjectTracker {
 
   [[nodiscard]] std::optional<AlignedView> align_from_given(std::size_t i, std::span<const MatchedPose> matched) {
     if (!has_given_poses()) return std::nullopt;
-    const AlignmentStart start{pose(i - 1) * given_step(i), StartKind::kGiven};
+    const AlignmentStart start{pose(i - 1) * (given_[i - 1].inverse() * given_[i]), StartKind::kGiven};
     for (const MatchedPose& m : matched)
-      if (m.num_matches >= options_.given.min_matches && contradicts(m.pose, start.pose, options_)) return std::nullopt;
+      if (m.num_matches >= options_.given.min_matches && contradicts(m.pose, start.pose, kMatchSigmas, options_))
+        return std::nullopt;
     return align_from(i, std::span(&start, 1));
   }
 
   Result<void> follow(std::size_t i) {
     const std::vector<MatchedPose> matched = match(i);
     std::optional<AlignedView> best = align_from_given(i, matched);
-    if (best) {
-      ++num_given_;
-    } else {
+    if (!best) {
       std::vector<AlignmentStart> starts;
       for (const MatchedPose& m : matched) starts.push_back({m.pose, StartKind::kMatched});
       if (i > 1) starts.push_back({pose(i - 1) * (pose(i - 2).inverse() * pose(i - 1)), StartKind::kGuess});
@@ -173,6 +177,7 @@ class ObjectTracker {
     for (const MatchedPose& m : matched) num_matches = std::max(num_matches, m.num_matches);
     if (!best) return Error{fmt::format("lost at view {}: {} matches", name(i), num_matches)};
     pose(i) = best->world_from_camera;
+    num_given_ += has_given_poses() && is_near_given(i) ? 1 : 0;
     return {};
   }
 
@@ -208,7 +213,7 @@ class ObjectTracker {
   const TrackObjectOptions& options_;
   const TrackObjectProgress& progress_;
   std::vector<Rigid3> given_;  // Of the cameras, in the recording's frame.
-  std::size_t num_given_ = 0;  // Views that fit them.
+  std::size_t num_given_ = 0;  // Views near them.
   ObjectTrack track_;
   ObjectRegion first_region_;
   std::vector<TrackView> parts_;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "resight/core/check.hpp"
-#include "resight/core/statistics.hpp"
 #include "resight/evaluation/out_of_image.hpp"
 
 namespace resight {
@@ -23,6 +22,13 @@ std::vector<DetectionMark> marks_of(const ViewEvaluation& evaluation, std::size_
   for (const int detection : evaluation.matching.ignored_detections) set(detection, DetectionMark::kIgnored);
   for (const Ghost& ghost : evaluation.ghosts) set(ghost.detection, DetectionMark::kGhost);
   return marks;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 int count_changes(std::span<const ObjectEvent> events) {

@@ -78,7 +78,7 @@ struct RunSummary {
   int num_ghosts = 0;
   StageTimes times;
   double mean_view_wall_s = 0;    ///< NaN without views.
-  double median_view_wall_s = 0;  ///< The upper one of two middle values; NaN without views.
+  double median_view_wall_s = 0;  ///< NaN without views.
 };
 /// Summarises a run.
 [[nodiscard]] RunSummary summarize(const ReportRun& run);

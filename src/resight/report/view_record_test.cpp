@@ -98,7 +98,7 @@ TEST(Summarize, SumsOverViews) {
   EXPECT_EQ(summary.strict_score, (RecognitionScore{1, 3, 4}));
   EXPECT_EQ(summary.num_ghosts, 2);
   EXPECT_DOUBLE_EQ(summary.mean_view_wall_s, 0.5);  // 0.25 and 0.75
-  EXPECT_DOUBLE_EQ(summary.median_view_wall_s, 0.75);
+  EXPECT_DOUBLE_EQ(summary.median_view_wall_s, 0.5);
   ASSERT_EQ(summary.times.stages().size(), 2U);
   EXPECT_DOUBLE_EQ(summary.times.stages()[0].wall_s, 0.5);
 }

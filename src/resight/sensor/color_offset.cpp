@@ -141,9 +141,9 @@ ColorOffset ColorOffsetCorrector::correct(PreparedView& view) {
   for (int axis = 0; axis < 2; ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector2d& measured_px : measured_px_) values.push_back(measured_px[axis]);
-    offset.offset_px[axis] = median(values);
+    offset.offset_px[axis] = upper_median(values);
     for (double& value : values) value = std::abs(value - offset.offset_px[axis]);
-    offset.spread_px[axis] = kNormalizedMad * median(values);
+    offset.spread_px[axis] = kNormalizedMad * upper_median(values);
   }
   if (offset.num_views < options_.min_views || offset.spread_px.maxCoeff() > options_.max_spread_px) return offset;
   for (int axis = 0; axis < 2; ++axis) {

@@ -81,6 +81,7 @@ SceneScript make_sparse_views(std::uint64_t seed) {
     options.num_known = 3;
   }
   SceneScript script = make_random_tabletop(seed, options);
+  script.name = "sparse-views";
   Rng rng(seed);
   script.sensor = draw_sensor(rng);
   script.color_lens = draw_lens(rng);
@@ -133,6 +134,7 @@ const std::vector<std::string>& preset_scene_names() {
 Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed) {
   RandomTabletopOptions options;
   if (name == "demo") return make_demo_scene(seed);
+  if (name == "sparse-views") return make_sparse_views(seed);
   if (name == "crowded") {
     options.num_known = 14;
     options.gap_m = 0.002;
@@ -141,12 +143,12 @@ Result<SceneScript> make_preset_scene(std::string_view name, std::uint64_t seed)
   } else if (name == "plain") {
     options.models = plain_models();
     options.num_known = 6;
-  } else if (name != "tabletop" && name != "sparse-views") {
+  } else if (name != "tabletop") {
     std::string known;
     for (const std::string& n : preset_scene_names()) known += (known.empty() ? "" : ", ") + n;
     return Error{"no preset scene '" + std::string(name) + "' (known: " + known + ")"};
   }
-  SceneScript script = name == "sparse-views" ? make_sparse_views(seed) : make_random_tabletop(seed, options);
+  SceneScript script = make_random_tabletop(seed, options);
   script.name = name;
   return script;
 }

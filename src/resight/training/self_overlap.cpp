@@ -146,7 +146,7 @@ SelfOverlap::SelfOverlap(const PointCloud& surface, const SymmetryOptions& optio
   limits_.num_neighbors = kMatchNeighbors;
   min_cosine_ = static_cast<float>(std::cos(options.max_normal_angle_rad));
   const double diameter_m = diameter(surface_.points);
-  const double spacing_m = std::sqrt(median(areas));
+  const double spacing_m = std::sqrt(upper_median(areas));
   limits_.distance_m = static_cast<float>(std::max(options.max_distance_m, options.max_distance_share * diameter_m));
   limits_.reach_m = limits_.distance_m + static_cast<float>(kReachSpacings * spacing_m);
   if (surface_.has_colors())

@@ -18,8 +18,12 @@ struct AlignmentStart {
   StartKind kind = StartKind::kGuess;
 };
 
-/// Whether the pose from matches is farther from the given one than the errors of both explain.
-[[nodiscard]] bool contradicts(const Rigid3& matched, const Rigid3& given, const TrackObjectOptions& options);
+/// Pose from matches and given pose are taken as different beyond this many standard deviations.
+inline constexpr double kMatchSigmas = 3;
+
+/// Whether a pose from matches or of the track differs from the given one by more than so many standard deviations.
+[[nodiscard]] bool contradicts(const Rigid3& pose, const Rigid3& given, double sigmas,
+                               const TrackObjectOptions& options);
 
 /// Alignment options; with a prior at the initial pose unless it is a guess.
 [[nodiscard]] AlignViewOptions align_options(const TrackObjectOptions& options, StartKind kind);
