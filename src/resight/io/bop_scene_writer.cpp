@@ -24,7 +24,13 @@ class BopSequenceWriter final : public SequenceWriter {
                                         const std::vector<GroundTruthObject>& ground_truth) override {
     if (const auto done = check_frame(frame); !done) return done;
     const auto id = scene_.write_view(frame, ground_truth, true);
-    return id ? Result<void>() : Result<void>(id.error());
+    if (!id) return id.error();
+    names_.push_back(bop_number(*id));
+    return {};
+  }
+  [[nodiscard]] const std::vector<std::string>& view_names() const override { return names_; }
+  [[nodiscard]] Result<void> add_file(const std::string& name, std::string_view bytes) override {
+    return write_file(directory_.path() / name, bytes);
   }
   [[nodiscard]] Result<void> finish() override {
     if (scene_.num_views() == 0) return file_error(directory_.final_path(), "no view was written");
@@ -35,6 +41,7 @@ class BopSequenceWriter final : public SequenceWriter {
  private:
   PendingDirectory directory_;
   BopSceneWriter scene_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/convert.hpp"
 
+#include <optional>
+
 #include "resight/io/bop_models.hpp"
 #include "resight/io/internal/files.hpp"
+#include "resight/io/tuw_changes.hpp"
 #include "resight/io/tuw_models.hpp"
 
 namespace resight {
@@ -53,10 +56,43 @@ Result<ConversionSummary> convert_to_tuw(std::span<const ModelLocation> models,
   return summary;
 }
 
+// What is kept of the true changes of a sequence.
+struct KeptChanges {
+  std::optional<std::string> events;  // The file's bytes. Its views are counted, so it fits any format.
+  std::optional<std::vector<ObjectPlacement>> placements;
+};
+
+Result<KeptChanges> read_kept_changes(const Sequence& sequence, const ChangeFiles& files) {
+  KeptChanges kept;
+  if (!files.events.empty()) {
+    auto bytes = io::read_file(files.events);
+    if (!bytes) return bytes.error();
+    kept.events = std::move(*bytes);
+  }
+  if (files.changes.empty()) return kept;
+  const auto chains = read_changes(files.changes);
+  if (!chains) return chains.error();
+  std::vector<std::string> views;
+  for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
+  auto placements = resolve_changes(*chains, views, files.changes.string());
+  if (!placements) return placements.error();
+  kept.placements = std::move(*placements);
+  return kept;
+}
+
+Result<void> write_kept_changes(const KeptChanges& kept, const std::string& name, SequenceWriter& writer) {
+  if (kept.events)
+    if (auto done = writer.add_file("events.json", *kept.events); !done) return done;
+  if (!kept.placements) return {};
+  return writer.add_file(name + ".changes", format_changes(name_placements(*kept.placements, writer.view_names())));
+}
+
 }  // namespace
 
 Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::filesystem::path& directory,
-                                           DatasetFormat format) {
+                                           DatasetFormat format, const ChangeFiles& changes) {
+  const auto kept = read_kept_changes(sequence, changes);
+  if (!kept) return kept.error();
   const auto writer = create_sequence(directory, format);
   if (!writer) return writer.error();
   ConversionSummary summary;
@@ -69,6 +105,7 @@ Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::
     ++summary.num_views;
     summary.num_objects += static_cast<int>(truth->size());
   }
+  if (const auto done = write_kept_changes(*kept, io::folder_name(directory), **writer); !done) return done.error();
   if (const auto done = (*writer)->finish(); !done) return done.error();
   return summary;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 
+#include "resight/io/change_files.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 
@@ -15,10 +16,14 @@ struct ConversionSummary {
   std::vector<std::string> warnings;  ///< ModelSource::warnings of all models.
 };
 
-/// Writes all views of `sequence` with their ground truth to `directory` in another format. Losses (docs/formats.md):
+/// Writes all views of `sequence` with their ground truth to `directory` in another format. The files of its true
+/// changes go into the same folder: the events as they are, as `events.json`; the chains with the new names of the
+/// views, as
+/// `<name of directory>.changes`. Fails if these chains do not fit the views. Losses (docs/formats.md):
 /// BOP rounds depth to 0.1 mm (1 mm beyond 6.5 m) and names views by numbers; TUW has no obj_ids.
 [[nodiscard]] Result<ConversionSummary> convert_sequence(const Sequence& sequence,
-                                                         const std::filesystem::path& directory, DatasetFormat format);
+                                                         const std::filesystem::path& directory, DatasetFormat format,
+                                                         const ChangeFiles& changes = {});
 
 /// Writes models one by one: to BOP as models/ and train/ of the data set `directory` (BopModelsWriter), to TUW as one
 /// folder each. Fails for a mesh without views if the format is TUW, because its views would have to be rendered first.

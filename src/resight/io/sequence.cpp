@@ -60,16 +60,22 @@ constexpr std::string_view kExpectedSequences =
 
 }  // namespace
 
-Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
-  if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
+Result<path> find_sequence_folder(const path& directory) {
   if (!io::is_folder(directory)) return io::file_error(directory, "no such directory");
-  if (const FormatEntry* format = find_format(directory)) return format->open(directory);
+  if (find_format(directory) != nullptr) return directory;
   const std::vector<path> below = find_sequences_below(directory);
-  if (below.size() == 1) return find_format(below.front())->open(below.front());
+  if (below.size() == 1) return below.front();
   if (below.size() > 1)
     return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
                                                  below.front().string()));
   return io::file_error(directory, fmt::format("no sequence found; {}", kExpectedSequences));
+}
+
+Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
+  if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
+  const auto folder = find_sequence_folder(directory);
+  if (!folder) return folder.error();
+  return find_format(*folder)->open(*folder);
 }
 
 Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory) {

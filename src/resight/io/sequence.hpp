@@ -2,12 +2,17 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "resight/core/result.hpp"
 #include "resight/sensor/sequence.hpp"
 
 namespace resight {
+
+/// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Same errors.
+[[nodiscard]] Result<std::filesystem::path> find_sequence_folder(const std::filesystem::path& directory);
 
 /// Opens a sequence directory and detects the format from its contents. The error says what was expected.
 [[nodiscard]] Result<std::unique_ptr<Sequence>> open_sequence(const std::filesystem::path& directory);
@@ -21,6 +26,10 @@ class SequenceWriter {
   virtual ~SequenceWriter() = default;
   [[nodiscard]] virtual Result<void> write_view(const RgbdFrame& frame,
                                                 const std::vector<GroundTruthObject>& ground_truth) = 0;
+  /// Names of the views written so far, as a reader of the new sequence will see them.
+  [[nodiscard]] virtual const std::vector<std::string>& view_names() const = 0;
+  /// Writes another file into the folder of the sequence.
+  [[nodiscard]] virtual Result<void> add_file(const std::string& name, std::string_view bytes) = 0;
   [[nodiscard]] virtual Result<void> finish() = 0;
 };
 /// Formats that can be written (docs/formats.md).

@@ -63,23 +63,27 @@ class TuwSequenceWriter final : public SequenceWriter {
     if (!is_safe_name(frame.name))
       return file_error(directory_.final_path(), "the view name '" + frame.name + "' cannot be a file name");
     // Readers sort files by name and assume this to be the order of time.
-    if (!last_name_.empty() && !natural_less(last_name_, frame.name))
+    if (!names_.empty() && !natural_less(names_.back(), frame.name))
       return file_error(directory_.final_path(),
-                        "view '" + frame.name + "' comes after '" + last_name_ + "'; names must ascend in time");
-    last_name_ = frame.name;
+                        "view '" + frame.name + "' comes after '" + names_.back() + "'; names must ascend in time");
+    names_.push_back(frame.name);
     const auto done = write_pcd(directory_.path() / (frame.name + ".pcd"), to_pcd_cloud(frame));
     if (!done) return done;
     return write_tuw_annotation(directory_.path(), frame.name, ground_truth);
   }
 
+  [[nodiscard]] const std::vector<std::string>& view_names() const override { return names_; }
+  [[nodiscard]] Result<void> add_file(const std::string& name, std::string_view bytes) override {
+    return write_file(directory_.path() / name, bytes);
+  }
   [[nodiscard]] Result<void> finish() override {
-    if (last_name_.empty()) return file_error(directory_.final_path(), "no view was written");
+    if (names_.empty()) return file_error(directory_.final_path(), "no view was written");
     return directory_.commit();
   }
 
  private:
   PendingDirectory directory_;
-  std::string last_name_;
+  std::vector<std::string> names_;
 };
 
 bool is_pcd(const std::string& name) { return extension_of(name) == "pcd"; }

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/change_files.hpp"
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/tuw_ground_truth.hpp"
+
+namespace resight {
+namespace {
+
+using io::fs::path;
+
+path first_file(const std::vector<path>& candidates) {
+  for (const path& candidate : candidates)
+    if (io::is_file(candidate)) return candidate.lexically_normal();
+  return {};
+}
+
+// The file `*.changes` of a folder, if there is exactly one.
+path only_changes_file(const path& folder) {
+  path found;
+  for (const std::string& name : io::list_files(folder)) {
+    if (io::extension_of(name) != "changes") continue;
+    if (!found.empty()) return {};
+    found = folder / name;
+  }
+  return found;
+}
+
+path find_changes_file(const path& sequence, const path& annotations) {
+  const std::string file = io::folder_name(sequence) + ".changes";
+  std::vector<path> candidates;
+  for (const path& folder : {sequence, sequence / "..", annotations, annotations / ".."})
+    candidates.push_back(folder / file);
+  for (const path& set : {sequence / "..", sequence / "../.."}) {
+    candidates.push_back(set / file);
+    for (const std::string& folder : io::list_directories(set))
+      if (io::to_lower(folder).ends_with("changes")) candidates.push_back(set / folder / file);
+  }
+  candidates.push_back(only_changes_file(sequence));
+  candidates.push_back(only_changes_file(annotations));
+  return first_file(candidates);
+}
+
+}  // namespace
+
+ChangeFiles find_change_files(const path& sequence, const std::vector<std::string>& views) {
+  // Without a trailing slash, and absolute, so that ".." is the parent whatever the caller writes.
+  const path folder = (io::fs::absolute(sequence) / "").lexically_normal().parent_path();
+  const std::string name = io::folder_name(folder);
+  return {first_file({folder / "events.json", folder / ".." / (name + ".events.json"), folder / "../../events.json"}),
+          find_changes_file(folder, find_tuw_annotation_directory(folder, views))};
+}
+
+}  // namespace resight
