@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # `resight evaluate` from end to end, on two small sequences: shards merge to the same bytes as one run, finished runs
-# are not computed again, a missing run is named, and mvr-chd has fewer ghosts than mvr.
+# are not computed again, a missing run is named, mvr-chd has fewer ghosts than mvr, and `.changes` scores like events.
 # Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
@@ -20,12 +20,14 @@ CHANGE
 "$resight" simulate "$work/scene.toml" --out "$work/data" --format bop --seed 1 >/dev/null 2>&1 || fail "simulate failed"
 "$resight" simulate "$work/scene.toml" --out "$work/more" --format bop --seed 2 >/dev/null 2>&1 || fail "simulate failed"
 cp -r "$work/more/test/000001" "$work/data/test/000002"
+cp "$work/more/test/000001.changes" "$work/data/test/000002.changes"
 "$resight" train "$work/data/models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
 
+dataset=$work/data
 evaluate() { # evaluate OUT ARGUMENT...
   local out=$1
   shift
-  "$resight" evaluate --models "$work/models.resight" --dataset "$work/data" --out "$work/$out" \
+  "$resight" evaluate --models "$work/models.resight" --dataset "$dataset" --out "$work/$out" \
     --presets mvr,mvr-chd -k 0,2 "$@" >"$work/$out.log" 2>&1
 }
 
@@ -74,6 +76,18 @@ evaluate whole --without-clustering || fail "the lost run was not made again"
 after=$(stat -c %Y.%i "$work"/whole/runs/*)
 [[ $(comm -12 <(sort <<<"$before") <(sort <<<"$after") | wc -l) == 15 ]] || fail "finished runs were computed again"
 cmp -s "$work/whole/results.json" "$work/parts/results.json" || fail "a second run gave other results"
+
+# Converted to TUW, with the chains of `.changes` instead of the events, the data give the same results. Poses survive
+# the conversion to 1e-12, so the last digits of pose errors differ.
+for sequence in 000001 000002; do
+  "$resight" convert "$work/data/test/$sequence" "$work/tuw/data/test/$sequence" --to tuw >/dev/null 2>"$work/convert.log" ||
+    fail "convert failed: $(cat "$work/convert.log")"
+  [[ -s $work/tuw/data/test/$sequence/$sequence.changes ]] || fail "convert lost the changes of $sequence"
+  rm "$work/tuw/data/test/$sequence/events.json" || fail "convert lost the events of $sequence"
+done
+dataset=$work/tuw/data evaluate chains --without-clustering || fail "evaluate of TUW failed: $(cat "$work/chains.log")"
+without_errors() { grep -vE '"(median|p95)"' "$work/$1/results.json"; }
+cmp -s <(without_errors whole) <(without_errors chains) || fail "the chains gave other results than the events"
 
 # Results of other data are stale.
 echo >>"$work/data/test/000002/scene_gt.json"

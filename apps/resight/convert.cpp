@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
+#include "resight/evaluation/change_truth.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
@@ -44,6 +45,17 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
   return warnings;
 }
 
+// The files of the true changes of a sequence, or none for a single view.
+ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequence) {
+  const auto folder = find_sequence_folder(in);
+  if (!folder) return {};
+  std::vector<std::string> views;
+  for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
+  ChangeFiles changes = find_change_files(*folder, views);
+  if (!changes.events.empty()) value_or_throw(read_true_changes(changes.events));
+  return changes;
+}
+
 }  // namespace
 
 void run_convert(const ConvertArguments& arguments) {
@@ -58,7 +70,8 @@ void run_convert(const ConvertArguments& arguments) {
   if (!sequence.ok() && !models.ok())
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {
-    const ConversionSummary summary = value_or_throw(convert_sequence(**sequence, arguments.out, format));
+    const ConversionSummary summary =
+        value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence)));
     fmt::print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
   } else if (format == DatasetFormat::kTuw) {
     for (const std::string& warning : render_tuw_models(*models, arguments)) print_warning(warning);

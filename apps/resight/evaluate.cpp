@@ -89,7 +89,7 @@ class Evaluation {
     if (!sequence->has_ground_truth())
       throw InputError(fmt::format("{}: has no ground truth to evaluate against", where.folder.string()));
     const SequenceTruth truth =
-        value_or_throw(read_sequence_truth(*sequence, library_, where.events_file, where.unknown_models));
+        value_or_throw(read_sequence_truth(*sequence, library_, where.changes, where.unknown_models));
     EvaluateSequenceOptions options;
     options.hypotheses = std::make_shared<ViewHypothesisStore>();
     for (const EvaluationUnit* unit : units) {

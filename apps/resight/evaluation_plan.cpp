@@ -13,6 +13,7 @@
 #include "recognition_run.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/io/tuw_ground_truth.hpp"
 #include "resight/recognition/view_hypotheses.hpp"
 
 namespace resight::app {
@@ -35,14 +36,15 @@ int to_int(const std::string& text, const std::string& option, const std::string
   return value;
 }
 
-EvaluationSequence describe(const fs::path& folder) {
+EvaluationSequence describe(const fs::path& folder, const Sequence& opened) {
   EvaluationSequence sequence;
   sequence.folder = folder;
   sequence.name = folder.filename().string();
-  sequence.events_file = folder.parent_path() / (sequence.name + ".events.json");
-  const fs::path dataset = folder.parent_path().parent_path();
-  if (!fs::exists(sequence.events_file)) sequence.events_file = dataset / "events.json";
-  sequence.unknown_models = dataset / "unknown" / "models";
+  std::vector<std::string> views;
+  for (int i = 0; i < opened.num_views(); ++i) views.push_back(opened.view_name(i));
+  sequence.changes = find_change_files(folder, views);
+  sequence.annotations = find_tuw_annotation_directory(folder, views);
+  sequence.unknown_models = folder.parent_path().parent_path() / "unknown" / "models";
   return sequence;
 }
 
@@ -56,9 +58,10 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
     if (entry.is_directory() && entry.path().filename().string().front() != '.') folders.push_back(entry.path());
   std::ranges::sort(folders);
   std::vector<EvaluationSequence> sequences;
-  if (root == dataset && open_posed_sequence(dataset).ok()) return {describe(dataset)};
+  if (root == dataset)
+    if (const auto opened = open_posed_sequence(dataset)) return {describe(dataset, **opened)};
   for (const fs::path& folder : folders)
-    if (open_posed_sequence(folder).ok()) sequences.push_back(describe(folder));
+    if (const auto opened = open_posed_sequence(folder)) sequences.push_back(describe(folder, **opened));
   if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
   return sequences;
 }
@@ -93,7 +96,9 @@ std::uint64_t hash_common(const fs::path& models, const fs::path& unknown_models
 
 // The views and the truth of a sequence.
 std::uint64_t hash_sequence(const EvaluationSequence& sequence, std::uint64_t hash) {
-  return hash_file(sequence.events_file, hash_folder(sequence.folder, hash));
+  hash = hash_file(sequence.changes.events, hash_folder(sequence.folder, hash));
+  if (sequence.annotations != sequence.folder) hash = hash_folder(sequence.annotations, hash);
+  return sequence.changes.changes.empty() ? hash : hash_file(sequence.changes.changes, hash);
 }
 
 // Stored runs with another fingerprint are stale.

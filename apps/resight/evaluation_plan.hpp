@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "resight/io/change_files.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 
 namespace resight::app {
@@ -12,7 +13,8 @@ namespace resight::app {
 struct EvaluationSequence {
   std::string name;  ///< Name of its folder.
   std::filesystem::path folder;
-  std::filesystem::path events_file;     ///< May not exist.
+  std::filesystem::path annotations;     ///< Folder of the TUW annotations; `folder` if there are none.
+  ChangeFiles changes;                   ///< What it holds of the true changes.
   std::filesystem::path unknown_models;  ///< May not exist.
 };
 

@@ -34,7 +34,7 @@ RecognizerConfig make_config(const std::string& preset, const std::optional<std:
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
                           int num_threads) {
-  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library, {}, {}));
+  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
   ReportRun run;
   run.preset = config.preset;
   run.version = RESIGHT_VERSION;

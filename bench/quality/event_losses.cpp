@@ -149,7 +149,8 @@ int main(int argc, char** argv) {
   if (argc < 5) exit_with("usage: bench_event_losses SEQUENCE LIBRARY DETECTIONS.json EVENTS.json [preset]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
-  const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argv[4], ""));
+  const SequenceTruth truth =
+      value_or_exit(read_sequence_truth(*sequence, library, {.events = argv[4], .changes = {}}));
   if (!truth.changes) exit_with(fmt::format("no changes in {}", argv[4]));
   ChangeVisibilityFinder visibilities(library, truth);
   try {

@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   }
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
-  const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, {}, {}));
+  const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library));
   EvaluateSequenceOptions options;
   options.find_losses = false;
   options.hypotheses = std::make_shared<ViewHypothesisStore>();

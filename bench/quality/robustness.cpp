@@ -132,7 +132,8 @@ int main(int argc, char** argv) {
     exit_with("usage: bench_robustness SEQUENCE LIBRARY [presets] [K] [events.json] [part of a trouble's name]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
-  const SequenceTruth truth = value_or_exit(read_sequence_truth(*sequence, library, argc > 5 ? argv[5] : "", ""));
+  const SequenceTruth truth =
+      value_or_exit(read_sequence_truth(*sequence, library, {.events = argc > 5 ? argv[5] : "", .changes = {}}));
   std::vector<RecognizerConfig> configs;
   std::istringstream presets(argc > 3 ? argv[3] : "mvr,mvr-chd,default");
   for (std::string name; std::getline(presets, name, ',');) {

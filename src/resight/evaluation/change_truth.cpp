@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "resight/evaluation/placement_changes.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/model_source.hpp"
 
@@ -65,6 +66,48 @@ Result<std::map<std::string, PointCloud>> read_unknown_surfaces(const fs::path& 
   return surfaces;
 }
 
+Result<std::vector<TruthView>> read_truth_views(const Sequence& sequence) {
+  std::vector<TruthView> views;
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const auto pose = sequence.read_pose(v);
+    if (!pose) return pose.error();
+    auto objects = sequence.read_ground_truth(v);
+    if (!objects) return objects.error();
+    views.push_back({*pose, std::move(*objects)});
+  }
+  return views;
+}
+
+Result<void> add_events(const fs::path& events, const fs::path& unknown_models, const ModelLibrary& library,
+                        SequenceTruth& truth) {
+  auto changes = read_true_changes(events);
+  if (!changes) return changes.error();
+  truth.changes = std::move(*changes);
+  truth.former_places = former_places_of(*truth.changes, library);
+  auto surfaces = read_unknown_surfaces(unknown_models);
+  if (!surfaces) return surfaces.error();
+  truth.unknown_surfaces = std::move(*surfaces);
+  return {};
+}
+
+Result<void> add_chains(const fs::path& file, const Sequence& sequence, const ModelLibrary& library,
+                        SequenceTruth& truth) {
+  const auto chains = read_changes(file);
+  if (!chains) return chains.error();
+  std::vector<std::string> names;
+  for (int v = 0; v < sequence.num_views(); ++v) names.push_back(sequence.view_name(v));
+  const auto named = resolve_changes(*chains, names, file.string());
+  if (!named) return named.error();
+  const auto placements = locate_placements(*named, truth.views, library, file.string());
+  if (!placements) return placements.error();
+  const auto visibilities = observe_placements(*placements, truth.views, sequence, library);
+  if (!visibilities) return visibilities.error();
+  PlacementChanges inferred = infer_changes(*placements, *visibilities);
+  truth.former_places = penalized_places(*placements, inferred.has_left, sequence.num_views());
+  truth.changes = std::move(inferred.changes);
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
@@ -89,26 +132,22 @@ std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes
 }
 
 Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
-                                          const fs::path& events_file, const fs::path& unknown_models) {
+                                          const ChangeFiles& files, const fs::path& unknown_models) {
   SequenceTruth truth;
   if (sequence.has_ground_truth()) {
-    for (int v = 0; v < sequence.num_views(); ++v) {
-      const auto pose = sequence.read_pose(v);
-      if (!pose) return pose.error();
-      auto objects = sequence.read_ground_truth(v);
-      if (!objects) return objects.error();
-      truth.views.push_back({*pose, std::move(*objects)});
-    }
+    auto views = read_truth_views(sequence);
+    if (!views) return views.error();
+    truth.views = std::move(*views);
+  }
+  Result<void> done;
+  if (!files.events.empty()) {
+    done = add_events(files.events, unknown_models, library, truth);
+  } else if (!files.changes.empty() && sequence.has_ground_truth()) {
+    done = add_chains(files.changes, sequence, library, truth);
+  } else {
     truth.former_places = find_former_places(truth.views, library);
   }
-  if (!fs::exists(events_file)) return truth;
-  auto changes = read_true_changes(events_file);
-  if (!changes) return changes.error();
-  truth.changes = std::move(*changes);
-  truth.former_places = former_places_of(*truth.changes, library);
-  auto surfaces = read_unknown_surfaces(unknown_models);
-  if (!surfaces) return surfaces.error();
-  truth.unknown_surfaces = std::move(*surfaces);
+  if (!done) return done.error();
   return truth;
 }
 

@@ -9,6 +9,7 @@
 #include "resight/core/result.hpp"
 #include "resight/evaluation/ghosts.hpp"
 #include "resight/geometry/point_cloud.hpp"
+#include "resight/io/change_files.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/recognition/scene_update.hpp"
 
@@ -35,18 +36,19 @@ struct TrueChange {
 /// Ground truth of a sequence.
 struct SequenceTruth {
   std::vector<TruthView> views;  ///< Empty without ground truth.
-  /// From the true changes if there are any, otherwise from find_former_places().
+  /// From the events, else from the chains, else from find_former_places().
   std::vector<FormerPlace> former_places;
-  /// Absent if the sequence has no list of changes; changes are then not scored.
+  /// Absent if the sequence has no file of changes; changes are then not scored.
   std::optional<std::vector<TrueChange>> changes;
   /// Surface of each changing object that is not in the library, by name. Object frame.
   std::map<std::string, PointCloud> unknown_surfaces;
 };
 
-/// Reads the ground truth of all views, and the changes if `events_file` exists. Surfaces of unknown objects are
-/// sampled from the meshes in `unknown_models`, if that folder exists.
+/// Reads the ground truth of all views, and the changes from `files`: from the events if there are any, otherwise from
+/// the chains of placements (infer_changes(), which reads all views). Surfaces of unknown objects are sampled from the
+/// meshes in `unknown_models`, if that folder exists and there are events.
 [[nodiscard]] Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
-                                                        const std::filesystem::path& events_file,
-                                                        const std::filesystem::path& unknown_models);
+                                                        const ChangeFiles& files = {},
+                                                        const std::filesystem::path& unknown_models = {});
 
 }  // namespace resight

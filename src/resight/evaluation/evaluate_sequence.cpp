@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/evaluation/evaluate_sequence.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -32,7 +33,8 @@ class SequenceEvaluator {
     run_.preset = config.preset;
     run_.num_previous_views = config.num_previous_views;
     run_.is_clustered = config.hypotheses.cluster.has_value();
-    run_.num_former_places = static_cast<int>(truth.former_places.size());
+    run_.num_former_places = static_cast<int>(std::ranges::count_if(truth.former_places, &FormerPlace::is_proven));
+    run_.num_published_places = static_cast<int>(truth.former_places.size());
     run_.has_changes = has_changes_;
     if (!has_changes_) return;
     points_.emplace(library, truth, config.num_previous_views);

@@ -159,6 +159,7 @@ std::string format_run(const EvaluatedRun& run) {
               {"fingerprint", run.fingerprint},
               {"num_threads", run.num_threads},
               {"num_former_places", run.num_former_places},
+              {"num_published_places", run.num_published_places},
               {"has_changes", run.has_changes},
               {"events", score_json(run.events.events)},
               {"departures", score_json(run.events.departures)},
@@ -180,6 +181,7 @@ Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {
     run.fingerprint = j.at("fingerprint").get<std::string>();
     run.num_threads = j.at("num_threads").get<int>();
     run.num_former_places = j.at("num_former_places").get<int>();
+    run.num_published_places = j.at("num_published_places").get<int>();
     run.has_changes = j.at("has_changes").get<bool>();
     run.events = {score_from(j.at("events")), score_from(j.at("departures")), score_from(j.at("arrivals")),
                   j.at("delays_views").get<std::vector<int>>()};

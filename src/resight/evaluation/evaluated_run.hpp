@@ -65,6 +65,7 @@ struct EvaluatedRun {
   int num_threads = 1;      ///< Number of threads while times were measured.
   /// Places that library objects left; ghosts are counted per former place.
   int num_former_places = 0;
+  int num_published_places = 0;  ///< The same by the published rule: also those that may not have been left.
   /// Whether the ground truth lists changes and the preset detects them.
   bool has_changes = false;
   EventScore events;  ///< Only with has_changes.

@@ -39,6 +39,7 @@ class Summarizer {
     ++summary_.num_sequences;
     summary_.ghosts.num_detections += run.num_ghosts();
     summary_.ghosts.num_former_places += run.num_former_places;
+    summary_.ghosts.num_published_places += run.num_published_places;
     summary_.changes.are_scored |= run.has_changes;
     summary_.changes.events += run.events;
     for (std::size_t v = 0; v < run.views.size(); ++v) add_view(v, run.views[v]);

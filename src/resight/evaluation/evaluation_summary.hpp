@@ -38,6 +38,7 @@ struct GhostSummary {
   int num_detections = 0;
   int num_former_places = 0;
   int num_by_published_rule = 0;  ///< count_detected_former_places(), summed over the views.
+  int num_published_places = 0;   ///< Former places by that rule; EvaluatedRun::num_published_places.
   /// Ghost detections per former place: the number of views in which an object is still reported at a place it has left
   /// (paper, Fig. 5).
   [[nodiscard]] double per_former_place() const;

@@ -17,6 +17,7 @@ EvaluatedRun make_run(const std::string& sequence, const std::string& preset, in
   run.num_previous_views = k;
   run.fingerprint = "0123";
   run.num_former_places = 2;
+  run.num_published_places = 3;
   run.has_changes = true;
   run.events.events = {1, 2, 3};
   run.events.delays = {0, 4};
@@ -54,6 +55,7 @@ TEST(EvaluatedRun, ComesBackToTheBit) {
   EXPECT_EQ(back->views[0].detections[0].camera_from_object.rotation,
             run.views[0].detections[0].camera_from_object.rotation);
   EXPECT_EQ(back->num_ghosts(), 2);
+  EXPECT_EQ(back->num_published_places, 3);
   EXPECT_EQ(back->views[0].num_detected_former_places, 2);
   EXPECT_EQ(back->events.delays, run.events.delays);
 }
@@ -87,6 +89,7 @@ TEST(SummarizeRuns, SumsBeforeItDivides) {
   EXPECT_EQ(c.ghosts.num_detections, 3);
   EXPECT_DOUBLE_EQ(c.ghosts.per_former_place(), 0.75);
   EXPECT_EQ(c.ghosts.num_by_published_rule, 6);
+  EXPECT_EQ(c.ghosts.num_published_places, 6);
   EXPECT_EQ(c.counts.merged, 60);
   EXPECT_EQ(c.changes.events.events, (RecognitionScore{2, 4, 6}));
   EXPECT_DOUBLE_EQ(c.changes.points.removed.recall(), 0.5);

@@ -80,7 +80,7 @@ std::vector<Ghost> find_ghosts(std::span<const FormerPlace> places, const TruthV
     if (is_explained_by_truth(detections[d], truth.objects, *model, options)) continue;
     std::optional<Ghost> nearest;
     for (std::size_t p = 0; p < places.size(); ++p) {
-      if (places[p].object != detections[d].object || places[p].last_view >= view) continue;
+      if (!places[p].is_proven || places[p].object != detections[d].object || places[p].last_view >= view) continue;
       const Rigid3 camera_from_object = camera_from_world * places[p].world_from_object;
       if (!sees(camera, camera_from_object, *model)) continue;
       const PoseDifference difference = compare_poses(detections[d].camera_from_object, camera_from_object, *model);

@@ -16,6 +16,9 @@ struct FormerPlace {
   Rigid3 world_from_object;
   /// Last view with the object at the place; a former place from the next view on.
   int last_view = 0;
+  /// Whether the truth proves that the object left. If not, it may only have left the image, and find_ghosts() ignores
+  /// the place.
+  bool is_proven = true;
 };
 
 /// Ground truth of one view. Views are in time order.

@@ -71,7 +71,8 @@ Json configuration_json(const ConfigurationSummary& c) {
   json["ghosts"] = {{"detections", c.ghosts.num_detections},
                     {"former_places", c.ghosts.num_former_places},
                     {"per_former_place", number(c.ghosts.per_former_place())},
-                    {"by_published_rule", c.ghosts.num_by_published_rule}};
+                    {"by_published_rule", c.ghosts.num_by_published_rule},
+                    {"places_by_published_rule", c.ghosts.num_published_places}};
   json["reliability"] = reliability_json(c.reliability);
   json["hypotheses"] = {{"correspondences", c.counts.correspondences},
                         {"generated", c.counts.generated},
