@@ -463,6 +463,8 @@ const Row kRows[] = {
      "out/out.changes"},
     {"ConvertChangesWithoutNames", write("tuw/any.changes", "nan\n"), "convert tuw out --to tuw", 2,
      "any\\.changes: line 1: expected names like"},
+    {"ConvertChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"), "convert tuw out --to bop", 2,
+     "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
     {"ConvertBrokenEvents", write("tuw.events.json", "{"), "convert tuw out --to bop", 2,
      "tuw\\.events\\.json: is not"},
     {"EvaluateChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"),

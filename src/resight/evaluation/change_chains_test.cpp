@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 
 #include "resight/core/random.hpp"
 #include "resight/evaluation/event_score.hpp"
+#include "resight/evaluation/random_table_test.hpp"
 #include "resight/io/convert.hpp"
-#include "resight/sensor/testing/ball_scene.hpp"
 #include "resight/simulation/write_simulation.hpp"
 
 namespace resight {
@@ -18,58 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Kind = ObjectEventKind;
-
-constexpr int kNumViews = 14;
-
-// Things on a table that come, go and move while a camera with a narrow image looks to and fro.
-class RandomScene {
- public:
-  explicit RandomScene(std::uint64_t seed) : rng_(seed) {
-    script_.name = "table";
-    script_.camera = {96, 72, 105, 105, 47.5, 35.5};
-    script_.furniture.push_back({"table", "table", {1.6, 0.9, 0.7}, {}});
-    for (const char* model : {"mug", "plain_can", "plain_can", "tea_box", "soup_pea"}) {
-      const std::string key = std::string(model) + std::to_string(script_.objects.size());
-      script_.objects.push_back({key, model, {}, true, std::nullopt});
-      if (rng_.below(5) > 0) script_.objects.back().start = place(key);
-    }
-    for (int v = 0; v < kNumViews; ++v) {
-      if (v > 0) add_changes(v);
-      const double x = 0.5 * std::sin(1.1 * v);
-      script_.world_from_camera.push_back(test::look_at_point({0.6 * x, -1.0, 1.3}, {x, 0, 0.7}));
-    }
-  }
-  [[nodiscard]] const SceneScript& script() const { return script_; }
-
- private:
-  Placement place(const std::string& key) {
-    Eigen::Vector2d at;
-    do at = {rng_.uniform(-0.7, 0.7), rng_.uniform(-0.35, 0.35)};
-    while (std::ranges::any_of(places_, [&](const auto& p) { return (p.second - at).norm() < 0.2; }));
-    places_[key] = at;
-    Placement placement;
-    placement.support = "table";
-    placement.x_m = at.x();
-    placement.y_m = at.y();
-    return placement;
-  }
-  // A removed object does not return: chains cannot tell this from a move out of the image.
-  void add_changes(int view) {
-    const std::string key = script_.objects[rng_.below(static_cast<std::uint32_t>(script_.objects.size()))].key;
-    const bool is_there = places_.contains(key);
-    const bool was_there = std::ranges::find(removed_, key) != removed_.end();
-    if (was_there) return;
-    if (!is_there) return script_.changes.push_back({view, ChangeKind::kAdded, key, place(key)});
-    if (rng_.below(4) > 0) return script_.changes.push_back({view, ChangeKind::kMoved, key, place(key)});
-    script_.changes.push_back({view, ChangeKind::kRemoved, key, {}});
-    places_.erase(key);
-    removed_.push_back(key);
-  }
-  Rng rng_;
-  SceneScript script_;
-  std::map<std::string, Eigen::Vector2d> places_;
-  std::vector<std::string> removed_;
-};
 
 ModelLibrary library_of(const Simulation& simulation) {
   ModelLibrary library;
@@ -89,7 +36,7 @@ class ChangeChains : public testing::TestWithParam<int> {
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("resight_chains_" + std::to_string(::getpid()));
     fs::remove_all(folder_);
-    auto simulation = Simulation::create(RandomScene(static_cast<std::uint64_t>(GetParam())).script(), 1);
+    auto simulation = Simulation::create(RandomTable(static_cast<std::uint64_t>(GetParam())).script(), 1);
     ASSERT_TRUE(simulation.ok()) << simulation.error().message;
     library_ = library_of(*simulation);
     WriteSimulationOptions options;
@@ -102,6 +49,12 @@ class ChangeChains : public testing::TestWithParam<int> {
     ASSERT_TRUE(convert_sequence(**sequence, converted, DatasetFormat::kTuw, find_change_files(scene, {})).ok());
     read(scene, true, by_events_);
     read(converted, false, by_chains_);
+    const auto tuw = open_sequence(converted);
+    ASSERT_TRUE(tuw.ok());
+    const ChangeFiles chains = {{}, find_change_files(converted, {}).changes};
+    ASSERT_TRUE(convert_sequence(**tuw, folder_ / "back/kitchen", DatasetFormat::kBop, chains).ok());
+    EXPECT_TRUE(find_change_files(folder_ / "back/kitchen", {}).events.empty());
+    read(folder_ / "back/kitchen", false, back_in_bop_);
   }
   void TearDown() override { fs::remove_all(folder_); }
 
@@ -124,9 +77,8 @@ class ChangeChains : public testing::TestWithParam<int> {
     const auto sequence = open_sequence(folder);
     ASSERT_TRUE(sequence.ok()) << sequence.error().message;
     ChangeFiles files = find_change_files(folder, {});
-    ASSERT_FALSE(files.events.empty());
-    ASSERT_FALSE(files.changes.empty());
     if (!use_events) files.events.clear();
+    ASSERT_FALSE(files.empty());
     auto truth = read_sequence_truth(**sequence, library_, files);
     ASSERT_TRUE(truth.ok()) << truth.error().message;
     result.truth = std::move(*truth);
@@ -144,6 +96,7 @@ class ChangeChains : public testing::TestWithParam<int> {
   ModelLibrary library_;
   Truth by_events_;
   Truth by_chains_;
+  Truth back_in_bop_;  ///< By the chains, after a conversion of the TUW sequence without its events.
 };
 
 // The sides of the counted changes that the views show, as text.
@@ -165,6 +118,24 @@ std::vector<std::string> sides_of(const std::vector<SeenChange>& changes) {
 TEST_P(ChangeChains, ImplyTheChangesThatTheViewsShow) {
   EXPECT_EQ(sides_of(by_chains_.counted()), sides_of(by_events_.counted()));
   EXPECT_FALSE(by_events_.counted().empty());
+}
+
+TEST_P(ChangeChains, SurviveTheWayBackToBop) {
+  const SequenceTruth& there = by_chains_.truth;
+  const SequenceTruth& back = back_in_bop_.truth;
+  ASSERT_EQ(back.changes->size(), there.changes->size());
+  for (std::size_t i = 0; i < there.changes->size(); ++i) {
+    const TrueChange& a = (*there.changes)[i];
+    const TrueChange& b = (*back.changes)[i];
+    EXPECT_TRUE(a.view == b.view && a.kind == b.kind && a.object == b.object) << i;
+  }
+  ASSERT_EQ(back.former_places.size(), there.former_places.size());
+  for (std::size_t i = 0; i < there.former_places.size(); ++i) {
+    const FormerPlace& a = there.former_places[i];
+    const FormerPlace& b = back.former_places[i];
+    EXPECT_TRUE(a.last_view == b.last_view && a.is_proven == b.is_proven && a.object == b.object) << i;
+    EXPECT_LT((a.world_from_object.translation - b.world_from_object.translation).norm(), 1e-9);
+  }
 }
 
 TEST_P(ChangeChains, ScoreReportsLikeTheEvents) {
@@ -207,7 +178,7 @@ TEST_P(ChangeChains, GiveTheSameGhosts) {
   }
   ASSERT_EQ(i, by_events_.truth.former_places.size());
   int num_ghosts = 0;
-  for (int v = 0; v < kNumViews; ++v) {
+  for (int v = 0; v < RandomTable::kNumViews; ++v) {
     const TruthView& truth = by_events_.truth.views[static_cast<std::size_t>(v)];
     std::vector<DetectedObject> detections;
     for (const TruthView& other : by_events_.truth.views)  // Whatever stood anywhere at any time is reported.

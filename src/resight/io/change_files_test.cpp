@@ -137,7 +137,7 @@ TEST_P(ConvertChanges, LeaveNothingIfTheyDoNotFit) {
   write_input(DatasetFormat::kTuw);
   const auto sequence = open_sequence(directory_ / "in");
   ASSERT_TRUE(sequence.ok());
-  for (const char* text : {"cloud_1_mug_0.txt\n", "nonsense\n"}) {
+  for (const char* text : {"cloud_1_mug_0.txt\n", "nonsense\n", "cloud_3_mug_0.txt\n"}) {
     io::write_text(files_.changes, text);
     const auto done = convert_sequence(**sequence, directory_ / "out", GetParam(), files_);
     ASSERT_FALSE(done.ok());

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/convert.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <optional>
 
 #include "resight/io/bop_models.hpp"
@@ -80,6 +83,20 @@ Result<KeptChanges> read_kept_changes(const Sequence& sequence, const ChangeFile
   return kept;
 }
 
+// Every annotation of this view that a chain names must exist.
+Result<void> check_annotated(const KeptChanges& kept, const std::vector<GroundTruthObject>& truth, int view,
+                             const std::filesystem::path& file) {
+  if (!kept.placements) return {};
+  for (const ObjectPlacement& placement : *kept.placements)
+    for (const auto& entry : placement.entries)
+      if (entry.view == view && std::ranges::none_of(truth, [&](const GroundTruthObject& o) {
+            return o.object == placement.object && o.instance == entry.instance;
+          }))
+        return io::file_error(file, fmt::format("view {} has no annotation of '{}' with instance {}", view,
+                                                placement.object, entry.instance));
+  return {};
+}
+
 Result<void> write_kept_changes(const KeptChanges& kept, const std::string& name, SequenceWriter& writer) {
   if (kept.events)
     if (auto done = writer.add_file("events.json", *kept.events); !done) return done;
@@ -101,6 +118,7 @@ Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::
     if (!frame) return frame.error();
     const auto truth = sequence.read_ground_truth(i);
     if (!truth) return truth.error();
+    if (const auto done = check_annotated(*kept, *truth, i, changes.changes); !done) return done.error();
     if (const auto done = (*writer)->write_view(*frame, *truth); !done) return done.error();
     ++summary.num_views;
     summary.num_objects += static_cast<int>(truth->size());
