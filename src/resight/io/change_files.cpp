@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/change_files.hpp"
 
+#include <algorithm>
+
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
@@ -11,9 +13,8 @@ namespace {
 using io::fs::path;
 
 path first_file(const std::vector<path>& candidates) {
-  for (const path& candidate : candidates)
-    if (io::is_file(candidate)) return candidate.lexically_normal();
-  return {};
+  const auto found = std::ranges::find_if(candidates, io::is_file);
+  return found == candidates.end() ? path() : *found;
 }
 
 // The file `*.changes` of a folder, if there is exactly one.
@@ -27,12 +28,14 @@ path only_changes_file(const path& folder) {
   return found;
 }
 
+// The folders must be absolute and normal: the parent of a link is the folder that holds the link.
 path find_changes_file(const path& sequence, const path& annotations) {
-  const std::string file = io::folder_name(sequence) + ".changes";
+  const std::string file = sequence.filename().string() + ".changes";
+  const path test = sequence.parent_path();
   std::vector<path> candidates;
-  for (const path& folder : {sequence, sequence / "..", annotations, annotations / ".."})
+  for (const path& folder : {sequence, test, annotations, annotations.parent_path()})
     candidates.push_back(folder / file);
-  for (const path& set : {sequence / "..", sequence / "../.."}) {
+  for (const path& set : {test, test.parent_path()}) {
     candidates.push_back(set / file);
     for (const std::string& folder : io::list_directories(set))
       if (io::to_lower(folder).ends_with("changes")) candidates.push_back(set / folder / file);
@@ -45,10 +48,10 @@ path find_changes_file(const path& sequence, const path& annotations) {
 }  // namespace
 
 ChangeFiles find_change_files(const path& sequence, const std::vector<std::string>& views) {
-  // Without a trailing slash, and absolute, so that ".." is the parent whatever the caller writes.
   const path folder = (io::fs::absolute(sequence) / "").lexically_normal().parent_path();
-  const std::string name = io::folder_name(folder);
-  return {first_file({folder / "events.json", folder / ".." / (name + ".events.json"), folder / "../../events.json"}),
+  const path test = folder.parent_path();
+  return {first_file({folder / "events.json", test / (folder.filename().string() + ".events.json"),
+                      test.parent_path() / "events.json"}),
           find_changes_file(folder, find_tuw_annotation_directory(folder, views))};
 }
 

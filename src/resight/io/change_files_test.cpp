@@ -91,6 +91,15 @@ TEST(FindChangeFiles, OfSeveralFilesTheOneWithTheName) {
   EXPECT_EQ(find_change_files(directory / "s", {}).changes, directory / "s.changes");
 }
 
+TEST(FindChangeFiles, ALinkBelongsToTheSetThatHoldsIt) {
+  io::TestDirectory directory;
+  for (const char* name : {"old/test/a/view.txt", "old/test/a.events.json", "old/test/a.changes", "new/test/x"})
+    io::write_text(directory / name, "");
+  std::filesystem::create_directory_symlink(directory / "old/test/a", directory / "new/test/a");
+  EXPECT_TRUE(find_change_files(directory / "new/test/a", {}).empty());
+  EXPECT_FALSE(find_change_files(directory / "new/test/../../old/test/a/.", {}).events.empty());
+}
+
 class ConvertChanges : public testing::TestWithParam<DatasetFormat> {
  protected:
   // Views 0, 3 and 6 with a mug that moves after the first one.
