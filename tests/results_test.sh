@@ -14,27 +14,43 @@ check_pages README.md docs/results.md || fail "the project's pages: $(cat "$work
 pages=$work/pages data=$work/out/version-3
 commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 parts=$work/out/$commit-version-3
-mkdir -p "$pages/docs" "$data" "$parts" "$work/build/apps/resight"
+mkdir -p "$pages/docs" "$parts" "$work/build/apps/resight" "$work/build/bench"
 cp README.md "$pages/"
 cp docs/results.md "$pages/docs/"
-ln -s "$(realpath "$resight")" "$work/build/apps/resight/resight"
 {
   write_scene 3 -110 -70 false
   printf '[[change]]\nview = 1\nkind = "remove"\nobject = "tea_box"\n'
 } >"$work/scene.toml"
-"$resight" simulate "$work/scene.toml" --out "$data/test" --format bop --seed 2 >/dev/null 2>&1 || fail "simulate failed"
-"$resight" train "$data/test/models" --out "$data/test.resight" >/dev/null 2>&1 || fail "train failed"
-touch "$data/validation.resight"  # Present, so that it is not made.
-echo "dynamic-tabletop version 3, seed 2: tiny" >"$data/test.txt"
-echo "dynamic-tabletop version 3, seed 1: tiny" >"$data/validation.txt"
-printf 'mvr 0.5 0.5 0.500 1 3 1.0\nmvr-chd 0.6 0.5 0.545 0 3 1.0\ndefault 0.9 0.9 0.900 0 3 1.0\n' >"$parts/demo.txt"
-cat >"$parts/degraded.md" <<'TABLE'
+# The programs: resight, but for the benchmark, which is this small scene, and stand-ins for those of bench/.
+cat >"$work/build/apps/resight/resight" <<PROGRAM
+#!/usr/bin/env bash
+resight=$(realpath "$resight")
+echo "\$*" >>"$work/calls.txt"
+case "\$*" in
+  "simulate --preset dynamic-tabletop --seed "*)
+    "\$resight" simulate "$work/scene.toml" --seed \$5 --format bop --out "\$9" >&2 && mkdir "\$9/library" &&
+      cp -r "\$9/models" "\$9/library" && echo "dynamic-tabletop version 3, seed \$5: tiny" ;;
+  "train "*"/library/models "*"/library/recorded --out "*) [[ -d \$3 ]] && "\$resight" train "\$2" --out "\$5" ;;
+  "demo --seed 2 "*) printf 'mvr 0.5 0.5 0.500 1\nmvr-chd 0.6 0.5 0.545 0\ndefault 0.9 0.9 0.900 0\n' ;;
+  "evaluate "*) exec "\$resight" "\$@" ;;
+  *) exit 1 ;;
+esac
+PROGRAM
+cat >"$work/build/bench/bench_model_objects" <<'PROGRAM'
+#!/usr/bin/env bash
+[[ "$1 $3" == "--tabletop --out" ]] && mkdir "$4"
+PROGRAM
+cat >"$work/build/bench/bench_robustness" <<'PROGRAM'
+#!/usr/bin/env bash
+[[ -d $1 && -e $2 && $4 == 5 ]] && cat <<'TABLE'
 | trouble | preset | precision | recall | F | ghosts | fewest objects per view | event precision | event recall |
 |---|---|---|---|---|---|---|---|---|
 | none | `mvr` | 0.8 | 0.5 | 0.6 | 24 | 1 | - | - |
 | none | `mvr-chd` | 0.9 | 0.6 | 0.7 | 3 | 1 | 0.5 | 0.4 |
 | none | `default` | nan | 0.9 | 0.8 | 0 | 1 | 0.7 | 0.6 |
 TABLE
+PROGRAM
+chmod +x "$work"/build/bench/* "$work/build/apps/resight/resight"
 cat >"$work/real.md" <<'TABLES'
 ## Changes before a still camera
 
@@ -97,8 +113,12 @@ for line in '^[|] 7 [|] 0.73, 0.65, 0.68 [|] [0-9.]*, [0-9.]*, [0-9.]* [|] [0-9]
 done
 grep -q "^| \`mvr\`, the paper's baseline | 0.5 | 0.5 | 0.500 | 1 |" "${written[0]}" || fail "README.md lacks the demo"
 cp -r "$pages" "$work/first"
+grep -v '^evaluate' "$work/calls.txt" >"$work/first_calls.txt"
 results || fail "a second call failed: $(cat "$work/results.log")"
 diff -r "$pages" "$work/first" >&2 || fail "a second call wrote other pages"
+grep -v '^evaluate' "$work/calls.txt" | cmp -s - "$work/first_calls.txt" || fail "a second call made the data again"
+results --version 2 && fail "version 3 was taken for version 2"
+grep -q '^simulate --preset dynamic-tabletop-2 --seed 2' "$work/calls.txt" || fail "version 2 was not simulated"
 
 # Each edit must be noticed.
 expect_refused() { # expect_refused WHAT SED_EXPRESSION
