@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# `resight evaluate` from end to end, on two small sequences: shards merge to the same bytes as one run, finished runs
-# are not computed again, a missing run is named, mvr-chd has fewer ghosts than mvr, and `.changes` scores like events.
+# `resight evaluate` from end to end, on two small, noisy sequences: shards merge to the same bytes as one run, finished
+# runs are not computed again, a missing run is named, mvr-chd has fewer ghosts and a higher precision than mvr,
+# `.changes` scores like events, and clustering can be left out. `resight changes` reconstructs with and without change
+# detection.
 # Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
@@ -22,6 +24,7 @@ CHANGE
 cp -r "$work/more/test/000001" "$work/data/test/000002"
 cp "$work/more/test/000001.changes" "$work/data/test/000002.changes"
 "$resight" train "$work/data/models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
+mv "$work/data/test/000001/depth" "$work/linked_depth" && ln -s "$work/linked_depth" "$work/data/test/000001/depth"
 
 dataset=$work/data
 evaluate() { # evaluate OUT ARGUMENT...
@@ -32,7 +35,8 @@ evaluate() { # evaluate OUT ARGUMENT...
 }
 
 evaluate whole --without-clustering || fail "evaluate failed: $(cat "$work/whole.log")"
-for name in results.json times.json tables.md times.md worst.md precision.svg recall.svg f.svg ghosts.svg view_time.svg; do
+for name in results.json times.json tables.md times.md worst.md precision.svg recall.svg f.svg ghosts.svg view_time.svg \
+  verification_time.svg verification_times.csv; do
   [[ -s $work/whole/$name ]] || fail "evaluate wrote no $name"
 done
 pictures=$(grep -o 'worst/.*jpg' "$work/whole/worst.md")
@@ -57,6 +61,37 @@ read -r dynamic_ghosts dynamic_published dynamic_precision <<<"$(ghosts_and_prec
   fail "by the published rule, mvr has $static_published ghosts and mvr-chd $dynamic_published: expected fewer"
 awk "BEGIN { exit !($dynamic_precision > $static_precision) }" ||
   fail "precision of mvr-chd, $dynamic_precision, is not above that of mvr, $static_precision"
+
+# Tables II and III: without clustering, each hypothesis is verified. At K = 0 these are the generated ones.
+hypotheses=$(awk -F '[:, ]+' '
+  /"num_previous_views"/ { k = $3 }
+  /"is_clustered"/ { clustered = $3 }
+  /"generated"/ { generated = $3 }
+  /"merged"/ { merged = $3 }
+  /"clustered"/ { print clustered, k, generated, merged, $3 }' "$work/whole/results.json")
+[[ $(wc -l <<<"$hypotheses") == 8 ]] || fail "expected the hypotheses of 8 configurations: $hypotheses"
+awk '$1 == "false" && ($5 != $4 || $5 == 0) || $1 == "true" && $5 >= $4 || $2 == 0 && $4 != $3 || $2 > 0 && $4 <= $3 {
+       print "clustered, K, generated, merged, verified:", $0
+       wrong = 1
+     }
+     END { exit wrong }' <<<"$hypotheses" || fail "clustering is not on, or not off"
+# Fig. 7 has a row per view of each run.
+[[ $(wc -l <"$work/whole/verification_times.csv") == 49 ]] || fail "expected the times of 16 runs of 3 views"
+
+# Fig. 6: three views after the removal, the static reconstruction still holds the box, the dynamic one does not.
+count_points() { sed -n '/^element vertex/{s/.* //p;q}' "$1"; }
+for preset in mvr mvr-chd; do
+  "$resight" changes --sequence "$work/data/test/000001" --preset $preset -k 2 --out "$work/changes_$preset" \
+    >/dev/null 2>&1 || fail "changes --preset $preset failed"
+done
+last=$(basename "$(find "$work/changes_mvr" -name '*.ply' | sort | tail -n 1)")
+static_points=$(count_points "$work/changes_mvr/$last")
+dynamic_points=$(count_points "$work/changes_mvr-chd/$last")
+[[ $static_points -gt $((dynamic_points + 200)) ]] ||
+  fail "the static reconstruction has $static_points points, the dynamic one $dynamic_points: where is the removed box?"
+grep -q '"regions": \[\]' "$work/changes_mvr/changes.json" && ! grep -q '"kind"' "$work/changes_mvr/changes.json" ||
+  fail "mvr reports changes"
+grep -q '"kind": "removed"' "$work/changes_mvr-chd/changes.json" || fail "mvr-chd reports no removal"
 
 for shard in 1/2 2/2; do
   [[ -e $work/parts/results.json ]] && fail "results were written before all parts were there"
@@ -89,11 +124,32 @@ dataset=$work/tuw/data evaluate chains --without-clustering || fail "evaluate of
 without_errors() { grep -vE '"(median|p95)"' "$work/$1/results.json"; }
 cmp -s <(without_errors whole) <(without_errors chains) || fail "the chains gave other results than the events"
 
-# Results of other data are stale.
-echo >>"$work/data/test/000002/scene_gt.json"
-evaluate whole --without-clustering --merge
-[[ $? == 2 ]] || fail "results of other data were merged"
-sed -i '$d' "$work/data/test/000002/scene_gt.json"
+# Results of other data are stale: of another truth, image, change or name of an object, or of another library.
+expect_stale() { # expect_stale WHAT
+  evaluate whole --without-clustering --merge
+  [[ $? == 2 ]] && grep -q 'runs are missing' "$work/whole.log" ||
+    fail "results were merged in spite of another $1: $(cat "$work/whole.log")"
+}
+for file in data/test/000002/scene_gt.json data/test/000001/depth/000001.png data/events.json \
+  data/models/models_info.json; do
+  cp -p "$work/$file" "$work/unaltered" || fail "$file is not there to be altered"
+  echo >>"$work/$file"
+  expect_stale "$file"
+  mv "$work/unaltered" "$work/$file"
+done
+mv "$work/models.resight" "$work/unaltered"
+cp -r "$work/data/models" "$work/other_models" && sed -i 's/tea_box/box_of_tea/' "$work/other_models/models_info.json"
+"$resight" train "$work/other_models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
+expect_stale "library"
+mv "$work/unaltered" "$work/models.resight"
+# So are those of another program.
+cp "$resight" "$work/other_program"
+echo >>"$work/other_program"
+program=$resight
+resight=$work/other_program
+expect_stale "program"
+resight=$program
+evaluate whole --without-clustering --merge || fail "unaltered data are stale: $(cat "$work/whole.log")"
 
 evaluate whole --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
 grep -qE '^[|] `mvr` [|] 0 [|] (0\.[1-9]|1\.0)' "$work/whole/bop.md" || fail "bop.md holds no recall: $(cat "$work/whole/bop.md")"

@@ -53,15 +53,14 @@ std::string count_regions(const ViewChangeRecord& view) {
 
 }  // namespace
 
-// Alg. 1 without models: compares each view with the reconstruction from the views before it.
+// Alg. 1 without models: compares each view with the reconstruction from the views before it. `mvr` compares nothing,
+// so that its reconstruction is the one of a static world (paper, Fig. 6).
 void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = value_or_throw(open_posed_sequence(arguments.sequence));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  DynamicSceneOptions options = scene_options(config);
-  options.detect_changes = true;  // Whatever the preset: this is what the command is for.
-  DynamicScene scene(options);
+  DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {

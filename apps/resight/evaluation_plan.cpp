@@ -78,20 +78,31 @@ std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
   return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, hash);
 }
 
-// Names and contents of all files of a folder. A folder that does not exist counts as empty.
+// Names and contents of all files of a folder, also below symbolic links: data sets often link to their images. A
+// folder that does not exist counts as empty.
 std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
   std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, none))
+  for (const auto& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink, none))
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::ranges::sort(files);
   for (const fs::path& file : files) hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
   return hash;
 }
 
-// What all runs depend on: the program, the model library, and the unknown objects of the data set.
-std::uint64_t hash_common(const fs::path& models, const fs::path& unknown_models) {
-  return hash_folder(unknown_models, hash_file(models, hash_file("/proc/self/exe", kHashSeed)));
+// Names and symmetries of the true objects of a BOP data set.
+std::uint64_t hash_object_names(const fs::path& dataset, std::uint64_t hash) {
+  for (const char* models : {"models", "models_eval", "models_cad", "models_fine"})
+    hash = hash_file(dataset / models / "models_info.json", hash);
+  return hash;
+}
+
+// What all runs depend on: the program, the model library, and the objects of the data set.
+std::uint64_t hash_common(const fs::path& models, const EvaluationSequence& sequence) {
+  const std::uint64_t hash = hash_file(models, hash_file("/proc/self/exe", kHashSeed));
+  const fs::path data = sequence.folder.parent_path();
+  return hash_object_names(data, hash_object_names(data.parent_path(), hash_folder(sequence.unknown_models, hash)));
 }
 
 // The views and the truth of a sequence.
@@ -161,7 +172,7 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
   const std::vector<RecognizerConfig> configs = make_configs(arguments);
   int num_groups = 0;
   const std::vector<EvaluationSequence> sequences = find_sequences(arguments.dataset);
-  const std::uint64_t common_hash = hash_common(arguments.models, sequences.front().unknown_models);
+  const std::uint64_t common_hash = hash_common(arguments.models, sequences.front());
   for (const EvaluationSequence& sequence : sequences) {
     const std::uint64_t hash = hash_sequence(sequence, common_hash);
     std::map<std::string, int> group_of;

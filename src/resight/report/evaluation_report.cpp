@@ -34,7 +34,7 @@ std::string plot_over_k(const std::string& title, const std::string& y_label,
   return format_svg(plot);
 }
 
-// Paper, Fig. 7, for the largest K of each preset: the time of a view grows with its number until the window is full.
+// For the largest K of each preset: the time of a view grows with its number until the window is full.
 std::string plot_view_times(std::span<const ConfigurationSummary> configurations) {
   LinePlot plot{"Time per view over the sequence", "view", "seconds", {}, {}, {}};
   for (std::size_t i = 0; i < configurations.size(); ++i) {
@@ -43,6 +43,47 @@ std::string plot_view_times(std::span<const ConfigurationSummary> configurations
     PlotSeries series{fmt::format("{}, K = {}", series_name(c), c.num_previous_views), {}, c.times.mean_view_wall_s};
     for (std::size_t v = 0; v < series.y.size(); ++v) series.x.push_back(static_cast<double>(v));
     plot.series.push_back(std::move(series));
+  }
+  return format_svg(plot);
+}
+
+bool is_run_of(const EvaluatedRun& run, const ConfigurationSummary& c) {
+  return run.preset == c.preset && run.num_previous_views == c.num_previous_views && run.is_clustered == c.is_clustered;
+}
+
+// Paper, Fig. 7. The figure shows a single sequence: here the longest one, the first by name among equals.
+std::string find_longest_sequence(std::span<const EvaluatedRun> runs) {
+  const EvaluatedRun* longest = nullptr;
+  for (const EvaluatedRun& run : runs)
+    if (longest == nullptr || run.views.size() > longest->views.size() ||
+        (run.views.size() == longest->views.size() && run.sequence < longest->sequence))
+      longest = &run;
+  return longest == nullptr ? std::string() : longest->sequence;
+}
+
+PlotSeries verification_series(const EvaluatedRun& run, const std::string& name) {
+  PlotSeries series{name, {}, {}};
+  for (std::size_t v = 0; v < run.views.size(); ++v) {
+    double wall_s = 0;
+    for (const StageTime& stage : run.views[v].times.stages())
+      if (stage.stage == "verification") wall_s += stage.wall_s;
+    series.x.push_back(static_cast<double>(v));
+    series.y.push_back(wall_s);
+  }
+  return series;
+}
+
+std::string plot_verification_times(std::span<const ConfigurationSummary> configurations,
+                                    std::span<const EvaluatedRun> runs) {
+  const std::string sequence = find_longest_sequence(runs);
+  LinePlot plot{"Verification time, sequence " + sequence, "view", "seconds", {}, {}, {}};
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    const ConfigurationSummary& c = configurations[i];
+    if (i + 1 < configurations.size() && series_name(configurations[i + 1]) == series_name(c)) continue;
+    for (const EvaluatedRun& run : runs)
+      if (run.sequence == sequence && is_run_of(run, c))
+        plot.series.push_back(
+            verification_series(run, fmt::format("{}, K = {}", series_name(c), c.num_previous_views)));
   }
   return format_svg(plot);
 }
@@ -68,7 +109,9 @@ Result<void> write_evaluation(const std::filesystem::path& directory, const Eval
       {"ghosts.svg", plot_over_k(
                          "Ghost detections", "views per former place", c,
                          [](const C& x) { return x.ghosts.per_former_place(); }, false)},
-      {"view_time.svg", plot_view_times(c)}};
+      {"view_time.svg", plot_view_times(c)},
+      {"verification_time.svg", plot_verification_times(c, runs)},
+      {"verification_times.csv", format_verification_times(runs)}};
   for (const auto& [name, text] : files)
     if (auto written = write_file(directory / name, text); !written.ok()) return written;
   return {};

@@ -28,13 +28,18 @@ struct EvaluationHeader {
 [[nodiscard]] std::string format_evaluation_tables(const EvaluationHeader& header,
                                                    std::span<const ConfigurationSummary> configurations,
                                                    std::span<const PresetComparison> comparisons = {});
-/// Formats the times as Markdown tables.
+/// Formats the times as Markdown tables: per view with the share of change detection (paper, Sec. IV-B), of clustering
+/// (Table III), and per stage.
 [[nodiscard]] std::string format_evaluation_times(const EvaluationHeader& header,
                                                   std::span<const ConfigurationSummary> configurations);
-/// Writes results.json, times.json, tables.md, times.md, worst.md, and the plots precision.svg, recall.svg, f.svg,
-/// ghosts.svg (paper, Fig. 5) and view_time.svg (Fig. 7) to `directory`. Each file appears under its name only when it
-/// is complete. `num_pictures`: pictures of the worst views per configuration that the report refers to; the caller
-/// draws them (worst_views.hpp).
+/// Formats the time of verification in every view of every run as CSV, and the number of hypotheses verified in it
+/// (paper, Fig. 7).
+[[nodiscard]] std::string format_verification_times(std::span<const EvaluatedRun> runs);
+/// Writes results.json, times.json, tables.md, times.md, worst.md, verification_times.csv, and the plots precision.svg,
+/// recall.svg, f.svg, ghosts.svg (paper, Fig. 5), view_time.svg and verification_time.svg (Fig. 7: the longest
+/// sequence, the largest K of each preset, with and without clustering) to `directory`. Each file appears under its
+/// name only when it is complete. `num_pictures`: pictures of the worst views per configuration that the report refers
+/// to; the caller draws them (worst_views.hpp).
 [[nodiscard]] Result<void> write_evaluation(const std::filesystem::path& directory, const EvaluationHeader& header,
                                             std::span<const EvaluatedRun> runs, int num_pictures = 0);
 

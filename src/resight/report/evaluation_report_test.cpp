@@ -81,6 +81,34 @@ TEST(EvaluationReport, TablesAreWholeAndHoldTheNumbers) {
   EXPECT_NE(text.find("| `mvr-chd` - `mvr` | 5 | 1 | +0.000 ± - |"), std::string::npos);
 }
 
+TEST(EvaluationReport, TimesHoldTheSharesOfChangesAndClustering) {
+  std::vector<EvaluatedRun> runs{make_evaluated_run("mvr-chd", 5), make_evaluated_run("mvr-chd", 5, false)};
+  for (EvaluatedRun& run : runs)
+    for (EvaluatedView& view : run.views) {
+      view.times.add("changes and reconstruction", 0.05, 0.1);
+      view.times.add("presence", 0.01, 0.05);
+      view.times.add("cluster", 0.01, 0.02);
+      view.times.add("verification", 0.25, run.is_clustered ? 0.58 : 0.725);
+    }
+  const std::string text = format_evaluation_times({"set", "1"}, summarize_runs(runs));
+  expect_whole_tables(text);
+  // Of 250 + 100 + 50 + 20 + 580 ms, changes take 150; clustering saves 145 of 725 ms.
+  EXPECT_NE(text.find("| `mvr-chd` | 5 | 445.0 | 1000.0 | 100.0 | 50.0 | 15.0 % | 20.0 | 580.0 |"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| `mvr-chd` | 5 | 20.0 | 725.0 | 580.0 | 145.0 | 20.0 % |"), std::string::npos) << text;
+}
+
+TEST(EvaluationReport, VerificationTimesAreThoseOfEachView) {
+  std::vector<EvaluatedRun> runs{make_evaluated_run("mvr", 5), make_evaluated_run("mvr", 5, false)};
+  runs[0].views[1].times.add("verification", 0.25, 0.5);
+  const std::string text = format_verification_times(runs);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 5) << "a head, and two views of each run";
+  EXPECT_NE(text.find("\n000001,mvr,5,1,0,5,0.000000,0.000000\n000001,mvr,5,1,1,5,0.250000,0.500000\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("\n000001,mvr,5,0,1,20,"), std::string::npos) << text;
+}
+
 TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {
   const std::vector<EvaluatedRun> runs = make_runs();
   const std::string text = format_evaluation_json({"set", "1.2.3"}, summarize_runs(runs));
@@ -102,8 +130,9 @@ TEST(EvaluationReport, WritesAllFiles) {
   const auto written = write_evaluation(directory, {"set", "1"}, make_runs());
   ASSERT_TRUE(written.ok()) << written.error().message;
   int count = 0;
-  for (const char* name : {"results.json", "times.json", "tables.md", "times.md", "worst.md", "precision.svg",
-                           "recall.svg", "f.svg", "ghosts.svg", "view_time.svg"}) {
+  for (const char* name :
+       {"results.json", "times.json", "tables.md", "times.md", "worst.md", "precision.svg", "recall.svg", "f.svg",
+        "ghosts.svg", "view_time.svg", "verification_time.svg", "verification_times.csv"}) {
     EXPECT_GT(fs::file_size(directory / name), 100U) << name;
     ++count;
   }

@@ -9,26 +9,23 @@
 
 #include "resight/evaluation/loss.hpp"
 #include "resight/report/evaluation_report.hpp"
+#include "resight/report/internal/evaluation_text.hpp"
 
 namespace resight {
 namespace {
 
+using report::configuration_name;
+using report::evaluation_title;
+using report::format_number;
 using Configurations = std::span<const ConfigurationSummary>;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-std::string format_number(double value, int digits) {
-  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits);
-}
 // Share with three decimals; "-" for NaN.
 std::string share(double value) { return format_number(value, 3); }
 std::string prf(const RecognitionScore& s) {
   return fmt::format("{} | {} | {}", share(s.precision()), share(s.recall()), share(s.f_score()));
 }
-std::string name_of(const ConfigurationSummary& c) {
-  return fmt::format("`{}`{}", c.preset, c.is_clustered ? "" : " without clustering");
-}
-
 std::string recognition_table(Configurations configurations) {
   std::string text =
       "## Recognition over K\n\n"
@@ -37,8 +34,8 @@ std::string recognition_table(Configurations configurations) {
       "rotation median | rotation 95 % | ghosts | per former place | by the published rule |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ConfigurationSummary& c : configurations)
-    text += fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} | {} |\n", name_of(c),
-                        c.num_previous_views, prf(c.score), prf(c.strict_score),
+    text += fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} | {} |\n",
+                        configuration_name(c), c.num_previous_views, prf(c.score), prf(c.strict_score),
                         format_number(1e3 * c.errors.center_m.median, 1), format_number(1e3 * c.errors.center_m.p95, 1),
                         format_number(kDegrees * c.errors.rotation_rad.median, 1),
                         format_number(kDegrees * c.errors.rotation_rad.p95, 1), c.ghosts.num_detections,
@@ -105,7 +102,8 @@ std::string reliability_table(Configurations configurations) {
   }
   std::string rows;
   for (const ConfigurationSummary& c : configurations) {
-    rows += fmt::format("| {} | {} | {} |", name_of(c), c.num_previous_views, share(c.reliability.calibration_error()));
+    rows += fmt::format("| {} | {} | {} |", configuration_name(c), c.num_previous_views,
+                        share(c.reliability.calibration_error()));
     for (const ScoreBin& bin : c.reliability.bins()) rows += fmt::format(" {} |", bin_cell(bin));
     rows += "\n";
   }
@@ -127,7 +125,7 @@ std::string change_table(Configurations configurations) {
     const double late = d.empty() ? std::nan("")
                                   : static_cast<double>(std::ranges::count_if(d, [](int x) { return x > 1; })) /
                                         static_cast<double>(d.size());
-    rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", name_of(c),
+    rows += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", configuration_name(c),
                         c.num_previous_views, points_cells(c.changes.points.removed),
                         points_cells(c.changes.points.novel), share(c.changes.events.events.precision()),
                         share(c.changes.events.events.recall()), format_number(mean, 2), share(late),
@@ -169,7 +167,7 @@ std::string loss_table(Configurations configurations, const std::vector<std::str
   std::string text = "\n## Where missed objects were lost\n\n";
   text += loss_header("| preset | K | missed |", stages);
   for (const ConfigurationSummary& c : configurations)
-    text += fmt::format("| {} | {} | {} |{}\n", name_of(c), c.num_previous_views, c.score.false_negatives,
+    text += fmt::format("| {} | {} | {} |{}\n", configuration_name(c), c.num_previous_views, c.score.false_negatives,
                         lost_cells(c.found.lost_at, stages));
   return text;
 }
@@ -182,7 +180,8 @@ std::string found_row(const std::string& first, const FoundCount& count, const s
 }
 
 std::string breakdown(const ConfigurationSummary& c, const std::vector<std::string>& stages) {
-  std::string text = fmt::format("\n## {}, K = {}: objects and visibility\n\n", name_of(c), c.num_previous_views);
+  std::string text =
+      fmt::format("\n## {}, K = {}: objects and visibility\n\n", configuration_name(c), c.num_previous_views);
   text += loss_header("| object | instances | recall | false |", stages);
   for (const auto& [name, count] : c.found.by_object) text += found_row(name, count, stages);
   text += '\n';
@@ -211,44 +210,19 @@ std::vector<std::string> stages_of(Configurations configurations) {
   return ordered;
 }
 
-std::string title(const char* what, const EvaluationHeader& header, Configurations configurations) {
-  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, header.dataset, header.version,
-                     configurations.empty() ? 0 : configurations.front().num_sequences,
-                     configurations.empty() ? 0 : configurations.front().num_views);
-}
-
 }  // namespace
 
 std::string format_evaluation_tables(const EvaluationHeader& header, Configurations configurations,
                                      std::span<const PresetComparison> comparisons) {
   const std::vector<std::string> stages = stages_of(configurations);
   std::string text =
-      title("Evaluation", header, configurations) +
+      evaluation_title("Evaluation", header, configurations) +
       " Right: within 5 cm and 30 deg (strict: 1 cm and 10 deg) of an object that is at least 5 % visible. "
       "Ghost: an object reported at a place it has left.\n\n";
   text += recognition_table(configurations) + comparison_table(comparisons) + reliability_table(configurations) +
           clustering_table(configurations) + change_table(configurations);
   text += loss_table(configurations, stages);
   for (const ConfigurationSummary& c : configurations) text += breakdown(c, stages);
-  return text;
-}
-
-std::string format_evaluation_times(const EvaluationHeader& header, Configurations configurations) {
-  std::string text = title("Times", header, configurations) +
-                     " Per view. Features, matching and hypotheses of a view are computed once and counted in "
-                     "every configuration that uses them.\n";
-  for (const ConfigurationSummary& c : configurations) {
-    text += fmt::format("\n## {}, K = {}\n\n| stage | wall ms per view | CPU ms per view |\n|---|---|---|\n",
-                        name_of(c), c.num_previous_views);
-    double cpu_s = 0;
-    for (const StageTime& stage : c.times.stages.stages()) {
-      text += fmt::format("| {} | {:.2f} | {:.2f} |\n", stage.stage, 1e3 * stage.wall_s / c.num_views,
-                          1e3 * stage.cpu_s / c.num_views);
-      cpu_s += stage.cpu_s;
-    }
-    text += fmt::format("| all | {:.2f} | {:.2f} |\n", 1e3 * c.times.stages.total_wall_s() / c.num_views,
-                        1e3 * cpu_s / c.num_views);
-  }
   return text;
 }
 
