@@ -3,6 +3,7 @@
 // which the row damages something, and defines the exit status, the single line on standard error, and that no files
 // are left.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -166,6 +167,13 @@ Spoil cut(const char* path, double share) {
     fs::resize_file(folder / path, static_cast<std::uintmax_t>(share * size));
   };
 }
+// A pipe without a writer: whoever opens it waits for ever.
+Spoil pipe(const char* path) {
+  return [=](const fs::path& folder) {
+    fs::remove(folder / path);
+    ASSERT_EQ(::mkfifo((folder / path).c_str(), 0600), 0);
+  };
+}
 // Flips one bit of the byte at this share of the file.
 Spoil flip(const char* path, double share) {
   return [=](const fs::path& folder) {
@@ -315,7 +323,7 @@ const Row kRows[] = {
      "--shard: '3/2'"},
 
     // Settings files.
-    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: cannot be read"},
+    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
     {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
      "c\\.toml: line 1"},
@@ -323,6 +331,10 @@ const Row kRows[] = {
      2, "c\\.toml: unknown key changes\\.speed"},
     {"SettingOutOfRange", write("c.toml", "[changes]\nvoxel_m = -0.01\n"),
      "changes --sequence views --out out --config c.toml", 2, "c\\.toml: .*voxel_m = -0\\.01"},
+
+    {"PipeAsConfig", pipe("c.toml"), "changes --sequence views --out out --config c.toml", 2,
+     "c\\.toml: is not a file"},
+    {"EndlessConfig", kNothing, "changes --sequence views --out out --config /dev/zero", 2, "/dev/zero: is not a file"},
 
     // Output paths.
     {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
@@ -461,6 +473,7 @@ const Row kRows[] = {
     {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
     {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
     {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
+    {"PipeAsScript", pipe("s.toml"), "simulate s.toml --out out", 2, "s\\.toml: is not a file"},
     {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
 };
 
