@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/models/library_file.hpp"
@@ -22,16 +21,11 @@ namespace {
 
 constexpr int kNumPictures = 5;  // Of the worst views per configuration.
 
-std::string read_text(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // The stored run of a unit, unless it is missing or stems from other settings, models or another version.
 std::optional<EvaluatedRun> stored_run(const std::filesystem::path& file, const std::string& fingerprint) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  auto run = parse_run(read_text(file), file.string());
+  const auto text = read_file(file);
+  if (!text) return std::nullopt;
+  auto run = parse_run(*text, file.string());
   if (!run.ok() || run->fingerprint != fingerprint) return std::nullopt;
   return std::move(run).value();
 }
@@ -40,8 +34,8 @@ class Evaluation {
  public:
   explicit Evaluation(const EvaluateArguments& arguments)
       : arguments_(arguments),
-        plan_(make_evaluation_plan(arguments)),
-        library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))) {}
+        library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))),
+        plan_(make_evaluation_plan(arguments)) {}
 
   // Computes the missing runs of this shard. Finished runs are not computed again.
   void compute() {
@@ -156,8 +150,8 @@ class Evaluation {
   }
 
   const EvaluateArguments& arguments_;
+  ModelLibrary library_;  // Loaded first: the plan hashes its file.
   EvaluationPlan plan_;
-  ModelLibrary library_;
 };
 
 }  // namespace
