@@ -24,6 +24,14 @@ std::vector<std::string> list_entries(const fs::path& directory, bool directorie
 
 }  // namespace
 
+Result<fs::path> path_below(const fs::path& folder, std::string_view name) {
+  const fs::path inner = fs::path(name).lexically_normal();
+  if (inner.is_absolute() || (!inner.empty() && *inner.begin() == ".."))
+    return Error{std::string(name) + ": lies outside the folder " + (folder.empty() ? fs::path(".") : folder).string() +
+                 " (move or link it into the folder)"};
+  return folder / inner;
+}
+
 std::vector<std::string> list_files(const fs::path& directory) { return list_entries(directory, false); }
 std::vector<std::string> list_directories(const fs::path& directory) { return list_entries(directory, true); }
 

@@ -21,7 +21,7 @@ Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
   if (content->mesh.faces.empty()) return io::file_error(file, "has points but no faces; expected a mesh");
   MeshFile result{std::move(content->mesh), {}};
   if (!content->texture_file.empty() && !result.mesh.uvs.empty()) {
-    auto texture = read_color(file.parent_path() / content->texture_file);
+    auto texture = io::read_texture(file.parent_path(), content->texture_file);
     if (texture)
       result.mesh.texture = std::move(*texture);
     else

@@ -23,6 +23,11 @@ using resight::write_file;
 /// Limit for clouds, meshes and images.
 inline constexpr std::uintmax_t kMaxBinaryBytes = std::uintmax_t{4} << 30;
 
+/// The path that a file in `folder` refers to by `name`. Fails for an absolute name, and for one that leaves the folder
+/// with "..": a data set must not make us read, or copy into results, other files of the user. Links are followed; they
+/// are the user's own way to keep data elsewhere.
+[[nodiscard]] Result<fs::path> path_below(const fs::path& folder, std::string_view name);
+
 /// Names of the files (or folders) in a directory, in natural order, without hidden ones. Empty if the directory is
 /// missing.
 [[nodiscard]] std::vector<std::string> list_files(const fs::path& directory);
