@@ -9,6 +9,7 @@
 
 #include "resight/evaluation/loss.hpp"
 #include "resight/report/evaluation_report.hpp"
+#include "resight/report/internal/markdown.hpp"
 
 namespace resight {
 namespace {
@@ -184,7 +185,7 @@ std::string found_row(const std::string& first, const FoundCount& count, const s
 std::string breakdown(const ConfigurationSummary& c, const std::vector<std::string>& stages) {
   std::string text = fmt::format("\n## {}, K = {}: objects and visibility\n\n", name_of(c), c.num_previous_views);
   text += loss_header("| object | instances | recall | false |", stages);
-  for (const auto& [name, count] : c.found.by_object) text += found_row(name, count, stages);
+  for (const auto& [name, count] : c.found.by_object) text += found_row(report::escape_markdown(name), count, stages);
   text += '\n';
   text += loss_header("| visible share | instances | recall | false |", stages);
   const auto bins = visible_share_bins();
@@ -212,8 +213,8 @@ std::vector<std::string> stages_of(Configurations configurations) {
 }
 
 std::string title(const char* what, const EvaluationHeader& header, Configurations configurations) {
-  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, header.dataset, header.version,
-                     configurations.empty() ? 0 : configurations.front().num_sequences,
+  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, report::escape_markdown(header.dataset),
+                     header.version, configurations.empty() ? 0 : configurations.front().num_sequences,
                      configurations.empty() ? 0 : configurations.front().num_views);
 }
 
