@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -19,12 +20,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file format is little-endian");
 
-constexpr std::array<char, 8> kMagic{'R', 'E', 'S', 'I', 'G', 'H', 'T', 'M'};
 constexpr std::uint32_t kFormatVersion = 1;
 const std::string kKind = "model library ";  // begins all messages
 
 struct Header {
-  std::array<char, 8> magic = kMagic;
+  std::array<char, kLibrarySignature.size()> magic{};
   std::uint32_t version = kFormatVersion;
   std::uint32_t reserved = 0;
   std::uint64_t options_hash = 0;
@@ -59,8 +59,8 @@ Result<Header> read_header(const std::filesystem::path& path, InputFile& file) {
   std::array<std::uint8_t, sizeof(Header)> bytes{};
   const std::size_t num_bytes = std::min<std::uintmax_t>(file.size(), bytes.size());
   if (const auto done = file.read(bytes.data(), num_bytes); !done) return Error{kKind + done.error().message};
-  const std::size_t magic_bytes = std::min(num_bytes, kMagic.size());
-  if (magic_bytes == 0 || std::memcmp(bytes.data(), kMagic.data(), magic_bytes) != 0)
+  const std::size_t magic_bytes = std::min(num_bytes, kLibrarySignature.size());
+  if (magic_bytes == 0 || std::memcmp(bytes.data(), kLibrarySignature.data(), magic_bytes) != 0)
     return fail(path, "not a model library (expected a file written by 'train')");
   if (num_bytes < sizeof(Header)) return fail(path, fmt::format("truncated within its header ({} bytes)", num_bytes));
   const Header header = std::bit_cast<Header>(bytes);
@@ -98,6 +98,7 @@ Result<void> save_library(const ModelLibrary& library, const std::filesystem::pa
   const Result<std::vector<std::uint8_t>> payload = internal::encode_payload(library);
   if (!payload.ok()) return fail(path, payload.error().message);
   Header header;
+  std::ranges::copy(kLibrarySignature, header.magic.begin());
   header.options_hash = library.options_hash;
   header.payload_bytes = payload->size();
   header.checksum = compute_checksum(header, *payload);
