@@ -3,6 +3,7 @@
 // which the row damages something, and defines the exit status, the single line on standard error, and that no files
 // are left.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -166,6 +167,13 @@ Spoil cut(const char* path, double share) {
     fs::resize_file(folder / path, static_cast<std::uintmax_t>(share * size));
   };
 }
+// A pipe without a writer: whoever opens it waits for ever.
+Spoil pipe(const char* path) {
+  return [=](const fs::path& folder) {
+    fs::remove(folder / path);
+    ASSERT_EQ(::mkfifo((folder / path).c_str(), 0600), 0);
+  };
+}
 // Flips one bit of the byte at this share of the file.
 Spoil flip(const char* path, double share) {
   return [=](const fs::path& folder) {
@@ -190,6 +198,24 @@ Spoil edit(const char* path, const std::function<void(Json&)>& change) {
     Json json = Json::parse(read_text(folder / path));
     change(json.at("1"));
     write_text(folder / path, json.dump());
+  };
+}
+Spoil link(const char* path, const char* target) {
+  return [=](const fs::path& folder) {
+    fs::create_directories((folder / path).parent_path());
+    fs::create_symlink(target, folder / path);
+  };
+}
+Spoil both(const Spoil& first, const Spoil& second) {
+  return [=](const fs::path& folder) {
+    first(folder);
+    second(folder);
+  };
+}
+Spoil move(const char* from, const char* to) {
+  return [=](const fs::path& folder) {
+    fs::create_directories((folder / to).parent_path());
+    fs::rename(folder / from, folder / to);
   };
 }
 Spoil small_image(const char* path) {
@@ -229,6 +255,10 @@ constexpr const char* kChanges = "changes --sequence views --out out";
 constexpr const char* kChangesTuw = "changes --sequence tuw --out out";
 constexpr const char* kChangesTum = "changes --sequence tum --out out";
 constexpr const char* kConvert = "convert views out --to tuw";
+const std::string kLongName(300, 'a');
+const std::string kRecognizeLongName = "recognize --models " + kLongName + " --sequence views --out out";
+const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
+const std::string kTrainToLongName = "train meshes --out " + kLongName;
 constexpr const char* kTrain = "train meshes --out new.resight";
 const Spoil kNothing = [](const fs::path&) {};
 
@@ -278,7 +308,13 @@ const Row kRows[] = {
     {"NoThreads", kNothing, "changes --sequence views --out out -j 0", 2, "0 .*1"},
     {"NegativeSeed", kNothing, "recognize --models models.resight --sequence views --out out --seed -1", 2, "seed"},
     {"NegativeDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms -1", 2,
-     "deadline-ms"},
+     "deadline-ms: -1 is not a number above 0"},
+    {"DeadlineThatIsNoNumber", kNothing,
+     "recognize --models models.resight --sequence views --out out --deadline-ms nan", 2,
+     "nan is not a number above 0"},
+    {"NameWithEscapeSequences", kNothing,
+     "changes --sequence \"$(printf 'no\\033[31mwhere\\nresight: done')\" --out out", 2,
+     "no\\\\x1b\\[31mwhere\\\\x0aresight: done: no such"},
     {"ZeroDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms 0", 2,
      "deadline-ms"},
     {"SeedThatIsTooLarge", kNothing, "demo --out out --seed 99999999999999999999", 2, "seed"},
@@ -309,13 +345,15 @@ const Row kRows[] = {
 
     {"UnknownPresets", kNothing, "evaluate --models models.resight --dataset views --presets mvr,best --out out", 2,
      "--presets: .*best"},
+    {"NoPresets", kNothing, "evaluate --models models.resight --dataset views --presets '' --out out", 2,
+     "--presets: ''"},
     {"BrokenRangeOfK", kNothing, "evaluate --models models.resight --dataset views -k 3-1 --out out", 2,
      "--previous-views: '3-1'"},
     {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
      "--shard: '3/2'"},
 
     // Settings files.
-    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: cannot be read"},
+    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
     {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
      "c\\.toml: line 1"},
@@ -323,6 +361,10 @@ const Row kRows[] = {
      2, "c\\.toml: unknown key changes\\.speed"},
     {"SettingOutOfRange", write("c.toml", "[changes]\nvoxel_m = -0.01\n"),
      "changes --sequence views --out out --config c.toml", 2, "c\\.toml: .*voxel_m = -0\\.01"},
+
+    {"PipeAsConfig", pipe("c.toml"), "changes --sequence views --out out --config c.toml", 2,
+     "c\\.toml: is not a file"},
+    {"EndlessConfig", kNothing, "changes --sequence views --out out --config /dev/zero", 2, "/dev/zero: is not a file"},
 
     // Output paths.
     {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
@@ -334,6 +376,25 @@ const Row kRows[] = {
      "file is not a folder"},
     {"TrainBelowAFile", kNothing, "train meshes --out file/new.resight", 2, "file is not a folder"},
     {"TrainOntoAFolder", kNothing, "train meshes --out empty", 2, "empty: is a folder"},
+    {"TrainOverItsInput", kNothing, "train meshes/cube.ply --out meshes/cube.ply", 2, "cube\\.ply: is an input"},
+    {"TrainOverAForeignFile", kNothing, "train meshes --out file", 2, "file: exists already and is no model library"},
+    {"TrainOverALink", link("dangling", "nowhere"), "train meshes --out dangling", 2, "dangling: exists already"},
+    {"TrainOverALibrary", kNothing, "train meshes --out models.resight", 0, "", "models.resight"},
+    {"TrainToALongName", kNothing, kTrainToLongName.c_str(), 2, "name is too long"},
+    {"TrackOverTheSequence", kNothing, "track --sequence views --out views/scene_camera.json", 2,
+     "scene_camera\\.json: exists already"},
+    {"TrackBesideAForeignJournal", write("poses.txt.partial", "notes\n"), "track --sequence views --out poses.txt", 2,
+     "poses\\.txt\\.partial: exists already"},
+    {"TrackWithAPictureOverAnImage", kNothing, "track --sequence views --out poses.txt --fused views/rgb/000000.ply", 2,
+     "000000\\.png: exists already"},
+    {"TrackOverForeignObjects", write("poses_objects.txt", "mine\n"),
+     "track --sequence views --out poses.txt --models models.resight", 2, "poses_objects\\.txt: exists already"},
+    {"RecognizeIntoTheSequence", kNothing, "recognize --models models.resight --sequence views --out views", 2,
+     "views: is an input"},
+    {"ChangesOverTheImages", kNothing, "changes --sequence views --out views/rgb", 2,
+     "views/rgb: is a folder of the input"},
+    {"ChangesInANewFolderOfTheSequence", kNothing, "changes --sequence views --out views/changes", 0, "",
+     "views/changes/changes.json"},
     {"ConvertBelowAFile", kNothing, "convert views file/out --to tuw", 2, "file is not a folder"},
     {"ConvertOverData", kNothing, "convert views full --to tuw", 2, "full: exists already"},
     {"SimulateBelowAFile", kNothing, "simulate --preset demo --out file/out", 2, "file/out: "},
@@ -344,7 +405,13 @@ const Row kRows[] = {
 
     // Model libraries.
     {"MissingLibrary", remove("models.resight"), kRecognize, 2, "models\\.resight: no such file"},
-    {"FolderAsLibrary", kNothing, "recognize --models empty --sequence views --out out", 2, "empty: not a file"},
+    {"FolderAsLibrary", kNothing, "recognize --models empty --sequence views --out out", 2, "empty: is not a file"},
+    {"LibraryThatIsALoop", link("loop", "loop"), "recognize --models loop --sequence views --out out", 2,
+     "loop: cannot be opened"},
+    {"LibraryWithALongName", kNothing, kRecognizeLongName.c_str(), 2, "aaa: cannot be opened"},
+    {"PipeAsLibrary", pipe("models.resight"), kRecognize, 2, "models\\.resight: is not a file"},
+    {"EvaluateAFolderAsLibrary", kNothing, "evaluate --models empty --dataset views --out out", 2,
+     "empty: is not a file"},
     {"EmptyLibraryFile", write("models.resight", ""), kRecognize, 2, "not a model library"},
     {"TextAsLibrary", write("models.resight", "hello\n"), kRecognize, 2, "not a model library"},
     {"TruncatedLibrary", cut("models.resight", 0.7), kRecognize, 2, "models\\.resight: truncated"},
@@ -369,6 +436,10 @@ const Row kRows[] = {
      kTrain, 2, "cube\\.ply: .*not finite"},
     {"MeshFarTooLarge", mesh("meshes/cube.ply", [] { return make_cube_with(1e30F); }), kTrain, 2, "cube\\.ply: "},
     {"MeshWithoutFaces", mesh("meshes/cube.ply", [] { return TriangleMesh{}; }), kTrain, 2, "cube\\.ply: "},
+    {"ObjectWithoutName",
+     both(write("models/obj_000001.ply", ""), write("models/models_info.json", R"({"1": {"name": ""}})")),
+     "train models --out new.resight", 2, "models_info\\.json: object 1: the name of an object is empty"},
+    {"MeshThatIsALoop", link("loop.obj", "loop.obj"), "train loop.obj --out new.resight", 2, "loop\\.obj"},
     {"TwoMeshesOfOneName", kNothing, "train meshes meshes --out new.resight", 2, "two models are called 'cube'"},
     {"SceneAsModels", kNothing, "train views --out new.resight", 2, "views: no model found"},
     {"MissingTexture",
@@ -381,6 +452,11 @@ const Row kRows[] = {
 
     // Sequences.
     {"MissingSequence", remove("views"), kRecognize, 2, "views: no such directory"},
+    {"SequenceThatIsALoop", link("loop", "loop"), "changes --sequence loop --out out", 2, "loop: "},
+    {"SequenceWithALongName", kNothing, kTrackLongName.c_str(), 2, "aaa: "},
+    {"OutputThatIsALoop", link("loop", "loop"), "changes --sequence views --out loop", 2, "loop: "},
+    {"EvaluateBesideALoop", both(move("views", "set/views"), link("set/loop", "loop")),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
     {"EmptyFolder", kNothing, "changes --sequence empty --out out", 2, "empty: no sequence found"},
     {"FileAsSequence", kNothing, "changes --sequence file --out out", 2, "file: "},
     {"SequenceWithoutViews", write("views/scene_camera.json", "{}"), kRecognize, 2, "scene_camera\\.json: "},
@@ -474,6 +550,7 @@ const Row kRows[] = {
     {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
     {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
     {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
+    {"PipeAsScript", pipe("s.toml"), "simulate s.toml --out out", 2, "s\\.toml: is not a file"},
     {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
 };
 
@@ -483,8 +560,9 @@ std::ostream& operator<<(std::ostream& out, const Row& row) { return out << "res
 std::vector<std::string> list(const fs::path& folder) {
   std::vector<std::string> entries;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    entries.push_back(fs::relative(entry.path(), folder).string());
-    if (entry.is_regular_file()) entries.back().append(" ").append(std::to_string(entry.file_size()));
+    entries.push_back(entry.path().lexically_relative(folder).string());
+    std::error_code leads_nowhere;
+    if (entry.is_regular_file(leads_nowhere)) entries.back().append(" ").append(std::to_string(entry.file_size()));
   }
   std::ranges::sort(entries);
   return entries;

@@ -64,7 +64,7 @@ CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& op
   ViewTracker tracker(track);
   std::optional<TrackJournal> journal;
   if (options.journal && !options.refine)
-    journal.emplace(*options.journal, describe_job(sequence, options.sequence_folder));
+    journal = value_or_throw(TrackJournal::open(*options.journal, describe_job(sequence, options.sequence_folder)));
   Progress progress("track", sequence.num_views());
   const int first = journal ? restore(tracker, sequence, *journal, progress) : 0;
   for (int v = first; v < sequence.num_views(); ++v) {

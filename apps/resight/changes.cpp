@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "progress.hpp"
 #include "recognition_run.hpp"
 #include "resight/changes/change_regions.hpp"
@@ -56,6 +57,7 @@ std::string count_regions(const ViewChangeRecord& view) {
 // Alg. 1 without models: compares each view with the reconstruction from the views before it. `mvr` compares nothing,
 // so that its reconstruction is the one of a static world (paper, Fig. 6).
 void run_changes(const ChangesArguments& arguments) {
+  check_output_folder(arguments.out, {arguments.sequence});
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = value_or_throw(open_posed_sequence(arguments.sequence));
@@ -77,7 +79,7 @@ void run_changes(const ChangesArguments& arguments) {
   }
   value_or_throw(write_file(folder.path() / "changes.json", format_scene_changes_json(record)));
   value_or_throw(folder.commit());
-  fmt::print("{} views: {}\n", sequence->num_views(), arguments.out.string());
+  print("{} views: {}\n", sequence->num_views(), arguments.out.string());
 }
 
 }  // namespace resight::app

@@ -10,6 +10,7 @@
 
 #include "resight/core/result.hpp"
 #include "resight/io/sequence.hpp"
+#include "terminal.hpp"
 
 namespace resight::app {
 

@@ -72,14 +72,14 @@ void run_convert(const ConvertArguments& arguments) {
   if (sequence.ok()) {
     const ConversionSummary summary =
         value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence)));
-    fmt::print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
+    print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
   } else if (format == DatasetFormat::kTuw) {
     for (const std::string& warning : render_tuw_models(*models, arguments)) print_warning(warning);
-    fmt::print("{} models: {}\n", models->size(), arguments.out.string());
+    print("{} models: {}\n", models->size(), arguments.out.string());
   } else {
     const ConversionSummary summary = value_or_throw(convert_models(*models, arguments.out, format));
     for (const std::string& warning : summary.warnings) print_warning(warning);
-    fmt::print("{} models: {}\n", summary.num_objects, arguments.out.string());
+    print("{} models: {}\n", summary.num_objects, arguments.out.string());
   }
 }
 

@@ -13,15 +13,15 @@ namespace resight::app {
 namespace {
 
 void print_table(const std::vector<ReportRun>& runs) {
-  fmt::print("\n{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "preset", "precision", "recall", "F", "ghosts",
-             "changes", "s/view");
+  print("\n{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "preset", "precision", "recall", "F", "ghosts", "changes",
+        "s/view");
   for (const ReportRun& run : runs) {
     const RunSummary s = summarize(run);
-    fmt::print("{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10.2f}\n", run.preset, format_share(s.score.precision()),
-               format_share(s.score.recall()), format_share(s.score.f_score()), s.num_ghosts, s.num_events,
-               s.median_view_wall_s);
+    print("{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10.2f}\n", run.preset, format_share(s.score.precision()),
+          format_share(s.score.recall()), format_share(s.score.f_score()), s.num_ghosts, s.num_events,
+          s.median_view_wall_s);
   }
-  fmt::print("(right: within 5 cm and 30 deg; ghost: an object reported at a place it has left)\n\n");
+  print("(right: within 5 cm and 30 deg; ghost: an object reported at a place it has left)\n\n");
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ void run_demo(const DemoArguments& arguments) {
   const std::filesystem::path report = arguments.out / "report.html";
   value_or_throw(write_report(report, "resight demo", runs, library));
   print_table(runs);
-  fmt::print("report: {}\n", std::filesystem::absolute(report).string());
+  print("report: {}\n", std::filesystem::absolute(report).string());
 }
 
 }  // namespace resight::app

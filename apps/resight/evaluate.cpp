@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
+#include "output_paths.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/evaluation/bop_evaluation.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"
 #include "resight/models/library_file.hpp"
@@ -22,16 +22,11 @@ namespace {
 
 constexpr int kNumPictures = 5;  // Of the worst views per configuration.
 
-std::string read_text(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // The stored run of a unit, unless it is missing or stems from other settings, models or another version.
 std::optional<EvaluatedRun> stored_run(const std::filesystem::path& file, const std::string& fingerprint) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  auto run = parse_run(read_text(file), file.string());
+  const auto text = read_file(file);
+  if (!text) return std::nullopt;
+  auto run = parse_run(*text, file.string());
   if (!run.ok() || run->fingerprint != fingerprint) return std::nullopt;
   return std::move(run).value();
 }
@@ -40,8 +35,8 @@ class Evaluation {
  public:
   explicit Evaluation(const EvaluateArguments& arguments)
       : arguments_(arguments),
-        plan_(make_evaluation_plan(arguments)),
-        library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))) {}
+        library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))),
+        plan_(make_evaluation_plan(arguments)) {}
 
   // Computes the missing runs of this shard. Finished runs are not computed again.
   void compute() {
@@ -128,7 +123,7 @@ class Evaluation {
     const auto open = [this](const std::string& name) { return open_evaluated(name); };
     const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, objects, open)));
     value_or_throw(write_file(arguments_.out / "bop.md", table));
-    fmt::print("\n{}", table);
+    print_text("\n" + table);
   }
 
   void report_missing(const std::vector<const EvaluationUnit*>& missing) const {
@@ -141,29 +136,29 @@ class Evaluation {
     const std::string what = fmt::format("{} of {} runs are missing (first: {}); run with --shard{}", missing.size(),
                                          plan_.units.size(), missing.front()->name, again);
     if (arguments_.merge) throw InputError(fmt::format("{}: {}", arguments_.out.string(), what));
-    fmt::print("{}\n", what);
+    print("{}\n", what);
   }
 
   void print_table(const std::vector<EvaluatedRun>& runs) const {
-    fmt::print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
-               "strict F", "ghosts", "/place", "s/view");
+    print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
+          "strict F", "ghosts", "/place", "s/view");
     for (const ConfigurationSummary& c : summarize_runs(runs))
-      fmt::print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
-                 format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),
-                 format_share(c.strict_score.f_score()), c.ghosts.num_detections, c.ghosts.per_former_place(),
-                 c.times.stages.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
-    fmt::print("\ntables: {}\n", (arguments_.out / "tables.md").string());
+      print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
+            format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),
+            format_share(c.strict_score.f_score()), c.ghosts.num_detections, c.ghosts.per_former_place(),
+            c.times.stages.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
+    print("\ntables: {}\n", (arguments_.out / "tables.md").string());
   }
 
   const EvaluateArguments& arguments_;
+  ModelLibrary library_;  // Loaded first: the plan hashes its file.
   EvaluationPlan plan_;
-  ModelLibrary library_;
 };
 
 }  // namespace
 
 void run_evaluate(const EvaluateArguments& arguments) {
-  value_or_throw(check_writable(arguments.out));
+  check_output_folder(arguments.out, {arguments.dataset, arguments.models});
   Evaluation evaluation(arguments);
   if (!arguments.merge) evaluation.compute();
   evaluation.conclude();

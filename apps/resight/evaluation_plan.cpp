@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "recognition_run.hpp"
 #include "resight/core/hash.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
 #include "resight/recognition/view_hypotheses.hpp"
@@ -51,11 +51,16 @@ EvaluationSequence describe(const fs::path& folder, const Sequence& opened) {
 // Finds the sequences: the data set itself, or those in its folder test/, or those directly below it.
 std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   const fs::path dataset = fs::absolute(given / "").parent_path().lexically_normal();
-  if (!fs::is_directory(dataset)) throw InputError(fmt::format("{}: is not a folder", given.string()));
-  const fs::path root = fs::is_directory(dataset / "test") ? dataset / "test" : dataset;
+  std::error_code error;
+  if (!fs::is_directory(dataset, error)) throw InputError(fmt::format("{}: is not a folder", given.string()));
+  const fs::path root = fs::is_directory(dataset / "test", error) ? dataset / "test" : dataset;
   std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(root))
-    if (entry.is_directory() && entry.path().filename().string().front() != '.') folders.push_back(entry.path());
+  // An entry that leads nowhere, such as a loop of links, is no sequence.
+  for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
+    std::error_code unreadable;
+    if (it->is_directory(unreadable) && it->path().filename().string().front() != '.') folders.push_back(it->path());
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be listed ({})", root.string(), error.message()));
   std::ranges::sort(folders);
   std::vector<EvaluationSequence> sequences;
   if (root == dataset)
@@ -68,24 +73,38 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
 
 // Chained with the hash before. A file that cannot be read counts as empty.
 std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes;
-  std::error_code unknown;
-  if (const auto size = fs::file_size(file, unknown); stream && !unknown) {
-    bytes.resize(size);
-    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  constexpr std::size_t kBlockBytes = std::size_t{16} << 20;
+  auto input = InputFile::open(file);
+  if (!input) return checksum_bytes({}, hash);
+  std::vector<std::uint8_t> block(std::min<std::uintmax_t>(input->size(), kBlockBytes));
+  for (std::uintmax_t left = input->size(); left > 0; left -= block.size()) {
+    block.resize(std::min<std::uintmax_t>(left, kBlockBytes));
+    if (!input->read(block.data(), block.size())) return hash;
+    hash = checksum_bytes(block, hash);
   }
-  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, hash);
+  return hash;
+}
+
+// Whether the entry is a link to a folder that contains it.
+bool leads_upwards(const fs::directory_entry& entry) {
+  std::error_code error;
+  if (!entry.is_symlink(error) || !entry.is_directory(error)) return false;
+  const fs::path target = fs::canonical(entry.path(), error);
+  const fs::path here = fs::canonical(entry.path().parent_path(), error);
+  return error || std::ranges::mismatch(target, here).in1 == target.end();
 }
 
 // Names and contents of all files of a folder, also below symbolic links: data sets often link to their images. A
 // folder that does not exist counts as empty.
 std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
   std::vector<fs::path> files;
-  std::error_code none;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink, none))
-    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink, error), end;
+       !error && it != end; it.increment(error)) {
+    std::error_code unreadable;
+    if (it->is_regular_file(unreadable)) files.push_back(it->path());
+    if (leads_upwards(*it)) it.disable_recursion_pending();
+  }
   std::ranges::sort(files);
   for (const fs::path& file : files) hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
   return hash;
@@ -122,7 +141,9 @@ std::string fingerprint(const RecognizerConfig& config, std::uint64_t hash) {
 std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
   std::vector<RecognizerConfig> configs;
   const std::vector<int> previous_views = parse_previous_views(arguments.previous_views);
-  for (const std::string& preset : split(arguments.presets, ','))
+  const std::vector<std::string> presets = split(arguments.presets, ',');
+  if (presets.empty()) throw InputError("--presets: '' (names like mvr,default were expected)");
+  for (const std::string& preset : presets)
     for (const bool clustered : {true, false}) {
       if (!clustered && !arguments.without_clustering) continue;
       for (const int k : previous_views) {

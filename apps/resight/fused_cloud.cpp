@@ -90,8 +90,11 @@ Image<Rgb8> draw(const Fused& fused, int num_threads) {
 void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads) {
   const Fused fused = fuse(posed, num_threads);
   value_or_throw(write_ply(file, fused.cloud));
-  std::filesystem::path picture = file;
-  value_or_throw(write_color(picture.replace_extension(".png"), draw(fused, num_threads)));
+  value_or_throw(write_color(picture_of_cloud(file), draw(fused, num_threads)));
+}
+
+std::filesystem::path picture_of_cloud(const std::filesystem::path& file) {
+  return std::filesystem::path(file).replace_extension(".png");
 }
 
 }  // namespace resight::app

@@ -10,4 +10,7 @@ namespace resight::app {
 /// and next to it a picture (.png) from behind the cameras.
 void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads);
 
+/// The file of the picture next to a cloud.
+[[nodiscard]] std::filesystem::path picture_of_cloud(const std::filesystem::path& file);
+
 }  // namespace resight::app

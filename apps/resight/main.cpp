@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 
 #include "commands.hpp"
@@ -48,6 +48,16 @@ const CLI::Validator kSeeds(
       return is_seed ? std::string() : text + " is not a whole number from 0 to 2^64 - 1";
     },
     "NUMBER >= 0");
+
+// CLI11 accepts nan as a positive number, and prints the largest double as the end of the range.
+const CLI::Validator kPositive(
+    [](const std::string& text) {
+      double value = 0;
+      const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool is_number = code == std::errc() && end == text.data() + text.size();
+      return is_number && std::isfinite(value) && value > 0 ? std::string() : text + " is not a number above 0";
+    },
+    "NUMBER > 0");
 
 void add_threads(CLI::App* command, int& num_threads) {
   num_threads = resight::num_hardware_threads();
@@ -99,7 +109,7 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
       ->add_option("--deadline-ms", a.deadline_ms,
                    "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
                    "no limit]")
-      ->check(CLI::PositiveNumber);
+      ->check(kPositive);
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }
@@ -224,11 +234,11 @@ std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
 
 std::function<void()> add_options(CLI::App& app) {
   app.add_subcommand("options", "Print all options of settings files (--config) as Markdown");
-  return [] { fmt::print("{}", resight::options_reference()); };
+  return [] { print_text(resight::options_reference()); };
 }
 
 int refuse(const std::string& message) {
-  std::fprintf(stderr, "resight: %s\n", message.c_str());
+  print_error_line("", message);
   return kExitBadInput;
 }
 
@@ -259,9 +269,7 @@ const bool resight::app::kNeedsAvx2 = false;
 
 std::string resight::app::format_share(double share) { return std::isnan(share) ? "-" : fmt::format("{:.3f}", share); }
 
-void resight::app::print_warning(const std::string& what) {
-  std::fprintf(stderr, "resight: warning: %s\n", what.c_str());
-}
+void resight::app::print_warning(const std::string& what) { print_error_line("warning: ", what); }
 
 namespace {
 
@@ -295,6 +303,9 @@ int run_program(int argc, char** argv) {
       if (commands[i]->parsed()) runs[i]();
   } catch (const InputError& error) {
     return refuse(error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that no check has caught: a loop of links, a name that is too long.
+    return refuse(error.path1().string() + ": " + error.code().message());
   }
   return 0;
 }
@@ -306,9 +317,9 @@ int main(int argc, char** argv) {
   try {
     return run_program(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "resight: failed: %s\n", error.what());
+    print_error_line("failed: ", error.what());
   } catch (...) {
-    std::fprintf(stderr, "resight: failed for an unknown reason\n");
+    print_error_line("failed ", "for an unknown reason");
   }
   return kExitFailed;
 }

@@ -32,13 +32,12 @@ std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder) {
 }
 
 void print_track(const std::filesystem::path& folder, const ObjectTrack& track) {
-  fmt::print("{}: {} views, {}", folder.string(), track.views.size(),
-             track.is_camera_still ? "turntable" : "moving camera");
+  print("{}: {} views, {}", folder.string(), track.views.size(), track.is_camera_still ? "turntable" : "moving camera");
   if (!track.loops.empty())
-    fmt::print(", loop closure error {:.1f} mm (before adjustment: {:.1f} mm)\n", 1000 * track.closure_error_m,
-               1000 * track.drift_m);
+    print(", loop closure error {:.1f} mm (before adjustment: {:.1f} mm)\n", 1000 * track.closure_error_m,
+          1000 * track.drift_m);
   else
-    fmt::print(", no loop closure\n");
+    print(", no loop closure\n");
 }
 
 ObjectTrack follow(const std::filesystem::path& folder, const TrackObjectOptions& options) {
@@ -88,7 +87,8 @@ void run_model(const ModelArguments& arguments) {
   ObjectModelBuild build = value_or_fail(build_model(whole->views, build_options));
   build.report.closure_error_m = whole->closure_error_m;
   value_or_throw(write_object_model(arguments.out, whole->views, build));
-  fmt::print("{}model {}: {}\n", format_report(build.report), folder_name(arguments.out), arguments.out.string());
+  print_text(format_report(build.report));
+  print("model {}: {}\n", folder_name(arguments.out), arguments.out.string());
 }
 
 }  // namespace resight::app

@@ -4,12 +4,13 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <utility>
+
+#include "resight/core/printable.hpp"
 
 namespace resight::app {
 
-Progress::Progress(std::string what, int num_items)
-    : what_(std::move(what)), num_items_(num_items), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(const std::string& what, int num_items)
+    : what_(printable(what)), num_items_(num_items), is_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (has_open_line_) std::fputc('\n', stderr);
@@ -18,7 +19,7 @@ Progress::~Progress() {
 void Progress::report(int done, const std::string& detail) {
   // ESC[K clears the rest of a longer previous line.
   std::fprintf(stderr, is_terminal_ ? "\r%s %d/%d: %s\x1b[K" : "%s %d/%d: %s\n", what_.c_str(), done, num_items_,
-               detail.c_str());
+               printable(detail).c_str());
   std::fflush(stderr);
   has_open_line_ = is_terminal_;
 }

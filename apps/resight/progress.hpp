@@ -7,7 +7,7 @@ namespace resight::app {
 /// Reports progress on standard error: a line that is overwritten on a terminal, otherwise one line per item.
 class Progress {
  public:
-  Progress(std::string what, int num_items);
+  Progress(const std::string& what, int num_items);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

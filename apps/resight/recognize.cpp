@@ -5,6 +5,7 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
 #include "resight/models/library_file.hpp"
@@ -15,6 +16,7 @@
 namespace resight::app {
 
 void run_recognize(const RecognizeArguments& arguments) {
+  check_output_folder(arguments.out, {arguments.sequence, arguments.models});
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   if (arguments.seed) config.set_seed(*arguments.seed);
@@ -45,12 +47,12 @@ void run_recognize(const RecognizeArguments& arguments) {
                               std::span(&run, 1), library));
   value_or_throw(folder.commit());
   const RunSummary summary = summarize(run);
-  fmt::print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views,
-             summary.num_detections, summary.num_events, summary.median_view_wall_s);
+  print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views, summary.num_detections,
+        summary.num_events, summary.median_view_wall_s);
   if (summary.num_scored_views > 0)
-    fmt::print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
-               format_share(summary.score.recall()), summary.num_ghosts);
-  fmt::print("report: {}\n", (arguments.out / "report.html").string());
+    print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
+          format_share(summary.score.recall()), summary.num_ghosts);
+  print("report: {}\n", (arguments.out / "report.html").string());
 }
 
 }  // namespace resight::app

@@ -42,8 +42,8 @@ void simulate_scene(const SimulateArguments& arguments) {
     value_or_throw(
         write_simulation(simulation, arguments.out, to_format(arguments.format), write_options(arguments, progress)));
   }
-  fmt::print("{} objects, {} views, {} changes: {}\n", num_models, simulation.num_views(), simulation.events().size(),
-             arguments.out.string());
+  print("{} objects, {} views, {} changes: {}\n", num_models, simulation.num_views(), simulation.events().size(),
+        arguments.out.string());
 }
 
 void simulate_benchmark(const SimulateArguments& arguments) {
@@ -68,9 +68,8 @@ void simulate_benchmark(const SimulateArguments& arguments) {
     value_or_throw(write_simulations(scripts, arguments.seed, arguments.out, to_format(arguments.format),
                                      {.num_threads = arguments.num_threads}, options));
   }
-  fmt::print("{} version {}, seed {}: {} sequences, {} objects, {} views, {} changes: {}\n", kBenchmark,
-             benchmark.version, arguments.seed, scripts.size(), num_models, num_views, num_changes,
-             arguments.out.string());
+  print("{} version {}, seed {}: {} sequences, {} objects, {} views, {} changes: {}\n", kBenchmark, benchmark.version,
+        arguments.seed, scripts.size(), num_models, num_views, num_changes, arguments.out.string());
 }
 
 void simulate_recordings(const SimulateArguments& arguments) {
@@ -87,8 +86,8 @@ void simulate_recordings(const SimulateArguments& arguments) {
         write_recordings(object, arguments.out, to_format(arguments.format), options,
                          [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
   }
-  fmt::print("{} of {}, seed {}: {}/side_1, side_2\n", arguments.preset, object.name, arguments.seed,
-             arguments.out.string());
+  print("{} of {}, seed {}: {}/side_1, side_2\n", arguments.preset, object.name, arguments.seed,
+        arguments.out.string());
 }
 
 void simulate_benchmark_recordings(const SimulateArguments& arguments) {
@@ -100,8 +99,8 @@ void simulate_benchmark_recordings(const SimulateArguments& arguments) {
         arguments.seed, arguments.out, to_format(arguments.format), arguments.num_threads,
         [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
   }
-  fmt::print("{} version {}, seed {}: recordings of {} objects: {}\n", kBenchmark, kDynamicTabletopVersion,
-             arguments.seed, num_recorded, arguments.out.string());
+  print("{} version {}, seed {}: recordings of {} objects: {}\n", kBenchmark, kDynamicTabletopVersion, arguments.seed,
+        num_recorded, arguments.out.string());
 }
 
 bool is_recording(const std::string& preset) { return preset == kTurntableRecording || preset == kWalkRecording; }

@@ -4,6 +4,7 @@
 #include "camera_run.hpp"
 #include "commands.hpp"
 #include "fused_cloud.hpp"
+#include "output_paths.hpp"
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/files.hpp"
 #include "resight/io/convert.hpp"
@@ -15,6 +16,9 @@ namespace resight::app {
 namespace {
 
 constexpr double kDegPerRad = 57.29577951308232;
+// How the files begin that this command writes, and may therefore replace.
+constexpr const char* kPosesComment = "# world_from_camera of ";
+constexpr const char* kObjectsComment = "# static objects in ";
 
 std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int component) {
   std::vector<TrajectoryPose> poses;
@@ -29,10 +33,15 @@ std::filesystem::path file_of_component(const std::filesystem::path& out, int co
   return out.parent_path() / fmt::format("{}_component{}{}", out.stem().string(), component, out.extension().string());
 }
 
+// poses_objects.txt
+std::filesystem::path file_of_objects(const std::filesystem::path& out) {
+  return out.parent_path() / (out.stem().string() + "_objects" + out.extension().string());
+}
+
 void write_components(const TrackArguments& arguments, const CameraTrack& track) {
   for (int component = 0; component < track.num_components; ++component) {
     const std::vector<TrajectoryPose> poses = poses_of(track, component);
-    std::string comment = fmt::format("world_from_camera of {} of {} views of {}", poses.size(), track.views.size(),
+    std::string comment = fmt::format("{}{} of {} views of {}", kPosesComment + 2, poses.size(), track.views.size(),
                                       arguments.sequence.string());
     if (track.num_components > 1)
       comment += fmt::format("; component {} of {}, each in its own frame", component, track.num_components);
@@ -40,11 +49,10 @@ void write_components(const TrackArguments& arguments, const CameraTrack& track)
   }
 }
 
-// poses_objects.txt
 void write_objects(const TrackArguments& arguments, const CameraTrack& track, std::span<const StaticObject> objects,
                    const ModelLibrary& library) {
   std::string text =
-      fmt::format("# static objects in {}, adjusted jointly with the cameras\n", arguments.sequence.string());
+      fmt::format("{}{}, adjusted jointly with the cameras\n", kObjectsComment, arguments.sequence.string());
   text +=
       "# component tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object, frame of the "
       "component)\n";
@@ -53,10 +61,9 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
                         object.views.size(), track.views[static_cast<std::size_t>(object.views.front())].name,
                         track.views[static_cast<std::size_t>(object.views.back())].name,
                         library.objects[static_cast<std::size_t>(object.object)].name);
-  const std::filesystem::path file =
-      arguments.out.parent_path() / (arguments.out.stem().string() + "_objects" + arguments.out.extension().string());
+  const std::filesystem::path file = file_of_objects(arguments.out);
   value_or_throw(write_file(file, text));
-  fmt::print("{} static objects: {}\n", objects.size(), file.string());
+  print("{} static objects: {}\n", objects.size(), file.string());
 }
 
 void print_error(const Sequence& recorded, const CameraTrack& track) {
@@ -67,19 +74,30 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
     found.push_back(track.views[v].world_from_camera);
   }
   const TrajectoryError error = find_trajectory_error(given, found);
-  fmt::print("compared with given poses: ATE {:.2f} mm rms, {:.2f} mm max; {:.3f} deg mean, {:.3f} deg max\n",
-             1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
+  print("compared with given poses: ATE {:.2f} mm rms, {:.2f} mm max; {:.3f} deg mean, {:.3f} deg max\n",
+        1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
+}
+
+// Poses of a run before may be replaced, those of further components included.
+void check_outputs(const TrackArguments& arguments) {
+  const auto check = [&](const std::filesystem::path& file, const char* signature) {
+    check_output_file(file, signature, "file of 'resight track'", {arguments.sequence});
+  };
+  check(arguments.out, kPosesComment);
+  for (int component = 1; std::filesystem::exists(file_of_component(arguments.out, component)); ++component)
+    check(file_of_component(arguments.out, component), kPosesComment);
+  if (arguments.models) check(file_of_objects(arguments.out), kObjectsComment);
+  if (!arguments.fused) return;
+  if (arguments.fused->extension() != ".ply")
+    throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
+  check_new_file(*arguments.fused);
+  check_new_file(picture_of_cloud(*arguments.fused));
 }
 
 }  // namespace
 
 void run_track(const TrackArguments& arguments) {
-  value_or_throw(check_writable(arguments.out));
-  if (arguments.fused) {
-    if (arguments.fused->extension() != ".ply")
-      throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
-    value_or_throw(check_writable(*arguments.fused));
-  }
+  check_outputs(arguments);
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
   const auto sequence = value_or_throw(open_sequence(arguments.sequence));
@@ -94,17 +112,17 @@ void run_track(const TrackArguments& arguments) {
   write_components(arguments, track);
   if (library) write_objects(arguments, track, objects, *library);
   const PosedSequence posed = take_largest_component(*sequence, track);
-  fmt::print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(),
-             track.edges.size(), track.num_loops, arguments.out.string());
+  print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(), track.edges.size(),
+        track.num_loops, arguments.out.string());
   if (sequence->has_poses()) print_error(*sequence, track);
   if (arguments.fused) {
     write_fused_cloud(posed, *arguments.fused, arguments.num_threads);
-    fmt::print("point cloud: {}\n", arguments.fused->string());
+    print("point cloud: {}\n", arguments.fused->string());
   }
   if (!arguments.posed) return;
   const DatasetFormat format = arguments.format == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
   value_or_throw(convert_sequence(posed, *arguments.posed, format));
-  fmt::print("sequence with these poses: {}\n", arguments.posed->string());
+  print("sequence with these poses: {}\n", arguments.posed->string());
 }
 
 }  // namespace resight::app

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 
 namespace resight {
 namespace {
@@ -87,9 +89,16 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
 
 std::string head_line(const std::string& job) { return ordered_json{{"format", kFormat}, {"job", job}}.dump() + "\n"; }
 
-std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std::string& job) {
+// Whether the first line is the head of any journal. A head that was cut off while it was written counts.
+bool is_journal(std::string_view text) {
+  const std::string head = ordered_json{{"format", kFormat}}.dump();
+  const std::string_view begin = std::string_view(head).substr(0, head.size() - 1);  // Without the brace.
+  return text.starts_with(begin) || begin.starts_with(text);
+}
+
+std::vector<TrackerStep> read_steps(const std::string& text, const std::string& job) {
   std::vector<TrackerStep> steps;
-  std::ifstream in(file, std::ios::binary);
+  std::istringstream in(text);
   std::string line;
   if (!std::getline(in, line) || line + "\n" != head_line(job)) return steps;
   while (std::getline(in, line) && !in.eof()) {  // At the end of the file: the last line is incomplete.
@@ -102,8 +111,17 @@ std::vector<TrackerStep> read_steps(const std::filesystem::path& file, const std
 
 }  // namespace
 
-TrackJournal::TrackJournal(std::filesystem::path file, std::string job)
-    : file_(std::move(file)), job_(std::move(job)), steps_(read_steps(file_, job_)) {}
+Result<TrackJournal> TrackJournal::open(std::filesystem::path file, std::string job) {
+  std::error_code none;
+  if (std::filesystem::symlink_status(file, none).type() == std::filesystem::file_type::not_found)
+    return TrackJournal(std::move(file), std::move(job), {});
+  const auto text = read_file(file);
+  if (!text) return text.error();
+  if (!is_journal(*text))
+    return file_error(file, "exists already and is no journal of 'resight track'; rename it or choose another output");
+  std::vector<TrackerStep> steps = read_steps(*text, job);
+  return TrackJournal(std::move(file), std::move(job), std::move(steps));
+}
 
 // Rewrites the file without its unreadable lines.
 Result<void> TrackJournal::begin() {

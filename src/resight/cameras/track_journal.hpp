@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "resight/cameras/view_tracker.hpp"
@@ -16,8 +17,9 @@ namespace resight {
 class TrackJournal {
  public:
   /// Resumes the journal in `file`, or starts a new one with the first step. `job` identifies what is tracked: steps of
-  /// another job are ignored, as is an incomplete line and everything after it.
-  TrackJournal(std::filesystem::path file, std::string job);
+  /// another job are ignored, as is an incomplete line and everything after it. Fails if `file` is no journal, so that
+  /// it is neither overwritten nor removed.
+  [[nodiscard]] static Result<TrackJournal> open(std::filesystem::path file, std::string job);
 
   /// Steps of views 0, 1, ..., as found in the file.
   [[nodiscard]] const std::vector<TrackerStep>& steps() const { return steps_; }
@@ -27,6 +29,8 @@ class TrackJournal {
   void remove();
 
  private:
+  TrackJournal(std::filesystem::path file, std::string job, std::vector<TrackerStep> steps)
+      : file_(std::move(file)), job_(std::move(job)), steps_(std::move(steps)) {}
   [[nodiscard]] Result<void> begin();
 
   std::filesystem::path file_;

@@ -37,7 +37,9 @@ class TrackJournalTest : public testing::Test {
 
   // Tracks the views after those in the journal, up to view `to` - 1.
   void go_on(ViewTracker& tracker, const std::string& job, int to) const {
-    TrackJournal journal(file_, job);
+    auto opened = TrackJournal::open(file_, job);
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    TrackJournal& journal = *opened;
     int view = 0;
     for (const TrackerStep& step : journal.steps()) {
       std::optional<PreparedView> prepared;
@@ -50,7 +52,9 @@ class TrackJournalTest : public testing::Test {
       ASSERT_TRUE(journal.append(tracker.last_step()).ok());
     }
   }
-  [[nodiscard]] std::size_t num_steps(const std::string& job) const { return TrackJournal(file_, job).steps().size(); }
+  [[nodiscard]] std::size_t num_steps(const std::string& job) const {
+    return TrackJournal::open(file_, job)->steps().size();
+  }
   [[nodiscard]] std::string read() const {
     std::ifstream in(file_, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -104,13 +108,24 @@ TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
 TEST_F(TrackJournalTest, BeginsWithTheFirstStepAndIsRemovedInTheEnd) {
   ViewTracker tracker;
   (void)tracker.add_view(make_view(0));
-  TrackJournal journal(file_, "job");
+  auto opened = TrackJournal::open(file_, "job");
+  ASSERT_TRUE(opened.ok());
+  TrackJournal& journal = *opened;
   EXPECT_FALSE(fs::exists(file_));
   ASSERT_TRUE(journal.append(tracker.last_step()).ok());
-  EXPECT_FALSE(TrackJournal(file_ / "below", "job").append(tracker.last_step()).ok());  // Below a file.
+  auto below = TrackJournal::open(file_ / "below", "job");  // Below a file.
+  EXPECT_FALSE(below.ok() && below->append(tracker.last_step()).ok());
   EXPECT_EQ(num_steps("job"), 1U);
   journal.remove();
   EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(TrackJournalTest, AForeignFileIsNotTakenForAJournal) {
+  ASSERT_TRUE(write_file(file_, "my notes\n").ok());
+  const auto opened = TrackJournal::open(file_, "job");
+  ASSERT_FALSE(opened.ok());
+  EXPECT_NE(opened.error().message.find("no journal"), std::string::npos) << opened.error().message;
+  EXPECT_EQ(read(), "my notes\n");
 }
 
 }  // namespace

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/core/files.hpp"
 
+#include <fcntl.h>
+#include <sys/random.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <fstream>
+#include <cerrno>
+#include <climits>
+#include <cstdint>
+#include <cstdio>
+#include <random>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -14,10 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A hidden name in `folder` that no other writer uses.
+/// A hidden name in `folder` that nobody can guess, so that nobody can place a link there. Long names are cut.
 fs::path temporary_name(const fs::path& folder, const std::string& name) {
-  static std::atomic<unsigned> counter{0};
-  return folder / ("." + name + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
+  constexpr std::size_t kMaxShownBytes = 100;
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof(number), 0) != static_cast<ssize_t>(sizeof(number))) number = std::random_device{}();
+  std::string hidden(1, '.');
+  hidden.append(name, 0, kMaxShownBytes).append(".partial-").append(std::to_string(number));
+  return folder / hidden;
 }
 
 /// Makes the path absolute and removes a trailing slash, which filename() and parent_path() require.
@@ -48,6 +57,44 @@ std::error_code move_entries(const fs::path& from, const fs::path& to) {
   return error;
 }
 
+/// A new file, open for writing, that is removed unless it is renamed.
+class PendingFile {
+ public:
+  explicit PendingFile(fs::path path)
+      : path_(std::move(path)),
+        // With O_EXCL, neither an existing file nor a link is opened.
+        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)) {}
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+  ~PendingFile() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    if (!is_renamed_) ::unlink(path_.c_str());
+  }
+
+  [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
+  bool write(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
+  /// The content must be on the disk before the name is: after a power failure, the old or the new file is there.
+  bool rename(const fs::path& target) {
+    if (::fsync(descriptor_) != 0 && errno != EINVAL) return false;
+    is_renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
+    return is_renamed_;
+  }
+
+ private:
+  fs::path path_;
+  int descriptor_;
+  bool is_renamed_ = false;
+};
+
 }  // namespace
 
 Error file_error(const fs::path& file, std::string_view what) {
@@ -63,6 +110,7 @@ Result<void> check_writable(const fs::path& path) {
   std::error_code error;
   if (!missing.empty() && !fs::is_directory(folder, error))
     return file_error(path, "cannot be written (" + folder.string() + " is not a folder)");
+  if (target.filename().native().size() > NAME_MAX) return file_error(path, "cannot be written (its name is too long)");
   if (::access(folder.c_str(), W_OK) != 0) return file_error(path, "cannot be written (no permission)");
   return {};
 }
@@ -76,21 +124,15 @@ Result<void> write_file(const fs::path& file, std::initializer_list<std::string_
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) return file_error(target.parent_path(), "cannot be created (" + error.message() + ")");
-  const fs::path pending = temporary_name(target.parent_path(), target.filename().string());
-  {
-    std::ofstream out(pending, std::ios::binary);
-    for (const std::string_view bytes : parts) out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
-    if (!out) {
-      fs::remove(pending, error);
-      return file_error(file, "cannot be written (no space, no permission?)");
-    }
-  }
-  fs::rename(pending, target, error);
-  if (!error) return {};
-  const std::string why = error.message();
-  fs::remove(pending, error);
-  return file_error(file, "cannot be written (" + why + ")");
+  const auto fail = [&](int code) {
+    return file_error(file, "cannot be written (" + std::generic_category().message(code) + ")");
+  };
+  PendingFile pending(temporary_name(target.parent_path(), target.filename().string()));
+  if (!pending.is_open()) return fail(errno);
+  for (const std::string_view bytes : parts)
+    if (!pending.write(bytes)) return fail(errno);
+  if (!pending.rename(target)) return fail(errno);
+  return {};
 }
 
 Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path, ExistingFolder existing) {
@@ -102,7 +144,8 @@ Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path, Ex
     return file_error(final_path, "exists already; choose another folder or delete it first");
   fs::path first_made = first_missing(target.parent_path());
   const fs::path pending = temporary_name(exists ? target : target.parent_path(), target.filename().string());
-  fs::create_directories(pending, error);
+  fs::create_directories(pending.parent_path(), error);
+  if (!error && !fs::create_directory(pending, error) && !error) error = std::make_error_code(std::errc::file_exists);
   if (error) return file_error(final_path, "cannot be created (" + error.message() + ")");
   return PendingDirectory(target, pending, std::move(first_made));
 }

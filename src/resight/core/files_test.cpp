@@ -47,6 +47,31 @@ TEST_F(FilesTest, AFileIsWrittenWholeWithItsFolder) {
   EXPECT_THAT(entries(), ElementsAre("a", "a/b.txt"));
 }
 
+// Whoever can guess the temporary name can make us write through a link placed there.
+TEST_F(FilesTest, ALinkAtAGuessableNameIsNotWrittenThrough) {
+  write(folder_ / "victim", "precious");
+  for (int i = 0; i < 50; ++i)
+    fs::create_symlink("victim", folder_ / (".a.txt.partial-" + std::to_string(::getpid()) + "-" + std::to_string(i)));
+  ASSERT_TRUE(write_file(folder_ / "a.txt", "new").ok());
+  EXPECT_EQ(read(folder_ / "victim"), "precious");
+  EXPECT_FALSE(fs::is_symlink(folder_ / "a.txt"));
+  EXPECT_EQ(read(folder_ / "a.txt"), "new");
+}
+
+TEST_F(FilesTest, ALinkIsReplacedNotFollowed) {
+  write(folder_ / "victim", "precious");
+  fs::create_symlink("victim", folder_ / "link");
+  ASSERT_TRUE(write_file(folder_ / "link", "new").ok());
+  EXPECT_EQ(read(folder_ / "victim"), "precious");
+  EXPECT_EQ(read(folder_ / "link"), "new");
+}
+
+TEST_F(FilesTest, LongNamesLeaveRoomForTheTemporaryOne) {
+  ASSERT_TRUE(write_file(folder_ / std::string(250, 'a'), "x").ok());
+  EXPECT_THAT(write_file(folder_ / std::string(300, 'a'), "x").error().message, HasSubstr("cannot be written"));
+  EXPECT_THAT(entries(), ElementsAre(std::string(250, 'a')));
+}
+
 TEST_F(FilesTest, WhatCannotBeWrittenLeavesNothingBehind) {
   fs::create_directories(folder_ / "taken/full");
   write(folder_ / "file", "");
@@ -61,6 +86,7 @@ TEST_F(FilesTest, WritablePlacesAreKnownBeforehand) {
   EXPECT_TRUE(check_writable(folder_ / "new/er/est").ok());
   EXPECT_TRUE(check_writable(folder_ / "file").ok());
   EXPECT_THAT(check_writable(folder_ / "file/below").error().message, HasSubstr("file is not a folder"));
+  EXPECT_THAT(check_writable(folder_ / std::string(300, 'a')).error().message, HasSubstr("name is too long"));
   EXPECT_THAT(entries(), ElementsAre("file")) << "the check must not change anything";
   if (::geteuid() == 0) return;  // root may write anywhere
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);

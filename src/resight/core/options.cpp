@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -30,7 +31,8 @@ struct ToText {
 };
 
 std::optional<double> number_in(const OptionValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) return *number;
+  const auto* number = std::get_if<double>(&value);
+  if (number != nullptr && std::isfinite(*number)) return *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   return std::nullopt;
 }

@@ -2,10 +2,10 @@
 #include "resight/evaluation/change_truth.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "resight/core/input_file.hpp"
 #include "resight/evaluation/placement_changes.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/model_source.hpp"
@@ -112,10 +112,10 @@ Result<void> add_chains(const fs::path& file, const Sequence& sequence, const Mo
 
 Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
   try {
-    std::ifstream stream(file);
-    if (!stream) return Error{file.string() + ": cannot be read"};
+    const auto text = read_file(file);
+    if (!text) return text.error();
     std::vector<TrueChange> changes;
-    const json document = json::parse(stream);
+    const json document = json::parse(*text);
     for (const json& event : document.at("events")) changes.push_back(change_from(event));
     return changes;
   } catch (const std::exception& error) {

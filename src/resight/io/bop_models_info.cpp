@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/internal/model_info.hpp"
@@ -85,7 +86,10 @@ Result<std::map<int, BopModelInfo>> read_models_info(const fs::path& file) {
   for (const auto& [id, entry] : *members) {
     auto symmetries = parse_symmetries(*entry, fmt::format("{}: object {}", file.string(), id));
     if (!symmetries) return symmetries.error();
-    infos[id] = {as_text(member(*entry, "name")).value_or(bop_object_name(id)), std::move(*symmetries)};
+    std::string name = as_text(member(*entry, "name")).value_or(bop_object_name(id));
+    if (const auto checked = check_object_name(name); !checked)
+      return file_error(file, fmt::format("object {}: {}", id, checked.error().message));
+    infos[id] = {std::move(name), std::move(*symmetries)};
   }
   return infos;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/internal/sequences.hpp"
@@ -75,6 +76,8 @@ Result<GroundTruthObject> parse_object(const nlohmann::json& entry, const Names&
   const auto known = names.find(*id);
   object.object =
       known != names.end() ? known->second.name : as_text(member(entry, "name")).value_or(bop_object_name(*id));
+  if (const auto checked = check_object_name(object.object); !checked)
+    return Error{fmt::format("{}: {}", what, checked.error().message)};
   object.bop_id = *id;
   object.instance = as_integer(member(entry, "instance")).value_or(counts[object.object]);
   ++counts[object.object];
@@ -88,6 +91,9 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
   if (!table.has_ground_truth) return {};
   const auto truth = read_json(file);
   if (!truth) return truth.error();
+  const auto members = numbered_members(*truth, file.string());
+  if (!members) return members.error();
+  const std::map<int, const nlohmann::json*> lists(members->begin(), members->end());
   Result<nlohmann::json> info = nlohmann::json();
   if (is_file(scene / "scene_gt_info.json")) info = read_json(scene / "scene_gt_info.json");
   if (!info) return info.error();
@@ -98,8 +104,9 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
     names = std::move(*read);
   }
   for (ListedView& view : table.views) {
-    const nlohmann::json& list = member(*truth, std::to_string(view.image_id));
-    if (list.is_null()) continue;
+    const auto entry = lists.find(view.image_id);
+    if (entry == lists.end()) continue;
+    const nlohmann::json& list = *entry->second;
     const std::string what = fmt::format("{}: image {}", file.string(), view.image_id);
     if (!list.is_array()) return Error{what + ": expected a list of objects"};
     std::map<std::string, int> counts;

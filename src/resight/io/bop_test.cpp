@@ -107,6 +107,22 @@ TEST(BopScene, BadContent) {
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {"cam_K": "x"}})"), HasSubstr("9 numbers"));
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {"cam_K": [5,0,1,0,5,1,0,0,1], "depth_scale": 0}})"),
               HasSubstr("depth_scale"));
+  EXPECT_THAT(message_with("scene_camera.json", R"({"1": {}, "1": {}})"), HasSubstr("the key '1' twice"));
+  EXPECT_THAT(message_with("scene_camera.json", R"({"1": {}, "01": {}})"), HasSubstr("several keys are the number 1"));
+  EXPECT_THAT(message_with("scene_camera.json", "{\n\"1\": NaN}"), HasSubstr("line 2 (NaN and infinite"));
+  EXPECT_THAT(message_with("scene_camera.json", "{\"1\": -Infinity}"), HasSubstr("(NaN and infinite"));
+  EXPECT_THAT(message_with("scene_camera.json", "{\"1\": "), HasSubstr("line 1 (cut off?)"));
+  EXPECT_THAT(message_with("scene_camera.json", "{\"1\": 1e999}"), HasSubstr("a number is too large"));
+  EXPECT_THAT(message_with("scene_camera.json",
+                           R"({"1": {"cam_K": [5,0,1,0,5,1,0,0,1], "cam_R_w2c": [1,0,0,0,1,0,0,0,1],
+                               "cam_t_w2c": [0, 0, 1e300]}})"),
+              HasSubstr("away from the origin"));
+  EXPECT_THAT(message_with("scene_gt.json", "[]"), HasSubstr("scene_gt.json: expected a JSON object"));
+  for (const char* name : {"", "../../x", "a\\nb"})
+    EXPECT_THAT(message_with("scene_gt.json", std::string(R"({"1": [{"obj_id": 99, "name": ")") + name +
+                                                  R"(", "cam_R_m2c": [1,0,0,0,1,0,0,0,1], "cam_t_m2c": [0,0,0]}]})"),
+                HasSubstr("image 1: the name of an object"))
+        << name;
   EXPECT_THAT(message_with("scene_gt.json", R"({"1": {}})"), HasSubstr("list of objects"));
   EXPECT_THAT(message_with("scene_gt.json", R"({"1": [{"obj_id": 1.5}]})"), HasSubstr("obj_id"));
   EXPECT_THAT(message_with("scene_gt.json",
@@ -194,6 +210,16 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
 TEST(BopModels, IdsAreFilledUp) {
   EXPECT_THAT(*assign_bop_ids(std::vector<int>{0, 2, 0, 1, 0}), testing::ElementsAre(3, 2, 4, 1, 5));
   EXPECT_FALSE(assign_bop_ids(std::vector<int>{2, 2}).ok());
+}
+
+TEST(BopModels, NamesThatCannotBeUsed) {
+  io::TestDirectory directory;
+  io::write_text(directory / "models/obj_000001.ply", "");
+  for (const std::string& name : {std::string(), std::string("../../x"), std::string(100000, 'a')}) {
+    io::write_text(directory / "models/models_info.json", R"({"1": {"name": ")" + name + R"("}})");
+    EXPECT_THAT(find_models({directory / "models"}).error().message,
+                HasSubstr("models_info.json: object 1: the name of an object"));
+  }
 }
 
 TEST(BopModels, MetresInAMillimetreFolder) {

@@ -47,7 +47,7 @@ std::optional<NpyHeader> parse_npy_header(std::string_view bytes) {
   const bool row_major = dictionary.find("'fortran_order': False") != dictionary.npos;
   const auto shape = parse_shape(dictionary);
   if (!float32 || !row_major || !shape || shape->first <= 0 || shape->second <= 0 || shape->first > kMaxImageSide_px ||
-      shape->second > kMaxImageSide_px)
+      shape->second > kMaxImageSide_px || shape->first * shape->second > kMaxViewPixels)
     return std::nullopt;
   return NpyHeader{static_cast<int>(shape->second), static_cast<int>(shape->first), begin + length};
 }

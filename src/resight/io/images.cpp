@@ -17,13 +17,14 @@ namespace {
 
 constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
-Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags) {
+Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags, std::int64_t max_pixels) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
   const auto header = io::parse_image_header(bytes);
   if (!header) return fail("is not a supported image (expected PNG or JPEG)");
   if (header->width <= 0 || header->height <= 0 || header->width > kMaxImageSide_px ||
-      header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > kMaxImagePixels)
-    return fail(fmt::format("the image size {}x{} is out of range", header->width, header->height));
+      header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > max_pixels)
+    return fail(fmt::format("the image size {}x{} is out of range (at most {} px per side and {} px in all)",
+                            header->width, header->height, kMaxImageSide_px, max_pixels));
   if (!header->complete) return fail("the image is cut off");
   if (!header->intact) return fail("the image is damaged (a checksum does not match)");
   try {
@@ -36,10 +37,10 @@ Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags)
   }
 }
 
-Result<cv::Mat> read(const std::filesystem::path& file, int flags) {
+Result<cv::Mat> read(const std::filesystem::path& file, int flags, std::int64_t max_pixels) {
   const auto bytes = io::read_file(file);
   if (!bytes) return bytes.error();
-  return decode(*bytes, file.string(), flags);
+  return decode(*bytes, file.string(), flags, max_pixels);
 }
 
 /// Keeps the orientation of the file, so that depth and colour remain registered.
@@ -75,19 +76,19 @@ Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
 }  // namespace
 
 Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name) {
-  const auto bgr = decode(bytes, name, kColorFlags);
+  const auto bgr = decode(bytes, name, kColorFlags, kMaxImagePixels);
   if (!bgr) return bgr.error();
   return to_color(*bgr);
 }
 
-Result<Image<Rgb8>> read_color(const std::filesystem::path& file) {
-  const auto bgr = read(file, kColorFlags);
+Result<Image<Rgb8>> read_color(const std::filesystem::path& file, std::int64_t max_pixels) {
+  const auto bgr = read(file, kColorFlags, max_pixels);
   if (!bgr) return bgr.error();
   return to_color(*bgr);
 }
 
 Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file) {
-  const auto image = read(file, cv::IMREAD_UNCHANGED);
+  const auto image = read(file, cv::IMREAD_UNCHANGED, kMaxViewPixels);
   if (!image) return image.error();
   if (image->channels() != 1 || (image->depth() != CV_16U && image->depth() != CV_8U))
     return io::file_error(file, fmt::format("{} channels of {} bytes; expected a depth image: one channel of 16 bits",
@@ -110,7 +111,7 @@ Result<Image<float>> read_depth(const std::filesystem::path& file, double metres
 }
 
 Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file) {
-  const auto image = read(file, cv::IMREAD_UNCHANGED);
+  const auto image = read(file, cv::IMREAD_UNCHANGED, kMaxViewPixels);
   if (!image) return image.error();
   Image<std::uint8_t> mask(image->cols, image->rows, 0);
   const std::size_t pixel_bytes = image->elemSize();

@@ -12,9 +12,12 @@ namespace resight {
 /// Files with larger images are rejected before they are decoded.
 inline constexpr int kMaxImageSide_px = 16384;
 inline constexpr int kMaxImagePixels = 1 << 27;
+/// Limit for the images of a view, of which several copies of 4 bytes and more per pixel are made.
+inline constexpr int kMaxViewPixels = 1 << 24;
 
 /// Reads a PNG or JPEG as 8-bit colour. Grey is copied to all three channels; alpha is dropped.
-[[nodiscard]] Result<Image<Rgb8>> read_color(const std::filesystem::path& file);
+[[nodiscard]] Result<Image<Rgb8>> read_color(const std::filesystem::path& file,
+                                             std::int64_t max_pixels = kMaxImagePixels);
 /// Same for the bytes of a file. `name` is used in error messages.
 [[nodiscard]] Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name);
 

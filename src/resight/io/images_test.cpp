@@ -66,6 +66,14 @@ TEST(Images, BadFiles) {
   huge.replace(16, 8, std::string("\0\1\0\0\0\1\0\0", 8));  // 65536 x 65536
   io::write_text(directory / "huge.png", huge);
   EXPECT_THAT(read_color(directory / "huge.png").error().message, HasSubstr("out of range"));
+  std::string large = bytes;
+  large.replace(16, 8, std::string("\0\0\x40\0\0\0\x20\0", 8));  // 16384 x 8192: allowed for a texture
+  io::write_text(directory / "large.png", large);
+  EXPECT_THAT(read_color(directory / "large.png").error().message, HasSubstr("checksum"));
+  for (const std::string& message :
+       {read_color(directory / "large.png", kMaxViewPixels).error().message,
+        read_depth(directory / "large.png", 1e-3).error().message, read_mask(directory / "large.png").error().message})
+    EXPECT_THAT(message, HasSubstr("16384x8192 is out of range"));
   EXPECT_THAT(read_depth(directory / "c.png", 1e-3).error().message, HasSubstr("one channel of 16 bits"));
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
 
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
@@ -21,14 +23,52 @@ bool flatten(const nlohmann::json& json, std::vector<double>& numbers, int depth
          std::ranges::all_of(json, [&](const auto& item) { return flatten(item, numbers, depth + 1); });
 }
 
+/// What is wrong where the parser stopped, behind the first `num_read` bytes.
+std::string describe_syntax_error(std::string_view text, std::size_t num_read) {
+  const std::size_t at = num_read == 0 ? 0 : num_read - 1;
+  const auto line = 1 + std::ranges::count(text.substr(0, at), '\n');
+  const std::string_view rest = text.substr(std::min(at, text.size()));
+  const char* why = "";
+  if (rest.find_first_not_of(" \t\r\n") == rest.npos) why = " (cut off?)";
+  if (rest.starts_with('N') || rest.starts_with('I') || rest.starts_with("nan") || rest.starts_with("inf"))
+    why = " (NaN and infinite numbers are not allowed)";
+  return fmt::format("is not valid JSON: line {}{}", line, why);
+}
+
+/// Remembers the first key that an object has twice. A parser would silently take one of the values.
+class KeyCheck {
+ public:
+  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& value) {
+    using Event = nlohmann::json::parse_event_t;
+    if (event == Event::object_start) keys_.emplace_back();
+    if (event == Event::object_end) keys_.pop_back();
+    if (event == Event::key && !keys_.back().insert(value.get<std::string>()).second && !repeated_)
+      repeated_ = value.get<std::string>();
+    return true;
+  }
+  [[nodiscard]] const std::optional<std::string>& repeated() const { return repeated_; }
+
+ private:
+  std::vector<std::set<std::string>> keys_;  ///< Of the objects around the current place.
+  std::optional<std::string> repeated_;
+};
+
 }  // namespace
 
 Result<nlohmann::json> read_json(const fs::path& file) {
   const auto text = read_file(file);
   if (!text) return text.error();
-  nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
-  if (json.is_discarded()) return file_error(file, "is not valid JSON (cut off?)");
-  return json;
+  KeyCheck keys;
+  try {
+    nlohmann::json json = nlohmann::json::parse(*text, std::ref(keys));
+    if (keys.repeated())
+      return file_error(file, fmt::format("has the key '{:.40}' twice in one object", *keys.repeated()));
+    return json;
+  } catch (const nlohmann::json::parse_error& error) {
+    return file_error(file, describe_syntax_error(*text, error.byte));
+  } catch (const nlohmann::json::exception&) {
+    return file_error(file, "is not valid JSON: a number is too large");
+  }
 }
 
 Result<void> write_json(const fs::path& file, const nlohmann::json& json) {
@@ -97,7 +137,10 @@ Result<std::vector<std::pair<int, const nlohmann::json*>>> numbered_members(cons
       return Error{fmt::format("{}: the key '{:.40}' is no number", what, key)};
     members.emplace_back(static_cast<int>(*number), &value);
   }
-  std::ranges::sort(members, {}, &std::pair<int, const nlohmann::json*>::first);
+  using Member = std::pair<int, const nlohmann::json*>;
+  std::ranges::sort(members, {}, &Member::first);
+  if (const auto same = std::ranges::adjacent_find(members, {}, &Member::first); same != members.end())
+    return Error{fmt::format("{}: several keys are the number {}", what, same->first)};
   return members;
 }
 

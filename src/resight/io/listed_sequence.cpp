@@ -44,7 +44,7 @@ class ListedSequence final : public Sequence {
 
   [[nodiscard]] Result<RgbdFrame> read_view(int view) const override {
     const ListedView& listed = table_.views.at(view);
-    auto color = read_color(listed.color);
+    auto color = read_color(listed.color, kMaxViewPixels);
     if (!color) return color.error();
     auto depth = read_depth_image(listed);
     if (!depth) return depth.error();

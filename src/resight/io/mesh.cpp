@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/geometry/limits.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
@@ -21,7 +22,7 @@ Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
   if (content->mesh.faces.empty()) return io::file_error(file, "has points but no faces; expected a mesh");
   MeshFile result{std::move(content->mesh), {}};
   if (!content->texture_file.empty() && !result.mesh.uvs.empty()) {
-    auto texture = read_color(file.parent_path() / content->texture_file);
+    auto texture = io::read_texture(file.parent_path(), content->texture_file);
     if (texture)
       result.mesh.texture = std::move(*texture);
     else
@@ -70,10 +71,14 @@ Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMes
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& p : points_m) box.extend(p);
   const double size_m = box.isEmpty() ? 0 : box.diagonal().cast<double>().norm();
-  if (size_m >= options.min_size_m && size_m <= options.max_size_m) return {};
-  return io::file_error(
-      file, fmt::format("the object is {:.4g} m large (expected {} to {} m): {}", size_m, options.min_size_m,
-                        options.max_size_m, guess_unit(size_m, options.metres_per_unit)));
+  if (!(size_m >= options.min_size_m && size_m <= options.max_size_m))
+    return io::file_error(
+        file, fmt::format("the object is {:.4g} m large (expected {} to {} m): {}", size_m, options.min_size_m,
+                          options.max_size_m, guess_unit(size_m, options.metres_per_unit)));
+  if (!box.isEmpty() && box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() > kMaxObjectCoordinate_m)
+    return io::file_error(file, fmt::format("the object is {:.4g} m away from its origin (at most {} m): move it there",
+                                            box.center().norm(), kMaxObjectCoordinate_m));
+  return {};
 }
 
 Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options) {

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "resight/io/images.hpp"
-#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/mesh_files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 
 namespace resight::io {
@@ -42,6 +42,9 @@ class TextureLoader {
     const auto [it, is_new] = loaded_.try_emplace(name);
     if (!is_new) return it->second;
     auto texture = read(name);
+    if (texture && static_cast<std::int64_t>(texture->size()) > pixels_left_)
+      texture = Error{name + ": the textures have more than " + std::to_string(kMaxImagePixels) + " px in all"};
+    if (texture) pixels_left_ -= static_cast<std::int64_t>(texture->size());
     if (texture)
       it->second = std::move(*texture);
     else
@@ -52,7 +55,7 @@ class TextureLoader {
  private:
   Result<Image<Rgb8>> read(const std::string& name) const {
     const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
-    if (embedded == nullptr) return read_color(file_.parent_path() / name);
+    if (embedded == nullptr) return read_texture(file_.parent_path(), name);
     if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
       return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
                           file_.string() + " (texture)");
@@ -66,6 +69,7 @@ class TextureLoader {
   const fs::path& file_;
   std::vector<std::string>& warnings_;
   std::map<std::string, Image<Rgb8>> loaded_;
+  std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
 };
 
 TriangleMesh convert_geometry(const aiMesh& source) {
@@ -144,12 +148,20 @@ void unify_attributes(std::vector<MeshPart>& parts) {
 
 }  // namespace
 
+Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name) {
+  const auto file = path_below(folder, name);
+  return file ? read_color(*file) : file.error();
+}
+
 Result<ImportedParts> import_mesh_parts(const fs::path& file) {
-  if (const auto start = read_file_start(file, 16); !start) return start.error();
+  auto files = MeshFiles::open(file);
+  if (!files) return files.error();
   Assimp::Importer importer;
+  importer.SetIOHandler(files->release());  // The importer owns it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                              aiProcess_SortByPType | aiProcess_PreTransformVertices);
+  const aiScene* scene =
+      importer.ReadFile(file.filename().string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                                                      aiProcess_SortByPType | aiProcess_PreTransformVertices);
   if (scene == nullptr) {
     std::string why = importer.GetErrorString();
     std::ranges::replace(why, '\n', ' ');

@@ -69,6 +69,14 @@ TEST(Mesh, WrongUnitsAreRefused) {
   EXPECT_THROW((void)read_mesh(directory / "square.obj", {.metres_per_unit = -1}), std::invalid_argument);
 }
 
+TEST(Mesh, ObjectsFarFromTheirOriginAreRefused) {
+  io::TestDirectory directory;
+  io::write_text(directory / "far.obj", "v 1e6 0 0\nv 1000001 0 0\nv 1e6 1 0\nf 1 2 3\n");
+  EXPECT_THAT(read_mesh(directory / "far.obj").error().message, HasSubstr("m away from its origin (at most 100 m)"));
+  io::write_text(directory / "near.obj", "v 99 0 0\nv 100 0 0\nv 99 1 0\nf 1 2 3\n");
+  EXPECT_TRUE(read_mesh(directory / "near.obj").ok());
+}
+
 TEST(Mesh, SameFileSameBytes) {
   io::TestDirectory directory;
   write_square_obj(directory, 0.2);

@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/text.hpp"
@@ -146,6 +147,9 @@ Result<Locations> find_models(const std::vector<path>& paths) {
     all.insert(all.end(), found->begin(), found->end());
   }
   if (all.empty()) return Error{"no path to models was given"};
+  for (const ModelLocation& location : all)
+    if (const auto checked = check_object_name(location.name); !checked)
+      return io::file_error(location.path, checked.error().message);
   std::ranges::stable_sort(all, io::natural_less, &ModelLocation::name);
   for (std::size_t i = 1; i < all.size(); ++i)
     if (all[i].name == all[i - 1].name)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "resight/io/images.hpp"
+
 namespace resight {
 namespace {
 
@@ -96,6 +98,8 @@ Result<RgbdFrame> to_frame(const PcdCloud& cloud, std::string_view name) {
   if (!cloud.is_organized() || cloud.width < 2)
     return Error{fmt::format("{}: is not an organised cloud (WIDTH {} HEIGHT {}); expected the image grid of a camera",
                              name, cloud.width, cloud.height)};
+  if (cloud.points.size() > static_cast<std::size_t>(kMaxViewPixels))
+    return Error{fmt::format("{}: has {} pixels (at most {})", name, cloud.points.size(), kMaxViewPixels)};
   if (cloud.colors.size() != cloud.points.size())
     return Error{fmt::format("{}: has no colours (expected a field rgb or rgba)", name)};
   const Rigid3 points_from_camera = find_points_from_camera(cloud.points);

@@ -3,10 +3,22 @@
 
 #include <fmt/format.h>
 
+#include "resight/geometry/limits.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 
 namespace resight {
+namespace {
+
+bool is_far(const Eigen::Vector3d& translation) { return translation.cwiseAbs().maxCoeff() > kMaxSceneCoordinate_m; }
+
+Error far_error(std::string_view what) {
+  return Error{
+      fmt::format("{}: the pose is more than {} m away from the origin (check its unit, or subtract an offset)", what,
+                  kMaxSceneCoordinate_m)};
+}
+
+}  // namespace
 
 Result<Rigid3> rigid_from_matrix(const Eigen::Matrix4d& matrix, std::string_view what) {
   const std::string name(what);
@@ -17,6 +29,7 @@ Result<Rigid3> rigid_from_matrix(const Eigen::Matrix4d& matrix, std::string_view
   if (!pose.is_rigid(kPoseTolerance))
     return Error{
         name + ": the pose is not a rigid motion (scale, shear or reflection); expected a rotation and a translation"};
+  if (is_far(pose.translation)) return far_error(what);
   if (!pose.is_rigid(1e-9)) pose.rotation = nearest_rotation(pose.rotation);
   return pose;
 }
@@ -27,6 +40,7 @@ Result<Rigid3> rigid_from_quaternion(const Eigen::Quaterniond& rotation, const E
   if (!translation.allFinite() || !(std::abs(norm - 1) <= kPoseTolerance))
     return Error{fmt::format("{}: the pose is not rigid (norm of the quaternion {}, expected 1; all numbers finite)",
                              what, norm)};
+  if (is_far(translation)) return far_error(what);
   return Rigid3{rotation.normalized().toRotationMatrix(), translation};
 }
 

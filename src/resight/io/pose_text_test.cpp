@@ -44,6 +44,8 @@ TEST(PoseText, BadPoses) {
   EXPECT_THAT(message("1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1"), HasSubstr("reflection"));
   EXPECT_THAT(message("1 0 0 nan 0 1 0 0 0 0 1 0 0 0 0 1"), HasSubstr("NaN"));
   EXPECT_THAT(message("1 0 0 0 0 1 0 0 0 0 1 0 5 5 5 1"), HasSubstr("last row"));
+  EXPECT_THAT(message("1 0 0 1e300 0 1 0 0 0 0 1 0 0 0 0 1"), HasSubstr("more than 10000 m away from the origin"));
+  EXPECT_THAT(rigid_from_quaternion({1, 0, 0, 0}, {0, -1e300, 0}, "p").error().message, HasSubstr("more than 10000 m"));
 }
 
 TEST(Text, NaturalOrder) {

@@ -5,9 +5,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
-#include <sstream>
+
+#include "resight/core/input_file.hpp"
 
 namespace resight {
 namespace {
@@ -51,14 +51,11 @@ bool is_choice(const std::vector<Option>& options, const std::string& key) {
 
 Result<void> assign_settings(const std::filesystem::path& file, const std::function<std::vector<Option>()>& list_all) {
   const auto fail = [&](const std::string& what) { return Error{fmt::format("{}: {}", file.string(), what)}; };
-  std::error_code code;
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file, code)) return fail("cannot be read (a TOML file was expected)");
-  std::stringstream text;
-  text << stream.rdbuf();
+  const auto text = read_file(file);
+  if (!text) return text.error();
   toml::table table;
   try {
-    table = toml::parse(text.str());
+    table = toml::parse(*text);
   } catch (const toml::parse_error& error) {
     return fail(fmt::format("line {}: {}", error.source().begin.line, error.description()));
   }

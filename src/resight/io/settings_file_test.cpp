@@ -77,6 +77,7 @@ TEST_F(ReadSettings, NamesFileKeyAndRule) {
   EXPECT_THAT(error_of("length = 7"), HasSubstr("unknown key length (did you mean length_m?)"));
   EXPECT_THAT(error_of("length_m = \"long\""), HasSubstr("length_m must be a number"));
   EXPECT_THAT(error_of("length_m = [1]"), HasSubstr("length_m must be a number"));
+  EXPECT_THAT(error_of("length_m = inf"), HasSubstr("length_m must be a number"));
   EXPECT_THAT(error_of("length_m = -7"), HasSubstr("length_m = -7 (must be > 0)"));
   EXPECT_THAT(error_of("drive = \"oars\""), HasSubstr("one of \"sail\", \"engine\""));
   EXPECT_THAT(error_of("length_m = 7\n[anchor"), HasSubstr("line 2"));

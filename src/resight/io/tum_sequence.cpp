@@ -37,7 +37,8 @@ Result<void> for_each_row(const fs::path& file, const Row& row) {
   for (int number = 1; !rest.empty(); ++number) {
     const auto words = split_tokens(cut_line(rest));
     if (words.empty() || words[0].starts_with('#')) continue;
-    if (!row(words)) return file_error(file, fmt::format("line {} cannot be parsed", number));
+    if (!row(words))
+      return file_error(file, fmt::format("line {} cannot be parsed, or leads out of the folder", number));
   }
   return {};
 }
@@ -47,7 +48,9 @@ Result<std::vector<StampedFile>> read_file_list(const fs::path& list) {
   const auto done = for_each_row(list, [&](const std::vector<std::string_view>& words) {
     const auto time_s = parse_number(words[0]);
     if (!time_s || words.size() != 2) return false;
-    files.push_back({*time_s, list.parent_path() / std::string(words[1])});
+    const auto image = path_below(list.parent_path(), words[1]);
+    if (!image) return false;
+    files.push_back({*time_s, *image});
     return true;
   });
   if (!done) return done.error();
@@ -64,8 +67,11 @@ Result<ImagePairs> read_associations(const fs::path& file) {
     const auto first = parse_number(words[0]);
     const auto second = parse_number(words[2]);
     if (!first || !second) return false;
-    StampedFile color{*first, file.parent_path() / std::string(words[1])};
-    StampedFile depth{*second, file.parent_path() / std::string(words[3])};
+    const auto first_image = path_below(file.parent_path(), words[1]);
+    const auto second_image = path_below(file.parent_path(), words[3]);
+    if (!first_image || !second_image) return false;
+    StampedFile color{*first, *first_image};
+    StampedFile depth{*second, *second_image};
     if (words[1].starts_with("depth")) std::swap(color, depth);  // both orders occur
     pairs.emplace_back(std::move(color), std::move(depth));
     return true;

@@ -86,6 +86,12 @@ TEST(Tum, BadLists) {
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("no image has a pose"));
   io::write_text(directory / "rgb.txt", "x y\n");
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("rgb.txt: line 1"));
+  for (const char* outside : {"1 ../a.png\n", "1 /tmp/a.png\n", "1 rgb/../../a.png\n"}) {
+    io::write_text(directory / "rgb.txt", outside);
+    EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("out of the folder")) << outside;
+  }
+  io::write_text(directory / "associations.txt", "1 rgb/a.png 1 ../a.png\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("out of the folder"));
 }
 
 TEST(OpenSequence, NothingThere) {

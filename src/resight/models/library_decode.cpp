@@ -6,20 +6,30 @@
 #include <cstring>
 #include <set>
 
+#include "resight/core/names.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/limits.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
 namespace resight::internal {
 namespace {
 
 constexpr float kUnitTolerance = 1e-2F;
+constexpr float kMinVoxel_m = 1e-4F;
+constexpr float kMaxVoxel_m = 1;
+constexpr double kMaxDiameter_m = 4 * kMaxObjectCoordinate_m;  // more than the diagonal of all allowed points
 
 bool read(const flatbuffers::Vector<float>* values, std::vector<Eigen::Vector3f>& vectors) {
   if (values == nullptr || values->size() % 3 != 0) return false;
   vectors.resize(values->size() / 3);
   if (!vectors.empty()) std::memcpy(vectors.front().data(), values->data(), sizeof(float) * values->size());
-  for (const Eigen::Vector3f& v : vectors)
-    if (!v.allFinite()) return false;
+  return true;
+}
+
+/// Not so for NaN. Coordinates beyond the limit would not fit into the integers of pixels and voxels.
+bool are_near(const std::vector<Eigen::Vector3f>& points) {
+  for (const Eigen::Vector3f& p : points)
+    if (!(p.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m) || !p.allFinite()) return false;
   return true;
 }
 
@@ -33,7 +43,7 @@ bool read(const schema::Surface* surface, PointCloud& cloud) {
   if (surface == nullptr || surface->colors() == nullptr) return false;
   if (!read(surface->points(), cloud.points) || !read(surface->normals(), cloud.normals)) return false;
   const std::size_t n = cloud.points.size();
-  if (cloud.normals.size() != n || !are_unit(cloud.normals)) return false;
+  if (!are_near(cloud.points) || cloud.normals.size() != n || !are_unit(cloud.normals)) return false;
   const std::size_t num_colors = surface->colors()->size() / 3;
   if (surface->colors()->size() % 3 != 0 || (num_colors != 0 && num_colors != n)) return false;
   cloud.colors.resize(num_colors);
@@ -47,7 +57,7 @@ bool read(const schema::Features* stored, FeatureType type, int dimension, Coded
   features.dimension = stored->dimension();
   if (!read(stored->points(), features.points) || !read(stored->normals(), features.normals)) return false;
   const std::size_t n = features.size();
-  if (features.normals.size() != n || !are_unit(features.normals)) return false;
+  if (!are_near(features.points) || features.normals.size() != n || !are_unit(features.normals)) return false;
   if (n == 0) return stored->descriptors()->size() == 0 && (features.dimension == 0 || features.dimension == dimension);
   if (features.dimension != dimension || stored->descriptors()->size() != n * static_cast<std::size_t>(dimension))
     return false;
@@ -60,7 +70,7 @@ bool read(const schema::Features* stored, FeatureType type, int dimension, Coded
 bool read(const schema::Motion& stored, Rigid3& motion) {
   for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = stored.rotation()->Get(static_cast<std::uint16_t>(i));
   for (int i = 0; i < 3; ++i) motion.translation(i) = stored.translation()->Get(static_cast<std::uint16_t>(i));
-  return motion.is_rigid();
+  return motion.is_rigid() && motion.translation.cwiseAbs().maxCoeff() <= 2 * kMaxObjectCoordinate_m;
 }
 
 bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
@@ -68,7 +78,8 @@ bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
     symmetry.axis(i) = stored.direction()->Get(static_cast<std::uint16_t>(i));
     symmetry.offset(i) = stored.offset()->Get(static_cast<std::uint16_t>(i));
   }
-  return symmetry.axis.allFinite() && symmetry.offset.allFinite() && symmetry.axis.norm() > 0;
+  return symmetry.axis.allFinite() && symmetry.axis.norm() > 0 && symmetry.offset.allFinite() &&
+         symmetry.offset.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m;
 }
 
 template <typename Stored, typename Value>
@@ -96,8 +107,8 @@ std::string read(const schema::Object& stored, ObjectModel& object) {
   if (stored.center() == nullptr) return "centre";
   object.center = {stored.center()->x(), stored.center()->y(), stored.center()->z()};
   object.diameter_m = stored.diameter_m();
-  if (!object.center.allFinite()) return "centre";
-  return object.diameter_m >= 0 && std::isfinite(object.diameter_m) ? "" : "diameter";
+  if (!are_near({object.center})) return "centre";
+  return object.diameter_m >= 0 && object.diameter_m <= kMaxDiameter_m ? "" : "diameter";
 }
 
 }  // namespace
@@ -108,14 +119,15 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
   const schema::Library& stored = *schema::GetLibrary(payload.data());
   ModelLibrary library;
   library.surface_voxel_m = stored.surface_voxel_m();
-  if (!(library.surface_voxel_m > 0 && std::isfinite(library.surface_voxel_m)) || stored.objects() == nullptr)
+  if (!(library.surface_voxel_m >= kMinVoxel_m && library.surface_voxel_m <= kMaxVoxel_m) ||
+      stored.objects() == nullptr)
     return Error{"damaged: it has no objects, or no voxel size of surfaces"};
   const auto& objects = *stored.objects();
   std::set<std::string> names;  // Names are checked first, so that duplicates are not decoded.
   for (const schema::Object* object : objects) {
-    if (object->name() == nullptr || object->name()->size() == 0)
-      return Error{"damaged: the name of an object cannot be read"};
+    if (object->name() == nullptr) return Error{"damaged: the name of an object cannot be read"};
     const std::string name = object->name()->str();
+    if (const auto checked = check_object_name(name); !checked) return Error{"damaged: " + checked.error().message};
     if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
   }
   library.objects.resize(objects.size());

@@ -11,7 +11,7 @@ namespace {
 
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
-constexpr std::size_t kMaxPayloadBytes = 2'000'000'000;
+constexpr std::size_t kMaxEstimatedBytes = 2'000'000'000;
 
 std::size_t estimate_bytes(const CodedFeatures& f) { return f.codes.size() + f.size() * 2 * sizeof(Eigen::Vector3f); }
 std::size_t estimate_bytes(const ObjectSymmetries& s) { return s.discrete.size() * 96 + s.continuous.size() * 48; }
@@ -84,7 +84,7 @@ Offset<schema::Object> write(FlatBufferBuilder& builder, const ObjectModel& obje
 
 Result<std::vector<std::uint8_t>> encode_payload(const ModelLibrary& library) {
   const std::size_t bytes = estimate_bytes(library);
-  if (bytes > kMaxPayloadBytes)
+  if (bytes > kMaxEstimatedBytes)
     return Error{fmt::format("the library would take {:.1f} GB (a file can contain at most 2 GB)",
                              1e-9 * static_cast<double>(bytes))};
   FlatBufferBuilder builder(bytes);

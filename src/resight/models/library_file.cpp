@@ -3,16 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <span>
-#include <system_error>
 
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/models/internal/library_payload.hpp"
 
 namespace resight {
@@ -20,11 +20,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file format is little-endian");
 
-constexpr std::array<char, 8> kMagic{'R', 'E', 'S', 'I', 'G', 'H', 'T', 'M'};
 constexpr std::uint32_t kFormatVersion = 1;
+const std::string kKind = "model library ";  // begins all messages
 
 struct Header {
-  std::array<char, 8> magic = kMagic;
+  std::array<char, kLibrarySignature.size()> magic{};
   std::uint32_t version = kFormatVersion;
   std::uint32_t reserved = 0;
   std::uint64_t options_hash = 0;
@@ -41,55 +41,55 @@ std::uint64_t compute_checksum(const Header& header, std::span<const std::uint8_
 }
 
 Error fail(const std::filesystem::path& path, const std::string& what) {
-  return {fmt::format("model library {}: {}", path.string(), what)};
+  return {fmt::format("{}{}: {}", kKind, path.string(), what)};
 }
 
 std::string_view as_text(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The bytes of a file. The memory is not initialised before reading.
-struct FileBytes {
-  std::unique_ptr<std::uint8_t[]> data;
-  std::size_t size = 0;
-  [[nodiscard]] std::span<const std::uint8_t> all() const { return {data.get(), size}; }
+struct LibraryBytes {
+  Header header;
+  std::unique_ptr<std::uint8_t[]> payload;  ///< Not initialised before reading.
+  [[nodiscard]] std::span<const std::uint8_t> payload_span() const { return {payload.get(), header.payload_bytes}; }
 };
 
-Result<FileBytes> read_file(const std::filesystem::path& path) {
-  std::error_code code;
-  if (!std::filesystem::is_regular_file(path, code)) {
-    return fail(path, std::filesystem::exists(path, code) ? "not a file" : "no such file");
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path, code);
-  std::ifstream file(path, std::ios::binary);
-  if (code || !file) return fail(path, "cannot be opened");
-  FileBytes bytes{std::make_unique_for_overwrite<std::uint8_t[]>(size), size};
-  file.read(reinterpret_cast<char*>(bytes.data.get()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(file.gcount()) != size) return fail(path, "cannot be read to its end");
-  return bytes;
-}
-
 // The order of the tests determines the first error that the user sees: kind of file, version, completeness.
-Result<Header> read_header(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  Header header;
-  const std::size_t magic_bytes = std::min(bytes.size(), kMagic.size());
-  if (magic_bytes == 0 || std::memcmp(bytes.data(), kMagic.data(), magic_bytes) != 0)
+Result<Header> read_header(const std::filesystem::path& path, InputFile& file) {
+  std::array<std::uint8_t, sizeof(Header)> bytes{};
+  const std::size_t num_bytes = std::min<std::uintmax_t>(file.size(), bytes.size());
+  if (const auto done = file.read(bytes.data(), num_bytes); !done) return Error{kKind + done.error().message};
+  const std::size_t magic_bytes = std::min(num_bytes, kLibrarySignature.size());
+  if (magic_bytes == 0 || std::memcmp(bytes.data(), kLibrarySignature.data(), magic_bytes) != 0)
     return fail(path, "not a model library (expected a file written by 'train')");
-  if (bytes.size() < sizeof(Header))
-    return fail(path, fmt::format("truncated within its header ({} bytes)", bytes.size()));
-  std::memcpy(&header, bytes.data(), sizeof(Header));
+  if (num_bytes < sizeof(Header)) return fail(path, fmt::format("truncated within its header ({} bytes)", num_bytes));
+  const Header header = std::bit_cast<Header>(bytes);
   if (header.version != kFormatVersion) {
     return fail(path,
                 fmt::format("written in format version {} (expected {}); train again", header.version, kFormatVersion));
   }
-  const std::uint64_t present = bytes.size() - sizeof(Header);
+  const std::uint64_t present = file.size() - sizeof(Header);
   if (present < header.payload_bytes)
     return fail(path, fmt::format("truncated: {} of {} bytes present", present, header.payload_bytes));
   if (present > header.payload_bytes)
     return fail(path, fmt::format("damaged: {} bytes too many at its end", present - header.payload_bytes));
-  if (header.checksum != compute_checksum(header, bytes.subspan(sizeof(Header))))
-    return fail(path, "damaged: its checksum does not match its content");
   return header;
+}
+
+// The header is checked before memory is allocated for what it announces.
+Result<LibraryBytes> read_library(const std::filesystem::path& path) {
+  auto file = InputFile::open(path);
+  if (!file) return Error{kKind + file.error().message};
+  const Result<Header> header = read_header(path, *file);
+  if (!header) return header.error();
+  if (header->payload_bytes > internal::kMaxPayloadBytes)
+    return fail(path, fmt::format("damaged: {} bytes are more than a library can have", header->payload_bytes));
+  LibraryBytes bytes{*header, std::make_unique_for_overwrite<std::uint8_t[]>(header->payload_bytes)};
+  const auto done = file->read(bytes.payload.get(), header->payload_bytes);
+  if (!done) return Error{kKind + done.error().message};
+  if (header->checksum != compute_checksum(*header, bytes.payload_span()))
+    return fail(path, "damaged: its checksum does not match its content");
+  return bytes;
 }
 
 }  // namespace
@@ -98,28 +98,28 @@ Result<void> save_library(const ModelLibrary& library, const std::filesystem::pa
   const Result<std::vector<std::uint8_t>> payload = internal::encode_payload(library);
   if (!payload.ok()) return fail(path, payload.error().message);
   Header header;
+  std::ranges::copy(kLibrarySignature, header.magic.begin());
   header.options_hash = library.options_hash;
   header.payload_bytes = payload->size();
   header.checksum = compute_checksum(header, *payload);
   const auto header_bytes = std::bit_cast<HeaderBytes>(header);
   const Result<void> written = write_file(path, {as_text(header_bytes), as_text(*payload)});
-  if (!written.ok()) return Error{"model library " + written.error().message};
+  if (!written.ok()) return Error{kKind + written.error().message};
   return {};
 }
 
 Result<ModelLibrary> load_library(const std::filesystem::path& path,
                                   std::optional<std::uint64_t> expected_options_hash) {
-  const Result<FileBytes> bytes = read_file(path);
+  const Result<LibraryBytes> bytes = read_library(path);
   if (!bytes.ok()) return bytes.error();
-  const Result<Header> header = read_header(path, bytes->all());
-  if (!header.ok()) return header.error();
-  if (expected_options_hash.has_value() && header->options_hash != *expected_options_hash) {
+  const Header& header = bytes->header;
+  if (expected_options_hash.has_value() && header.options_hash != *expected_options_hash) {
     return fail(path, fmt::format("trained with other options (hash {:016x}, expected {:016x}); train again",
-                                  header->options_hash, *expected_options_hash));
+                                  header.options_hash, *expected_options_hash));
   }
-  Result<ModelLibrary> library = internal::decode_payload(bytes->all().subspan(sizeof(Header)));
+  Result<ModelLibrary> library = internal::decode_payload(bytes->payload_span());
   if (!library.ok()) return fail(path, library.error().message);
-  library->options_hash = header->options_hash;
+  library->options_hash = header.options_hash;
   return library;
 }
 

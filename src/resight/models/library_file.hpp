@@ -3,13 +3,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "resight/core/result.hpp"
 #include "resight/models/object_model.hpp"
 
 namespace resight {
 
-/// Writes a library to one file: a header of 40 bytes (magic "RESIGHTM", format version, options hash, size and
+/// The first bytes of every library file.
+inline constexpr std::string_view kLibrarySignature = "RESIGHTM";
+
+/// Writes a library to one file: a header of 40 bytes (kLibrarySignature, format version, options hash, size and
 /// checksum of the payload, little-endian) and a FlatBuffers payload (model_library.fbs). The file appears under `path`
 /// only when it is complete. Equal libraries give equal bytes. Descriptors take 8 bits per component, as in memory
 /// (coded_features.hpp). Fails above 2 GB.

@@ -20,6 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 using testing::HasSubstr;
 
 constexpr std::size_t kHeaderBytes = 40;
+constexpr std::size_t kPayloadBytesAt = 24;
 constexpr std::size_t kChecksumAt = 32;
 
 class LibraryFile : public testing::Test {
@@ -230,6 +231,20 @@ TEST_F(LibraryFile, EachKindOfDamageHasItsLine) {
   }
 }
 
+// The test would run out of memory or time if such files were read before they are looked at.
+TEST_F(LibraryFile, LooksAtTheHeaderBeforeItReadsTheRest) {
+  write({});
+  fs::resize_file(path_, std::uintmax_t{3} << 40);
+  EXPECT_THAT(load_library(path_).error().message, HasSubstr("not a model library"));
+  ASSERT_TRUE(save_library(make_library(), path_).ok());
+  Bytes bytes = read();
+  const std::uint64_t payload_bytes = std::uint64_t{3} << 40;
+  std::memcpy(&bytes[kPayloadBytesAt], &payload_bytes, sizeof(payload_bytes));
+  write(bytes);
+  fs::resize_file(path_, kHeaderBytes + payload_bytes);
+  EXPECT_THAT(load_library(path_).error().message, HasSubstr("more than a library can have"));
+}
+
 TEST_F(LibraryFile, RefusesMissingFilesFoldersAndStaleOptions) {
   EXPECT_THAT(load_library(path_).error().message, HasSubstr("no such file"));
   EXPECT_THAT(load_library(folder_).error().message, HasSubstr("not a file"));
@@ -266,6 +281,16 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous[0].axis.setZero(); }, "shape symmetries"},
       {[&](ModelLibrary& l) { l.objects[0].center.x() = nan; }, "centre"},
       {[&](ModelLibrary& l) { l.objects[0].diameter_m = nan; }, "diameter"},
+      // Finite numbers that do not fit into the integers of pixels and voxels.
+      {[](ModelLibrary& l) { l.objects[0].surface.points[3].y() = 1e12F; }, "surface of object 'mug'"},
+      {[](ModelLibrary& l) { l.objects[0].sift.points[3].x() = -1e12F; }, "SIFT features of object 'mug'"},
+      {[](ModelLibrary& l) { l.objects[0].symmetries.discrete[0].translation.x() = 1e12; }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].offset.x() = 1e12; }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].center.x() = 1e12F; }, "centre"},
+      {[](ModelLibrary& l) { l.objects[0].diameter_m = 1e12F; }, "diameter"},
+      {[](ModelLibrary& l) { l.surface_voxel_m = 1e-12F; }, "voxel size"},
+      {[](ModelLibrary& l) { l.objects[0].name = "../mug"; }, "'../mug'"},
+      {[](ModelLibrary& l) { l.objects[0].name = "mug\x1b[2J"; }, "'mug\\x1b[2J'"},
       {[](ModelLibrary& l) { l.surface_voxel_m = 0; }, "voxel size"},
   };
   for (const Case& c : cases) {

@@ -109,6 +109,22 @@ TEST(EvaluationReport, VerificationTimesAreThoseOfEachView) {
   EXPECT_NE(text.find("\n000001,mvr,5,0,1,20,"), std::string::npos) << text;
 }
 
+TEST(EvaluationReport, NamesDoNotBreakTables) {
+  std::vector<EvaluatedRun> runs = make_runs();
+  int renamed = 0;
+  for (EvaluatedRun& run : runs)
+    for (EvaluatedView& view : run.views)
+      for (EvaluatedTruth& truth : view.truth) {
+        truth.object = "cup | <b>";
+        ++renamed;
+      }
+  ASSERT_GT(renamed, 0);
+  const std::string text = format_evaluation_tables({"set\n# x", "1"}, summarize_runs(runs), {});
+  expect_whole_tables(text);
+  EXPECT_NE(text.find("| cup &#124; \\<b\\> |"), std::string::npos) << text;
+  EXPECT_EQ(text.find("\n# x"), std::string::npos);
+}
+
 TEST(EvaluationReport, JsonHoldsScoresAndNoTimes) {
   const std::vector<EvaluatedRun> runs = make_runs();
   const std::string text = format_evaluation_json({"set", "1.2.3"}, summarize_runs(runs));

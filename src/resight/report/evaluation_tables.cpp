@@ -10,6 +10,7 @@
 #include "resight/evaluation/loss.hpp"
 #include "resight/report/evaluation_report.hpp"
 #include "resight/report/internal/evaluation_text.hpp"
+#include "resight/report/internal/markdown.hpp"
 
 namespace resight {
 namespace {
@@ -183,7 +184,7 @@ std::string breakdown(const ConfigurationSummary& c, const std::vector<std::stri
   std::string text =
       fmt::format("\n## {}, K = {}: objects and visibility\n\n", configuration_name(c), c.num_previous_views);
   text += loss_header("| object | instances | recall | false |", stages);
-  for (const auto& [name, count] : c.found.by_object) text += found_row(name, count, stages);
+  for (const auto& [name, count] : c.found.by_object) text += found_row(report::escape_markdown(name), count, stages);
   text += '\n';
   text += loss_header("| visible share | instances | recall | false |", stages);
   const auto bins = visible_share_bins();

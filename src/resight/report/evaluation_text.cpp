@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "resight/report/internal/markdown.hpp"
+
 namespace resight::report {
 
 std::string format_number(double value, int digits) {
@@ -17,8 +19,8 @@ std::string configuration_name(const ConfigurationSummary& configuration) {
 
 std::string evaluation_title(const char* what, const EvaluationHeader& header,
                              std::span<const ConfigurationSummary> configurations) {
-  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, header.dataset, header.version,
-                     configurations.empty() ? 0 : configurations.front().num_sequences,
+  return fmt::format("# {}: {}\n\nresight {}, {} sequences, {} views.", what, escape_markdown(header.dataset),
+                     header.version, configurations.empty() ? 0 : configurations.front().num_sequences,
                      configurations.empty() ? 0 : configurations.front().num_views);
 }
 

@@ -5,9 +5,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
+
+#include "resight/report/internal/markdown.hpp"
 
 namespace resight {
 namespace {
+
+using report::escape_markdown;
 
 std::vector<WorstView> bad_views(std::span<const EvaluatedRun* const> runs) {
   std::vector<WorstView> bad;
@@ -74,17 +79,18 @@ std::string format_worst_views(std::span<const WorstView> views, int num_picture
   for (const WorstView& w : views) {
     const EvaluatedView& view = w.evaluated();
     if (w.rank == 0) text += fmt::format("\n## {}\n", configuration_name(*w.run));
-    text +=
-        fmt::format("\n### {} view {}: {} missed, {} wrong\n\n", w.run->sequence, view.name, w.num_missed, w.num_wrong);
-    if (w.rank < num_pictures) text += fmt::format("![{}]({})\n\n", view.name, worst_view_picture(w));
+    text += fmt::format("\n### {} view {}: {} missed, {} wrong\n\n", escape_markdown(w.run->sequence),
+                        escape_markdown(view.name), w.num_missed, w.num_wrong);
+    if (w.rank < num_pictures) text += fmt::format("![{}]({})\n\n", escape_markdown(view.name), worst_view_picture(w));
     for (const EvaluatedTruth& t : view.truth)
       if (t.counts && !t.found)
-        text += fmt::format("- missed {} {} ({:.0f} % visible, at {:.2f} m): {}\n", t.object, t.instance,
-                            100 * t.visible_share, t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
+        text +=
+            fmt::format("- missed {} {} ({:.0f} % visible, at {:.2f} m): {}\n", escape_markdown(t.object), t.instance,
+                        100 * t.visible_share, t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
     for (const EvaluatedDetection& d : view.detections)
       if (d.verdict == DetectionVerdict::kFalsePositive || d.verdict == DetectionVerdict::kGhost)
-        text += fmt::format("- {} {} (score {:.2f}, at {:.2f} m)\n", to_string(d.verdict), d.object, d.score,
-                            d.camera_from_object.translation.norm());
+        text += fmt::format("- {} {} (score {:.2f}, at {:.2f} m)\n", to_string(d.verdict), escape_markdown(d.object),
+                            d.score, d.camera_from_object.translation.norm());
   }
   return text;
 }
@@ -92,8 +98,14 @@ std::string format_worst_views(std::span<const WorstView> views, int num_picture
 std::string worst_view_picture(const WorstView& view) {
   std::string name = fmt::format("{}{}_k{}_{}_{}", view.run->preset, view.run->is_clustered ? "" : "_unclustered",
                                  view.run->num_previous_views, view.run->sequence, view.evaluated().name);
+  // The name becomes a path and a link.
   std::ranges::replace_if(
-      name, [](char c) { return c == '/' || c == '\\' || c == ' '; }, '-');
+      name,
+      [](char c) {
+        return std::string_view("/\\ ()<>[]#?%\"'|").find(c) != std::string_view::npos ||
+               static_cast<unsigned char>(c) < ' ';
+      },
+      '-');
   return "worst/" + name + ".jpg";
 }
 

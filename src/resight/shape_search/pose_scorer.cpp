@@ -330,10 +330,11 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
   };
   int num_cells = 0;
   silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
-    const int u = static_cast<int>(px.x());
-    const int v = static_cast<int>(px.y());
-    if (px.x() < 0 || px.y() < 0 || u >= lab_.width() || v >= lab_.height()) return false;
-    const bool goes_on = continues(static_cast<std::size_t>(known_pixel), lab_.index(u, v));
+    if (!(px.x() >= 0 && px.y() >= 0 && px.x() < static_cast<float>(lab_.width()) &&
+          px.y() < static_cast<float>(lab_.height())))
+      return false;
+    const std::size_t pixel = lab_.index(static_cast<int>(px.x()), static_cast<int>(px.y()));
+    const bool goes_on = continues(static_cast<std::size_t>(known_pixel), pixel);
     num_cells += goes_on ? 1 : 0;
     return goes_on;
   });

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
+#include "resight/core/input_file.hpp"
 #include "resight/simulation/camera_drift.hpp"
 #include "resight/simulation/internal/toml_fields.hpp"
 #include "resight/simulation/scene_script.hpp"
@@ -235,13 +234,11 @@ std::optional<Error> check_options(const SceneScript& script) {
 
 Result<SceneScript> read_scene_script(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& what) { return Error{path.string() + ": " + what}; };
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) return fail("cannot be read; expected a scene in TOML");
-  std::ostringstream text;
-  text << file.rdbuf();
+  const auto text = read_file(path);
+  if (!text) return text.error();
   toml::table table;
   try {
-    table = toml::parse(text.str());
+    table = toml::parse(*text);
   } catch (const toml::parse_error& error) {
     return fail("line " + std::to_string(error.source().begin.line) + ": " + std::string(error.description()));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/core/result.hpp"
 
 namespace resight::io {
@@ -15,17 +16,17 @@ namespace fs = std::filesystem;
 using resight::file_error;
 using resight::folder_name;
 using resight::PendingDirectory;
+using resight::read_file;
+using resight::read_file_start;
 using resight::write_file;
 
-/// Limit for text files of poses, headers and annotations. A larger file cannot be one of them.
-inline constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{512} << 20;
 /// Limit for clouds, meshes and images.
 inline constexpr std::uintmax_t kMaxBinaryBytes = std::uintmax_t{4} << 30;
 
-/// Reads all bytes of a regular file.
-[[nodiscard]] Result<std::string> read_file(const fs::path& file, std::uintmax_t max_bytes = kMaxTextBytes);
-/// Reads the first bytes of a file, at most `max_bytes`.
-[[nodiscard]] Result<std::string> read_file_start(const fs::path& file, std::size_t max_bytes);
+/// The path that a file in `folder` refers to by `name`. Fails for an absolute name, and for one that leaves the folder
+/// with "..": a data set must not make us read, or copy into results, other files of the user. Links are followed; they
+/// are the user's own way to keep data elsewhere.
+[[nodiscard]] Result<fs::path> path_below(const fs::path& folder, std::string_view name);
 
 /// Names of the files (or folders) in a directory, in natural order, without hidden ones. Empty if the directory is
 /// missing.

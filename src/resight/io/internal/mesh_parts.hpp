@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "resight/core/result.hpp"
@@ -22,6 +23,9 @@ struct MeshPart {
 
 /// Clears the colours if they are all the same.
 void drop_plain_colors(std::vector<Rgb8>& colors);
+
+/// Reads a texture that a mesh in `folder` names. It must lie below the folder.
+[[nodiscard]] Result<Image<Rgb8>> read_texture(const std::filesystem::path& folder, std::string_view name);
 
 /// The parts of a mesh file, with a line for each reference that could not be read.
 struct ImportedParts {

@@ -10,6 +10,9 @@
 
 namespace resight::internal {
 
+/// The largest payload: offsets in FlatBuffers have 31 bits.
+inline constexpr std::uint64_t kMaxPayloadBytes = (std::uint64_t{1} << 31) - 1;
+
 /// Encodes a library as FlatBuffers payload. Fails if the payload exceeds the 2 GB of the format.
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_payload(const ModelLibrary& library);
 

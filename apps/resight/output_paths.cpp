@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_paths.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.hpp"
+#include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
+
+namespace resight::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_output(const fs::path& out, std::string_view why) {
+  throw InputError(file_error(out, why).message);
+}
+
+/// A link to nowhere exists, too: it would be replaced.
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() != fs::file_type::not_found;
+}
+
+void check_not_input(const fs::path& out, const Paths& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code error;
+    if (fs::equivalent(out, input, error)) refuse_output(out, "is an input of this command (choose another output)");
+  }
+}
+
+/// Whether `path` lies below `folder`, links resolved.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const fs::path inner = fs::weakly_canonical(path, error);
+  const fs::path outer = error ? fs::path() : fs::canonical(folder, error);
+  if (error || !fs::is_directory(outer, error)) return false;
+  return std::ranges::mismatch(outer, inner).in1 == outer.end();
+}
+
+/// Whether `recognize`, `changes` or `evaluate` has written into the folder.
+bool has_results(const fs::path& folder) {
+  std::error_code error;
+  return std::ranges::any_of(std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs"},
+                             [&](const char* name) { return fs::exists(folder / name, error); });
+}
+
+}  // namespace
+
+void check_output_file(const fs::path& out, std::string_view signature, std::string_view kind, const Paths& inputs) {
+  std::error_code error;
+  if (fs::is_directory(out, error)) refuse_output(out, "is a folder (the name of a file was expected)");
+  check_not_input(out, inputs);
+  value_or_throw(check_writable(out));
+  if (!is_there(out)) return;
+  const auto start = read_file_start(out, signature.size());
+  if (!start.ok() || *start != signature)
+    refuse_output(out, fmt::format("exists already and is no {} (choose another name or delete it first)", kind));
+}
+
+void check_new_file(const fs::path& out) {
+  if (is_there(out)) refuse_output(out, "exists already (choose another name or delete it first)");
+  value_or_throw(check_writable(out));
+}
+
+void check_output_folder(const fs::path& out, const Paths& inputs) {
+  check_not_input(out, inputs);
+  value_or_throw(check_writable(out));
+  std::error_code error;
+  if (!fs::is_directory(out, error) || fs::is_empty(out, error) || has_results(out)) return;
+  for (const fs::path& input : inputs)
+    if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
+}
+
+}  // namespace resight::app

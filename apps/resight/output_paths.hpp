@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace resight::app {
+
+using Paths = std::vector<std::filesystem::path>;
+
+// One rule for all outputs: an input is never replaced, nor is a file that the command did not write. All functions
+// throw an InputError, before any work is done.
+
+/// For a file to write. It may exist only if it begins with `signature`, as files of this `kind` do.
+void check_output_file(const std::filesystem::path& out, std::string_view signature, std::string_view kind,
+                       const Paths& inputs);
+
+/// For a file to write that must not exist.
+void check_new_file(const std::filesystem::path& out);
+
+/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it.
+void check_output_folder(const std::filesystem::path& out, const Paths& inputs);
+
+}  // namespace resight::app

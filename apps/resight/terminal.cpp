@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "terminal.hpp"
+
+#include <cstdio>
+
+namespace resight::app {
+
+void print_text(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string line = printable(text.substr(0, end));
+    std::fwrite(line.data(), 1, line.size(), stdout);
+    if (end == text.npos) return;
+    std::fputc('\n', stdout);
+    text.remove_prefix(end + 1);
+  }
+}
+
+void print_error_line(std::string_view kind, std::string_view what) {
+  std::fprintf(stderr, "resight: %s%s\n", printable(kind).c_str(), printable(what).c_str());
+}
+
+}  // namespace resight::app

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <assimp/IOSystem.hpp>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "resight/io/internal/files.hpp"
+
+namespace resight::io {
+
+/// The text of an OBJ file as Assimp reads it: a number such as ".5" gets its leading zero, without which Assimp skips
+/// it.
+[[nodiscard]] std::string normalize_obj(std::string text);
+
+/// The statements of a material library that we use: `newmtl`, and `Kd` and `map_Kd` after it. Assimp crashes on
+/// textures before the first material.
+[[nodiscard]] std::string normalize_mtl(std::string_view text);
+
+/// Checks that the chunks of a GLB file lie within it, because Assimp allocates what they announce.
+[[nodiscard]] Result<void> check_glb(std::string_view bytes);
+
+/// The files that Assimp may open: the mesh under its bare name, and regular files in its folder that it refers to.
+class MeshFiles final : public Assimp::IOSystem {
+ public:
+  /// Reads and normalises the mesh file.
+  [[nodiscard]] static Result<std::unique_ptr<MeshFiles>> open(const fs::path& mesh);
+
+  bool Exists(const char* name) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+ private:
+  using Bytes = std::shared_ptr<const std::string>;
+  MeshFiles(fs::path mesh, std::string bytes);
+  /// Null if the file may not be read. Each file is read once.
+  [[nodiscard]] Bytes find(const std::string& name) const;
+  [[nodiscard]] Bytes read(const std::string& name) const;
+
+  fs::path mesh_;
+  bool is_obj_;
+  mutable std::uintmax_t bytes_left_ = kMaxBinaryBytes;
+  mutable std::map<std::string, Bytes> files_;
+};
+
+}  // namespace resight::io

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/mesh_files.hpp"
+
+#include <assimp/MemoryIOWrapper.h>
+
+#include <cstring>
+
+#include "resight/io/internal/text.hpp"
+
+namespace resight::io {
+namespace {
+
+/// Keeps the bytes alive as long as Assimp reads them.
+class MeshStream final : public Assimp::MemoryIOStream {
+ public:
+  explicit MeshStream(std::shared_ptr<const std::string> bytes)
+      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()), bytes_(std::move(bytes)) {}
+
+ private:
+  std::shared_ptr<const std::string> bytes_;
+};
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+std::string_view trim_start(std::string_view line) {
+  while (!line.empty() && is_blank(line[0])) line.remove_prefix(1);
+  return line;
+}
+
+}  // namespace
+
+std::string normalize_obj(std::string text) {
+  if (text.find(" .") == text.npos && text.find("\t.") == text.npos) return text;
+  std::string result;
+  result.reserve(text.size() + text.size() / 8);
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = cut_line(rest);
+    const bool is_vertex = trim_start(line).starts_with('v');
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (is_vertex && line[i] == '.' && i > 0 && is_blank(line[i - 1])) result += '0';
+      result += line[i];
+    }
+    result += '\n';
+  }
+  return result;
+}
+
+std::string normalize_mtl(std::string_view text) {
+  std::string result = "# materials and their textures\n";  // Assimp refuses files of less than 16 bytes.
+  bool has_material = false;
+  while (!text.empty()) {
+    const std::string_view line = trim_start(cut_line(text));
+    const std::string keyword = to_lower(line.substr(0, line.find_first_of(" \t")));
+    has_material = has_material || keyword == "newmtl";
+    if (!has_material || (keyword != "newmtl" && keyword != "kd" && keyword != "map_kd")) continue;
+    result += line;
+    result += '\n';
+  }
+  return result;
+}
+
+Result<void> check_glb(std::string_view bytes) {
+  constexpr std::size_t kHeaderBytes = 12;
+  constexpr std::size_t kChunkHeaderBytes = 8;
+  if (!bytes.starts_with("glTF") || bytes.size() < kHeaderBytes + kChunkHeaderBytes)
+    return Error{"is not a GLB file (no header)"};
+  for (std::size_t at = kHeaderBytes; bytes.size() - at >= kChunkHeaderBytes;) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + at, sizeof(length));
+    at += kChunkHeaderBytes;
+    if (length > bytes.size() - at) return Error{"is cut off: a chunk is longer than the file"};
+    at += length;
+  }
+  return {};
+}
+
+Result<std::unique_ptr<MeshFiles>> MeshFiles::open(const fs::path& mesh) {
+  auto bytes = read_file(mesh, kMaxBinaryBytes);
+  if (!bytes) return bytes.error();
+  const std::string extension = extension_of(mesh);
+  if (extension == "glb")
+    if (const auto checked = check_glb(*bytes); !checked) return file_error(mesh, checked.error().message);
+  if (extension == "obj") bytes = normalize_obj(*std::move(bytes));
+  return std::unique_ptr<MeshFiles>(new MeshFiles(mesh, *std::move(bytes)));
+}
+
+MeshFiles::MeshFiles(fs::path mesh, std::string bytes) : mesh_(std::move(mesh)), is_obj_(extension_of(mesh_) == "obj") {
+  files_[mesh_.filename().string()] = std::make_shared<const std::string>(std::move(bytes));
+}
+
+MeshFiles::Bytes MeshFiles::read(const std::string& name) const {
+  const auto file = path_below(mesh_.parent_path(), name);
+  if (!file) return nullptr;
+  auto bytes = read_file(*file, bytes_left_);
+  if (!bytes) return nullptr;
+  bytes_left_ -= bytes->size();
+  return std::make_shared<const std::string>(is_obj_ ? normalize_mtl(*bytes) : *std::move(bytes));
+}
+
+MeshFiles::Bytes MeshFiles::find(const std::string& name) const {
+  const auto [it, is_new] = files_.try_emplace(name);
+  if (is_new) it->second = read(name);
+  return it->second;
+}
+
+bool MeshFiles::Exists(const char* name) const { return find(name) != nullptr; }
+
+Assimp::IOStream* MeshFiles::Open(const char* name, const char* mode) {
+  if (mode == nullptr || mode[0] != 'r') return nullptr;
+  Bytes bytes = find(name);
+  return bytes ? new MeshStream(std::move(bytes)) : nullptr;
+}
+
+void MeshFiles::Close(Assimp::IOStream* stream) { delete stream; }
+
+}  // namespace resight::io

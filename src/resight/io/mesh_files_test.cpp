@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/mesh_files.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/test_data.hpp"
+#include "resight/io/mesh.hpp"
+
+namespace resight {
+namespace {
+
+using io::write_text;
+using testing::HasSubstr;
+
+constexpr const char* kTriangleObj = "v 0 0 0\nv .1 0 0\nv 0 .1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
+
+std::size_t num_warnings(const std::filesystem::path& file) {
+  const auto read = read_mesh(file);
+  EXPECT_TRUE(read.ok()) << read.error().message;
+  return read.ok() ? read->warnings.size() : 0;
+}
+
+TEST(MeshFiles, NumbersMayBeginWithAPoint) {
+  io::TestDirectory directory;
+  write_text(directory / "t.obj", kTriangleObj);
+  const auto read = read_mesh(directory / "t.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->mesh.vertices.size(), 3U);
+  EXPECT_FLOAT_EQ(read->mesh.vertices[1].x() + read->mesh.vertices[2].x(), 0.1F);
+  EXPECT_EQ(io::normalize_obj("  v\t.5 -.5 0.5\no a .b\n"), "  v\t0.5 -.5 0.5\no a .b\n");
+}
+
+TEST(MeshFiles, TexturesBeforeTheFirstMaterialAreSkipped) {
+  io::TestDirectory directory;
+  write_text(directory / "t.obj", std::string("mtllib t.mtl\n") + kTriangleObj);
+  for (const char* first : {"map_Kd t.png\n", "bump t.png\n", "Kd 1 0 0\n", "map_Kd", "-", ""}) {
+    write_text(directory / "t.mtl", first);
+    const auto read = read_mesh(directory / "t.obj");
+    EXPECT_TRUE(read.ok()) << first << ": " << read.error().message;
+  }
+  EXPECT_EQ(io::normalize_mtl("map_Kd a\n newmtl m\nNs 3\n\tmap_Kd b c.png\nbump d\nKd 1 0 0\n"),
+            "# materials and their textures\nnewmtl m\nmap_Kd b c.png\nKd 1 0 0\n");
+}
+
+TEST(MeshFiles, MaterialsOfPipesAndDevicesAreNotRead) {
+  io::TestDirectory directory;
+  ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
+  for (const char* name : {"pipe", "/dev/zero"}) {
+    write_text(directory / "t.obj", std::string("mtllib ") + name + "\n" + kTriangleObj);
+    EXPECT_TRUE(read_mesh(directory / "t.obj").ok()) << name;
+  }
+}
+
+TEST(MeshFiles, AChunkOfAGlbFileIsWithinTheFile) {
+  io::TestDirectory directory;
+  const std::string header("glTF\2\0\0\0\x1c\0\0\0", 12);
+  EXPECT_TRUE(io::check_glb(header + std::string("\4\0\0\0JSON{}  ", 12)).ok());
+  EXPECT_FALSE(io::check_glb(header + std::string("\5\0\0\0JSON{}  ", 12)).ok());
+  EXPECT_FALSE(io::check_glb(header).ok());
+  write_text(directory / "t.glb", header + "\xf0\xff\xff\xffJSON{\"asset\":{\"version\":\"2.0\"}}");
+  EXPECT_THAT(read_mesh(directory / "t.glb").error().message, HasSubstr("a chunk is longer than the file"));
+}
+
+/// A triangle in a buffer of a file, with one texture.
+std::string make_gltf(const std::string& buffer, const std::string& texture) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
+    "images":[{"uri":")" +
+         texture + R"("}],"buffers":[{"uri":")" + buffer + R"(","byteLength":60}],
+    "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+                 {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}]})";
+}
+
+TEST(MeshFiles, OnlyFilesBelowTheFolderOfTheModelAreRead) {
+  io::TestDirectory directory;
+  std::string buffer;
+  for (const float x : {0.F, 0.F, 0.F, .1F, 0.F, 0.F, 0.F, .1F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 1.F})
+    buffer.append(reinterpret_cast<const char*>(&x), 4);
+  const Image<Rgb8> texture(4, 4, Rgb8{10, 20, 30});
+  for (const char* folder : {"secret", "model/parts"}) {
+    write_text(directory / (std::string(folder) + "/b.bin"), buffer);
+    ASSERT_TRUE(write_color(directory / (std::string(folder) + "/t.png"), texture).ok());
+  }
+  const auto mesh = directory / "model/m.gltf";
+  write_text(mesh, make_gltf("parts/b.bin", "parts/t.png"));
+  EXPECT_EQ(num_warnings(mesh), 0U) << "data in the folder of the model are used";
+  EXPECT_TRUE(read_mesh(mesh)->mesh.has_texture());
+  for (const std::string& outside :
+       {std::string("../secret/"), (directory / "secret/").string(), std::string("parts/../../secret/")}) {
+    write_text(mesh, make_gltf(outside + "b.bin", "parts/t.png"));
+    EXPECT_FALSE(read_mesh(mesh).ok()) << outside;
+    write_text(mesh, make_gltf("parts/b.bin", outside + "t.png"));
+    EXPECT_FALSE(read_mesh(mesh)->mesh.has_texture()) << outside;
+    ASSERT_EQ(num_warnings(mesh), 1U) << outside;
+    EXPECT_THAT(read_mesh(mesh)->warnings[0], HasSubstr("outside the folder")) << outside;
+  }
+}
+
+TEST(MeshFiles, TexturesOfAPlyFileLieInItsFolder) {
+  io::TestDirectory directory;
+  const Image<Rgb8> texture(4, 4, Rgb8{10, 20, 30});
+  ASSERT_TRUE(write_color(directory / "t.png", texture).ok());
+  ASSERT_TRUE(write_color(directory / "model/t.png", texture).ok());
+  const auto write_model = [&](const std::string& name) {
+    write_text(directory / "model/t.ply",
+               "ply\nformat ascii 1.0\ncomment TextureFile " + name +
+                   "\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n"
+                   "property float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                   "0 0 0 0 0\n.1 0 0 1 0\n0 .1 0 0 1\n3 0 1 2\n");
+  };
+  write_model("t.png");
+  EXPECT_EQ(num_warnings(directory / "model/t.ply"), 0U);
+  for (const std::string& name : {std::string("../t.png"), (directory / "t.png").string()}) {
+    write_model(name);
+    EXPECT_EQ(num_warnings(directory / "model/t.ply"), 1U) << name;
+  }
+}
+
+}  // namespace
+}  // namespace resight
