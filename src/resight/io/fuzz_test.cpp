@@ -166,7 +166,11 @@ TEST(Fuzz, Texts) {
   expect_both(fuzz("mug (0.5): " + pose + "\nbox (1): " + pose + "\n", 7,
                    [](const std::string& text) { return parse_tuw_anno(text, "a.anno"); }));
   expect_both(fuzz("cloud_00_mug_0.txt cloud_01_mug_0.txt\ncloud_00_red_box_0.txt cloud_02_red_box_1.txt\n", 8,
-                   [](const std::string& text) { return parse_changes(text, "s.changes"); }));
+                   [](const std::string& text) -> Result<std::vector<ObjectPlacement>> {
+                     const auto chains = parse_changes(text, "s.changes");
+                     if (!chains) return chains.error();
+                     return resolve_changes(*chains, {"cloud_00", "cloud_01", "cloud_02"}, "s.changes");
+                   }));
 }
 
 TEST(Fuzz, TumLists) {
