@@ -5,6 +5,7 @@
 # OUT; the call after the last one writes the pages.
 #   scripts/results.sh [--version 2|3] [--shard I/N | --merge] [--data DIR=../shared/data] [--out DIR=out/results]
 #                      [--build DIR=build/results] [--no-build] [--pages DIR=.]
+# With --no-build, the programs are those in DIR, and real recordings are not measured.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 usage() {
@@ -128,6 +129,7 @@ run_demo() {
   "$resight" demo --seed 2 --out "$parts/demo"
 }
 measure_real() {
+  ((can_build)) || return 1  # real_results.sh builds.
   scripts/real_results.sh "$data" "$parts/real" "$build" >&2 &&
     ! grep -E '^(Absent|Failed): ' "$parts/real/real.md" >&2 && cat "$parts/real/real.md"
 }

@@ -133,6 +133,7 @@ expect_refused "another commit in the marker" '0,/, commit [^,]*,/s//, commit 00
 expect_refused "another name" 's/table: paper,/table: papers,/'
 expect_refused "a table without its marker" '/^<!-- table: paper,/d'
 expect_refused "a marker without its end" '0,/^<!-- end -->$/{//d}'
+expect_refused "a table beside the marked ones" '$s/$/\n\n| a | b |\n|---|---|/'
 cp "${written[1]}" "$work/edited.md"
 printf '| K | `mvr`, paper | `mvr`, ours |\n|---|---|---|\n| 0 | 1 | 1 |\n' |
   scripts/page_tables.sh put "$work/edited.md" paper 000000000000 || fail "a table was not replaced"
