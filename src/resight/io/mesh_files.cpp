@@ -90,9 +90,12 @@ MeshFiles::MeshFiles(fs::path mesh, std::string bytes) : mesh_(std::move(mesh)),
 
 MeshFiles::Bytes MeshFiles::read(const std::string& name) const {
   const auto file = path_below(mesh_.parent_path(), name);
-  if (!file) return nullptr;
-  auto bytes = read_file(*file, bytes_left_);
-  if (!bytes) return nullptr;
+  auto bytes = file ? read_file(*file, bytes_left_) : Result<std::string>(file.error());
+  if (!bytes) {
+    if (failure_.empty()) failure_ = bytes.error().message;
+    return nullptr;
+  }
+  failure_.clear();
   bytes_left_ -= bytes->size();
   return std::make_shared<const std::string>(is_obj_ ? normalize_mtl(*bytes) : *std::move(bytes));
 }

@@ -49,8 +49,13 @@ TEST(MeshFiles, MaterialsOfPipesAndDevicesAreNotRead) {
   ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);
   for (const char* name : {"pipe", "/dev/zero"}) {
     write_text(directory / "t.obj", std::string("mtllib ") + name + "\n" + kTriangleObj);
-    EXPECT_TRUE(read_mesh(directory / "t.obj").ok()) << name;
+    const auto read = read_mesh(directory / "t.obj");
+    ASSERT_TRUE(read.ok()) << name;
+    ASSERT_EQ(read->warnings.size(), 1U) << name;
+    EXPECT_THAT(read->warnings[0], HasSubstr(std::string("left out: "))) << name;
   }
+  write_text(directory / "t.obj", kTriangleObj);
+  EXPECT_EQ(num_warnings(directory / "t.obj"), 0U) << "names no other file";
 }
 
 TEST(MeshFiles, AChunkOfAGlbFileIsWithinTheFile) {

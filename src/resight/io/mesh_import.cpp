@@ -157,6 +157,7 @@ Result<ImportedParts> import_mesh_parts(const fs::path& file) {
   auto files = MeshFiles::open(file);
   if (!files) return files.error();
   Assimp::Importer importer;
+  const MeshFiles& opened = **files;
   importer.SetIOHandler(files->release());  // The importer owns it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene =
@@ -168,6 +169,8 @@ Result<ImportedParts> import_mesh_parts(const fs::path& file) {
     return file_error(file, "cannot be read as a mesh (" + why + ")");
   }
   ImportedParts imported;
+  if (!opened.failure().empty())
+    imported.warnings.push_back(file.string() + ": a file that it names is left out: " + opened.failure());
   TextureLoader textures(*scene, file, imported.warnings);
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     MeshPart part = convert_part(*scene->mMeshes[i], *scene, textures);

@@ -30,6 +30,8 @@ class MeshFiles final : public Assimp::IOSystem {
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
+  /// Why the first file that the mesh refers to could not be read. Empty if it could, or if Assimp found another.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
 
  private:
   using Bytes = std::shared_ptr<const std::string>;
@@ -42,6 +44,7 @@ class MeshFiles final : public Assimp::IOSystem {
   bool is_obj_;
   mutable std::uintmax_t bytes_left_ = kMaxBinaryBytes;
   mutable std::map<std::string, Bytes> files_;
+  mutable std::string failure_;
 };
 
 }  // namespace resight::io
