@@ -90,7 +90,8 @@ make_data_set() {
     local recorded=$folder/library/recorded
     if [[ ! -e $recorded ]]; then
       rm -rf "$recorded.partial"
-      step "record the objects of $1" "$build/bench/bench_model_objects" --tabletop "$2" --out "$recorded.partial"
+      step "record the objects of $1" "$build/bench/bench_model_objects" --tabletop "$2" --given 3 \
+        --or-one-side --out "$recorded.partial"
       mv "$recorded.partial" "$recorded"
     fi
     inputs=("$folder/library/models" "$recorded")

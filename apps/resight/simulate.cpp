@@ -47,8 +47,8 @@ void simulate_scene(const SimulateArguments& arguments) {
 }
 
 void simulate_benchmark(const SimulateArguments& arguments) {
-  DynamicTabletopOptions benchmark;
-  benchmark.version = arguments.preset == kBenchmark2 ? 2 : kDynamicTabletopVersion;
+  const auto benchmark =
+      DynamicTabletopOptions::of_version(arguments.preset == kBenchmark2 ? 2 : kDynamicTabletopVersion);
   std::vector<SceneScript> scripts = make_dynamic_tabletop(arguments.seed, benchmark);
   const std::size_t num_models = dynamic_tabletop_library(arguments.seed, benchmark.version).size();
   std::size_t num_views = 0;

@@ -3,8 +3,10 @@
 // sensor noise, compared with the generated meshes. --true-poses skips tracking and joining and tests fusion alone. The
 // models in --out are in the frames of the meshes, so that both results can be compared. --tabletop records the objects
 // of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed. --given gives
-// poses with so many mm, and mrad, of independent noise; --one-side leaves the other side out.
-//   bench_model_objects [--true-poses | --given MM] [--one-side] [--walk] [--tabletop SEED] [--out DIR] [OBJECT...]
+// poses with so many mm, and mrad, of independent noise; --one-side leaves the other side out; --or-one-side does so
+// only if the sides cannot be joined.
+//   bench_model_objects [--true-poses | --given MM] [--one-side | --or-one-side] [--walk] [--tabletop SEED] [--out DIR]
+//     [OBJECT...]
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -41,6 +43,7 @@ struct Plan {
   bool true_poses = false;
   std::optional<double> given_noise_mm;
   bool one_side = false;
+  bool or_one_side = false;
   RecordingKind kind = RecordingKind::kTurntable;
   std::filesystem::path out;
   std::optional<std::uint64_t> tabletop_seed;
@@ -112,7 +115,12 @@ Result<ObjectTrack> track_both(const ProceduralObject& object, const Plan& plan,
     if (!track) return track;
     tracks.push_back(std::move(*track));
   }
-  if (!plan.true_poses) return join_tracks(std::move(tracks[0]), std::move(tracks[1]), options);
+  if (!plan.true_poses) {
+    auto joined = join_tracks(tracks[0], std::move(tracks[1]), options);
+    if (joined || !plan.or_one_side) return joined;
+    truth.resize(tracks[0].views.size());
+    return std::move(tracks[0]);
+  }
   for (TrainingView& view : tracks[1].views) tracks[0].views.push_back(std::move(view));
   return std::move(tracks[0]);
 }
@@ -147,6 +155,16 @@ void move_model(const Rigid3& truth_from_model, ObjectTrack& track, ObjectModelB
   move({truth_from_model.rotation, Eigen::Vector3d::Zero()}, build.cloud.normals);
 }
 
+// The same as the data set declares of the exact mesh, so that results of both can be scored alike.
+DeclaredModelInfo declared_info(const ProceduralObject& object, const Plan& plan) {
+  DeclaredModelInfo declared;
+  declared.symmetries = object.symmetries;
+  if (plan.tabletop_seed)
+    for (const TabletopModel& model : tabletop_models(*plan.tabletop_seed))
+      if (model.name == object.name) declared.bop_id = model.bop_id;
+  return declared;
+}
+
 void measure(const std::string& name, const Plan& plan) {
   const auto object = make_script_object(plan.tabletop_seed, name);
   if (!object.ok()) return static_cast<void>(fmt::print("{}\n", object.error().message));
@@ -177,7 +195,7 @@ void measure(const std::string& name, const Plan& plan) {
              error.completeness, build->report.holes.open_share, seconds);
   std::fflush(stdout);
   if (plan.out.empty()) return;
-  if (const auto done = write_object_model(plan.out / name, track->views, *build); !done)
+  if (const auto done = write_object_model(plan.out / name, track->views, *build, declared_info(*object, plan)); !done)
     fmt::print("{}\n", done.error().message);
 }
 
@@ -205,6 +223,8 @@ int main(int argc, char** argv) {
       plan.true_poses = true;
     } else if (argument == "--one-side") {
       plan.one_side = true;
+    } else if (argument == "--or-one-side") {
+      plan.or_one_side = true;
     } else if (argument == "--walk") {
       plan.kind = RecordingKind::kWalk;
     } else {

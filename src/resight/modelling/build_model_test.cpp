@@ -49,6 +49,7 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
   fs::remove_all(folder.parent_path());
   ASSERT_TRUE(write_object_model(folder, views, *build).ok());
   EXPECT_FALSE(write_object_model(folder, views, *build).ok());
+  EXPECT_FALSE(fs::exists(folder / "model_info.json"));
   EXPECT_EQ(read_mesh(folder / "mesh.ply")->mesh.faces.size(), build->mesh.faces.size());
   EXPECT_TRUE(fs::exists(folder / "model_report.json"));
   for (const fs::path& path : {folder, folder.parent_path()}) {
@@ -69,6 +70,23 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
   ASSERT_TRUE(library.ok()) << library.error().message;
   EXPECT_GT(library->objects[0].sift.size(), 300U);
   fs::remove_all(folder.parent_path());
+}
+
+TEST(BuildModel, WritesWhatIsDeclaredOfTheObject) {
+  const std::vector<TrainingView> views = scan("soup_pea", true);
+  const auto build = build_model(views, two_threads());
+  ASSERT_TRUE(build.ok()) << build.error().message;
+  DeclaredModelInfo declared;
+  declared.bop_id = 7;
+  declared.symmetries.continuous.push_back({});
+  const fs::path folder = fs::path(testing::TempDir()) / "resight_declared_model" / "pea";
+  fs::remove_all(folder.parent_path());
+  ASSERT_TRUE(write_object_model(folder, views, *build, declared).ok());
+  const auto model = read_model(find_models({folder})->at(0));
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_EQ(model->bop_id, 7);
+  EXPECT_EQ(model->symmetries.continuous.size(), 1U);
+  EXPECT_TRUE(model->symmetries_known);
 }
 
 TEST(BuildModel, WarnsOfWhatWillBeHard) {

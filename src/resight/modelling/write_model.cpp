@@ -45,9 +45,12 @@ ordered_json report_json(const ModelReport& r) {
 }
 
 // write_tuw_model() creates a folder with the model's name; this moves its contents up into ours.
-Result<void> write_views(const fs::path& folder, std::span<const TrainingView> views, const PointCloud& cloud) {
-  if (auto done = write_tuw_model(folder, "model", views, &cloud); !done) return done;
-  for (const char* part : {"views", "3D_model.pcd"}) {
+Result<void> write_views(const fs::path& folder, std::span<const TrainingView> views, const PointCloud& cloud,
+                         const DeclaredModelInfo& declared) {
+  if (auto done = write_tuw_model(folder, "model", views, &cloud, declared.symmetries, declared.bop_id); !done)
+    return done;
+  for (const char* part : {"views", "3D_model.pcd", "model_info.json"}) {
+    if (!fs::exists(folder / "model" / part)) continue;
     std::error_code failure;
     fs::rename(folder / "model" / part, folder / part, failure);
     if (failure) return file_error(folder / part, failure.message());
@@ -60,7 +63,7 @@ Result<void> write_views(const fs::path& folder, std::span<const TrainingView> v
 }  // namespace
 
 Result<void> write_object_model(const fs::path& directory, std::span<const TrainingView> views,
-                                const ObjectModelBuild& build) {
+                                const ObjectModelBuild& build, const DeclaredModelInfo& declared) {
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();
   std::vector<TrainingView> key_views;
@@ -68,7 +71,7 @@ Result<void> write_object_model(const fs::path& directory, std::span<const Train
     key_views.push_back(views[i]);
     key_views.back().frame.name.clear();  // Numbered from 0, because two recordings may use the same names.
   }
-  if (auto done = write_views(pending->path(), key_views, build.cloud); !done) return done;
+  if (auto done = write_views(pending->path(), key_views, build.cloud, declared); !done) return done;
   if (auto done = write_ply(pending->path() / "mesh.ply", build.mesh); !done) return done;
   const std::string report = report_json(build.report).dump(1) + "\n";
   if (auto done = write_file(pending->path() / "model_report.json", report); !done) return done;

@@ -352,13 +352,14 @@ class SequenceBuilder {
       const auto wave = [&](double cycles, double phase) {
         return std::sin(2 * std::numbers::pi * cycles * t + phase);
       };
-      const double azimuth =
-          middle_rad + side * stage_.half_arc_rad * std::cos(2 * std::numbers::pi * 0.9 * t) + jitter(0.03);
+      const double azimuth = middle_rad +
+                             side * options_.sweep * stage_.half_arc_rad * std::cos(2 * std::numbers::pi * 0.9 * t) +
+                             jitter(0.03);
       const double elevation = radians(32 + 9 * wave(1.3, phase_height)) + jitter(0.02);
       const double middle_m = 0.5 * (options_.min_distance_m + options_.max_distance_m);
       const double swing_m = 0.5 * (options_.max_distance_m - options_.min_distance_m);
       const double distance = middle_m + swing_m * wave(1.1, phase_distance);
-      const double pan = wave(1.7, phase_pan);
+      const double pan = options_.sweep * wave(1.7, phase_pan);
       // One draw per statement: compilers differ in the order of arguments. Frozen versions drew the last one first.
       const double target_z_m = jitter(0.02);
       const double target_y_m = pan * stage_.pan_m.y() + jitter(0.02);
@@ -386,6 +387,19 @@ class SequenceBuilder {
 
 }  // namespace
 
+DynamicTabletopOptions DynamicTabletopOptions::of_version(int version) {
+  DynamicTabletopOptions options;
+  options.version = version;
+  if (version == 2) {
+    options.num_changes = 32;
+    options.min_distance_m = 0.9;
+    options.max_distance_m = 1.45;
+    options.sweep = 1;
+  }
+  options.check();
+  return options;
+}
+
 void DynamicTabletopOptions::check() const {
   check_in_range("DynamicTabletopOptions.version", version, 2, kDynamicTabletopVersion);
   check_in_range("DynamicTabletopOptions.num_known", num_known, 1, 100);
@@ -399,6 +413,7 @@ void DynamicTabletopOptions::check() const {
   check_positive("DynamicTabletopOptions.min_distance_m", min_distance_m);
   require(max_distance_m >= min_distance_m,
           "DynamicTabletopOptions.max_distance_m must not be less than min_distance_m");
+  check_in_range("DynamicTabletopOptions.sweep", sweep, 0, 1);
   check_not_negative("DynamicTabletopOptions.depth_noise", depth_noise);
   check_not_negative("DynamicTabletopOptions.color_noise", color_noise);
 }

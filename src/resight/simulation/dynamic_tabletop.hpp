@@ -22,16 +22,19 @@ struct DynamicTabletopOptions {
   int num_known = 12;                     ///< Known things at the start of a sequence, as far as there is room.
   int num_waiting = 4;                    ///< Further known things, which may come in later.
   int num_unknown = 5;                    ///< Things that are in no library.
-  int num_changes = 32;                   ///< Of a sequence, at most (what finds no room does not happen).
+  int num_changes = 12;                   ///< Of a sequence, at most (what finds no room does not happen).
   double unknown_share = 0.15;            ///< Of the changes: those of unknown things.
   double lying_share = 0.25;              ///< Of the things: laid on a side.
   double crowding = 0.6;                  ///< Share of the things that are put close to another one.
   double gap_m = 0.004;                   ///< Between neighbours, at least.
-  double min_distance_m = 0.9;            ///< Of the camera from what it looks at.
-  double max_distance_m = 1.45;
+  double min_distance_m = 0.75;           ///< Of the camera from what it looks at.
+  double max_distance_m = 1.25;
+  double sweep = 0.5;        ///< Factor on the arc of the camera and on how far it looks left and right.
   double depth_noise = 1.0;  ///< Factor on Nguyen's lateral and axial sigma. Version 2 only.
   double color_noise = 3.0;  ///< Sigma of each pixel's channels, of 255. Version 2 only.
-  void check() const;        ///< Throws std::invalid_argument: field, value, rule.
+  /// The frozen settings of a version. Throws std::invalid_argument for a version that does not exist.
+  [[nodiscard]] static DynamicTabletopOptions of_version(int version);
+  void check() const;  ///< Throws std::invalid_argument: field, value, rule.
 };
 
 /// Makes the standard benchmark: 9 sequences with 203 views in all, like the dynamic TUW data set of the paper. Scenes

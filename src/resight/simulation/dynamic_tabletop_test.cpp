@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "resight/geometry/camera.hpp"
 #include "resight/simulation/internal/footprint.hpp"
@@ -157,6 +158,13 @@ TEST(DynamicTabletop, SomeChangesHappenOutOfView) {
   }
   EXPECT_GE(in_view, 30);
   EXPECT_GE(out_of_view, 5);
+}
+
+TEST(DynamicTabletop, EachVersionHasItsSettings) {
+  EXPECT_EQ(DynamicTabletopOptions::of_version(kDynamicTabletopVersion).num_changes,
+            DynamicTabletopOptions{}.num_changes);
+  EXPECT_GT(DynamicTabletopOptions::of_version(2).num_changes, DynamicTabletopOptions{}.num_changes);
+  EXPECT_THROW(static_cast<void>(DynamicTabletopOptions::of_version(1)), std::invalid_argument);
 }
 
 }  // namespace
