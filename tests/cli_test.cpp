@@ -259,6 +259,7 @@ const std::string kLongName(300, 'a');
 const std::string kRecognizeLongName = "recognize --models " + kLongName + " --sequence views --out out";
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 const std::string kTrainToLongName = "train meshes --out " + kLongName;
+constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
 constexpr const char* kTrain = "train meshes --out new.resight";
 const Spoil kNothing = [](const fs::path&) {};
 
@@ -457,6 +458,23 @@ const Row kRows[] = {
     {"OutputThatIsALoop", link("loop", "loop"), "changes --sequence views --out loop", 2, "loop: "},
     {"EvaluateBesideALoop", both(move("views", "set/views"), link("set/loop", "loop")),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
+    {"EvaluateBesideADamagedSequence",
+     both(both(move("views", "set/views"), move("tuw", "set/tuw")), cut("set/views/scene_gt.json", 0.6)),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2, "scene_gt\\.json: "},
+    {"ConvertADamagedSequenceBesideModels",
+     both(both(move("views", "set/views"), move("meshes", "set/models")), cut("set/views/scene_gt.json", 0.6)),
+     "convert set out --to tuw", 2, "scene_gt\\.json: "},
+    {"TruthWithOtherNames", both(move("views", "set/test/views"), write("set/models/models_info.json", kOtherNames)),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0,
+     "views: the library has other names .* found by obj_id", "out/results.json"},
+    {"TruthOfOtherObjects", library([] {
+       ModelLibrary library = make_library(40);
+       library.objects[0].name = "die";
+       library.objects[0].bop_id = 9;
+       return library;
+     }),
+     "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out", 0,
+     "views: no true object is in the library", "out/results.json"},
     {"EmptyFolder", kNothing, "changes --sequence empty --out out", 2, "empty: no sequence found"},
     {"FileAsSequence", kNothing, "changes --sequence file --out out", 2, "file: "},
     {"SequenceWithoutViews", write("views/scene_camera.json", "{}"), kRecognize, 2, "scene_camera\\.json: "},

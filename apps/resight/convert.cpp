@@ -67,6 +67,8 @@ void run_convert(const ConvertArguments& arguments) {
   value_or_throw(check_writable(arguments.out));
   const auto sequence = open_sequence(arguments.in);
   const auto models = find_models({arguments.in});
+  // A damaged sequence is not passed over for the models beside it.
+  if (!sequence.ok() && find_sequence_folder(arguments.in).ok()) throw InputError(sequence.error().message);
   if (!sequence.ok() && !models.ok())
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {

@@ -8,6 +8,7 @@
 #include "evaluation_plan.hpp"
 #include "output_paths.hpp"
 #include "progress.hpp"
+#include "recognition_run.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/evaluation/bop_evaluation.hpp"
@@ -85,6 +86,7 @@ class Evaluation {
       throw InputError(fmt::format("{}: has no ground truth to evaluate against", where.folder.string()));
     const SequenceTruth truth =
         value_or_throw(read_sequence_truth(*sequence, library_, where.changes, where.unknown_models));
+    warn_about_names(truth, where.folder.string());
     EvaluateSequenceOptions options;
     options.hypotheses = std::make_shared<ViewHypothesisStore>();
     for (const EvaluationUnit* unit : units) {

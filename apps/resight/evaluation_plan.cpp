@@ -65,8 +65,13 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   std::vector<EvaluationSequence> sequences;
   if (root == dataset)
     if (const auto opened = open_posed_sequence(dataset)) return {describe(dataset, **opened)};
-  for (const fs::path& folder : folders)
-    if (const auto opened = open_posed_sequence(folder)) sequences.push_back(describe(folder, **opened));
+  for (const fs::path& folder : folders) {
+    const auto found = find_sequence_folder(folder);
+    const auto opened = open_posed_sequence(folder);
+    if (opened) sequences.push_back(describe(folder, **opened));
+    // A damaged sequence is an error: scores without it would pass for those of the whole data set.
+    if (!opened && found && *found == folder) throw InputError(opened.error().message);
+  }
   if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
   return sequences;
 }

@@ -32,9 +32,18 @@ RecognizerConfig make_config(const std::string& preset, const std::optional<std:
   return config;
 }
 
+void warn_about_names(const SequenceTruth& truth, const std::string& sequence) {
+  if (truth.names == TruthNames::kFoundById)
+    print_warning(
+        fmt::format("{}: the library has other names for the true objects; they were found by obj_id", sequence));
+  if (truth.names == TruthNames::kNotInLibrary)
+    print_warning(fmt::format("{}: no true object is in the library, so that nothing can be right", sequence));
+}
+
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
                           int num_threads) {
   const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
+  warn_about_names(truth, "ground truth");
   ReportRun run;
   run.preset = config.preset;
   run.version = RESIGHT_VERSION;

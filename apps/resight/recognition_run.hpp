@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "resight/evaluation/change_truth.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/report/view_record.hpp"
@@ -13,6 +14,9 @@ namespace resight::app {
 /// Configuration from the preset, overridden by the config file, then by the command line.
 [[nodiscard]] RecognizerConfig make_config(const std::string& preset, const std::optional<std::filesystem::path>& file,
                                            std::optional<int> num_previous_views, int num_threads);
+
+/// Warns if the library does not have the names of the true objects.
+void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 
 /// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,

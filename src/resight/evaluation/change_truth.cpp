@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/evaluation/change_truth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -78,6 +79,39 @@ Result<std::vector<TruthView>> read_truth_views(const Sequence& sequence) {
   return views;
 }
 
+bool has_known_object(const std::vector<TruthView>& views, const ModelLibrary& library) {
+  return std::ranges::any_of(views, [&](const TruthView& view) {
+    return std::ranges::any_of(view.objects, [&](const auto& object) { return library.find(object.object) >= 0; });
+  });
+}
+
+// Names of the library instead of those of the data set.
+void name_by_id(const ModelLibrary& library, std::vector<TruthView>& views) {
+  for (TruthView& view : views)
+    for (GroundTruthObject& object : view.objects) {
+      const auto model = std::ranges::find(library.objects, object.bop_id, &ObjectModel::bop_id);
+      if (object.bop_id > 0 && model != library.objects.end()) object.object = model->name;
+    }
+}
+
+// A BOP scene without models_info.json names its objects by their obj_ids.
+bool has_own_names(const std::vector<TruthView>& views) {
+  return std::ranges::any_of(views, [](const TruthView& view) {
+    return std::ranges::any_of(view.objects, [](const auto& object) { return !object.object.starts_with("obj_"); });
+  });
+}
+
+void check_names(const ModelLibrary& library, SequenceTruth& truth) {
+  const bool has_objects = std::ranges::any_of(truth.views, [](const TruthView& v) { return !v.objects.empty(); });
+  if (!has_objects || has_known_object(truth.views, library)) return;
+  const bool has_names = has_own_names(truth.views);
+  name_by_id(library, truth.views);
+  if (!has_known_object(truth.views, library))
+    truth.names = TruthNames::kNotInLibrary;
+  else if (has_names)
+    truth.names = TruthNames::kFoundById;
+}
+
 Result<void> add_events(const fs::path& events, const fs::path& unknown_models, const ModelLibrary& library,
                         SequenceTruth& truth) {
   auto changes = read_true_changes(events);
@@ -138,6 +172,7 @@ Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelL
     auto views = read_truth_views(sequence);
     if (!views) return views.error();
     truth.views = std::move(*views);
+    check_names(library, truth);
   }
   Result<void> done;
   if (!files.events.empty()) {

@@ -33,9 +33,17 @@ struct TrueChange {
 [[nodiscard]] std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes,
                                                         const ModelLibrary& library);
 
+/// Whether the library has the true objects of a sequence.
+enum class TruthNames {
+  kInLibrary,    ///< At least one by its name, or there is no true object.
+  kFoundById,    ///< None by its name, but by its obj_id. The objects have the names of the library.
+  kNotInLibrary  ///< None.
+};
+
 /// Ground truth of a sequence.
 struct SequenceTruth {
   std::vector<TruthView> views;  ///< Empty without ground truth.
+  TruthNames names = TruthNames::kInLibrary;
   /// From the events, else from the chains, else from find_former_places().
   std::vector<FormerPlace> former_places;
   /// Absent if the sequence has no file of changes; changes are then not scored.
@@ -44,7 +52,8 @@ struct SequenceTruth {
   std::map<std::string, PointCloud> unknown_surfaces;
 };
 
-/// Reads the ground truth of all views, and the changes from `files`: from the events if there are any, otherwise from
+/// Reads the ground truth of all views. If the library has none of the names, the objects get the names that it has for
+/// their obj_ids. Reads the changes from `files`: from the events if there are any, otherwise from
 /// the chains of placements (infer_changes(), which reads all views). Surfaces of unknown objects are sampled from the
 /// meshes in `unknown_models`, if that folder exists and there are events.
 [[nodiscard]] Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
