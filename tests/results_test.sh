@@ -38,7 +38,7 @@ esac
 PROGRAM
 cat >"$work/build/bench/bench_model_objects" <<'PROGRAM'
 #!/usr/bin/env bash
-[[ "$1 $3" == "--tabletop --out" ]] && mkdir "$4"
+[[ "$1" == --tabletop && "${*: -2:1}" == --out ]] && mkdir "${*: -1}"
 PROGRAM
 cat >"$work/build/bench/bench_robustness" <<'PROGRAM'
 #!/usr/bin/env bash
