@@ -76,7 +76,7 @@ keep_output() {
 
 # make_data_set NAME SEED: the data set, its library NAME.resight, and its name and version in NAME.txt.
 make_data_set() {
-  local folder=$out/version-$version/$1 preset=dynamic-tabletop
+  local folder=$parts/$1 preset=dynamic-tabletop
   ((version == 3)) || preset+=-$version
   [[ -e $folder.resight ]] && return
   if [[ ! -e $folder.txt ]]; then
@@ -100,8 +100,7 @@ make_data_set() {
 }
 # One shard makes the data; the others wait.
 make_data() {
-  mkdir -p "$out/version-$version"
-  exec 9>"$out/version-$version/lock"
+  exec 9>"$parts/lock"
   flock 9
   make_data_set test 2
   make_data_set validation 1
@@ -111,19 +110,20 @@ make_data() {
 # evaluate NAME OPTION...: keeps the tables in NAME.md and NAME_times.md. All calls share their runs. They do not share
 # their tables, because several shards may write these at the same time.
 evaluate() {
-  local name=$1 results=$out/version-$version/results options=()
+  local name=$1 runs=$parts/results/runs options=()
+  local results=$parts/results/$1-${shard_number:-all}
   shift
   [[ -e $parts/$name.md ]] && return
   if ((merge)); then options=(--merge); elif [[ -n $shard ]]; then options=(--shard "$shard"); fi
-  mkdir -p "$results/runs" "$results/$name"
-  ln -sfn ../runs "$results/$name/runs"
-  rm -f "$results/$name/tables.md"
-  step "evaluate $name" "$resight" evaluate --models "$out/version-$version/test.resight" \
-    --dataset "$out/version-$version/test" --out "$results/$name" "$@" "${options[@]}" || true
+  mkdir -p "$runs" "$results"
+  ln -sfn ../runs "$results/runs"
+  rm -f "$results/tables.md"
+  step "evaluate $name" "$resight" evaluate --models "$parts/test.resight" \
+    --dataset "$parts/test" --out "$results" "$@" "${options[@]}" || true
   # A shard writes tables only if the runs of all shards are there.
-  [[ -e $results/$name/tables.md ]] || { missing+=("$name.md"); return; }
-  cp "$results/$name/times.md" "$parts/${name}_times.md"
-  cp "$results/$name/tables.md" "$parts/$name.md"
+  [[ -e $results/tables.md ]] || { missing+=("$name.md"); return; }
+  cp "$results/times.md" "$parts/${name}_times.md"
+  cp "$results/tables.md" "$parts/$name.md"
 }
 run_demo() {
   rm -rf "$parts/demo"
@@ -147,8 +147,8 @@ put() {
 # The pages change only if all tables are there.
 write_pages() {
   local test validation real="real and path-traced recordings" name
-  test=$(cut -d: -f1 "$out/version-$version/test.txt")  # "dynamic-tabletop version 3, seed 2: 9 sequences, .."
-  validation=$(cut -d: -f1 "$out/version-$version/validation.txt")
+  test=$(cut -d: -f1 "$parts/test.txt")  # "dynamic-tabletop version 3, seed 2: 9 sequences, .."
+  validation=$(cut -d: -f1 "$parts/validation.txt")
   new_pages=$parts/pages
   mkdir -p "$new_pages/docs"
   cp "$pages/README.md" "$new_pages/README.md"
@@ -168,7 +168,7 @@ write_pages() {
 evaluate paper --presets mvr,mvr-chd -k 0-7
 evaluate default --presets default -k 0,5
 evaluate clustering --presets mvr,mvr-chd,default -k 5 --without-clustering
-validation=$out/version-$version/validation
+validation=$parts/validation
 part demo.txt run_demo
 part degraded.md "$build/bench/bench_robustness" "$validation/test/000001" "$validation.resight" mvr,mvr-chd,default 5 \
   "$validation/test/000001.events.json"

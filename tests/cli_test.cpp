@@ -260,6 +260,9 @@ const std::string kRecognizeLongName = "recognize --models " + kLongName + " --s
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 const std::string kTrainToLongName = "train meshes --out " + kLongName;
 constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
+constexpr const char* kUnorganizedPcd =
+    "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
+    "0 0 0\n.1 0 0\n0 .1 0\n0 0 .1\n";
 constexpr const char* kTrain = "train meshes --out new.resight";
 const Spoil kNothing = [](const fs::path&) {};
 
@@ -467,6 +470,10 @@ const Row kRows[] = {
     {"TruthWithOtherNames", both(move("views", "set/test/views"), write("set/models/models_info.json", kOtherNames)),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0,
      "views: the library has other names .* found by obj_id", "out/results.json"},
+    {"EvaluateBesideAModel", both(move("views", "set/views"), write("set/thing/3D_model.pcd", kUnorganizedPcd)),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
+    {"ConvertOneModel", write("thing/3D_model.pcd", kUnorganizedPcd), "convert thing out --to bop", 0, "",
+     "out/models/models_info.json"},
     {"TruthOfOtherObjects", library([] {
        ModelLibrary library = make_library(40);
        library.objects[0].name = "die";

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # `resight evaluate` from end to end, on two small, noisy sequences: shards merge to the same bytes as one run, finished
 # runs are not computed again, a missing run is named, mvr-chd has fewer ghosts and a higher precision than mvr,
-# `.changes` scores like events, and clustering can be left out. `resight changes` reconstructs with and without change
-# detection.
+# `.changes` scores like events, other names of the objects do no harm, and clustering can be left out. `resight
+# changes` reconstructs with and without change detection.
 # Usage: evaluate_test.sh PATH_OF_RESIGHT
 set -uo pipefail
 resight=$1
@@ -123,6 +123,15 @@ done
 dataset=$work/tuw/data evaluate chains --without-clustering || fail "evaluate of TUW failed: $(cat "$work/chains.log")"
 without_errors() { grep -vE '"(median|p95)"' "$work/$1/results.json"; }
 cmp -s <(without_errors whole) <(without_errors chains) || fail "the chains gave other results than the events"
+
+# A library whose names are not those of the data set finds the objects by their ids.
+cp -r "$work/data" "$work/renamed" && mkdir "$work/other" && mv "$work/renamed" "$work/other/data"
+sed -i 's/"name": "/&my_/' "$work/other/data/models/models_info.json"
+find "$work/other/data" -name '*events.json' -exec sed -i 's/"object": "/&my_/' {} +
+find "$work/other/data" -name '*.changes' -delete
+dataset=$work/other/data evaluate renamed --without-clustering || fail "evaluate failed: $(cat "$work/renamed.log")"
+grep -q 'found by obj_id' "$work/renamed.log" || fail "other names bring no warning: $(cat "$work/renamed.log")"
+cmp -s "$work/whole/results.json" "$work/renamed/results.json" || fail "objects with other names gave other results"
 
 # Results of other data are stale: of another truth, image, change or name of an object, or of another library.
 expect_stale() { # expect_stale WHAT

@@ -11,9 +11,9 @@ check_pages() { scripts/page_tables.sh check "$@" >"$work/check.log" 2>&1; }
 
 check_pages README.md docs/results.md || fail "the project's pages: $(cat "$work/check.log")"
 
-pages=$work/pages data=$work/out/version-3
+pages=$work/pages
 commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
-parts=$work/out/$commit-version-3
+parts=$work/out/$commit-version-3 data=$work/out/$commit-version-3
 mkdir -p "$pages/docs" "$parts" "$work/build/apps/resight" "$work/build/bench"
 cp README.md "$pages/"
 cp docs/results.md "$pages/docs/"

@@ -64,13 +64,17 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   std::ranges::sort(folders);
   std::vector<EvaluationSequence> sequences;
   if (root == dataset)
-    if (const auto opened = open_posed_sequence(dataset)) return {describe(dataset, **opened)};
+    if (const auto opened = open_posed_sequence(dataset)) return {describe(*find_sequence_folder(dataset), **opened)};
   for (const fs::path& folder : folders) {
     const auto found = find_sequence_folder(folder);
-    const auto opened = open_posed_sequence(folder);
-    if (opened) sequences.push_back(describe(folder, **opened));
+    if (!found) continue;
     // A damaged sequence is an error: scores without it would pass for those of the whole data set.
-    if (!opened && found && *found == folder) throw InputError(opened.error().message);
+    if (const auto any = open_sequence(*found); !any) throw InputError(any.error().message);
+    const auto opened = open_posed_sequence(*found);
+    if (opened)
+      sequences.push_back(describe(*found, **opened));
+    else
+      print_warning(opened.error().message);
   }
   if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
   return sequences;
@@ -90,26 +94,23 @@ std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
   return hash;
 }
 
-// Whether the entry is a link to a folder that contains it.
-bool leads_upwards(const fs::directory_entry& entry) {
-  std::error_code error;
-  if (!entry.is_symlink(error) || !entry.is_directory(error)) return false;
-  const fs::path target = fs::canonical(entry.path(), error);
-  const fs::path here = fs::canonical(entry.path().parent_path(), error);
-  return error || std::ranges::mismatch(target, here).in1 == target.end();
-}
-
-// Names and contents of all files of a folder, also below symbolic links: data sets often link to their images. A
-// folder that does not exist counts as empty.
-std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash) {
+// Names and contents of all files of a folder, also below symbolic links: data sets often link to their images. Each
+// folder counts once, however many links lead to it, and `skipped` does not count. A folder that does not exist counts
+// as empty.
+std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash, const fs::path& skipped = {}) {
   std::vector<fs::path> files;
   std::error_code error;
+  if (!fs::is_directory(folder, error)) return hash;
+  std::set<fs::path> visited{fs::canonical(folder, error), fs::weakly_canonical(skipped, error)};
   for (fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink, error), end;
        !error && it != end; it.increment(error)) {
     std::error_code unreadable;
     if (it->is_regular_file(unreadable)) files.push_back(it->path());
-    if (leads_upwards(*it)) it.disable_recursion_pending();
+    const bool is_folder = it->is_directory(unreadable);
+    if (unreadable || (is_folder && !visited.insert(fs::canonical(it->path(), unreadable)).second))
+      it.disable_recursion_pending();
   }
+  if (error) throw InputError(fmt::format("{}: cannot be listed ({})", folder.string(), error.message()));
   std::ranges::sort(files);
   for (const fs::path& file : files) hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
   return hash;
@@ -129,9 +130,9 @@ std::uint64_t hash_common(const fs::path& models, const EvaluationSequence& sequ
   return hash_object_names(data, hash_object_names(data.parent_path(), hash_folder(sequence.unknown_models, hash)));
 }
 
-// The views and the truth of a sequence.
-std::uint64_t hash_sequence(const EvaluationSequence& sequence, std::uint64_t hash) {
-  hash = hash_file(sequence.changes.events, hash_folder(sequence.folder, hash));
+// The views and the truth of a sequence. Results may lie among them.
+std::uint64_t hash_sequence(const EvaluationSequence& sequence, const fs::path& out, std::uint64_t hash) {
+  hash = hash_file(sequence.changes.events, hash_folder(sequence.folder, hash, out));
   if (sequence.annotations != sequence.folder) hash = hash_folder(sequence.annotations, hash);
   return sequence.changes.changes.empty() ? hash : hash_file(sequence.changes.changes, hash);
 }
@@ -200,7 +201,7 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
   const std::vector<EvaluationSequence> sequences = find_sequences(arguments.dataset);
   const std::uint64_t common_hash = hash_common(arguments.models, sequences.front());
   for (const EvaluationSequence& sequence : sequences) {
-    const std::uint64_t hash = hash_sequence(sequence, common_hash);
+    const std::uint64_t hash = hash_sequence(sequence, arguments.out, common_hash);
     std::map<std::string, int> group_of;
     for (const RecognizerConfig& config : configs) {
       const auto [entry, is_new] = group_of.try_emplace(generation_settings(config), num_groups);

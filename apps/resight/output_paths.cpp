@@ -56,6 +56,7 @@ void check_output_file(const fs::path& out, std::string_view signature, std::str
   value_or_throw(check_writable(out));
   if (!is_there(out)) return;
   const auto start = read_file_start(out, signature.size());
+  if (start.ok() && start->empty()) return;  // nothing can be lost
   if (!start.ok() || *start != signature)
     refuse_output(out, fmt::format("exists already and is no {} (choose another name or delete it first)", kind));
 }

@@ -4,7 +4,7 @@
 // models in --out are in the frames of the meshes, so that both results can be compared. --tabletop records the objects
 // of dynamic-tabletop version 3 that are to be recorded, with the device and the light of that seed. --given gives
 // poses with so many mm, and mrad, of independent noise; --one-side leaves the other side out; --or-one-side does so
-// only if the sides cannot be joined.
+// only if the sides cannot be joined. Returns 1 if an object has no model.
 //   bench_model_objects [--true-poses | --given MM] [--one-side | --or-one-side] [--walk] [--tabletop SEED] [--out DIR]
 //     [OBJECT...]
 #include <fmt/format.h>
@@ -112,14 +112,19 @@ Result<ObjectTrack> track_both(const ProceduralObject& object, const Plan& plan,
     truth.insert(truth.end(), side.object_from_camera.begin(), side.object_from_camera.end());
     auto track =
         plan.true_poses ? mask_with_true_poses(std::move(side)) : track_object(std::move(side.frames), options);
-    if (!track) return track;
-    tracks.push_back(std::move(*track));
+    if (!track && !(upside_down && plan.or_one_side)) return track;
+    if (track) tracks.push_back(std::move(*track));
   }
   if (!plan.true_poses) {
-    auto joined = join_tracks(tracks[0], std::move(tracks[1]), options);
-    if (joined || !plan.or_one_side) return joined;
-    truth.resize(tracks[0].views.size());
-    return std::move(tracks[0]);
+    const std::size_t num_first_views = tracks[0].views.size();
+    std::optional<ObjectTrack> first;
+    if (plan.or_one_side) first = tracks[0];
+    if (tracks.size() == 2) {
+      auto joined = join_tracks(std::move(tracks[0]), std::move(tracks[1]), options);
+      if (joined || !first) return joined;
+    }
+    truth.resize(num_first_views);
+    return std::move(*first);
   }
   for (TrainingView& view : tracks[1].views) tracks[0].views.push_back(std::move(view));
   return std::move(tracks[0]);
@@ -165,16 +170,20 @@ DeclaredModelInfo declared_info(const ProceduralObject& object, const Plan& plan
   return declared;
 }
 
-void measure(const std::string& name, const Plan& plan) {
+// Whether the object has a model, which is written if that was asked for.
+bool measure(const std::string& name, const Plan& plan) {
   const auto object = make_script_object(plan.tabletop_seed, name);
-  if (!object.ok()) return static_cast<void>(fmt::print("{}\n", object.error().message));
+  if (!object.ok()) {
+    fmt::print("{}\n", object.error().message);
+    return false;
+  }
   const TriangleMesh& truth = object->mesh;
   std::vector<Rigid3> true_poses;
   const auto start = std::chrono::steady_clock::now();
   auto track = track_both(*object, plan, true_poses);
   if (!track) {
     fmt::print("{:12} {}\n", name, track.error().message);
-    return;
+    return false;
   }
   BuildModelOptions options;
   options.num_threads = num_hardware_threads();
@@ -182,7 +191,7 @@ void measure(const std::string& name, const Plan& plan) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!build) {
     fmt::print("{:12} {}\n", name, build.error().message);
-    return;
+    return false;
   }
   std::vector<Rigid3> poses;
   for (const TrainingView& view : track->views) poses.push_back(view.frame.world_from_camera);
@@ -194,9 +203,13 @@ void measure(const std::string& name, const Plan& plan) {
              1000 * track->closure_error_m, trajectory.mean_rad * 57.29578, 1000 * error.median_m, 1000 * error.p95_m,
              error.completeness, build->report.holes.open_share, seconds);
   std::fflush(stdout);
-  if (plan.out.empty()) return;
-  if (const auto done = write_object_model(plan.out / name, track->views, *build, declared_info(*object, plan)); !done)
+  if (plan.out.empty()) return true;
+  if (const auto done = write_object_model(plan.out / name, track->views, *build, declared_info(*object, plan));
+      !done) {
     fmt::print("{}\n", done.error().message);
+    return false;
+  }
+  return true;
 }
 
 std::vector<std::string> default_names(const Plan& plan) {
@@ -233,6 +246,8 @@ int main(int argc, char** argv) {
   }
   fmt::print("{:12} {:>6} {:>10} {:>9} {:>9} {:>9} {:>9} {:>6} {:>8}\n", "object", "views", "closure mm", "rot. deg",
              "median mm", "p95 mm", "complete", "open", "seconds");
-  for (const std::string& name : plan.names.empty() ? default_names(plan) : plan.names) measure(name, plan);
-  return 0;
+  bool is_complete = true;
+  for (const std::string& name : plan.names.empty() ? default_names(plan) : plan.names)
+    is_complete = measure(name, plan) && is_complete;
+  return is_complete ? 0 : 1;
 }

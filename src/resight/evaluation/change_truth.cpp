@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -17,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::int64_t kMaxView = 10'000'000;
 constexpr double kUnknownSamplesPerSqM = 2.5e5;  // 2 mm apart.
 
 std::optional<ObjectEventKind> kind_from(const std::string& text) {
@@ -43,7 +46,9 @@ TrueChange change_from(const json& value) {
   const auto kind = kind_from(value.at("kind").get<std::string>());
   if (!kind) throw std::runtime_error("kind must be added, moved or removed");
   change.kind = *kind;
-  change.view = value.at("view").get<int>();
+  const auto view = value.at("view").get<std::int64_t>();
+  if (view < 0 || view > kMaxView) throw std::runtime_error("view is out of range");
+  change.view = static_cast<int>(view);
   change.object = value.at("object").get<std::string>();
   change.known = value.at("known").get<bool>();
   change.world_from_object_before = pose_from_json(value.at("world_from_object_before"));
@@ -85,13 +90,23 @@ bool has_known_object(const std::vector<TruthView>& views, const ModelLibrary& l
   });
 }
 
-// Names of the library instead of those of the data set.
-void name_by_id(const ModelLibrary& library, std::vector<TruthView>& views) {
+using Names = std::map<std::string, std::string>;
+
+// Gives the objects the names of the library instead of those of the data set. Returns the new names by the old ones.
+Names name_by_id(const ModelLibrary& library, std::vector<TruthView>& views) {
+  Names names;
   for (TruthView& view : views)
     for (GroundTruthObject& object : view.objects) {
       const auto model = std::ranges::find(library.objects, object.bop_id, &ObjectModel::bop_id);
-      if (object.bop_id > 0 && model != library.objects.end()) object.object = model->name;
+      if (object.bop_id <= 0 || model == library.objects.end()) continue;
+      names[object.object] = model->name;
+      object.object = model->name;
     }
+  return names;
+}
+
+void rename_object(const Names& names, std::string& object) {
+  if (const auto name = names.find(object); name != names.end()) object = name->second;
 }
 
 // A BOP scene without models_info.json names its objects by their obj_ids.
@@ -101,21 +116,24 @@ bool has_own_names(const std::vector<TruthView>& views) {
   });
 }
 
-void check_names(const ModelLibrary& library, SequenceTruth& truth) {
+// Returns the new names of objects that the library has under another name.
+Names check_names(const ModelLibrary& library, SequenceTruth& truth) {
   const bool has_objects = std::ranges::any_of(truth.views, [](const TruthView& v) { return !v.objects.empty(); });
-  if (!has_objects || has_known_object(truth.views, library)) return;
+  if (!has_objects || has_known_object(truth.views, library)) return {};
   const bool has_names = has_own_names(truth.views);
-  name_by_id(library, truth.views);
+  Names names = name_by_id(library, truth.views);
   if (!has_known_object(truth.views, library))
     truth.names = TruthNames::kNotInLibrary;
   else if (has_names)
     truth.names = TruthNames::kFoundById;
+  return names;
 }
 
 Result<void> add_events(const fs::path& events, const fs::path& unknown_models, const ModelLibrary& library,
-                        SequenceTruth& truth) {
+                        const Names& new_names, SequenceTruth& truth) {
   auto changes = read_true_changes(events);
   if (!changes) return changes.error();
+  for (TrueChange& change : *changes) rename_object(new_names, change.object);
   truth.changes = std::move(*changes);
   truth.former_places = former_places_of(*truth.changes, library);
   auto surfaces = read_unknown_surfaces(unknown_models);
@@ -125,13 +143,14 @@ Result<void> add_events(const fs::path& events, const fs::path& unknown_models, 
 }
 
 Result<void> add_chains(const fs::path& file, const Sequence& sequence, const ModelLibrary& library,
-                        SequenceTruth& truth) {
+                        const Names& new_names, SequenceTruth& truth) {
   const auto chains = read_changes(file);
   if (!chains) return chains.error();
   std::vector<std::string> names;
   for (int v = 0; v < sequence.num_views(); ++v) names.push_back(sequence.view_name(v));
-  const auto named = resolve_changes(*chains, names, file.string());
+  auto named = resolve_changes(*chains, names, file.string());
   if (!named) return named.error();
+  for (ObjectPlacement& placement : *named) rename_object(new_names, placement.object);
   const auto placements = locate_placements(*named, truth.views, library, file.string());
   if (!placements) return placements.error();
   const auto visibilities = observe_placements(*placements, truth.views, sequence, library);
@@ -168,17 +187,18 @@ std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes
 Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
                                           const ChangeFiles& files, const fs::path& unknown_models) {
   SequenceTruth truth;
+  Names new_names;
   if (sequence.has_ground_truth()) {
     auto views = read_truth_views(sequence);
     if (!views) return views.error();
     truth.views = std::move(*views);
-    check_names(library, truth);
+    new_names = check_names(library, truth);
   }
   Result<void> done;
   if (!files.events.empty()) {
-    done = add_events(files.events, unknown_models, library, truth);
+    done = add_events(files.events, unknown_models, library, new_names, truth);
   } else if (!files.changes.empty() && sequence.has_ground_truth()) {
-    done = add_chains(files.changes, sequence, library, truth);
+    done = add_chains(files.changes, sequence, library, new_names, truth);
   } else {
     truth.former_places = find_former_places(truth.views, library);
   }

@@ -97,25 +97,23 @@ SequenceResult open_files(std::vector<fs::path> files, const fs::path& directory
 
 }  // namespace
 
-bool is_tuw_sequence(const fs::path& directory) { return std::ranges::any_of(list_files(directory), is_pcd); }
+// Unorganised clouds alone are models. A damaged file may be a view.
+bool is_tuw_sequence(const fs::path& directory) {
+  return std::ranges::any_of(list_files(directory), [&](const std::string& name) {
+    if (!is_pcd(name)) return false;
+    const auto size = read_pcd_size(directory / name);
+    return !size || size->height > 1;
+  });
+}
 
 SequenceResult open_tuw_sequence(const fs::path& directory) {
   std::vector<fs::path> files;
-  int num_unorganized = 0;
   for (const std::string& name : list_files(directory)) {
     if (!is_pcd(name)) continue;
     const auto size = read_pcd_size(directory / name);
     if (!size) return size.error();
-    // Unorganised clouds beside the views are models.
-    if (size->height > 1)
-      files.push_back(directory / name);
-    else
-      ++num_unorganized;
+    if (size->height > 1) files.push_back(directory / name);
   }
-  if (files.empty())
-    return file_error(directory,
-                      fmt::format("its {} PCD files are unorganised clouds; expected views (organised, HEIGHT > 1)",
-                                  num_unorganized));
   return open_files(std::move(files), directory);
 }
 

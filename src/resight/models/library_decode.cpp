@@ -26,7 +26,7 @@ bool read(const flatbuffers::Vector<float>* values, std::vector<Eigen::Vector3f>
   return true;
 }
 
-/// Not so for NaN. Coordinates beyond the limit would not fit into the integers of pixels and voxels.
+/// False for NaN, and beyond the limit: such coordinates would not fit into the integers of pixels and voxels.
 bool are_near(const std::vector<Eigen::Vector3f>& points) {
   for (const Eigen::Vector3f& p : points)
     if (!(p.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m) || !p.allFinite()) return false;
