@@ -218,6 +218,15 @@ Spoil move(const char* from, const char* to) {
     fs::rename(folder / from, folder / to);
   };
 }
+Spoil remove_texts(const char* path) {
+  return [=](const fs::path& folder) {
+    std::vector<fs::path> texts;
+    for (const auto& entry : fs::directory_iterator(folder / path))
+      if (entry.path().extension() == ".txt") texts.push_back(entry.path());
+    ASSERT_FALSE(texts.empty());
+    for (const fs::path& text : texts) fs::remove(text);
+  };
+}
 Spoil small_image(const char* path) {
   return
       [=](const fs::path& folder) { ASSERT_TRUE(write_color(folder / path, Image<Rgb8>(kWidth / 2, kHeight)).ok()); };
@@ -562,6 +571,8 @@ const Row kRows[] = {
      "tuw\\.changes: cloud_07_cube_0\\.txt: the sequence has no such view"},
     {"ConvertChanges", write("tuw/any.changes", "cloud_00_cube_0"), "convert tuw out --to tuw", 0, "",
      "out/out.changes"},
+    {"ConvertChangesWithoutGroundTruth", both(remove_texts("tuw"), write("tuw/any.changes", "cloud_00_cube_0.txt\n")),
+     "convert tuw out --to bop", 0, "", "out"},
     {"ConvertChangesWithoutNames", write("tuw/any.changes", "nan\n"), "convert tuw out --to tuw", 2,
      "any\\.changes: line 1: expected names like"},
     {"ConvertChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"), "convert tuw out --to bop", 2,

@@ -8,8 +8,8 @@ namespace resight::app {
 
 using Paths = std::vector<std::filesystem::path>;
 
-// One rule for all outputs: an input is never replaced, nor is a file that the command did not write. All functions
-// throw an InputError, before any work is done.
+// One rule for all outputs: an input is never replaced, nor is a file that the command did not write. Only in an output
+// folder, files with the names of our results are. All functions throw an InputError, before any work is done.
 
 /// For a file to write. It may exist only if it begins with `signature`, as files of this `kind` do.
 void check_output_file(const std::filesystem::path& out, std::string_view signature, std::string_view kind,

@@ -53,9 +53,9 @@ struct SequenceTruth {
 };
 
 /// Reads the ground truth of all views. If the library has none of the names, the objects get the names that it has for
-/// their obj_ids. Reads the changes from `files`: from the events if there are any, otherwise from
-/// the chains of placements (infer_changes(), which reads all views). Surfaces of unknown objects are sampled from the
-/// meshes in `unknown_models`, if that folder exists and there are events.
+/// their obj_ids. Reads the changes from the events if `files` has any, otherwise from the chains of placements
+/// (infer_changes(), which reads all views). Surfaces of unknown objects are sampled from the meshes in
+/// `unknown_models`, if that folder exists and there are events.
 [[nodiscard]] Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelLibrary& library,
                                                         const ChangeFiles& files = {},
                                                         const std::filesystem::path& unknown_models = {});

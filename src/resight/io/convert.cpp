@@ -72,7 +72,7 @@ Result<KeptChanges> read_kept_changes(const Sequence& sequence, const ChangeFile
     if (!bytes) return bytes.error();
     kept.events = std::move(*bytes);
   }
-  if (files.changes.empty()) return kept;
+  if (files.changes.empty() || !sequence.has_ground_truth()) return kept;
   const auto chains = read_changes(files.changes);
   if (!chains) return chains.error();
   std::vector<std::string> views;

@@ -18,9 +18,9 @@ struct ConversionSummary {
 
 /// Writes all views of `sequence` with their ground truth to `directory` in another format. The files of its true
 /// changes go into the same folder: the events as they are, as `events.json`; the chains with the new names of the
-/// views, as
-/// `<name of directory>.changes`. Fails if these chains do not fit the views and their ground truth. Losses
-/// (docs/formats.md): BOP rounds depth to 0.1 mm (1 mm beyond 6.5 m) and names views by numbers; TUW has no obj_ids.
+/// views, as `<name of directory>.changes`, unless there is no ground truth that they could refer to. Fails if the
+/// chains do not fit the views and their ground truth. Losses (docs/formats.md): BOP rounds depth to 0.1 mm (1 mm
+/// beyond 6.5 m) and names views by numbers; TUW has no obj_ids.
 [[nodiscard]] Result<ConversionSummary> convert_sequence(const Sequence& sequence,
                                                          const std::filesystem::path& directory, DatasetFormat format,
                                                          const ChangeFiles& changes = {});

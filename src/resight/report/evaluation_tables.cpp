@@ -15,8 +15,10 @@
 namespace resight {
 namespace {
 
+using report::ClusteringPair;
 using report::configuration_name;
 using report::evaluation_title;
+using report::find_clustering_pairs;
 using report::format_number;
 using Configurations = std::span<const ConfigurationSummary>;
 
@@ -65,15 +67,11 @@ std::string comparison_table(std::span<const PresetComparison> comparisons) {
 
 std::string clustering_table(Configurations configurations) {
   std::string rows;
-  for (const ConfigurationSummary& without : configurations) {
-    if (without.is_clustered) continue;
-    for (const ConfigurationSummary& with : configurations) {
-      if (!with.is_clustered || with.preset != without.preset || with.num_previous_views != without.num_previous_views)
-        continue;
-      rows += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} % |\n", with.preset, with.num_previous_views,
-                          prf(without.score), prf(with.score), without.counts.clustered, with.counts.clustered,
-                          format_number(100.0 * with.counts.clustered / std::max(1, with.counts.merged), 1));
-    }
+  for (const ClusteringPair& pair : find_clustering_pairs(configurations)) {
+    rows += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} % |\n", pair.with->preset, pair.with->num_previous_views,
+                        prf(pair.without->score), prf(pair.with->score), pair.without->counts.clustered,
+                        pair.with->counts.clustered,
+                        format_number(100.0 * pair.with->counts.clustered / std::max(1, pair.with->counts.merged), 1));
   }
   if (rows.empty()) return {};
   return "\n## Clustering (Tables II and III)\n\n"

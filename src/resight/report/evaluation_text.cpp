@@ -24,4 +24,14 @@ std::string evaluation_title(const char* what, const EvaluationHeader& header,
                      configurations.empty() ? 0 : configurations.front().num_views);
 }
 
+std::vector<ClusteringPair> find_clustering_pairs(std::span<const ConfigurationSummary> configurations) {
+  std::vector<ClusteringPair> pairs;
+  for (const ConfigurationSummary& without : configurations)
+    for (const ConfigurationSummary& with : configurations)
+      if (!without.is_clustered && with.is_clustered && with.preset == without.preset &&
+          with.num_previous_views == without.num_previous_views)
+        pairs.push_back({&without, &with});
+  return pairs;
+}
+
 }  // namespace resight::report

@@ -11,8 +11,10 @@
 namespace resight {
 namespace {
 
+using report::ClusteringPair;
 using report::configuration_name;
 using report::evaluation_title;
+using report::find_clustering_pairs;
 using report::format_number;
 
 constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
@@ -56,17 +58,12 @@ std::string view_time_table(std::span<const ConfigurationSummary> configurations
 // Paper, Table III.
 std::string clustering_time_table(std::span<const ConfigurationSummary> configurations) {
   std::string rows;
-  for (const ConfigurationSummary& without : configurations) {
-    if (without.is_clustered) continue;
-    for (const ConfigurationSummary& with : configurations) {
-      if (!with.is_clustered || with.preset != without.preset || with.num_previous_views != without.num_previous_views)
-        continue;
-      const double saved_ms = cpu_ms(without, "verification") - cpu_ms(with, "verification");
-      rows += fmt::format("| `{}` | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} % |\n", with.preset,
-                          with.num_previous_views, cpu_ms(with, "cluster"), cpu_ms(without, "verification"),
-                          cpu_ms(with, "verification"), saved_ms,
-                          format_number(percent(saved_ms, cpu_ms(without, "verification")), 1));
-    }
+  for (const ClusteringPair& pair : find_clustering_pairs(configurations)) {
+    const double saved_ms = cpu_ms(*pair.without, "verification") - cpu_ms(*pair.with, "verification");
+    rows += fmt::format("| `{}` | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {} % |\n", pair.with->preset,
+                        pair.with->num_previous_views, cpu_ms(*pair.with, "cluster"),
+                        cpu_ms(*pair.without, "verification"), cpu_ms(*pair.with, "verification"), saved_ms,
+                        format_number(percent(saved_ms, cpu_ms(*pair.without, "verification")), 1));
   }
   if (rows.empty()) return {};
   return "\n## Time of clustering (Table III)\n\nCPU ms per view.\n\n"

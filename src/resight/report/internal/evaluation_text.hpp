@@ -2,6 +2,7 @@
 #pragma once
 #include <span>
 #include <string>
+#include <vector>
 
 #include "resight/report/evaluation_report.hpp"
 
@@ -14,5 +15,12 @@ namespace resight::report {
 /// Formats the title of a page of results, and a sentence on what was evaluated.
 [[nodiscard]] std::string evaluation_title(const char* what, const EvaluationHeader& header,
                                            std::span<const ConfigurationSummary> configurations);
+
+/// One configuration with clustering and without it.
+struct ClusteringPair {
+  const ConfigurationSummary* without = nullptr;
+  const ConfigurationSummary* with = nullptr;
+};
+[[nodiscard]] std::vector<ClusteringPair> find_clustering_pairs(std::span<const ConfigurationSummary> configurations);
 
 }  // namespace resight::report
