@@ -74,7 +74,7 @@ pcl_peers::RefinementTask task_of(const PreparedModel& model, const Start& start
 void add_starts(RefinementContest& contest) {
   const VerifyOptions& options = contest.input.config.verify;
   const std::vector<VerificationView> view{{&contest.input.view}};
-  const std::vector<DepthView> depth = prepare_depth_views(view, 1);
+  const std::vector<DepthView> depth = prepare_depth_views(view, 0, 1);
   std::uint64_t stream = 0;
   for (const GroundTruthObject& object : contest.input.objects) {
     if (object.visible_share < kMinVisibleShare) continue;

@@ -37,6 +37,9 @@ struct ColorPairs {
 [[nodiscard]] int count_color_inliers(std::span<const LabColor> expected, std::span<const LabColor> seen,
                                       double min_similarity, const AppearanceOptions& options);
 
+/// TextureMatch::texture_contrast from which a model is textured.
+inline constexpr double kMinTextureContrast = 1;
+
 /// How well the texture of a model agrees with what is seen at the same places.
 struct TextureMatch {
   double similarity = 1;        ///< PatternMatch::similarity.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
+
 #include "resight/appearance/photometric_fit.hpp"
 #include "resight/core/options.hpp"
 
@@ -10,6 +12,7 @@ struct AppearanceOptions {
   bool use_color = true;
   double sigma_l = 0.4;
   double sigma_ab = 0.2;
+  std::optional<double> pattern_radius_m{};
   PhotometricLimits light{};
 };
 
@@ -21,6 +24,10 @@ inline void declare(OptionVisitor& v, AppearanceOptions& o) {
             "ours; reference code: 0.6");
     v.field("sigma_ab", o.sigma_ab, positive(), "Standard deviation of chromaticity, of a* / 128 and b* / 128.",
             "ours; reference code: 0.6");
+    v.field("pattern_radius_m", o.pattern_radius_m, positive(),
+            "Verification compares the patterns of untextured models after both colours are averaged over the surface "
+            "within this radius: noise, sharpening and small highlights are no texture. off: as they are.",
+            "ours");
     v.group("light", o.light);
   });
 }

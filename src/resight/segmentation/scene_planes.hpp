@@ -24,6 +24,14 @@ struct ScenePlane {
   float offset = 0;
   float extent_m = 0;  ///< Largest distance between two of its points.
   int num_points = 0;
+  /// Standard deviation of its points over that of the noise model, if that is what decides which points are on it
+  /// (find_noisy_planes()); 0: a constant distance decides.
+  float noise_scale = 0;
+
+  static constexpr float kToleranceSigmas = 2.5F;
+  static constexpr float kMinNoisyDot = 0.5F;  ///< Cosine of 60 deg, between the plane and a noisy normal on it.
+  /// Largest distance of a point on a noisy plane, where the model gives the noise `noise_m`.
+  [[nodiscard]] float tolerance_m(float noise_m) const { return kToleranceSigmas * noise_scale * noise_m; }
 
   [[nodiscard]] float signed_distance(const Eigen::Vector3f& p) const { return normal.dot(p) - offset; }
   /// Whether the foot of `p` lies within the outline of the plane: in a cell between observed points of its row and of

@@ -11,6 +11,7 @@
 #include "resight/core/parallel.hpp"
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/segmentation/surface_continuation.hpp"
+#include "resight/sensor/noise_model.hpp"
 #include "resight/shape_search/scene_samples.hpp"
 #include "resight/shape_search/silhouette.hpp"
 
@@ -60,15 +61,20 @@ std::vector<SampleBlock> to_blocks(const std::vector<Eigen::Vector3f>& points,
   return blocks;
 }
 
+bool holds(const ScenePlane& plane, const Eigen::Vector3f& p, const Eigen::Vector3f& n, double focal_px) {
+  if (plane.noise_scale == 0) return plane.holds(p, n, kPlaneDistance_m, kMinPlaneDot);
+  const auto noise_m = static_cast<float>(nguyen_noise(static_cast<double>(p.z()), 0, focal_px).axial_m);
+  return plane.holds(p, n, plane.tolerance_m(noise_m), ScenePlane::kMinNoisyDot);
+}
+
 // The extent of the largest plane that a pixel lies on.
-float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes) {
+float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes,
+                      double focal_px) {
   float extent_m = 0;
   if (!cloud.has_normal(pixel)) return extent_m;
-  const Eigen::Vector3f p = cloud.point(pixel);
-  const Eigen::Vector3f n = cloud.normal(pixel);
   for (const ScenePlane& plane : planes)
-    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && std::abs(plane.signed_distance(p)) <= kPlaneDistance_m &&
-        plane.normal.dot(n) >= kMinPlaneDot && plane.covers(p))
+    if (plane.extent_m > std::max(extent_m, kMinPlane_m) &&
+        holds(plane, cloud.point(pixel), cloud.normal(pixel), focal_px))
       extent_m = plane.extent_m;
   return extent_m;
 }
@@ -112,7 +118,7 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       lab_[i] = to_lab(view.frame.color[i]);
-      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes), chroma(lab_[i])};
+      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.fx), chroma(lab_[i])};
       const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
       oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
     }

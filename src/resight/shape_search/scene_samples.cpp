@@ -6,7 +6,8 @@
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/segmentation/scene_planes.hpp"
+#include "resight/segmentation/noisy_planes.hpp"
+#include "resight/sensor/noise_model.hpp"
 
 namespace resight {
 namespace {
@@ -27,7 +28,16 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
   return voxel_downsample(select(all, kept), options.spacing_m);
 }
 
-SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options) {
+// The noise of each point, seen from the front.
+std::vector<float> noise_of(const PointCloud& cloud, double focal_px) {
+  std::vector<float> noise_m;
+  noise_m.reserve(cloud.size());
+  for (const Eigen::Vector3f& p : cloud.points)
+    noise_m.push_back(static_cast<float>(nguyen_noise(static_cast<double>(p.z()), 0, focal_px).axial_m));
+  return noise_m;
+}
+
+SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options, double focal_px) {
   ScenePlanes planes =
       find_planes_of_downsampled(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
   std::vector<int> kept;
@@ -35,6 +45,15 @@ SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOpti
     const int plane = planes.plane_of_point[i];
     if (plane < 0 || planes.planes[static_cast<std::size_t>(plane)].extent_m <= static_cast<float>(kMaxPlane_m))
       kept.push_back(static_cast<int>(i));
+  }
+  const std::vector<float> noise_m = noise_of(cloud, focal_px);
+  for (ScenePlane& plane :
+       find_noisy_planes(cloud.points, cloud.normals, noise_m, kept, {.min_extent_m = kMaxPlane_m})) {
+    std::erase_if(kept, [&](int i) {
+      const auto k = static_cast<std::size_t>(i);
+      return plane.holds(cloud.points[k], cloud.normals[k], plane.tolerance_m(noise_m[k]), ScenePlane::kMinNoisyDot);
+    });
+    planes.planes.push_back(std::move(plane));
   }
   return {select(cloud, kept), std::move(planes.planes)};
 }
@@ -75,7 +94,7 @@ SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& op
   options.check();
   PointCloud cloud = near_points(view, options);
   if (!cloud.has_normals()) return {std::move(cloud), {}};
-  return without_large_planes(cloud, options);
+  return without_large_planes(cloud, options, view.frame.camera.fx);
 }
 
 PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_points) {

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/appearance/appearance_match.hpp"
 #include "resight/verification/selection_cost.hpp"
 
 namespace resight {
 namespace {
-
-// Contrast of texture from which a model is textured, in the unit of PatternMatch::shared_texture.
-constexpr double kTextureContrast = 1;
 
 // 1 for a hypothesis that shares no texture with the scene, 0 from max_shared_contrast on.
 double untextured_degree(const HypothesisEvidence& evidence, const UntexturedOptions& untextured) {
@@ -25,7 +23,7 @@ double min_explained_share(const HypothesisEvidence& evidence, const AcceptanceO
 }
 
 bool has_different_appearance(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (evidence.appearance.texture_contrast >= kTextureContrast &&
+  if (evidence.appearance.texture_contrast >= kMinTextureContrast &&
       evidence.appearance.shared_texture < options.min_shared_texture * evidence.appearance.texture_contrast)
     return true;
   return (options.min_pattern_similarity && evidence.appearance.pattern_similarity < *options.min_pattern_similarity) ||

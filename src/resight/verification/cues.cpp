@@ -13,6 +13,7 @@
 #include "resight/verification/newest_view_appearance.hpp"
 #include "resight/verification/pose_refinement.hpp"
 #include "resight/verification/scene_association.hpp"
+#include "resight/verification/surface_blur.hpp"
 #include "resight/verification/symmetry_resolution.hpp"
 
 namespace resight {
@@ -121,13 +122,18 @@ struct CueComputer::Impl {
     std::vector<LabColor> own_colors;
     std::vector<LabColor> model_colors;
     std::vector<LabColor> scene_colors;
+    std::vector<Eigen::Vector3f> places;
     for (const PointMatch& m : association_.nearest) {
+      places.push_back(association_.points[association_.visibility.visible[m.visible]]);
       own_colors.push_back(model_.lab[association_.visibility.visible[m.visible]]);
       model_colors.push_back(lab_[m.visible]);
       scene_colors.push_back(association_.local_lab[m.local]);
     }
     const TextureMatch match = match_texture(own_colors, model_colors, scene_colors, options_.appearance);
-    cues_.evidence.appearance.pattern_similarity = match.similarity;
+    cues_.evidence.appearance.pattern_similarity =
+        match.texture_contrast < kMinTextureContrast
+            ? surface_pattern_similarity(places, model_colors, scene_colors, options_.appearance)
+            : match.similarity;
     cues_.evidence.appearance.texture_contrast = match.texture_contrast;
     cues_.evidence.appearance.shared_texture = match.shared_texture;
   }

@@ -26,7 +26,7 @@ struct SmallCase {
   VerifyOptions options;
   PreparedModel model = prepare_model(make_model("box", solid), options);
   PreparedScene scene = prepare_scene(merge(views), options);
-  std::vector<DepthView> depth_views = prepare_depth_views(refs, 1);
+  std::vector<DepthView> depth_views = prepare_depth_views(refs, 0, 1);
   std::vector<std::uint8_t> everywhere = std::vector<std::uint8_t>(3, 1);
 
   std::vector<Eigen::Vector3f> points_at(const Rigid3& pose) const {
@@ -53,6 +53,23 @@ Evidence expected_evidence(const SmallCase& c, const Eigen::Vector3d& p, const E
   if (std::isnan(depth)) return Evidence::kUnobserved;
   if (in_camera.z() - depth > c.options.visibility.margin_m) return Evidence::kOccluded;
   return depth - in_camera.z() > c.options.visibility.margin_m ? Evidence::kSeenThrough : Evidence::kPresent;
+}
+
+TEST(PrepareDepthViews, PixelsNearDepthEdgesSayNothing) {
+  const SmallCase c;
+  const std::vector<DepthView> narrowed = prepare_depth_views(c.refs, 3, 1);
+  int dropped = 0;
+  for (std::size_t v = 0; v < narrowed.size(); ++v)
+    for (std::size_t i = 0; i < narrowed[v].depth_m.size(); ++i) {
+      const bool near_edge = c.views[v].edge_distance_px[i] < 3;
+      const float z_m = narrowed[v].depth_m[i];
+      if (near_edge)
+        EXPECT_TRUE(std::isnan(z_m));
+      else
+        EXPECT_TRUE(z_m == c.depth_views[v].depth_m[i] || std::isnan(c.depth_views[v].depth_m[i]));
+      dropped += near_edge && !std::isnan(c.depth_views[v].depth_m[i]) ? 1 : 0;
+    }
+  EXPECT_GT(dropped, 100);
 }
 
 TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {

@@ -202,7 +202,8 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   VerifyResult result;
   result.evidence.resize(hypotheses.size());
   if (hypotheses.empty()) return result;
-  const std::vector<DepthView> depth_views = prepare_depth_views(views, options_.num_threads);
+  const std::vector<DepthView> depth_views =
+      prepare_depth_views(views, options_.visibility.min_edge_distance_px, options_.num_threads);
   prepare_models(hypotheses);
   const PreparedScene scene =
       prepare_scene(crop_to_balls(scene_in_world, surroundings(hypotheses, models_, options_)), options_);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "resight/appearance/pattern_similarity.hpp"
+#include "resight/verification/surface_blur.hpp"
 
 namespace resight {
 namespace {
@@ -36,6 +36,7 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
     if (evidence[i] != Evidence::kPresent) continue;
     const std::optional<Pixel> pixel = view.camera.pixel_of((camera_from_world * association.points[i]).cast<double>());
     if (!pixel) continue;  // On the border, where rounding decides.
+    points_.push_back(association.points[i]);
     colors_.model.push_back(model.linear_light[i]);
     colors_.scene.push_back(to_linear_light((*view.color)(pixel->u, pixel->v)));
     if (!association.normals.empty()) colors_.normals.push_back(association.normals[i]);
@@ -45,8 +46,12 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
 
 double NewestViewAppearance::similarity(const Eigen::Array3f& white_balance) const {
   if (colors_.empty()) return 1;
-  return pattern_similarity(adapt_colors(colors_, limit_chromaticity(light_, white_balance)), to_lab(colors_.scene),
-                            chroma_weight(options_.appearance));
+  const std::vector<LabColor> expected = adapt_colors(colors_, limit_chromaticity(light_, white_balance));
+  const std::vector<LabColor> seen = to_lab(colors_.scene);
+  const TextureMatch match = match_texture(to_lab(colors_.model), expected, seen, options_.appearance);
+  return match.texture_contrast < kMinTextureContrast
+             ? surface_pattern_similarity(points_, expected, seen, options_.appearance)
+             : match.similarity;
 }
 
 }  // namespace resight

@@ -15,12 +15,13 @@ class NewestViewAppearance {
   NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,
                        std::span<const DepthView> views, const VerifyOptions& options);
 
-  /// pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
+  /// surface_pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;
 
  private:
   const VerifyOptions& options_;
-  ColorPairs colors_;
+  std::vector<Eigen::Vector3f> points_;
+  ColorPairs colors_;  // One pair per point.
   PhotometricFit light_;
 };
 

@@ -2,6 +2,7 @@
 #include "resight/verification/visibility.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "resight/core/parallel.hpp"
@@ -44,13 +45,19 @@ struct Seen {
 
 }  // namespace
 
-std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads) {
+std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, double min_edge_distance_px,
+                                           int num_threads) {
   std::vector<DepthView> result(views.size());
   parallel_for(views.size(), num_threads, [&](std::size_t i) {
     const PreparedView& view = *views[i].view;
     const bool has_color = view.frame.color.size() == view.cloud.z.size();
     result[i] = {view.frame.camera, view.frame.world_from_camera, has_color ? &view.frame.color : nullptr,
                  fill_small_holes(view.cloud.z)};
+    if (min_edge_distance_px == 0) return;
+    Image<float>& depth_m = result[i].depth_m;
+    for (std::size_t k = 0; k < depth_m.size(); ++k)
+      if (view.edge_distance_px[k] < static_cast<float>(min_edge_distance_px))
+        depth_m[k] = std::numeric_limits<float>::quiet_NaN();
   });
   return result;
 }

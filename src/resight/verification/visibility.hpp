@@ -16,10 +16,13 @@ struct DepthView {
   Camera camera;
   Rigid3 world_from_camera;
   const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this; null if it has none.
-  Image<float> depth_m;                ///< Of the view's cloud; small holes filled (fill_small_holes()).
+  /// Of the view's cloud; small holes filled (fill_small_holes()), NaN near depth edges.
+  Image<float> depth_m;
 };
 
-[[nodiscard]] std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views, int num_threads);
+/// `min_edge_distance_px`: see VisibilityOptions.
+[[nodiscard]] std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> views,
+                                                         double min_edge_distance_px, int num_threads);
 
 /// Points are not visible if they are seen at a more grazing angle: cosine between normal and viewing ray (84 deg).
 inline constexpr double kMinFacing = 0.1;

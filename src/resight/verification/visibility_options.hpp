@@ -28,6 +28,7 @@ inline void declare(OptionVisitor& v, MajorityFreeSpace& o) {
 /// What the views say of the points of a model.
 struct VisibilityOptions {
   double margin_m = 0.02;
+  double min_edge_distance_px = 0;
   std::variant<MajorityFreeSpace, NewestViewFreeSpace> free_space{};
   std::optional<double> arrival_share{};
 };
@@ -36,6 +37,10 @@ inline void declare(OptionVisitor& v, VisibilityOptions& o) {
   v.field("margin_m", o.margin_m, at_least(0),
           "A model point farther than the measured depth by more than this is hidden; nearer by more, it is seen "
           "through.");
+  v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
+          "Pixels nearer to a depth edge say nothing: the reconstruction has no points there (integrate."
+          "min_edge_distance_px), and a slightly wrong pose looks past the object. 0: all say something.",
+          "ours");
   v.choice("free_space", o.free_space,
            {{"majority", "most of the views that observe the point"},
             {"newest_view", "the newest view that observes the point, whatever older ones saw"}},

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/verification/surface_blur.hpp"
+
+#include "resight/appearance/appearance_match.hpp"
+#include "resight/appearance/pattern_similarity.hpp"
+#include "resight/core/check.hpp"
+#include "resight/geometry/kd_tree.hpp"
+
+namespace resight {
+
+SurfaceBlur::SurfaceBlur(std::span<const Eigen::Vector3f> points, double radius_m) : begin_{0} {
+  const KdTree tree(points);
+  std::vector<PointNeighbor> near;
+  for (const Eigen::Vector3f& p : points) {
+    tree.within(p, radius_m, near);
+    for (const PointNeighbor& n : near) neighbors_.push_back(n.index);
+    begin_.push_back(static_cast<int>(neighbors_.size()));
+  }
+}
+
+std::vector<LabColor> SurfaceBlur::operator()(std::span<const LabColor> colors) const {
+  require(colors.size() + 1 == begin_.size(), "SurfaceBlur: not one colour per point");
+  std::vector<LabColor> blurred(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    LabColor sum;
+    for (int k = begin_[i]; k < begin_[i + 1]; ++k) {
+      const LabColor& c = colors[static_cast<std::size_t>(neighbors_[static_cast<std::size_t>(k)])];
+      sum = {sum.l + c.l, sum.a + c.a, sum.b + c.b};
+    }
+    const auto n = static_cast<float>(begin_[i + 1] - begin_[i]);
+    blurred[i] = {sum.l / n, sum.a / n, sum.b / n};
+  }
+  return blurred;
+}
+
+double surface_pattern_similarity(std::span<const Eigen::Vector3f> points, std::span<const LabColor> expected,
+                                  std::span<const LabColor> seen, const AppearanceOptions& options) {
+  if (!options.pattern_radius_m) return pattern_similarity(expected, seen, chroma_weight(options));
+  const SurfaceBlur blur(points, *options.pattern_radius_m);
+  return pattern_similarity(blur(expected), blur(seen), chroma_weight(options));
+}
+
+}  // namespace resight
