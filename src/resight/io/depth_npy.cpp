@@ -46,7 +46,7 @@ std::size_t bytes_of(NpyType type) {
 }
 
 template <typename T>
-double load(const char* bytes) {
+double load_as(const char* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return static_cast<double>(value);
@@ -55,19 +55,19 @@ double load(const char* bytes) {
 double load_value(NpyType type, const char* bytes) {
   switch (type) {
     case NpyType::kFloat32:
-      return load<float>(bytes);
+      return load_as<float>(bytes);
     case NpyType::kFloat64:
-      return load<double>(bytes);
+      return load_as<double>(bytes);
     case NpyType::kUint8:
-      return load<std::uint8_t>(bytes);
+      return load_as<std::uint8_t>(bytes);
     case NpyType::kUint16:
-      return load<std::uint16_t>(bytes);
+      return load_as<std::uint16_t>(bytes);
     case NpyType::kInt32:
-      return load<std::int32_t>(bytes);
+      return load_as<std::int32_t>(bytes);
     case NpyType::kUint32:
       break;
   }
-  return load<std::uint32_t>(bytes);
+  return load_as<std::uint32_t>(bytes);
 }
 
 /// Parses the two numbers of "'shape': (480, 640)".

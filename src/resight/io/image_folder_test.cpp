@@ -85,6 +85,9 @@ TEST(ImageFolder, SaysWhatIsMissing) {
   EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("found 3 colour images, but no depth"));
   ASSERT_TRUE(write_color(directory / "a/depth/000000.png", Image<Rgb8>(kWidth, kHeight)).ok());
   EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("pictures of depth, no depth"));
+  std::filesystem::remove_all(directory / "a/depth");
+  io::write_text(directory / "a/depth/000000.exr", "x");
+  EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr(".exr files, which are not read"));
   write_layout(directory / "b", kTwoFolders);
   io::write_text(directory / "b/camera.yaml", "fx: 60\nfy: 61\ncx: 900\ncy: 2.5\n");
   EXPECT_THAT(open_sequence(directory / "b").error().message, HasSubstr("another image size"));
@@ -109,6 +112,40 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   EXPECT_NEAR(frame->depth_m(0, 0), 0.6, 1e-6);
   options.depth_scale_m = 1;
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("the unit is wrong"));
+}
+
+TEST(ImageFolder, NamesThatAreTimes) {
+  io::TestDirectory directory;
+  const std::vector<std::pair<std::string, std::string>> times = {{"1305031102.175304", "1305031102.160407"},
+                                                                  {"1305031102.211214", "1305031102.226738"},
+                                                                  {"1305031103.005100", "1305031102.999000"},
+                                                                  {"1305031104.500000", "1305031109.500000"}};
+  for (const auto& [color, depth] : times) {
+    ASSERT_TRUE(write_color(directory / "rgb" / (color + ".jpg"), Image<Rgb8>(kWidth, kHeight)).ok());
+    ASSERT_TRUE(write_depth(directory / "depth" / (depth + ".png"), Image<float>(kWidth, kHeight, 1.5F), 0.001).ok());
+  }
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  io::write_text(directory / "groundtruth.txt",
+                 "1305031102.16 1 0 0 0 0 0 1\n1305031102.2 2 0 0 0 0 0 1\n1305031102.25 2 0 0 0 0 0 1\n"
+                 "1305031102.99 3 0 0 0 0 0 1\n1305031103.01 3 0 0 0 0 0 1\n");
+  const auto sequence = open_posed_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 3) << "the last two images are 5 s apart";
+  EXPECT_EQ((*sequence)->view_name(2), "1305031103.005100");
+  EXPECT_NEAR((*sequence)->read_pose(0)->translation.x(), 1 + 0.000407 / 0.04, 1e-4);
+  EXPECT_NEAR((*sequence)->read_pose(2)->translation.x(), 3, 1e-6);
+}
+
+TEST(ImageFolder, SeveralSeriesAreNotGuessed) {
+  io::TestDirectory directory;
+  FolderLayout first = kSevenScenes;
+  first.color_prefix = first.depth_prefix = "a_";
+  FolderLayout second = kSevenScenes;
+  second.color_prefix = second.depth_prefix = "b_";
+  write_layout(directory.path(), first);
+  write_layout(directory.path(), second);
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("several series of views"));
 }
 
 TEST(ImageFolder, PosesPerView) {

@@ -72,6 +72,12 @@ double time_of_digits(const std::vector<std::string>& digits) {
   return digits[0].size() == 13 ? number * 1e-3 : kNone;
 }
 
+/// Files whose name says depth, in formats that are not read: for messages.
+bool is_unread_depth(const std::string& pattern) {
+  const std::string extension = extension_of(pattern);
+  return extension == "png" || extension == "exr" || extension == "npz" || extension == "tiff" || extension == "tif";
+}
+
 /// By the first bytes: 16-bit PNG with one channel is depth, other images are colour.
 SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
   const std::string extension = extension_of(file);
@@ -126,7 +132,7 @@ void add_series(const fs::path& folder, std::vector<FileSeries>& all) {
     series.folder = folder;
     series.pattern = pattern;
     series.kind = kind_of_image(folder / of_pattern.front(), folder_lower + "/" + to_lower(of_pattern.front()));
-    if (series.kind == SeriesKind::kOther && extension_of(pattern) != "png" && extension_of(pattern) != "exr") continue;
+    if (series.kind == SeriesKind::kOther && !is_unread_depth(pattern)) continue;
     if (is_no_view(to_lower(pattern))) continue;
     set_keys(series, of_pattern);
     all.push_back(std::move(series));
@@ -222,8 +228,9 @@ std::string describe_images(const std::vector<FileSeries>& all) {
   for (const FileSeries& series : all) {
     const bool is_depth = to_lower(series.label()).find("depth") != std::string::npos;
     if (num_depth > 0 || !is_depth || series.kind != SeriesKind::kOther) continue;
-    const char* why = extension_of(series.pattern) == "exr" ? "EXR files, which are not read (convert them to npy)"
-                                                            : "8-bit or colour images (pictures of depth, no depth)";
+    const std::string extension = extension_of(series.pattern);
+    const std::string why = extension == "png" ? "8-bit or colour images (pictures of depth, no depth)"
+                                               : "." + extension + " files, which are not read (convert them)";
     return fmt::format("found {} colour images, but {} are {}; expected 16-bit PNG or npy", num_color, series.label(),
                        why);
   }

@@ -181,7 +181,11 @@ Result<void> RecordingSequence::find_views(const std::vector<RecordedPair>& pair
 }
 
 void RecordingSequence::describe(const RecordedPoses& poses, const OpenSequenceOptions& options) {
-  notes_.push_back(fmt::format("colour {}, depth {}{}", topic(topics_.color).name, topic(topics_.depth).name,
+  const bool is_float = topics_.depth_encoding.starts_with("32FC1");
+  const std::string unit = depth_unit_m_ ? fmt::format("{:.6g} m per unit", *depth_unit_m_)
+                           : is_float    ? std::string("metres")
+                                         : std::string("taken as millimetres (--depth-scale)");
+  notes_.push_back(fmt::format("colour {}, depth {}, {}{}", topic(topics_.color).name, topic(topics_.depth).name, unit,
                                registration_.is_needed ? ", registered here" : ""));
   if (options.poses.empty()) notes_.push_back(poses.describe());
 }

@@ -20,6 +20,7 @@ struct ImageTopic {
   int topic = -1;
   ImageContent content = ImageContent::kUnknown;
   std::string frame;
+  std::string encoding;
   int rank = 0;  ///< Higher: rather the one that is meant.
 };
 
@@ -53,7 +54,8 @@ Result<std::vector<ImageTopic>> list_image_topics(const Recording& recording) {
     const auto start = decode_image_start(**bytes, topics[t]);
     if (!start) continue;
     const ImageContent content = content_of(start->encoding, topics[t].name);
-    images.push_back({static_cast<int>(t), content, start->header.frame, rank_topic(topics[t], content)});
+    images.push_back(
+        {static_cast<int>(t), content, start->header.frame, start->encoding, rank_topic(topics[t], content)});
   }
   return images;
 }
@@ -156,6 +158,7 @@ Result<ViewTopics> find_view_topics(const Recording& recording, const RecordingT
   topics.depth = depth->topic;
   topics.color_frame = color->frame;
   topics.depth_frame = depth->frame;
+  topics.depth_encoding = depth->encoding;
   const auto name_of = [&](int topic) -> const std::string& {
     return recording.topics()[static_cast<std::size_t>(topic)].name;
   };

@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"

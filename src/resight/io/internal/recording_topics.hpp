@@ -16,6 +16,7 @@ struct ViewTopics {
   int depth = -1;
   std::string color_frame;
   std::string depth_frame;
+  std::string depth_encoding;
   std::optional<CameraInfoMessage> color_info;
   std::optional<CameraInfoMessage> depth_info;
 };
