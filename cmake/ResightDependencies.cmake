@@ -25,6 +25,20 @@ if(NOT TARGET resight_lzf)
   target_link_libraries(resight_lzf INTERFACE ${LZF_LIBRARY})
 endif()
 
+# Compression and storage of recordings.
+foreach(library "lz4;lz4frame.h" "bz2;bzlib.h" "zstd;zstd.h" "sqlite3;sqlite3.h")
+  list(GET library 0 name)
+  list(GET library 1 header)
+  string(TOUPPER ${name} prefix)
+  find_path(${prefix}_INCLUDE_DIR ${header} REQUIRED)
+  find_library(${prefix}_LIBRARY ${name} REQUIRED)
+  if(NOT TARGET resight_${name})
+    add_library(resight_${name} INTERFACE IMPORTED)
+    target_include_directories(resight_${name} SYSTEM INTERFACE ${${prefix}_INCLUDE_DIR})
+    target_link_libraries(resight_${name} INTERFACE ${${prefix}_LIBRARY})
+  endif()
+endforeach()
+
 # Finds OpenCV without its CMake files: Debian ships these only with all of OpenCV (338 packages). The headers of OpenCV
 # warn under C++20, so they are system headers.
 find_path(OPENCV_INCLUDE_DIR opencv2/features2d.hpp PATH_SUFFIXES opencv4 REQUIRED)

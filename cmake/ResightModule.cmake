@@ -8,7 +8,7 @@
 set(RESIGHT_LAYERS
     core
     geometry appearance
-    sensor segmentation
+    sensor segmentation recordings
     io rendering features evidence
     registration models changes simulation
     hypotheses history reconstruction training cameras

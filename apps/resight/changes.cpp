@@ -15,6 +15,7 @@
 #include "resight/reconstruction/dynamic_scene.hpp"
 #include "resight/report/overlay.hpp"
 #include "resight/report/scene_changes.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -60,7 +61,7 @@ void run_changes(const ChangesArguments& arguments) {
   check_output_folder(arguments.out, {arguments.sequence});
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
-  const auto sequence = value_or_throw(open_posed_sequence(arguments.sequence));
+  const auto sequence = open_posed_input(arguments.sequence, arguments.input);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};

@@ -49,8 +49,9 @@ struct TrainArguments {
 struct RecognizeArguments {
   std::filesystem::path models;
   std::filesystem::path sequence;
+  OpenSequenceOptions input;
   std::filesystem::path out;
-  std::string poses = "given";
+  std::string poses = "given";  ///< given, refine, auto, fixed, or a file.
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;
@@ -61,6 +62,7 @@ struct RecognizeArguments {
 
 struct ChangesArguments {
   std::filesystem::path sequence;
+  OpenSequenceOptions input;
   std::filesystem::path out;
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
@@ -70,6 +72,7 @@ struct ChangesArguments {
 
 struct TrackArguments {
   std::filesystem::path sequence;
+  OpenSequenceOptions input;
   std::filesystem::path out;
   std::optional<std::filesystem::path> models;  ///< Joins views by common objects.
   std::optional<std::filesystem::path> posed;   ///< Folder for the sequence with its poses.
@@ -93,6 +96,7 @@ struct SimulateArguments {
 
 struct ModelArguments {
   std::vector<std::filesystem::path> sequences;
+  OpenSequenceOptions input;  ///< Of all of them.
   /// Existing model to which the recordings are added.
   std::optional<std::filesystem::path> onto;
   std::filesystem::path out;
@@ -101,9 +105,16 @@ struct ModelArguments {
 
 struct ConvertArguments {
   std::filesystem::path in;
+  OpenSequenceOptions input;
   std::filesystem::path out;
   std::string format;
   int num_threads = 1;
+};
+
+struct InfoArguments {
+  std::filesystem::path path;
+  OpenSequenceOptions input;
+  bool as_json = false;
 };
 
 struct DemoArguments {
@@ -136,6 +147,7 @@ void run_track(const TrackArguments& arguments);
 void run_simulate(const SimulateArguments& arguments);
 void run_model(const ModelArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
+void run_info(const InfoArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);
 void run_demo(const DemoArguments& arguments);
 

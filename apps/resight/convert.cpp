@@ -12,6 +12,7 @@
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_models.hpp"
 #include "resight/rendering/turntable.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -65,13 +66,14 @@ void run_convert(const ConvertArguments& arguments) {
   if (!std::filesystem::exists(arguments.in))
     throw InputError(fmt::format("{}: no such file or folder", arguments.in.string()));
   value_or_throw(check_writable(arguments.out));
-  const auto sequence = open_sequence(arguments.in);
+  const auto sequence = open_sequence(arguments.in, arguments.input);
   const auto models = find_models({arguments.in});
   // A damaged sequence is not passed over for the models beside it.
   if (!sequence.ok() && find_sequence_folder(arguments.in).ok()) throw InputError(sequence.error().message);
   if (!sequence.ok() && !models.ok())
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {
+    print_notes(**sequence);
     const ConversionSummary summary =
         value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence)));
     print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());

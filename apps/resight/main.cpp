@@ -15,6 +15,7 @@
 #include "resight/core/allocator.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/recognition/options_reference.hpp"
+#include "sequence_input.hpp"
 
 namespace {
 
@@ -31,6 +32,7 @@ struct Arguments {
   SimulateArguments simulate;
   ModelArguments model;
   ConvertArguments convert;
+  InfoArguments info;
   EvaluateArguments evaluate;
   std::string shard;
   DemoArguments demo;
@@ -95,12 +97,13 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   CLI::App* command =
       app.add_subcommand("recognize", "Recognise trained objects in a sequence of views and report what changed");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
-  command->add_option("--sequence", a.sequence, "Sequence folder (TUW, BOP, TUM and others, detected)")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected)")->required();
   command->add_option("--out", a.out, "Folder for the results")->required();
   command
       ->add_option("--poses", a.poses,
-                   "Camera poses: given, refine (starting from the given poses) or auto (from the views alone)")
-      ->check(CLI::IsMember({"given", "refine", "auto"}))
+                   "Camera poses: given, refine (starting from the given poses), auto (from the views alone), fixed "
+                   "(the camera does not move), or a file")
+      ->check(CLI::IsMember({"given", "refine", "auto", "fixed"}) | CLI::ExistingFile)
       ->capture_default_str();
   command
       ->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results [run.seed: 1]")
@@ -111,6 +114,7 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "no limit]")
       ->check(kPositive);
   add_recognition_options(command, a);
+  add_sequence_options(command, a.input);
   return [&a] { run_recognize(a); };
 }
 
@@ -119,6 +123,8 @@ std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
   command->add_option("--sequence", a.sequence, "Sequence folder")->required();
   command->add_option("--out", a.out, "Folder for coloured point clouds (PLY) and overlays (PNG)")->required();
   add_recognition_options(command, a);
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
   return [&a] { run_changes(a); };
 }
 
@@ -138,6 +144,7 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
       ->check(kFormats)
       ->capture_default_str();
   add_threads(command, a.num_threads);
+  add_sequence_options(command, a.input);
   return [&a] { run_track(a); };
 }
 
@@ -179,16 +186,30 @@ std::function<void()> add_model(CLI::App& app, ModelArguments& a) {
   command->add_option("--out", a.out, "Model folder to write (TUW), for 'resight train'; must be empty or not exist")
       ->required();
   add_threads(command, a.num_threads);
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
   return [&a] { run_model(a); };
 }
 
 std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
   CLI::App* command = app.add_subcommand("convert", "Convert a data set (sequence or models) to another format");
-  command->add_option("in", a.in, "Sequence or models folder")->required();
+  command->add_option("in", a.in, "Sequence, recording or models folder")->required();
   command->add_option("out", a.out, "Folder to write; must not exist")->required();
   command->add_option("--to", a.format, "Format to write: tuw or bop")->required()->check(kFormats);
   add_threads(command, a.num_threads);
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
   return [&a] { run_convert(a); };
+}
+
+std::function<void()> add_info(CLI::App& app, InfoArguments& a) {
+  CLI::App* command =
+      app.add_subcommand("info", "Describe a sequence, a recording and its topics, models, a library or results");
+  command->add_option("path", a.path, "What to describe")->required();
+  command->add_flag("--json", a.as_json, "Print JSON");
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
+  return [&a] { run_info(a); };
 }
 
 std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::string& shard) {
@@ -288,6 +309,7 @@ int run_program(int argc, char** argv) {
                                           add_track(app, a.track),
                                           add_model(app, a.model),
                                           add_convert(app, a.convert),
+                                          add_info(app, a.info),
                                           add_evaluate(app, a.evaluate, a.shard),
                                           add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});

@@ -11,6 +11,7 @@
 #include "resight/io/sequence.hpp"
 #include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -22,8 +23,8 @@ T value_or_fail(Result<T> result) {
   return std::move(result).value();
 }
 
-std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder) {
-  const std::unique_ptr<Sequence> sequence = value_or_throw(open_sequence(folder));
+std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder, const OpenSequenceOptions& input) {
+  const std::unique_ptr<Sequence> sequence = open_input(folder, input);
   if (sequence->num_views() < 2)
     throw InputError(file_error(folder, "has only one view (several were expected)").message);
   std::vector<RgbdFrame> frames;
@@ -40,8 +41,9 @@ void print_track(const std::filesystem::path& folder, const ObjectTrack& track) 
     print(", no loop closure\n");
 }
 
-ObjectTrack follow(const std::filesystem::path& folder, const TrackObjectOptions& options) {
-  std::vector<RgbdFrame> frames = read_frames(folder);
+ObjectTrack follow(const std::filesystem::path& folder, const OpenSequenceOptions& input,
+                   const TrackObjectOptions& options) {
+  std::vector<RgbdFrame> frames = read_frames(folder, input);
   Result<ObjectTrack> track = [&] {
     Progress progress("model " + folder_name(folder), static_cast<int>(frames.size()));
     return track_object(std::move(frames), options,
@@ -81,7 +83,7 @@ void run_model(const ModelArguments& arguments) {
   std::optional<ObjectTrack> whole;
   if (arguments.onto) whole = read_model_views(*arguments.onto);
   for (const std::filesystem::path& folder : arguments.sequences) {
-    ObjectTrack track = follow(folder, track_options);
+    ObjectTrack track = follow(folder, arguments.input, track_options);
     whole = whole ? value_or_fail(join_tracks(std::move(*whole), std::move(track), track_options)) : std::move(track);
   }
   ObjectModelBuild build = value_or_fail(build_model(whole->views, build_options));

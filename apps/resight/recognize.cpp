@@ -12,6 +12,7 @@
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
 #include "resight/training/training.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 
@@ -27,12 +28,13 @@ void run_recognize(const RecognizeArguments& arguments) {
     if (object.sift.size() + object.shot.size() == 0)
       print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
                                 object.name));
-  const bool given = arguments.poses == "given";
-  const auto recorded =
-      value_or_throw(given ? open_posed_sequence(arguments.sequence) : open_sequence(arguments.sequence));
+  const bool estimated = arguments.poses == "auto" || arguments.poses == "refine";
+  OpenSequenceOptions input = arguments.input;
+  if (!estimated && arguments.poses != "given") input.poses = arguments.poses;
+  const auto recorded = estimated ? open_input(arguments.sequence, input) : open_posed_input(arguments.sequence, input);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   std::optional<PosedSequence> tracked;
-  if (!given) {
+  if (estimated) {
     TrackSequenceOptions options;
     options.refine = arguments.poses == "refine";
     options.library = &library;

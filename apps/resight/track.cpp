@@ -11,6 +11,7 @@
 #include "resight/io/trajectory.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/training/training.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -100,7 +101,7 @@ void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
-  const auto sequence = value_or_throw(open_sequence(arguments.sequence));
+  const auto sequence = open_input(arguments.sequence, arguments.input);
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
   const auto [track, objects] = track_sequence(*sequence, {.refine = arguments.poses == "refine",

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
@@ -14,11 +17,58 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the binary readers assume a little-endian machine");
 
+/// Types of numbers that depth is stored in.
+enum class NpyType { kFloat32, kFloat64, kUint8, kUint16, kInt32, kUint32 };
+
 struct NpyHeader {
   int width = 0;
   int height = 0;
+  NpyType type = NpyType::kFloat32;
   std::size_t data_offset = 0;
 };
+
+struct NamedNpyType {
+  std::string_view name;
+  NpyType type;
+};
+constexpr std::array<NamedNpyType, 7> kNpyTypes = {{{"'<f4'", NpyType::kFloat32},
+                                                    {"'<f8'", NpyType::kFloat64},
+                                                    {"'|u1'", NpyType::kUint8},
+                                                    {"'<u2'", NpyType::kUint16},
+                                                    {"'<i4'", NpyType::kInt32},
+                                                    {"'<u4'", NpyType::kUint32},
+                                                    {"'|f4'", NpyType::kFloat32}}};
+
+std::size_t bytes_of(NpyType type) {
+  if (type == NpyType::kUint8) return 1;
+  if (type == NpyType::kUint16) return 2;
+  return type == NpyType::kFloat64 ? 8 : 4;
+}
+
+template <typename T>
+double load_as(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return static_cast<double>(value);
+}
+
+double load_value(NpyType type, const char* bytes) {
+  switch (type) {
+    case NpyType::kFloat32:
+      return load_as<float>(bytes);
+    case NpyType::kFloat64:
+      return load_as<double>(bytes);
+    case NpyType::kUint8:
+      return load_as<std::uint8_t>(bytes);
+    case NpyType::kUint16:
+      return load_as<std::uint16_t>(bytes);
+    case NpyType::kInt32:
+      return load_as<std::int32_t>(bytes);
+    case NpyType::kUint32:
+      break;
+  }
+  return load_as<std::uint32_t>(bytes);
+}
 
 /// Parses the two numbers of "'shape': (480, 640)".
 std::optional<std::pair<std::int64_t, std::int64_t>> parse_shape(std::string_view dictionary) {
@@ -28,10 +78,13 @@ std::optional<std::pair<std::int64_t, std::int64_t>> parse_shape(std::string_vie
   const std::size_t close = dictionary.find(')', comma == dictionary.npos ? dictionary.size() : comma);
   if (close == dictionary.npos) return std::nullopt;
   io::TextCursor rows(dictionary.substr(open + 1, comma - open - 1));
-  io::TextCursor columns(dictionary.substr(comma + 1, close - comma - 1));
+  std::string after_comma(dictionary.substr(comma + 1, close - comma - 1));
+  std::ranges::replace(after_comma, ',', ' ');
+  io::TextCursor columns(after_comma);
   const auto height = io::parse_integer(rows.next());
   const auto width = io::parse_integer(columns.next());
-  if (!height || !width || !columns.next().empty()) return std::nullopt;
+  const std::string_view channels = columns.next();  // a third dimension of one channel
+  if (!height || !width || (!channels.empty() && channels != "1")) return std::nullopt;
   return std::pair{*height, *width};
 }
 
@@ -43,30 +96,41 @@ std::optional<NpyHeader> parse_npy_header(std::string_view bytes) {
   const std::size_t begin = version_1 ? 10 : 12;
   if (length > bytes.size() - begin) return std::nullopt;
   const std::string_view dictionary = bytes.substr(begin, length);
-  const bool float32 = dictionary.find("'<f4'") != dictionary.npos;
+  const auto type = std::ranges::find_if(
+      kNpyTypes, [&](const NamedNpyType& t) { return dictionary.find(t.name) != dictionary.npos; });
   const bool row_major = dictionary.find("'fortran_order': False") != dictionary.npos;
   const auto shape = parse_shape(dictionary);
-  if (!float32 || !row_major || !shape || shape->first <= 0 || shape->second <= 0 || shape->first > kMaxImageSide_px ||
-      shape->second > kMaxImageSide_px || shape->first * shape->second > kMaxViewPixels)
+  if (type == kNpyTypes.end() || !row_major || !shape || shape->first <= 0 || shape->second <= 0 ||
+      shape->first > kMaxImageSide_px || shape->second > kMaxImageSide_px ||
+      shape->first * shape->second > kMaxViewPixels)
     return std::nullopt;
-  return NpyHeader{static_cast<int>(shape->second), static_cast<int>(shape->first), begin + length};
+  return NpyHeader{static_cast<int>(shape->second), static_cast<int>(shape->first), type->type, begin + length};
 }
 
 }  // namespace
 
-Result<Image<float>> read_depth_npy(const std::filesystem::path& file) {
+Result<Image<float>> read_depth_npy(const std::filesystem::path& file, std::optional<double> metres_per_unit) {
   const auto bytes = io::read_file(file);
   if (!bytes) return bytes.error();
   const auto header = parse_npy_header(*bytes);
   if (!header)
-    return io::file_error(file, "is not a supported NumPy array (expected '<f4', C order, shape (height, width))");
+    return io::file_error(
+        file, "is not a supported NumPy array (expected numbers such as '<f4', C order, shape (height, width))");
+  const bool is_float = header->type == NpyType::kFloat32 || header->type == NpyType::kFloat64;
+  if (!is_float && !metres_per_unit)
+    return io::file_error(
+        file, "holds whole numbers, whose unit is not known: give --depth-scale METRES per unit (0.001: millimetres)");
   const std::size_t num_pixels = static_cast<std::size_t>(header->width) * static_cast<std::size_t>(header->height);
-  if (bytes->size() - header->data_offset < num_pixels * sizeof(float))
+  const std::size_t value_bytes = bytes_of(header->type);
+  if (bytes->size() - header->data_offset < num_pixels * value_bytes)
     return io::file_error(file, "is cut off: fewer values than its shape says");
   Image<float> depth_m(header->width, header->height);
-  std::memcpy(depth_m.data().data(), bytes->data() + header->data_offset, num_pixels * sizeof(float));
-  for (float& z : depth_m.data())
-    if (!(z > 0 && std::isfinite(z))) z = std::numeric_limits<float>::quiet_NaN();
+  const double scale = metres_per_unit.value_or(1);
+  for (std::size_t i = 0; i < num_pixels; ++i) {
+    const auto z =
+        static_cast<float>(scale * load_value(header->type, bytes->data() + header->data_offset + i * value_bytes));
+    depth_m[i] = z > 0 && std::isfinite(z) ? z : std::numeric_limits<float>::quiet_NaN();
+  }
   return depth_m;
 }
 

@@ -184,6 +184,7 @@ TEST(Fuzz, TumLists) {
   }
   std::filesystem::create_directories(directory / "rgb");
   std::filesystem::create_directories(directory / "depth");
+  io::write_text(directory / "camera.txt", "525 525 2 1\n");
   io::write_text(directory / "groundtruth.txt", poses);
   expect_both(fuzz(
       list, 10,

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/internal/image_header.hpp"
 
-#include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include "resight/core/crc32.hpp"
 
 namespace resight::io {
 namespace {
@@ -15,36 +14,6 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
   for (int i = 0; i < count; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
   return value;
 }
-
-using CrcTables = std::array<std::array<std::uint32_t, 256>, 4>;
-
-constexpr CrcTables make_crc_tables() {
-  CrcTables tables{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t crc = i;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xEDB88320U ^ crc >> 1 : crc >> 1;
-    tables[0][i] = crc;
-  }
-  for (std::size_t t = 1; t < tables.size(); ++t)
-    for (std::uint32_t i = 0; i < 256; ++i) tables[t][i] = tables[t - 1][i] >> 8 ^ tables[0][tables[t - 1][i] & 0xFF];
-  return tables;
-}
-
-/// CRC-32 of PNG, four bytes per step.
-std::uint32_t compute_crc(std::string_view bytes) {
-  static constexpr CrcTables kTables = make_crc_tables();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  std::size_t i = 0;
-  for (; i + 4 <= bytes.size(); i += 4) {
-    std::uint32_t word;
-    std::memcpy(&word, bytes.data() + i, 4);  // little-endian
-    crc ^= word;
-    crc = kTables[3][crc & 0xFF] ^ kTables[2][crc >> 8 & 0xFF] ^ kTables[1][crc >> 16 & 0xFF] ^ kTables[0][crc >> 24];
-  }
-  for (; i < bytes.size(); ++i) crc = crc >> 8 ^ kTables[0][(crc ^ static_cast<unsigned char>(bytes[i])) & 0xFF];
-  return ~crc;
-}
-static_assert(std::endian::native == std::endian::little);
 
 /// Walks over the chunks: length, type, data, checksum. A chunk is critical if its type starts with a capital letter.
 std::optional<ImageHeader> parse_png(std::string_view bytes) {
@@ -62,7 +31,7 @@ std::optional<ImageHeader> parse_png(std::string_view bytes) {
     if (length > bytes.size() - at - 12) break;
     const std::string_view content = bytes.substr(at + 4, length + 4);
     const bool matters = (content[0] & 0x20) == 0;
-    if (matters && compute_crc(content) != big_endian(bytes, at + 8 + length, 4)) header.intact = false;
+    if (matters && compute_crc32(content) != big_endian(bytes, at + 8 + length, 4)) header.intact = false;
     if (content.starts_with("IEND")) header.complete = true;
     at += length + 12;
   }

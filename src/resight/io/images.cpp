@@ -75,8 +75,8 @@ Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
 
 }  // namespace
 
-Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name) {
-  const auto bgr = decode(bytes, name, kColorFlags, kMaxImagePixels);
+Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name, std::int64_t max_pixels) {
+  const auto bgr = decode(bytes, name, kColorFlags, max_pixels);
   if (!bgr) return bgr.error();
   return to_color(*bgr);
 }
@@ -88,11 +88,17 @@ Result<Image<Rgb8>> read_color(const std::filesystem::path& file, std::int64_t m
 }
 
 Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file) {
-  const auto image = read(file, cv::IMREAD_UNCHANGED, kMaxViewPixels);
+  const auto bytes = io::read_file(file);
+  if (!bytes) return bytes.error();
+  return decode_depth_raw(*bytes, file.string());
+}
+
+Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name) {
+  const auto image = decode(bytes, name, cv::IMREAD_UNCHANGED, kMaxViewPixels);
   if (!image) return image.error();
   if (image->channels() != 1 || (image->depth() != CV_16U && image->depth() != CV_8U))
-    return io::file_error(file, fmt::format("{} channels of {} bytes; expected a depth image: one channel of 16 bits",
-                                            image->channels(), image->elemSize1()));
+    return Error{fmt::format("{}: {} channels of {} bytes; expected a depth image: one channel of 16 bits", name,
+                             image->channels(), image->elemSize1())};
   Image<std::uint16_t> raw(image->cols, image->rows);
   for (int v = 0; v < image->rows; ++v)
     for (int u = 0; u < image->cols; ++u)

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "resight/core/image.hpp"
@@ -19,14 +20,19 @@ inline constexpr int kMaxViewPixels = 1 << 24;
 [[nodiscard]] Result<Image<Rgb8>> read_color(const std::filesystem::path& file,
                                              std::int64_t max_pixels = kMaxImagePixels);
 /// Same for the bytes of a file. `name` is used in error messages.
-[[nodiscard]] Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name);
+[[nodiscard]] Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name,
+                                               std::int64_t max_pixels = kMaxImagePixels);
 
 /// Reads the stored values of an 8- or 16-bit PNG with one channel.
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file);
+/// Same for the bytes of a file. `name` is used in error messages.
+[[nodiscard]] Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name);
 /// Reads depth in metres from a 16-bit PNG: stored value times `metres_per_unit`. A stored 0 (no return) becomes NaN.
 [[nodiscard]] Result<Image<float>> read_depth(const std::filesystem::path& file, double metres_per_unit);
-/// Reads a NumPy file of float32 metres with shape (height, width). Values that are not positive and finite become NaN.
-[[nodiscard]] Result<Image<float>> read_depth_npy(const std::filesystem::path& file);
+/// Reads a NumPy file with shape (height, width): floating-point metres, or any numbers times `metres_per_unit`. Values
+/// that are not positive and finite become NaN. Whole numbers without a unit are refused.
+[[nodiscard]] Result<Image<float>> read_depth_npy(const std::filesystem::path& file,
+                                                  std::optional<double> metres_per_unit = {});
 /// Reads an 8- or 16-bit PNG with one channel, or a colour PNG: 255 where it is not black, else 0.
 [[nodiscard]] Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file);
 

@@ -108,7 +108,24 @@ TEST(Images, NumpyDepth) {
   EXPECT_THAT(read_depth_npy(directory / "cut.npy").error().message, HasSubstr("cut off"));
   bytes.replace(bytes.find("<f4"), 3, "<f8");
   io::write_text(directory / "double.npy", bytes);
-  EXPECT_THAT(read_depth_npy(directory / "double.npy").error().message, HasSubstr("'<f4'"));
+  EXPECT_THAT(read_depth_npy(directory / "double.npy").error().message, HasSubstr("cut off"));
+  bytes.replace(bytes.find("<f8"), 3, "<c8");
+  io::write_text(directory / "complex.npy", bytes);
+  EXPECT_THAT(read_depth_npy(directory / "complex.npy").error().message, HasSubstr("'<f4'"));
+}
+
+TEST(Images, NumpyWholeNumbersNeedAUnit) {
+  io::TestDirectory directory;
+  std::string dictionary = "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 3, 1), }";
+  dictionary.resize(118, ' ');
+  const std::string header = std::string("\x93NUMPY\x01\0", 8) + std::string("\x76\0", 2) + dictionary;
+  io::write_text(directory / "d.npy", header + std::string("\xe8\x03\0\0\xd0\x07", 6));
+  EXPECT_THAT(read_depth_npy(directory / "d.npy").error().message, HasSubstr("--depth-scale"));
+  const auto depth = read_depth_npy(directory / "d.npy", 0.001);
+  ASSERT_TRUE(depth.ok()) << depth.error().message;
+  EXPECT_FLOAT_EQ((*depth)[0], 1.0F);
+  EXPECT_TRUE(std::isnan((*depth)[1]));
+  EXPECT_FLOAT_EQ((*depth)[2], 2.0F);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
+#include "resight/sensor/rectify.hpp"
 
 namespace resight::io {
 namespace {
@@ -21,6 +22,16 @@ Result<Image<float>> read_rotated_depth(const fs::path& file, double metres_per_
     const std::uint16_t value = std::rotl((*raw)[i], 13);
     depth_m[i] = value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value * metres_per_unit);
   }
+  return depth_m;
+}
+
+/// The largest value says "too far", or marks missing depth (7-Scenes).
+Result<Image<float>> read_unsaturated_depth(const fs::path& file, double metres_per_unit) {
+  const auto raw = read_depth_raw(file);
+  if (!raw) return raw.error();
+  Image<float> depth_m(raw->width(), raw->height(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < raw->size(); ++i)
+    if ((*raw)[i] != 0 && (*raw)[i] != 0xFFFF) depth_m[i] = static_cast<float>((*raw)[i] * metres_per_unit);
   return depth_m;
 }
 
@@ -59,14 +70,24 @@ class ListedSequence final : public Sequence {
                     std::move(*depth),
                     listed.world_from_camera};
     if (const auto done = check_frame(frame); !done) return file_error(listed.color, done.error().message);
+    if (!table_.lens.is_none()) {
+      frame.color = undistort_color(frame.color, frame.camera, table_.lens);
+      frame.depth_m = undistort_depth(frame.depth_m, frame.camera, table_.lens);
+    }
     return frame;
   }
+
+  [[nodiscard]] std::vector<std::string> notes() const override { return table_.notes; }
+  [[nodiscard]] SequenceTable& table() { return table_; }
 
  private:
   [[nodiscard]] Result<Image<float>> read_depth_image(const ListedView& view) const {
     switch (table_.depth_storage) {
       case DepthStorage::kNpy:
-        return read_depth_npy(view.depth);
+        return read_depth_npy(view.depth, table_.npy_unit_m);
+      case DepthStorage::kByName:
+        if (extension_of(view.depth) == "npy") return read_depth_npy(view.depth, table_.npy_unit_m);
+        return read_unsaturated_depth(view.depth, view.metres_per_unit);
       case DepthStorage::kRotatedPng:
         return read_rotated_depth(view.depth, view.metres_per_unit);
       case DepthStorage::kPng:
@@ -84,17 +105,9 @@ std::unique_ptr<Sequence> make_listed_sequence(SequenceTable table) {
   return std::make_unique<ListedSequence>(std::move(table));
 }
 
-Result<Intrinsics> intrinsics_from_matrix(const std::vector<double>& matrix, std::string_view what) {
-  const auto fail = [&](std::string_view why) { return Error{fmt::format("{}: {}", what, why)}; };
-  if (matrix.size() != 9) return fail("expected the 9 numbers of a camera matrix");
-  for (const double value : matrix)
-    if (!std::isfinite(value)) return fail("the camera matrix holds NaN or infinite numbers");
-  const Intrinsics k{matrix[0], matrix[4], matrix[2], matrix[5]};
-  if (!(k.fx > 0 && k.fy > 0)) return fail(fmt::format("the focal lengths {} and {} must be positive", k.fx, k.fy));
-  if (std::abs(matrix[1]) > 1e-3 * k.fx) return fail("the camera matrix has skew, which is not supported");
-  if (matrix[3] != 0 || matrix[6] != 0 || matrix[7] != 0 || std::abs(matrix[8] - 1) > 1e-6)
-    return fail("is not a camera matrix (fx 0 cx 0 fy cy 0 0 1)");
-  return k;
+SequenceTable* listed_table(Sequence& sequence) {
+  auto* listed = dynamic_cast<ListedSequence*>(&sequence);
+  return listed == nullptr ? nullptr : &listed->table();
 }
 
 }  // namespace resight::io

@@ -66,6 +66,34 @@ std::optional<path> find_own_mesh(const path& folder) {
   return std::nullopt;
 }
 
+/// The mesh of an object in the layout of YCB, `<object>/google_16k/textured.obj`: the same object also in other
+/// resolutions and reconstructions, of which one is taken.
+std::optional<path> find_ycb_mesh(const path& object) {
+  for (const char* variant : {"google_16k", "google_64k", "google_512k", "tsdf", "poisson"})
+    if (const auto mesh = find_own_mesh(object / variant); mesh && mesh->stem() == "textured") return mesh;
+  return std::nullopt;
+}
+
+/// Names of files and folders that do not tell objects apart.
+bool is_common_name(std::string_view name) {
+  constexpr std::array<std::string_view, 10> kCommon = {"textured", "textured_simple", "textured_mesh", "model",
+                                                        "mesh",     "google_16k",      "google_64k",    "meshes",
+                                                        "visual",   "object"};
+  return std::ranges::find(kCommon, io::to_lower(name)) != kCommon.end();
+}
+
+/// Models of one common name are called by the nearest folder above them that tells them apart.
+void name_by_folder(Locations& all) {
+  std::map<std::string, int> counts;
+  for (const ModelLocation& location : all) ++counts[location.name];
+  for (ModelLocation& location : all) {
+    if (counts[location.name] < 2 || !is_common_name(location.name)) continue;
+    path folder = io::fs::absolute(location.path).lexically_normal();
+    while (folder.has_stem() && is_common_name(folder.stem().string())) folder = folder.parent_path();
+    if (folder.has_stem()) location.name = io::folder_name(folder);
+  }
+}
+
 /// Collects models in a folder: files, sub-folders with one model, and (one level deeper) the same per class.
 Result<void> collect(const path& directory, int levels_below, Locations& found) {
   for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
@@ -79,6 +107,8 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
       const auto extras = io::read_model_extras(folder / "model_info.json");
       if (!extras) return extras.error();
       found.push_back({name, extras->bop_id, *mesh, format_of(*mesh)});
+    } else if (const auto ycb = find_ycb_mesh(folder)) {
+      found.push_back({name, 0, *ycb, format_of(*ycb)});
     } else if (levels_below > 0) {
       if (const auto done = collect(folder, levels_below - 1, found); !done) return done;
     }
@@ -112,6 +142,7 @@ Result<Locations> find_under(const path& where) {
     if (!extras) return extras.error();
     return Locations{{io::folder_name(where), extras->bop_id, *mesh, format_of(*mesh)}};
   }
+  if (const auto ycb = find_ycb_mesh(where)) return Locations{{io::folder_name(where), 0, *ycb, format_of(*ycb)}};
   if (const auto done = collect(where, 1, found); !done) return done.error();
   if (found.empty()) return io::file_error(where, fmt::format("no model found; {}", kExpectedModels));
   return found;
@@ -147,6 +178,7 @@ Result<Locations> find_models(const std::vector<path>& paths) {
     all.insert(all.end(), found->begin(), found->end());
   }
   if (all.empty()) return Error{"no path to models was given"};
+  name_by_folder(all);
   for (const ModelLocation& location : all)
     if (const auto checked = check_object_name(location.name); !checked)
       return io::file_error(location.path, checked.error().message);

@@ -89,6 +89,26 @@ TEST(TuwModel, ComesBack) {
   EXPECT_THAT(write_tuw_model(directory.path(), "mug", views, nullptr).error().message, HasSubstr("exists already"));
 }
 
+TEST(FindModels, YcbObjectsAreNamedByTheirFolder) {
+  io::TestDirectory directory;
+  for (const char* object : {"003_cracker_box", "005_tomato_soup_can"})
+    for (const char* variant : {"google_16k", "tsdf"}) {
+      ASSERT_TRUE(write_ply(directory / "ycb" / object / variant / "textured.ply", mesh()).ok());
+      ASSERT_TRUE(write_ply(directory / "ycb" / object / variant / "nontextured.ply", mesh()).ok());
+    }
+  const auto found = find_models({directory / "ycb"});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  ASSERT_EQ(found->size(), 2U);
+  EXPECT_EQ((*found)[0].name, "003_cracker_box");
+  EXPECT_EQ((*found)[0].path, directory / "ycb/003_cracker_box/google_16k/textured.ply");
+  EXPECT_EQ((*found)[1].name, "005_tomato_soup_can");
+  EXPECT_EQ(find_models({directory / "ycb/003_cracker_box"})->front().name, "003_cracker_box");
+  const auto files = find_models({directory / "ycb/003_cracker_box/google_16k/textured.ply",
+                                  directory / "ycb/005_tomato_soup_can/google_16k/textured.ply"});
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_EQ((*files)[1].name, "005_tomato_soup_can");
+}
+
 TEST(ModelSource, SymmetriesAreKnownWhereTheFileNamesThem) {
   io::TestDirectory directory;
   ASSERT_TRUE(write_ply(directory / "box/box.ply", mesh()).ok());

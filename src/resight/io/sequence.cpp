@@ -7,8 +7,10 @@
 #include <array>
 
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/recordings/recording.hpp"
 
 namespace resight {
 namespace {
@@ -17,18 +19,25 @@ using io::fs::path;
 
 struct FormatEntry {
   bool (*matches)(const path& directory);
-  io::SequenceResult (*open)(const path& directory);
+  io::SequenceResult (*open)(const path& directory, const OpenSequenceOptions& options);
 };
 
+/// For formats that say everything themselves.
+template <io::SequenceResult (*kOpen)(const path&)>
+io::SequenceResult open_without_options(const path& directory, const OpenSequenceOptions& /*options*/) {
+  return kOpen(directory);
+}
+
 /// In the order in which they are tried, most specific first.
-constexpr std::array<FormatEntry, 7> kFormats = {
-    {{io::is_bop_scene, io::open_bop_scene},
+constexpr std::array<FormatEntry, 8> kFormats = {
+    {{io::is_bop_scene, open_without_options<io::open_bop_scene>},
      {io::is_tum_sequence, io::open_tum_sequence},
-     {io::is_npy_sequence, io::open_npy_sequence},
-     {io::is_fixed_camera_sequence, io::open_fixed_camera_sequence},
-     {io::is_camera_info_sequence, io::open_camera_info_sequence},
-     {io::is_numbered_cameras_sequence, io::open_numbered_cameras_sequence},
-     {io::is_tuw_sequence, io::open_tuw_sequence}}};
+     {io::is_npy_sequence, open_without_options<io::open_npy_sequence>},
+     {io::is_fixed_camera_sequence, open_without_options<io::open_fixed_camera_sequence>},
+     {io::is_camera_info_sequence, open_without_options<io::open_camera_info_sequence>},
+     {io::is_numbered_cameras_sequence, open_without_options<io::open_numbered_cameras_sequence>},
+     {io::is_tuw_sequence, open_without_options<io::open_tuw_sequence>},
+     {io::is_image_folder, io::open_image_folder}}};
 
 const FormatEntry* find_format(const path& directory) {
   const auto it = std::ranges::find_if(kFormats, [&](const FormatEntry& entry) { return entry.matches(directory); });
@@ -43,7 +52,7 @@ std::vector<path> find_sequences_below(const path& directory) {
   for (const std::string& name : io::list_directories(directory)) {
     if (name.starts_with("models")) continue;
     const path below = directory / name;
-    if (find_format(below) != nullptr) {
+    if (find_format(below) != nullptr || is_recording(below)) {
       found.push_back(below);
       continue;
     }
@@ -61,29 +70,40 @@ constexpr std::string_view kExpectedSequences =
 }  // namespace
 
 Result<path> find_sequence_folder(const path& directory) {
+  if (io::is_file(directory) && is_recording(directory)) return directory;
+  if (io::is_file(directory))
+    return io::file_error(directory, "is neither a folder nor a recording (ROS 1 bag 2.0, MCAP, ROS 2 bag)");
   if (!io::is_folder(directory)) return io::file_error(directory, "no such directory");
-  if (find_format(directory) != nullptr) return directory;
+  if (find_format(directory) != nullptr || is_recording(directory)) return directory;
   const std::vector<path> below = find_sequences_below(directory);
   if (below.size() == 1) return below.front();
   if (below.size() > 1)
     return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
                                                  below.front().string()));
-  return io::file_error(directory, fmt::format("no sequence found; {}", kExpectedSequences));
+  const std::string images = io::describe_image_folder(directory);
+  return io::file_error(directory, images.empty() ? fmt::format("no sequence found; {}", kExpectedSequences)
+                                                  : fmt::format("no sequence found: {} (docs/your-camera.md)", images));
 }
 
-Result<std::unique_ptr<Sequence>> open_sequence(const path& directory) {
+Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const OpenSequenceOptions& options) {
   if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
   const auto folder = find_sequence_folder(directory);
   if (!folder) return folder.error();
-  return find_format(*folder)->open(*folder);
+  if (find_format(*folder) == nullptr) return io::open_recording_sequence(*folder, options);
+  auto sequence = find_format(*folder)->open(*folder, options);
+  if (!sequence) return sequence;
+  if (const auto done = io::apply_options(**sequence, options); !done)
+    return io::file_error(*folder, done.error().message);
+  return sequence;
 }
 
-Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory) {
-  auto sequence = open_sequence(directory);
+Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory, const OpenSequenceOptions& options) {
+  auto sequence = open_sequence(directory, options);
   if (sequence.ok() && !(*sequence)->has_poses() && (*sequence)->num_views() > 1)
-    return io::file_error(directory,
-                          "holds no camera poses (cam_R_w2c of each view in BOP, groundtruth.txt in TUM); "
-                          "several views need them; resight track estimates them");
+    return io::file_error(
+        directory,
+        "holds no camera poses (cam_R_w2c of each view in BOP, groundtruth.txt in TUM); several views "
+        "need them: resight track estimates them, --poses fixed or FILE gives them");
   return sequence;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,14 +12,51 @@
 
 namespace resight {
 
+/// What a camera pose in a file maps to what.
+enum class PoseConvention {
+  kCameraToWorld,  ///< world_from_camera; camera x right, y down, z forward.
+  kWorldToCamera,  ///< camera_from_world.
+  kOpenGl,         ///< world_from_camera; camera x right, y up, z backward.
+};
+
+/// The views of a sequence that are used.
+struct ViewChoice {
+  int every = 1;                 ///< Takes each n-th view.
+  std::optional<double> from_s;  ///< Seconds since the first view.
+  std::optional<double> to_s;    ///< Seconds since the first view.
+};
+
+/// What a recording contains many of. Empty: found by type and name.
+struct RecordingTopics {
+  std::string color;
+  std::string depth;
+  std::string camera_info;              ///< Of the colour camera.
+  std::string world_frame;              ///< Poses are in this frame.
+  std::string camera_frame;             ///< Frame of the colour camera. Empty: the frame of its images.
+  double max_time_difference_s = 0.02;  ///< Between a colour image and its depth image.
+};
+
+/// How to open a sequence that does not say everything itself, or says it wrongly. Everything is optional.
+struct OpenSequenceOptions {
+  std::string intrinsics;               ///< "fx,fy,cx,cy", distortion coefficients after it, or a file.
+  std::optional<double> depth_scale_m;  ///< Metres per unit of stored depth.
+  std::string poses;                    ///< A file of camera poses, or "fixed": the camera does not move.
+  PoseConvention pose_convention = PoseConvention::kCameraToWorld;  ///< Of poses in the folder or in `poses`.
+  ViewChoice views;
+  RecordingTopics topics;
+};
+
 /// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Same errors.
 [[nodiscard]] Result<std::filesystem::path> find_sequence_folder(const std::filesystem::path& directory);
 
-/// Opens a sequence directory and detects the format from its contents. The error says what was expected.
-[[nodiscard]] Result<std::unique_ptr<Sequence>> open_sequence(const std::filesystem::path& directory);
+/// Opens a sequence directory or a recording and detects the format from its contents. The error says what was
+/// expected.
+[[nodiscard]] Result<std::unique_ptr<Sequence>> open_sequence(const std::filesystem::path& directory,
+                                                              const OpenSequenceOptions& options = {});
 
 /// Same, for uses that need camera poses. Fails for several views without poses.
-[[nodiscard]] Result<std::unique_ptr<Sequence>> open_posed_sequence(const std::filesystem::path& directory);
+[[nodiscard]] Result<std::unique_ptr<Sequence>> open_posed_sequence(const std::filesystem::path& directory,
+                                                                    const OpenSequenceOptions& options = {});
 
 /// Writes a sequence view by view. It appears under its final name only with finish().
 class SequenceWriter {

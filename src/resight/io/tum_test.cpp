@@ -10,6 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
+/// Without intrinsics.
 void write_recording(const std::filesystem::path& directory) {
   std::string rgb = "# colour\n";
   std::string depth = "# depth\n";
@@ -28,6 +29,7 @@ void write_recording(const std::filesystem::path& directory) {
 TEST(Trajectory, IsReadBackDigitByDigit) {
   io::TestDirectory directory;
   write_recording(directory.path());
+  io::write_text(directory / "camera.txt", "500 501 2 1\n");
   std::vector<TrajectoryPose> poses;
   for (int v = 0; v < 12; ++v)
     poses.push_back({std::to_string(10 + 0.5 * v),
@@ -42,6 +44,7 @@ TEST(Trajectory, IsReadBackDigitByDigit) {
 TEST(Tum, AssociatesAndInterpolates) {
   io::TestDirectory directory;
   write_recording(directory.path());
+  io::write_text(directory / "camera.txt", "500 501 2 1\n");
   const auto without = open_sequence(directory.path());
   ASSERT_TRUE(without.ok()) << without.error().message;
   EXPECT_EQ((*without)->num_views(), 3) << "the third colour image has no depth";
@@ -73,11 +76,18 @@ TEST(Tum, Intrinsics) {
   io::write_text(directory / "rgbd_dataset_freiburg3_long/camera.txt", "0 501 2 1\n");
   EXPECT_THAT(open_sequence(directory / "rgbd_dataset_freiburg3_long").error().message,
               HasSubstr("camera.txt: the focal"));
+  write_recording(directory / "desk");
+  EXPECT_THAT(open_sequence(directory / "desk").error().message, HasSubstr("--intrinsics fx,fy,cx,cy"))
+      << "must not take the calibration of another camera";
+  OpenSequenceOptions options;
+  options.intrinsics = "510,511,2,1";
+  EXPECT_EQ((*open_sequence(directory / "desk", options))->read_view(0)->camera, (Camera{4, 3, 510, 511, 2, 1}));
 }
 
 TEST(Tum, BadLists) {
   io::TestDirectory directory;
   write_recording(directory.path());
+  io::write_text(directory / "camera.txt", "500 501 2 1\n");
   io::write_text(directory / "groundtruth.txt", "10.5 0 0 0 0 0 0 7\n");
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("not rigid"));
   io::write_text(directory / "groundtruth.txt", "10.5 0 0 0 0 0 0\n");

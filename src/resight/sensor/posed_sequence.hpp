@@ -30,6 +30,7 @@ class PosedSequence : public Sequence {
   [[nodiscard]] Result<Rigid3> read_pose(int view) const override {
     return world_from_camera_.at(static_cast<std::size_t>(view));
   }
+  [[nodiscard]] std::vector<std::string> notes() const override { return original_.notes(); }
   [[nodiscard]] bool has_ground_truth() const override { return original_.has_ground_truth(); }
   [[nodiscard]] Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const override {
     return original_.read_ground_truth(at(view));

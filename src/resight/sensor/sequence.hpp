@@ -33,6 +33,8 @@ class Sequence {
   [[nodiscard]] virtual Result<Rigid3> read_pose(int view) const;
   /// False if the data contain no camera poses; world_from_camera is then the identity.
   [[nodiscard]] virtual bool has_poses() const { return true; }
+  /// What was assumed or left out, one line each, for the user.
+  [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
   [[nodiscard]] virtual bool has_ground_truth() const { return false; }
   /// Returns an empty list if there is no ground truth.
   [[nodiscard]] virtual Result<std::vector<GroundTruthObject>> read_ground_truth(int view) const;

@@ -2,10 +2,13 @@
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "resight/io/internal/calibration.hpp"
 #include "resight/io/sequence.hpp"
 
 namespace resight::io {
@@ -14,12 +17,8 @@ namespace resight::io {
 enum class DepthStorage {
   kPng,         ///< 16-bit PNG.
   kRotatedPng,  ///< 16-bit PNG, each value rotated right by 3 bits.
-  kNpy,         ///< float32 NumPy array in metres.
-};
-
-/// Focal lengths and centre in pixels. The images determine the image size.
-struct Intrinsics {
-  double fx = 0, fy = 0, cx = 0, cy = 0;
+  kNpy,         ///< NumPy array of floating-point metres.
+  kByName,      ///< kNpy or kPng by the extension; the largest 16-bit value is no return, too.
 };
 
 /// A view without its images; everything else is already known.
@@ -29,7 +28,8 @@ struct ListedView {
   std::filesystem::path color;
   std::filesystem::path depth;
   Intrinsics intrinsics;
-  double metres_per_unit = 0.001;  ///< Unit of the depth image; unused for kNpy.
+  double metres_per_unit = 0.001;                            ///< Unit of a depth image of whole numbers.
+  double time_s = std::numeric_limits<double>::quiet_NaN();  ///< Of the depth image; NaN if unknown.
   Rigid3 world_from_camera;
   std::vector<GroundTruthObject> ground_truth;
 };
@@ -40,15 +40,27 @@ struct SequenceTable {
   int scene_id = 0;
   bool has_poses = true;
   bool has_ground_truth = false;
+  bool is_recording = false;  ///< The table only lists times and poses.
   DepthStorage depth_storage = DepthStorage::kPng;
+  std::optional<double> npy_unit_m;  ///< Unit of NumPy arrays. Otherwise metres, and whole numbers are refused.
+  LensDistortion lens;               ///< Of both images. The views that are read are without distortion.
   std::vector<ListedView> views;
+  std::vector<std::string> notes;
 };
 
 /// A sequence of separate colour and depth images, which all formats except TUW use.
 [[nodiscard]] std::unique_ptr<Sequence> make_listed_sequence(SequenceTable table);
 
-/// Extracts fx, fy, cx, cy from nine numbers (a camera matrix in row-major order). Fails for focal lengths that are not
-/// positive, for skew, and for another last row.
-[[nodiscard]] Result<Intrinsics> intrinsics_from_matrix(const std::vector<double>& matrix, std::string_view what);
+/// The table of such a sequence; null for another one.
+[[nodiscard]] SequenceTable* listed_table(Sequence& sequence);
+
+/// Sets the poses of views from a file: by the name of the view, by its time, or by its place in the order. Views
+/// without a pose are left out, with a note.
+[[nodiscard]] Result<void> assign_poses(SequenceTable& table, const std::filesystem::path& file);
+
+/// Replaces what the options give: intrinsics, unit of depth, poses, and the choice of views. Fails for a sequence that
+/// make_listed_sequence() has not made, if the options give anything.
+[[nodiscard]] Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& options);
+[[nodiscard]] Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& options);
 
 }  // namespace resight::io

@@ -15,7 +15,8 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] SequenceResult open_bop_scene(const std::filesystem::path& directory);
 
 [[nodiscard]] bool is_tum_sequence(const std::filesystem::path& directory);
-[[nodiscard]] SequenceResult open_tum_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_tum_sequence(const std::filesystem::path& directory,
+                                               const OpenSequenceOptions& options);
 
 [[nodiscard]] bool is_tuw_sequence(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_tuw_sequence(const std::filesystem::path& directory);
@@ -30,6 +31,17 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] SequenceResult open_camera_info_sequence(const std::filesystem::path& directory);
 [[nodiscard]] bool is_numbered_cameras_sequence(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_numbered_cameras_sequence(const std::filesystem::path& directory);
+
+/// Any other folder of colour and depth images. The error of the second function says what is missing.
+[[nodiscard]] bool is_image_folder(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_image_folder(const std::filesystem::path& directory,
+                                               const OpenSequenceOptions& options);
+/// One sentence about the images in a folder that is no sequence. Empty if there are none.
+[[nodiscard]] std::string describe_image_folder(const std::filesystem::path& directory);
+
+/// Opens a recording (is_recording()).
+[[nodiscard]] SequenceResult open_recording_sequence(const std::filesystem::path& where,
+                                                     const OpenSequenceOptions& options);
 
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_tuw_sequence(const std::filesystem::path& directory);
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const std::filesystem::path& directory);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence_input.hpp"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <map>
+
+#include "commands.hpp"
+
+namespace resight::app {
+namespace {
+
+const CLI::Validator kDepthScales(
+    [](const std::string& text) {
+      double value = 0;
+      const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool is_number = code == std::errc() && end == text.data() + text.size();
+      return is_number && value > 1e-7 && value <= 1
+                 ? std::string()
+                 : text + " is not a number of metres per unit, such as 0.001 (millimetres) or 0.0002 (5000 per metre)";
+    },
+    "METRES");
+
+const std::map<std::string, PoseConvention> kConventions = {{"camera-to-world", PoseConvention::kCameraToWorld},
+                                                            {"world-to-camera", PoseConvention::kWorldToCamera},
+                                                            {"opengl", PoseConvention::kOpenGl}};
+
+void add_recording_options(CLI::App* command, RecordingTopics& topics) {
+  const std::string group = "Recording (ROS 1 bag, MCAP, ROS 2 bag)";
+  command->add_option("--color-topic", topics.color, "Topic of the colour images")->group(group);
+  command->add_option("--depth-topic", topics.depth, "Topic of the depth images")->group(group);
+  command->add_option("--camera-info", topics.camera_info, "Topic of the CameraInfo of the colour camera")
+      ->group(group);
+  command->add_option("--world-frame", topics.world_frame, "Frame of the poses")->group(group);
+  command->add_option("--camera-frame", topics.camera_frame, "Frame of the colour camera [that of its images]")
+      ->group(group);
+  command
+      ->add_option_function<double>(
+          "--max-time-difference-ms", [&topics](double value) { topics.max_time_difference_s = 1e-3 * value; },
+          "Between a colour image and its depth image [20]")
+      ->check(CLI::Range(0.0, 1e4))
+      ->group(group);
+}
+
+}  // namespace
+
+void print_notes(const Sequence& sequence) {
+  for (const std::string& note : sequence.notes()) print_error_line("note: ", note);
+}
+
+void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
+  const std::string group = "Sequence";
+  command
+      ->add_option("--intrinsics", options.intrinsics,
+                   "fx,fy,cx,cy (px; distortion coefficients after it), or a file with them")
+      ->group(group);
+  command->add_option("--depth-scale", options.depth_scale_m, "Metres per unit of stored depth, such as 0.001")
+      ->check(kDepthScales)
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--pose-convention", [&options](const std::string& name) { options.pose_convention = kConventions.at(name); },
+          "Poses in files: camera-to-world, world-to-camera, or opengl (camera to world, y up) [camera-to-world]")
+      ->check(CLI::IsMember(kConventions))
+      ->group(group);
+  command->add_option("--every", options.views.every, "Takes every n-th view [1]")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
+  command->add_option("--from", options.views.from_s, "Takes views from this time on, seconds since the first")
+      ->group(group);
+  command->add_option("--until", options.views.to_s, "Takes views up to this time, seconds since the first")
+      ->group(group);
+  add_recording_options(command, options.topics);
+}
+
+void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options) {
+  command->add_option("--poses", options.poses, "File of camera poses, or fixed: the camera does not move")
+      ->group("Sequence");
+}
+
+std::unique_ptr<Sequence> open_input(const std::filesystem::path& where, const OpenSequenceOptions& options) {
+  auto sequence = value_or_throw(open_sequence(where, options));
+  print_notes(*sequence);
+  return sequence;
+}
+
+std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where, const OpenSequenceOptions& options) {
+  auto sequence = value_or_throw(open_posed_sequence(where, options));
+  print_notes(*sequence);
+  return sequence;
+}
+
+}  // namespace resight::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "resight/io/sequence.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace resight::app {
+
+/// Options of the command line for a sequence that does not say everything itself.
+void add_sequence_options(CLI::App* command, OpenSequenceOptions& options);
+/// --poses, where a command does not define it otherwise.
+void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options);
+
+/// Prints what was assumed or left out to standard error.
+void print_notes(const Sequence& sequence);
+/// Opens a sequence and prints its notes to standard error. Throws an InputError.
+[[nodiscard]] std::unique_ptr<Sequence> open_input(const std::filesystem::path& where,
+                                                   const OpenSequenceOptions& options);
+/// Same for uses that need camera poses.
+[[nodiscard]] std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where,
+                                                         const OpenSequenceOptions& options);
+
+}  // namespace resight::app

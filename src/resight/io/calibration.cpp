@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "resight/io/internal/calibration_fields.hpp"
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/text.hpp"
+
+namespace resight::io {
+namespace {
+
+/// Open3D writes the camera matrix column by column.
+std::vector<double> without_transposition(std::vector<double> m) {
+  if (m[2] == 0 && m[5] == 0 && m[6] != 0 && m[7] != 0) {
+    std::swap(m[2], m[6]);
+    std::swap(m[5], m[7]);
+    std::swap(m[1], m[3]);
+  }
+  return m;
+}
+
+/// Files that may hold a calibration.
+bool has_text_extension(const fs::path& file) {
+  const std::string extension = extension_of(file);
+  return extension.empty() || extension == "txt" || extension == "json" || extension == "yaml" || extension == "yml" ||
+         extension == "csv" || extension == "ini" || extension == "cfg" || extension == "conf" || extension == "intr";
+}
+
+/// A name that says so. Other names are read, too, but need not hold a calibration.
+bool is_named_for_calibration(std::string_view lower_name) {
+  return lower_name.find("intrinsic") != lower_name.npos || lower_name.starts_with("camera") ||
+         lower_name.starts_with("cam_k") || lower_name.find("calib") != lower_name.npos;
+}
+
+bool may_hold_calibration(std::string_view lower_name) {
+  constexpr std::array<std::string_view, 6> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt"};
+  return is_named_for_calibration(lower_name) ||
+         std::ranges::any_of(kHints, [&](std::string_view hint) { return lower_name.find(hint) != lower_name.npos; });
+}
+
+struct FoundCalibration {
+  fs::path file;
+  Calibration calibration;
+};
+
+bool is_of_color(const FoundCalibration& found) {
+  const std::string name = to_lower(found.file.filename().string());
+  return name.find("color") != name.npos || name.find("colour") != name.npos || name.find("rgb") != name.npos;
+}
+
+/// Collects the calibrations directly in a folder. Returns the error of a file that by its name must hold one.
+std::optional<Error> collect_calibrations(const fs::path& folder, std::vector<FoundCalibration>& found) {
+  constexpr std::uintmax_t kMaxCalibrationBytes = 1U << 20;
+  std::optional<Error> error;
+  for (const std::string& name : list_files(folder)) {
+    const std::string lower = to_lower(name);
+    if (!has_text_extension(name) || !may_hold_calibration(lower) || lower.find("pose") != lower.npos) continue;
+    std::error_code ignored;
+    if (fs::file_size(folder / name, ignored) > kMaxCalibrationBytes) continue;
+    const auto calibration = read_calibration(folder / name);
+    if (calibration)
+      found.push_back({folder / name, *calibration});
+    else if (is_named_for_calibration(lower))
+      error = calibration.error();
+  }
+  return error;
+}
+
+}  // namespace
+
+Result<Intrinsics> intrinsics_from_matrix(const std::vector<double>& matrix, std::string_view what) {
+  const auto fail = [&](std::string_view why) { return Error{fmt::format("{}: {}", what, why)}; };
+  if (matrix.size() != 9) return fail("expected the 9 numbers of a camera matrix");
+  for (const double value : matrix)
+    if (!std::isfinite(value)) return fail("the camera matrix holds NaN or infinite numbers");
+  const Intrinsics k{matrix[0], matrix[4], matrix[2], matrix[5]};
+  if (!(k.fx > 0 && k.fy > 0)) return fail(fmt::format("the focal lengths {} and {} must be positive", k.fx, k.fy));
+  if (std::abs(matrix[1]) > 1e-3 * k.fx) return fail("the camera matrix has skew, which is not supported");
+  if (matrix[3] != 0 || matrix[6] != 0 || matrix[7] != 0 || std::abs(matrix[8] - 1) > 1e-6)
+    return fail("is not a camera matrix (fx 0 cx 0 fy cy 0 0 1)");
+  return k;
+}
+
+Result<Calibration> calibration_from_numbers(const std::vector<double>& n, std::string_view what) {
+  std::vector<double> matrix;
+  std::vector<double> coefficients;
+  if (n.size() == 9 && n[8] == 1)
+    matrix = without_transposition(n);
+  else if (n.size() == 12 && n[10] == 1)
+    matrix = {n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]};
+  else if (n.size() == 16)
+    matrix = without_transposition({n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]});
+  else if (n.size() == 4 || (n.size() >= 8 && n.size() <= 12)) {
+    matrix = {n[0], 0, n[2], 0, n[1], n[3], 0, 0, 1};
+    coefficients.assign(n.begin() + 4, n.end());
+  } else {
+    return Error{fmt::format("{}: {} numbers; expected fx fy cx cy (and distortion coefficients) or a camera matrix",
+                             what, n.size())};
+  }
+  const auto intrinsics = intrinsics_from_matrix(matrix, what);
+  if (!intrinsics) return intrinsics.error();
+  const auto lens = LensDistortion::make("", coefficients);
+  if (!lens) return Error{fmt::format("{}: {}", what, lens.error().message)};
+  Calibration calibration;
+  calibration.intrinsics = *intrinsics;
+  calibration.lens = *lens;
+  return calibration;
+}
+
+Result<Calibration> read_calibration(const fs::path& file) {
+  if (extension_of(file) == "json") return read_json_calibration(file);
+  const auto text = read_file(file);
+  if (!text) return text.error();
+  if (const auto numbers = parse_number_list(*text)) return calibration_from_numbers(*numbers, file.string());
+  const auto calibration = calibration_from_fields(parse_fields(*text), file.string());
+  if (!calibration) return calibration.error();
+  if (!*calibration)
+    return file_error(file,
+                      "holds no intrinsics (expected numbers fx fy cx cy, a camera matrix, or names such as fx: 525)");
+  return **calibration;
+}
+
+Result<Calibration> parse_calibration(std::string_view numbers_or_file) {
+  if (const auto numbers = parse_number_list(numbers_or_file); numbers && !is_file(numbers_or_file))
+    return calibration_from_numbers(*numbers, "--intrinsics");
+  return read_calibration(numbers_or_file);
+}
+
+Result<std::optional<Calibration>> find_calibration(const fs::path& folder, fs::path& source) {
+  std::vector<FoundCalibration> found;
+  std::optional<Error> error = collect_calibrations(folder, found);
+  for (const std::string& name : list_directories(folder))
+    if (is_named_for_calibration(to_lower(name)))
+      if (auto below = collect_calibrations(folder / name, found); below && !error) error = below;
+  if (found.empty() && error) return *error;
+  if (found.empty()) return std::optional<Calibration>();
+  std::ranges::stable_sort(found, {}, [](const FoundCalibration& f) { return is_of_color(f) ? 0 : 1; });
+  const FoundCalibration& first = found.front();
+  for (const FoundCalibration& other : found)
+    if (is_of_color(other) == is_of_color(first) && other.calibration.intrinsics != first.calibration.intrinsics)
+      return file_error(folder, fmt::format("{} and {} hold different intrinsics; choose one by --intrinsics FILE",
+                                            first.file.filename().string(), other.file.filename().string()));
+  source = first.file;
+  return std::optional(first.calibration);
+}
+
+Result<void> check_calibration(const Calibration& calibration, int width, int height, std::string_view what) {
+  const Intrinsics& k = calibration.intrinsics;
+  const bool other_size =
+      calibration.width > 0 && calibration.height > 0 && (calibration.width != width || calibration.height != height);
+  if (other_size)
+    return Error{fmt::format("{}: the intrinsics are for images of {}x{}, but these have {}x{}", what,
+                             calibration.width, calibration.height, width, height)};
+  // The centre of a camera lies near that of its image; crops shift it, but hardly beyond the border.
+  if (k.cx < 0 || k.cy < 0 || k.cx > width || k.cy > height)
+    return Error{
+        fmt::format("{}: the centre ({}, {}) lies outside the images of {}x{}: these intrinsics are of "
+                    "another image size",
+                    what, k.cx, k.cy, width, height)};
+  return {};
+}
+
+}  // namespace resight::io

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/calibration_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/json.hpp"
+#include "resight/io/internal/text.hpp"
+
+namespace resight::io {
+namespace {
+
+using FieldNames = std::initializer_list<std::string_view>;
+
+const std::vector<double>* find_numbers(const CalibrationFields& fields, FieldNames names) {
+  for (const std::string_view name : names)
+    if (const auto it = fields.numbers.find(std::string(name)); it != fields.numbers.end() && !it->second.empty())
+      return &it->second;
+  return nullptr;
+}
+
+std::optional<double> find_scalar(const CalibrationFields& fields, FieldNames names) {
+  const std::vector<double>* numbers = find_numbers(fields, names);
+  return numbers != nullptr && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
+}
+
+std::optional<std::vector<double>> find_matrix(const CalibrationFields& fields) {
+  const auto fx = find_scalar(fields, {"fx", "fl_x", "focal_x"});
+  const auto fy = find_scalar(fields, {"fy", "fl_y", "focal_y"});
+  const auto cx = find_scalar(fields, {"cx", "ppx", "c_x", "principal_x"});
+  const auto cy = find_scalar(fields, {"cy", "ppy", "c_y", "principal_y"});
+  if (fx && fy && cx && cy) return std::vector<double>{*fx, *fy, *cx, *cy};
+  const std::vector<double>* matrix =
+      find_numbers(fields, {"camera_matrix", "intrinsic_matrix", "cam_k", "k", "intrinsics", "intrinsic",
+                            "color_intrinsic", "color_intrinsics", "camera_intrinsics", "camera_intrinsic", "matrix"});
+  return matrix == nullptr ? std::nullopt : std::optional(*matrix);
+}
+
+std::vector<double> find_coefficients(const CalibrationFields& fields) {
+  if (const auto* list = find_numbers(
+          fields, {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "distortion", "coeffs", "dist", "d"}))
+    return *list;
+  std::vector<double> coefficients;
+  for (const char* name : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"})
+    coefficients.push_back(find_scalar(fields, {name}).value_or(0));
+  return coefficients;
+}
+
+/// Metres per unit. Files say metres per unit (RealSense: 0.001), millimetres (BOP: 0.1 or 1), or units per metre.
+std::optional<double> find_depth_unit(const CalibrationFields& fields) {
+  const auto scale =
+      find_scalar(fields, {"depth_scale", "depthscale", "depth_factor", "depthmapfactor", "png_depth_scale", "scale"});
+  if (!scale || !(*scale > 0)) return std::nullopt;
+  if (*scale >= 100) return 1 / *scale;
+  return *scale > 0.0099 ? *scale * 1e-3 : *scale;
+}
+
+/// The part of a name behind the last dot or slash, in lower case: "Camera.fx" -> "fx".
+std::string last_part(std::string_view name) {
+  const std::size_t dot = name.find_last_of("./");
+  return to_lower(dot == name.npos ? name : name.substr(dot + 1));
+}
+
+bool is_separator(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ',' || c == ';' || c == '[' || c == ']' || c == '{' ||
+         c == '}' || c == '(' || c == ')' || c == '"' || c == '\'';
+}
+
+/// Words of a text without comments. The end of a name becomes the word ":".
+std::vector<std::string> split_words(std::string_view text) {
+  std::vector<std::string> words(1);
+  const auto end_word = [&] {
+    if (!words.back().empty()) words.emplace_back();
+  };
+  while (!text.empty()) {
+    std::string_view line = cut_line(text);
+    line = line.substr(0, line.find('#'));
+    for (const char c : line) {
+      if (is_separator(c)) {
+        end_word();
+      } else if (c == ':' || c == '=') {
+        end_word();
+        words.back().assign(1, ':');
+        end_word();
+      } else {
+        words.back() += c;
+      }
+    }
+    end_word();
+  }
+  words.pop_back();
+  return words;
+}
+
+CalibrationFields fields_of(const nlohmann::json& object) {
+  CalibrationFields fields;
+  for (const auto& [name, value] : object.items()) {
+    const auto& list = member(value, "data").is_null() ? value : member(value, "data");
+    if (const auto number = as_number(value)) fields.numbers[last_part(name)] = {*number};
+    if (list.is_array())
+      if (const auto numbers = as_numbers(list)) fields.numbers[last_part(name)] = *numbers;
+    if (const auto word = as_text(value)) fields.words[last_part(name)] = *word;
+  }
+  return fields;
+}
+
+struct JsonCalibration {
+  std::string where;
+  Calibration calibration;
+};
+
+Result<void> collect_json(const nlohmann::json& json, const std::string& where, int depth,
+                          std::vector<JsonCalibration>& found, std::string_view file) {
+  if (depth > 5 || found.size() > 100) return {};
+  if (json.is_array() && !json.empty() && json.front().is_object())
+    return collect_json(json.front(), where, depth + 1, found, file);
+  if (!json.is_object()) return {};
+  const auto calibration = calibration_from_fields(fields_of(json), file);
+  if (!calibration) return calibration.error();
+  if (*calibration) found.push_back({to_lower(where), **calibration});
+  for (const auto& [name, value] : json.items())
+    if (value.is_structured() && name != "frames")
+      if (const auto done = collect_json(value, where + "/" + name, depth + 1, found, file); !done) return done;
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::vector<double>> parse_number_list(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string& word : split_words(text)) {
+    const auto number = parse_number(word);
+    if (!number || numbers.size() > 64) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  if (numbers.empty()) return std::nullopt;
+  return numbers;
+}
+
+CalibrationFields parse_fields(std::string_view text) {
+  const std::vector<std::string> words = split_words(text);
+  CalibrationFields fields;
+  std::string group;  // the last name without a value
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i + 1] != ":" || words[i] == ":") continue;
+    std::string name = last_part(words[i]);
+    std::vector<double> numbers;
+    std::size_t next = i + 2;
+    if (next < words.size() && words[next] == "!!opencv-matrix") ++next;
+    const bool is_group = next + 1 >= words.size() || words[next + 1] == ":";
+    for (; next < words.size() && !(next + 1 < words.size() && words[next + 1] == ":"); ++next) {
+      const auto number = parse_number(words[next]);
+      if (!number) break;
+      numbers.push_back(*number);
+    }
+    if (numbers.empty() && i + 2 < words.size() && !is_group) fields.words[name] = words[i + 2];
+    if (numbers.empty() && (is_group || (i + 2 < words.size() && words[i + 2] == "!!opencv-matrix"))) group = name;
+    if (name == "data" && !group.empty()) name = group;
+    if (!numbers.empty()) fields.numbers.try_emplace(name, std::move(numbers));
+  }
+  return fields;
+}
+
+Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFields& fields, std::string_view what) {
+  const auto matrix = find_matrix(fields);
+  if (!matrix || matrix->size() < 4) return std::optional<Calibration>();
+  auto calibration = calibration_from_numbers(*matrix, what);
+  if (!calibration) return calibration.error();
+  const auto word = fields.words.find("distortion_model");
+  const auto lens = LensDistortion::make(word == fields.words.end() ? "" : word->second, find_coefficients(fields));
+  if (!lens) return Error{fmt::format("{}: {}", what, lens.error().message)};
+  if (calibration->lens.is_none()) calibration->lens = *lens;
+  const auto to_size = [](std::optional<double> size) {
+    return size && *size > 0 && *size < 1e6 ? static_cast<int>(*size) : 0;
+  };
+  calibration->width = to_size(find_scalar(fields, {"width", "image_width", "w"}));
+  calibration->height = to_size(find_scalar(fields, {"height", "image_height", "h"}));
+  calibration->metres_per_unit = find_depth_unit(fields);
+  return std::optional(*calibration);
+}
+
+Result<Calibration> read_json_calibration(const fs::path& file) {
+  const auto json = read_json(file);
+  if (!json) return json.error();
+  if (const auto numbers = as_numbers(*json)) return calibration_from_numbers(*numbers, file.string());
+  std::vector<JsonCalibration> found;
+  if (const auto done = collect_json(*json, "", 0, found, file.string()); !done) return done.error();
+  if (found.empty()) return file_error(file, "holds no intrinsics (expected fx, fy, cx, cy or a camera matrix)");
+  const auto is_color = [](const JsonCalibration& c) {
+    return c.where.find("color") != c.where.npos || c.where.find("rgb") != c.where.npos;
+  };
+  std::ranges::stable_sort(found, {}, [&](const JsonCalibration& c) { return is_color(c) ? 0 : 1; });
+  for (const JsonCalibration& other : found)
+    if (is_color(other) == is_color(found.front()) &&
+        other.calibration.intrinsics != found.front().calibration.intrinsics)
+      return file_error(file, fmt::format("holds the intrinsics of several cameras ({}, {}); give one of them by "
+                                          "--intrinsics fx,fy,cx,cy",
+                                          found.front().where, other.where));
+  return found.front().calibration;
+}
+
+}  // namespace resight::io

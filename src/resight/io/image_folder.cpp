@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/io/internal/depth_check.hpp"
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/image_series.hpp"
+#include "resight/io/internal/listed_sequence.hpp"
+#include "resight/io/internal/sequences.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/internal/trajectory_file.hpp"
+#include "resight/io/pose_text.hpp"
+
+/// Folders of colour and depth images that follow no published layout.
+namespace resight::io {
+namespace {
+
+constexpr double kMillimetre_m = 1e-3;
+
+struct FolderCamera {
+  Calibration calibration;
+  std::string source;
+};
+
+Result<FolderCamera> find_folder_camera(const fs::path& folder, const OpenSequenceOptions& options,
+                                        const PairedSeries& series) {
+  if (!options.intrinsics.empty()) {
+    const auto given = parse_calibration(options.intrinsics);
+    if (!given) return given.error();
+    return FolderCamera{*given, "--intrinsics"};
+  }
+  fs::path source;
+  const auto found = find_calibration(folder, source);
+  if (!found) return found.error();
+  if (*found) return FolderCamera{**found, source.filename().string()};
+  return file_error(folder, fmt::format("found {} colour and {} depth images, no intrinsics: give --intrinsics "
+                                        "fx,fy,cx,cy or FILE",
+                                        series.color.files.size(), series.depth.files.size()));
+}
+
+/// Sixteen or twelve numbers (a matrix), or seven (tx ty tz qx qy qz qw). None if the pose is NaN: not tracked.
+Result<std::optional<Rigid3>> read_view_pose(const fs::path& file) {
+  auto text = read_file(file, 1U << 16);
+  if (!text) return text.error();
+  std::ranges::replace(*text, ',', ' ');
+  const auto numbers = parse_numbers(*text);
+  if (numbers && !std::ranges::all_of(*numbers, [](double n) { return std::isfinite(n); }))
+    return std::optional<Rigid3>();
+  if (numbers && numbers->size() == 7) {
+    const std::vector<double>& n = *numbers;
+    const auto pose = rigid_from_quaternion({n[6], n[3], n[4], n[5]}, {n[0], n[1], n[2]}, file.string());
+    if (!pose) return pose.error();
+    return std::optional(*pose);
+  }
+  const auto pose = parse_pose(*text, file.string());
+  if (!pose) return pose.error();
+  return std::optional(*pose);
+}
+
+/// Reads one file of poses per view. Views whose file is missing or says NaN are left out.
+Result<void> read_poses_per_view(SequenceTable& table, const FileSeries& series, const std::vector<std::string>& keys) {
+  std::vector<ListedView> kept;
+  for (std::size_t i = 0; i < table.views.size(); ++i) {
+    const auto it = series.files.find(keys[i]);
+    if (it == series.files.end()) continue;
+    const auto pose = read_view_pose(it->second.file);
+    if (!pose) return pose.error();
+    if (!*pose) continue;
+    kept.push_back(std::move(table.views[i]));
+    kept.back().world_from_camera = **pose;
+  }
+  if (kept.empty()) return file_error(series.folder, "its files of poses belong to no view");
+  if (kept.size() < keys.size())
+    table.notes.push_back(
+        fmt::format("{} of {} views have no pose and are left out", keys.size() - kept.size(), keys.size()));
+  table.views = std::move(kept);
+  table.has_poses = true;
+  table.notes.push_back(fmt::format("poses: {}, taken as camera to world (--pose-convention)", series.label()));
+  return {};
+}
+
+bool is_pose_list_name(const std::string& lower_name) {
+  const bool named = lower_name.find("pose") != lower_name.npos || lower_name.find("traj") != lower_name.npos ||
+                     lower_name.find("groundtruth") != lower_name.npos ||
+                     lower_name.find("odometry") != lower_name.npos;
+  const std::string extension = extension_of(lower_name);
+  return named && (extension == "txt" || extension == "csv" || extension == "log" || extension == "freiburg" ||
+                   extension == "tum" || extension.empty());
+}
+
+Result<void> find_poses(SequenceTable& table, const fs::path& folder, const std::vector<FileSeries>& all,
+                        const std::vector<std::string>& keys) {
+  table.has_poses = false;
+  const FileSeries* best = nullptr;
+  for (const FileSeries& series : all)
+    if (series.kind == SeriesKind::kPose && (series.files.size() > 1 || keys.size() == 1))
+      if (best == nullptr || series.files.size() > best->files.size()) best = &series;
+  if (best != nullptr) return read_poses_per_view(table, *best, keys);
+  std::vector<fs::path> lists;
+  for (const std::string& name : list_files(folder))
+    if (is_pose_list_name(to_lower(name))) lists.push_back(folder / name);
+  if (lists.size() > 1)
+    return file_error(folder, fmt::format("holds several files of poses ({}, {}): choose one by --poses FILE",
+                                          lists[0].filename().string(), lists[1].filename().string()));
+  if (lists.empty()) return {};
+  if (const auto done = assign_poses(table, lists.front()); !done) return done;
+  table.notes.push_back(
+      fmt::format("poses: {}, taken as camera to world (--pose-convention)", lists.front().filename().string()));
+  return {};
+}
+
+/// Reads the first view to check what was assumed: the size of the images and the unit of depth.
+Result<void> check_first_view(const Sequence& sequence, const FolderCamera& camera, const fs::path& folder) {
+  const auto frame = sequence.read_view(0);
+  if (!frame) return frame.error();
+  const auto fits = check_calibration(camera.calibration, frame->camera.width, frame->camera.height,
+                                      folder.string() + ": " + camera.source);
+  if (!fits) return fits;
+  if (const auto done = check_depth_unit(*frame); !done) return file_error(folder, done.error().message);
+  return {};
+}
+
+std::string describe_unit(const FileSeries& depth, const OpenSequenceOptions& options, const FolderCamera& camera) {
+  if (options.depth_scale_m) return fmt::format("{} m per unit", *options.depth_scale_m);
+  if (extension_of(depth.pattern) == "npy") return "taken as metres (--depth-scale)";
+  if (camera.calibration.metres_per_unit)
+    return fmt::format("{:.6g} m per unit ({})", *camera.calibration.metres_per_unit, camera.source);
+  return "taken as millimetres (--depth-scale)";
+}
+
+void describe(SequenceTable& table, const PairedSeries& series, const OpenSequenceOptions& options,
+              const FolderCamera& camera) {
+  table.notes.push_back(fmt::format("colour {}, depth {}, {}; intrinsics of {}", series.color.label(),
+                                    series.depth.label(), describe_unit(series.depth, options, camera), camera.source));
+  const std::size_t largest = std::max(series.color.files.size(), series.depth.files.size());
+  if (series.pairs.size() < largest)
+    table.notes.push_back(fmt::format("{} colour and {} depth images make {} views; the others are left out",
+                                      series.color.files.size(), series.depth.files.size(), series.pairs.size()));
+}
+
+SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera) {
+  SequenceTable table;
+  table.format = "images";
+  table.depth_storage = DepthStorage::kByName;
+  table.lens = camera.calibration.lens;
+  for (const ImagePair& pair : series.pairs) {
+    ListedView view;
+    view.name = pair.color.name;
+    view.image_id = static_cast<int>(table.views.size());
+    view.color = pair.color.file;
+    view.depth = pair.depth.file;
+    view.intrinsics = camera.calibration.intrinsics;
+    view.metres_per_unit = camera.calibration.metres_per_unit.value_or(kMillimetre_m);
+    view.time_s = pair.depth.time_s;
+    table.views.push_back(std::move(view));
+  }
+  return table;
+}
+
+}  // namespace
+
+bool is_image_folder(const fs::path& directory) {
+  const auto paired = pair_series(find_series(directory), directory);
+  return !paired.ok() || paired->has_value();
+}
+
+SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOptions& options) {
+  const std::vector<FileSeries> all = find_series(directory);
+  const auto series = pair_series(all, directory);
+  if (!series) return series.error();
+  require(series->has_value(), "open_image_folder: the folder holds no images");
+  const auto camera = find_folder_camera(directory, options, **series);
+  if (!camera) return camera.error();
+  SequenceTable table = make_table(**series, *camera);
+  describe(table, **series, options, *camera);
+  std::vector<std::string> keys;
+  for (const ImagePair& pair : (*series)->pairs) keys.push_back(pair.key);
+  if (options.poses.empty())
+    if (const auto done = find_poses(table, directory, all, keys); !done) return done.error();
+  if (!table.has_poses) table.has_poses = table.views.size() == 1;
+  if (options.depth_scale_m) {
+    table.npy_unit_m = options.depth_scale_m;
+    for (ListedView& view : table.views) view.metres_per_unit = *options.depth_scale_m;
+  }
+  auto sequence = make_listed_sequence(std::move(table));
+  if (const auto done = check_first_view(*sequence, *camera, directory); !done) return done.error();
+  return sequence;
+}
+
+std::string describe_image_folder(const fs::path& directory) { return describe_images(find_series(directory)); }
+
+}  // namespace resight::io

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/image_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/internal/trajectory_file.hpp"
+
+namespace resight::io {
+namespace {
+
+bool is_digit_char(char c) { return c >= '0' && c <= '9'; }
+
+bool has_any(std::string_view text, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return text.find(word) != text.npos; });
+}
+
+/// Names of labels, masks and pictures of results, which are not views.
+bool is_no_view(std::string_view lower_name) {
+  return has_any(lower_name, {"mask", "label", "seg", "instance", "semantic", "class", "normal", "conf", "overlay",
+                              "infra", "_ir", "ir_", "preview", "vis"});
+}
+
+bool is_view_folder(std::string_view lower_name) {
+  return has_any(lower_name, {"rgb", "color", "colour", "depth", "image", "img", "pose", "frame", "result", "raw"}) ||
+         lower_name == "cam0" || lower_name == "data" || lower_name == "views";
+}
+
+/// The runs of digits of a name, with their places.
+struct DigitRuns {
+  std::string pattern;
+  std::vector<std::string> digits;
+  std::vector<std::size_t> ends;  ///< In the name, behind each run.
+};
+
+DigitRuns split_digits(std::string_view name) {
+  DigitRuns runs;
+  for (std::size_t i = 0; i < name.size();) {
+    if (!is_digit_char(name[i])) {
+      runs.pattern += name[i++];
+      continue;
+    }
+    std::size_t end = i;
+    while (end < name.size() && is_digit_char(name[end])) ++end;
+    runs.pattern += '#';
+    runs.digits.emplace_back(name.substr(i, end - i));
+    runs.ends.push_back(end);
+    i = end;
+  }
+  return runs;
+}
+
+std::string without_zeros(std::string_view digits) {
+  const std::size_t begin = std::min(digits.find_first_not_of('0'), digits.size() - 1);
+  return std::string(digits.substr(begin));
+}
+
+/// The time that a name such as 1305031102.175304 (seconds) or 1305031102175304000 (nanoseconds) tells.
+double time_of_digits(const std::vector<std::string>& digits) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (digits.size() == 2 && digits[0].size() >= 9 && digits[0].size() <= 11)
+    return parse_number(digits[0] + "." + digits[1]).value_or(kNone);
+  if (digits.size() != 1) return kNone;
+  const double number = parse_number(digits[0]).value_or(kNone);
+  if (digits[0].size() == 19) return number * 1e-9;
+  if (digits[0].size() == 16) return number * 1e-6;
+  return digits[0].size() == 13 ? number * 1e-3 : kNone;
+}
+
+/// Files whose name says depth, in formats that are not read: for messages.
+bool is_unread_depth(const std::string& pattern) {
+  const std::string extension = extension_of(pattern);
+  return extension == "png" || extension == "exr" || extension == "npz" || extension == "tiff" || extension == "tif";
+}
+
+/// By the first bytes: 16-bit PNG with one channel is depth, other images are colour.
+SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
+  const std::string extension = extension_of(file);
+  if (extension == "npy") return has_any(lower_name, {"pose"}) ? SeriesKind::kOther : SeriesKind::kDepth;
+  if (extension == "jpg" || extension == "jpeg") return SeriesKind::kColor;
+  if (extension == "txt") return has_any(lower_name, {"pose", "extrinsic"}) ? SeriesKind::kPose : SeriesKind::kOther;
+  if (extension != "png") return SeriesKind::kOther;
+  const auto start = read_file_start(file, 33);
+  if (!start || start->size() < 33 || !start->starts_with("\x89PNG")) return SeriesKind::kOther;
+  const int bits = static_cast<unsigned char>((*start)[24]);
+  const int color_type = static_cast<unsigned char>((*start)[25]);
+  if (bits == 16 && color_type == 0) return SeriesKind::kDepth;
+  return has_any(lower_name, {"depth"}) ? SeriesKind::kOther : SeriesKind::kColor;
+}
+
+/// Removes the numbers that are the same in all names, such as those of "color_640x480".
+void set_keys(FileSeries& series, const std::vector<std::string>& names) {
+  const DigitRuns first = split_digits(names.front());
+  std::vector<bool> differs(first.digits.size(), names.size() == 1);
+  for (const std::string& name : names) {
+    const DigitRuns runs = split_digits(name);
+    for (std::size_t i = 0; i < runs.digits.size(); ++i)
+      if (runs.digits[i] != first.digits[i]) differs[i] = true;
+  }
+  if (names.size() == 1)
+    std::fill(differs.begin() + std::min<std::ptrdiff_t>(1, std::ssize(differs)), differs.end(), false);
+  for (const std::string& name : names) {
+    const DigitRuns runs = split_digits(name);
+    std::string key;
+    std::vector<std::string> digits;
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < runs.digits.size(); ++i) {
+      if (!differs[i]) continue;
+      if (!key.empty()) key += '.';
+      key += without_zeros(runs.digits[i]);
+      digits.push_back(runs.digits[i]);
+      end = runs.ends[i];
+    }
+    const std::string stem = fs::path(name).stem().string();
+    const std::string shown = end == 0 || end > stem.size() ? stem : name.substr(0, end);
+    // Two seconds with one fraction: all runs belong to the time, although the first may be the same in all names.
+    series.files.emplace(key, SeriesFile{series.folder / name, shown, time_of_digits(runs.digits)});
+  }
+}
+
+void add_series(const fs::path& folder, std::vector<FileSeries>& all) {
+  std::map<std::string, std::vector<std::string>> names;
+  for (const std::string& name : list_files(folder)) names[split_digits(name).pattern].push_back(name);
+  const std::string folder_lower = to_lower(folder_name(folder));
+  for (const auto& [pattern, of_pattern] : names) {
+    FileSeries series;
+    series.folder = folder;
+    series.pattern = pattern;
+    series.kind = kind_of_image(folder / of_pattern.front(), folder_lower + "/" + to_lower(of_pattern.front()));
+    if (series.kind == SeriesKind::kOther && !is_unread_depth(pattern)) continue;
+    if (is_no_view(to_lower(pattern))) continue;
+    set_keys(series, of_pattern);
+    all.push_back(std::move(series));
+  }
+}
+
+std::vector<ImagePair> pair_by_key(const FileSeries& color, const FileSeries& depth) {
+  std::vector<ImagePair> pairs;
+  for (const auto& [key, file] : color.files)
+    if (const auto it = depth.files.find(key); it != depth.files.end()) pairs.push_back({file, it->second, key});
+  return pairs;
+}
+
+std::vector<ImagePair> pair_by_time(const FileSeries& color, const FileSeries& depth) {
+  std::vector<SeriesFile> depths;
+  for (const auto& [key, file] : depth.files)
+    if (!std::isnan(file.time_s)) depths.push_back(file);
+  std::ranges::sort(depths, {}, &SeriesFile::time_s);
+  std::vector<ImagePair> pairs;
+  for (const auto& [key, file] : color.files) {
+    if (std::isnan(file.time_s) || depths.empty()) continue;
+    auto it = std::ranges::lower_bound(depths, file.time_s, {}, &SeriesFile::time_s);
+    if (it == depths.end() || (it != depths.begin() && file.time_s - std::prev(it)->time_s < it->time_s - file.time_s))
+      --it;
+    if (std::abs(it->time_s - file.time_s) <= kMaxImageGap_s) pairs.push_back({file, *it, key});
+  }
+  return pairs;
+}
+
+/// How well names say what the files are. Float depth has a known unit and is preferred.
+int rank_of(const FileSeries& series) {
+  const std::string name = to_lower(folder_name(series.folder) + "/" + series.pattern);
+  if (series.kind == SeriesKind::kColor) return has_any(name, {"color", "colour", "rgb"}) ? 2 : 1;
+  const bool registered = has_any(name, {"aligned", "registered", "to_color"});
+  return (has_any(name, {"depth"}) ? 2 : 0) + (registered ? 2 : 0) + (extension_of(series.pattern) == "npy" ? 1 : 0);
+}
+
+struct Candidate {
+  PairedSeries paired;
+  int rank = 0;
+};
+
+}  // namespace
+
+std::string FileSeries::label() const {
+  std::string shown = pattern;
+  std::ranges::replace(shown, '#', '*');
+  return folder_name(folder) + "/" + shown;
+}
+
+std::vector<FileSeries> find_series(const fs::path& folder) {
+  std::vector<FileSeries> all;
+  add_series(folder, all);
+  for (const std::string& name : list_directories(folder))
+    if (is_view_folder(to_lower(name)) && !is_no_view(to_lower(name))) add_series(folder / name, all);
+  return all;
+}
+
+Result<std::optional<PairedSeries>> pair_series(const std::vector<FileSeries>& all, const fs::path& folder) {
+  std::vector<Candidate> candidates;
+  for (const FileSeries& color : all)
+    for (const FileSeries& depth : all) {
+      if (color.kind != SeriesKind::kColor || depth.kind != SeriesKind::kDepth) continue;
+      auto pairs = pair_by_key(color, depth);
+      if (pairs.empty()) pairs = pair_by_time(color, depth);
+      if (pairs.empty()) continue;
+      std::ranges::sort(pairs, [](const ImagePair& a, const ImagePair& b) {
+        return natural_less(a.color.file.filename().string(), b.color.file.filename().string());
+      });
+      candidates.push_back({{color, depth, std::move(pairs)}, rank_of(color) + 10 * rank_of(depth)});
+    }
+  if (candidates.empty()) return std::optional<PairedSeries>();
+  std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) {
+    return a.rank != b.rank ? a.rank > b.rank : a.paired.pairs.size() > b.paired.pairs.size();
+  });
+  if (candidates.size() > 1 && candidates[1].rank == candidates[0].rank &&
+      candidates[1].paired.pairs.size() == candidates[0].paired.pairs.size())
+    return file_error(
+        folder, fmt::format("holds several series of views: {} with {}, and {} with {}; give one of them a folder of "
+                            "its own",
+                            candidates[0].paired.color.label(), candidates[0].paired.depth.label(),
+                            candidates[1].paired.color.label(), candidates[1].paired.depth.label()));
+  return std::optional(std::move(candidates.front().paired));
+}
+
+std::string describe_images(const std::vector<FileSeries>& all) {
+  std::size_t num_color = 0;
+  std::size_t num_depth = 0;
+  for (const FileSeries& series : all) {
+    if (series.kind == SeriesKind::kColor) num_color += series.files.size();
+    if (series.kind == SeriesKind::kDepth) num_depth += series.files.size();
+  }
+  for (const FileSeries& series : all) {
+    const bool is_depth = to_lower(series.label()).find("depth") != std::string::npos;
+    if (num_depth > 0 || !is_depth || series.kind != SeriesKind::kOther) continue;
+    const std::string extension = extension_of(series.pattern);
+    const std::string why = extension == "png" ? "8-bit or colour images (pictures of depth, no depth)"
+                                               : "." + extension + " files, which are not read (convert them)";
+    return fmt::format("found {} colour images, but {} are {}; expected 16-bit PNG or npy", num_color, series.label(),
+                       why);
+  }
+  if (num_color == 0 && num_depth == 0) return "";
+  if (num_color > 0 && num_depth > 0)
+    return fmt::format("found {} colour and {} depth images whose names have no number in common", num_color,
+                       num_depth);
+  return num_color > 0 ? fmt::format("found {} colour images, but no depth (16-bit PNG or npy)", num_color)
+                       : fmt::format("found {} depth images, but no colour (JPEG or 8-bit PNG)", num_depth);
+}
+
+}  // namespace resight::io

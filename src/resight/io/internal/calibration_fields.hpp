@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "resight/io/internal/calibration.hpp"
+
+namespace resight::io {
+
+/// The content of a settings file by name, in lower case. The numbers of a list `name: [..]`, also of several lines and
+/// of the key "data" below its name, are the value of the name.
+struct CalibrationFields {
+  std::map<std::string, std::vector<double>> numbers;
+  std::map<std::string, std::string> words;
+};
+
+/// Numbers separated by white space, commas, semicolons or brackets, without comments (#). None if anything else is in
+/// the text.
+[[nodiscard]] std::optional<std::vector<double>> parse_number_list(std::string_view text);
+
+/// Parses lines `name: value` or `name = value`.
+[[nodiscard]] CalibrationFields parse_fields(std::string_view text);
+
+/// None if the fields hold no intrinsics.
+[[nodiscard]] Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFields& fields,
+                                                                         std::string_view what);
+
+/// The calibration anywhere in a JSON file; of several, that of the colour camera.
+[[nodiscard]] Result<Calibration> read_json_calibration(const std::filesystem::path& file);
+
+}  // namespace resight::io

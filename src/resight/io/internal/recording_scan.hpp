@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "resight/io/internal/recording_topics.hpp"
+
+namespace resight::io {
+
+/// An image with the time of its header; that of the entry is when it was recorded.
+struct StampedImage {
+  MessageEntry entry;
+  std::int64_t stamp_ns = 0;
+};
+
+/// A transform or pose with its topic.
+struct ScannedTransform {
+  int topic = -1;
+  StampedTransform transform;
+};
+
+/// What is read of all messages when a recording is opened, in one pass: a chunk is decompressed once.
+struct RecordingScan {
+  std::vector<StampedImage> colors;
+  std::vector<StampedImage> depths;
+  std::vector<ScannedTransform> transforms;
+  std::string damage;  ///< If a message could not be read: the reason. What lies behind it is left out.
+};
+[[nodiscard]] RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics);
+
+/// A colour image and the depth image nearest in time.
+struct RecordedPair {
+  MessageEntry color;
+  MessageEntry depth;
+  std::int64_t depth_stamp_ns = 0;
+};
+
+/// Pairs the images by the times in their headers, in the order of time. If these do not fit together (clocks of two
+/// devices), by the times of recording. A depth image belongs to one colour image.
+[[nodiscard]] std::vector<RecordedPair> pair_images(const RecordingScan& scan, double max_difference_s);
+
+}  // namespace resight::io

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "resight/io/internal/test_data.hpp"
+#include "resight/recordings/testing/ros1_messages.hpp"
+
+/// What recordings may hold and lack, with files that the test writes.
+namespace resight {
+namespace {
+
+using recordings::TestRecording;
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr int kImageWidth = 20;
+constexpr int kImageHeight = 10;
+const std::vector<double> kIntrinsics = {30, 0, 9.5, 0, 30, 4.5, 0, 0, 1};
+
+struct TopicsOfTest {
+  std::string color = "/rgb/image_raw";
+  std::string depth = "/depth/image_raw";
+  std::string color_frame = "camera";
+  std::string depth_frame = "camera";
+};
+
+/// Three views of a wall at 1 m, at 10.0, 10.1 and 10.2 s.
+void add_views(TestRecording& recording, const TopicsOfTest& topics) {
+  const std::string color(3 * kImageWidth * kImageHeight, '\x50');
+  std::string depth;
+  for (int i = 0; i < kImageWidth * kImageHeight; ++i) depth += recordings::packed(std::uint16_t{1000});
+  for (int i = 0; i < 3; ++i) {
+    const double time_s = 10 + 0.1 * i;
+    recording.add(topics.color, "sensor_msgs/Image", time_s,
+                  recordings::image_message(time_s, topics.color_frame, "bgr8", kImageWidth, kImageHeight, color));
+    recording.add(topics.depth, "sensor_msgs/Image", time_s,
+                  recordings::image_message(time_s, topics.depth_frame, "16UC1", kImageWidth, kImageHeight, depth));
+  }
+}
+
+void add_info(TestRecording& recording, const std::string& topic, const std::vector<double>& distortion = {},
+              const std::string& model = "plumb_bob") {
+  recording.add(topic, "sensor_msgs/CameraInfo", 9,
+                recordings::camera_info_message("camera", kImageWidth, kImageHeight, model, distortion, kIntrinsics));
+}
+
+class RecordingOptions : public testing::Test {
+ protected:
+  Result<std::unique_ptr<Sequence>> open(const OpenSequenceOptions& options = {}) {
+    io::write_text(directory_ / "r.mcap", recording_.bytes());
+    return open_sequence(directory_ / "r.mcap", options);
+  }
+  std::string error(const OpenSequenceOptions& options = {}) {
+    const auto sequence = open(options);
+    return sequence.ok() ? std::string("no error") : sequence.error().message;
+  }
+  TestRecording recording_;
+  io::TestDirectory directory_;
+};
+
+TEST_F(RecordingOptions, NoCameraInfoNeedsIntrinsics) {
+  add_views(recording_, {});
+  EXPECT_THAT(error(), HasSubstr("no sensor_msgs/CameraInfo for /rgb/image_raw"));
+  OpenSequenceOptions options;
+  options.intrinsics = "30,30,9.5,4.5";
+  const auto sequence = open(options);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->read_view(0)->camera, (Camera{kImageWidth, kImageHeight, 30, 30, 9.5, 4.5}));
+  EXPECT_FALSE((*sequence)->has_poses());
+  options.poses = "fixed";
+  EXPECT_TRUE((*open(options))->has_poses());
+}
+
+TEST_F(RecordingOptions, PosesOfAFileByTime) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  io::write_text(directory_ / "poses.txt", "10.0 0 0 0 0 0 0 1\n10.1 0 0 2 0 0 0 1\n");
+  OpenSequenceOptions options;
+  options.poses = (directory_ / "poses.txt").string();
+  const auto sequence = open(options);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 2) << "the third is too late";
+  EXPECT_NEAR((*sequence)->read_pose(1)->translation.z(), 2, 1e-6);
+  EXPECT_THAT((*sequence)->notes(), Contains(HasSubstr("1 of 3 views have no pose")));
+}
+
+TEST_F(RecordingOptions, OdometryAndPoses) {
+  TestRecording odometry;
+  TestRecording poses;
+  for (TestRecording* recording : {&odometry, &poses}) {
+    add_views(*recording, {});
+    add_info(*recording, "/rgb/camera_info");
+    recording->add("/tf_static", "tf2_msgs/TFMessage", 9,
+                   recordings::transform_message(9, "base", "camera", Rigid3::from_translation({0, 0, 1})));
+    for (int i = 0; i < 4; ++i) {
+      const double time_s = 10 + 0.1 * i;
+      const Rigid3 pose = Rigid3::from_translation({0.5 * i, 0, 0});
+      if (recording == &odometry)
+        recording->add("/odom", "nav_msgs/Odometry", time_s,
+                       recordings::odometry_message(time_s, "odom", "base", pose));
+      else
+        recording->add("/pose", "geometry_msgs/PoseStamped", time_s, recordings::pose_message(time_s, "world", pose));
+    }
+    recording_ = *recording;
+    const auto sequence = open();
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    EXPECT_TRUE((*sequence)->has_poses());
+    EXPECT_LT(((*sequence)->read_pose(2)->translation - Eigen::Vector3d(1, 0, 1)).norm(), 1e-6);
+  }
+}
+
+TEST_F(RecordingOptions, SeveralTopicsMustBeChosen) {
+  add_views(recording_,
+            {.color = "/a/rgb/image_raw", .depth = "/a/depth/image_raw", .color_frame = "a", .depth_frame = "a"});
+  add_views(recording_,
+            {.color = "/b/rgb/image_raw", .depth = "/b/depth/image_raw", .color_frame = "b", .depth_frame = "b"});
+  add_info(recording_, "/a/rgb/camera_info");
+  add_info(recording_, "/b/rgb/camera_info");
+  EXPECT_THAT(error(), HasSubstr("several topics of colour images (/a/rgb/image_raw, /b/rgb/image_raw): choose one by "
+                                 "--color-topic"));
+  OpenSequenceOptions options;
+  options.topics.color = "/b/rgb/image_raw";
+  EXPECT_THAT(error(options), HasSubstr("--depth-topic"));
+  options.topics.depth = "/b/depth/image_raw";
+  EXPECT_TRUE(open(options).ok());
+}
+
+TEST_F(RecordingOptions, DepthOfAnotherCameraNeedsItsPlace) {
+  add_views(recording_,
+            {.color = "/rgb/image_raw", .depth = "/depth/image_raw", .color_frame = "camera", .depth_frame = "ir"});
+  add_info(recording_, "/rgb/camera_info");
+  EXPECT_THAT(error(), HasSubstr("has no CameraInfo: record registered depth"));
+  add_info(recording_, "/depth/camera_info");
+  EXPECT_THAT(error(), HasSubstr("nothing says where the depth camera (ir) is"));
+  recording_.add("/tf_static", "tf2_msgs/TFMessage", 9,
+                 recordings::transform_message(9, "camera", "ir", Rigid3::from_translation({0.1, 0, 0})));
+  const auto sequence = open();
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  const auto frame = (*sequence)->read_view(0);
+  ASSERT_TRUE(frame.ok()) << frame.error().message;
+  // 30 px * 0.1 m / 1 m: the depth lies 3 px to the right.
+  EXPECT_TRUE(std::isnan(frame->depth_m(2, 5)));
+  EXPECT_NEAR(frame->depth_m(3, 5), 1, 1e-6);
+}
+
+TEST_F(RecordingOptions, LensesOfCameraInfo) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info", {0.5, 0, 0, 0}, "equidistant");
+  const auto sequence = open();
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_NEAR((*sequence)->read_view(0)->depth_m(10, 5), 1, 1e-6);
+  TestRecording other;
+  add_views(other, {});
+  add_info(other, "/rgb/camera_info", {0.5}, "fov");
+  recording_ = other;
+  EXPECT_THAT(error(), HasSubstr("'fov' is not supported"));
+}
+
+TEST_F(RecordingOptions, UnitsThatCannotBe) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  OpenSequenceOptions options;
+  options.depth_scale_m = 1;
+  EXPECT_THAT(error(options), HasSubstr("the unit is wrong"));
+  options.depth_scale_m = 0.0005;
+  EXPECT_NEAR((*open(options))->read_view(0)->depth_m(1, 1), 0.5, 1e-6);
+}
+
+TEST_F(RecordingOptions, PartsOfABag) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  const std::string first = recording_.bytes();
+  TestRecording second;
+  const std::string color(3 * kImageWidth * kImageHeight, '\x50');
+  std::string depth;
+  for (int i = 0; i < kImageWidth * kImageHeight; ++i) depth += recordings::packed(std::uint16_t{1500});
+  second.add("/depth/image_raw", "sensor_msgs/Image", 11,
+             recordings::image_message(11, "camera", "16UC1", kImageWidth, kImageHeight, depth));
+  second.add("/rgb/image_raw", "sensor_msgs/Image", 11,
+             recordings::image_message(11, "camera", "bgr8", kImageWidth, kImageHeight, color));
+  io::write_text(directory_ / "bag/metadata.yaml", "rosbag2_bagfile_information:\n");
+  io::write_text(directory_ / "bag/bag_0.mcap", first);
+  io::write_text(directory_ / "bag/bag_1.mcap", second.bytes());
+  const auto sequence = open_sequence(directory_ / "bag");
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 4);
+  EXPECT_NEAR((*sequence)->read_view(3)->depth_m(1, 1), 1.5, 1e-6);
+  io::write_text(directory_ / "packed/metadata.yaml", "x\n");
+  io::write_text(directory_ / "packed/bag_0.db3.zstd", "x");
+  EXPECT_THAT(open_sequence(directory_ / "packed").error().message, HasSubstr("zstd -d"));
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/recording_poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "resight/core/printable.hpp"
+
+namespace resight::io {
+namespace {
+
+constexpr double kMaxTransformGap_s = 0.5;  ///< Between the transforms before and after an image.
+
+bool is_world_name(std::string_view frame) {
+  return frame == "world" || frame == "map" || frame == "odom" || frame == "earth" || frame == "vicon";
+}
+
+}  // namespace
+
+Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const RecordingScan& scan,
+                                          const ViewTopics& topics, const RecordingTopics& given) {
+  RecordedPoses poses;
+  std::vector<StampedTransform> odometry;
+  std::vector<StampedTransform> stamped_poses;
+  for (const ScannedTransform& scanned : scan.transforms) {
+    const RecordedTopic& topic = recording.topics()[static_cast<std::size_t>(scanned.topic)];
+    if (topic.type == "geometry_msgs/PoseStamped") {
+      // Of several topics of poses, the first is taken.
+      if (poses.pose_topic_.empty()) poses.pose_topic_ = topic.name;
+      if (poses.pose_topic_ == topic.name) stamped_poses.push_back(scanned.transform);
+    } else if (topic.type == "nav_msgs/Odometry") {
+      odometry.push_back(scanned.transform);
+    } else {
+      poses.transforms_.add(scanned.transform, topic.name.ends_with("tf_static"));
+    }
+  }
+  // Odometry also tells where a frame is, if no transform does.
+  for (const StampedTransform& transform : odometry) poses.transforms_.add(transform, false);
+  poses.camera_frame_ = given.camera_frame.empty() ? topics.color_frame : given.camera_frame;
+  if (stamped_poses.empty() || poses.transforms_.is_moving(poses.camera_frame_)) poses.pose_topic_.clear();
+  poses.posed_frame_ = poses.transforms_.root_of(poses.camera_frame_);
+  if (!poses.pose_topic_.empty())
+    for (StampedTransform& transform : stamped_poses) {
+      if (transform.parent.empty()) transform.parent = "world";
+      transform.child = poses.posed_frame_;
+      poses.transforms_.add(transform, false);
+    }
+  poses.transforms_.finish();
+  if (const auto done = poses.choose_frames(given); !done) return done.error();
+  if (const auto done = poses.read_librealsense(recording, topics); !done) return done.error();
+  return poses;
+}
+
+Result<void> RecordedPoses::choose_frames(const RecordingTopics& given) {
+  const std::string root = transforms_.root_of(camera_frame_);
+  if (given.world_frame.empty()) {
+    if (transforms_.knows(camera_frame_) && (transforms_.is_moving(camera_frame_) || is_world_name(root)))
+      world_frame_ = root;
+    if (!given.camera_frame.empty() && !transforms_.knows(camera_frame_))
+      return Error{fmt::format("has no transform of the frame '{}' (--camera-frame)", printable(camera_frame_))};
+    return {};
+  }
+  if (!transforms_.knows(given.world_frame) || !transforms_.knows(camera_frame_) ||
+      transforms_.root_of(given.world_frame) != root) {
+    std::string names;
+    for (const std::string& frame : transforms_.frames())
+      if (names.size() < 300) names += (names.empty() ? "" : ", ") + printable(frame);
+    return Error{fmt::format("no transforms connect the frames '{}' and '{}'; frames: {}", given.world_frame,
+                             printable(camera_frame_), names.empty() ? "none" : names)};
+  }
+  world_frame_ = given.world_frame;
+  return {};
+}
+
+/// librealsense writes for each stream its transform from a common reference, and the unit of depth as an option.
+Result<void> RecordedPoses::read_librealsense(const Recording& recording, const ViewTopics& topics) {
+  const auto stream_of = [&](int topic) {
+    const std::string& name = recording.topics()[static_cast<std::size_t>(topic)].name;
+    const std::size_t end = name.find("/image/data");
+    return name.starts_with("/device_") && end != name.npos ? name.substr(0, end) : std::string();
+  };
+  const std::string color = stream_of(topics.color);
+  const std::string depth = stream_of(topics.depth);
+  if (color.empty() || depth.empty()) return {};
+  std::optional<Rigid3> color_from_reference;
+  std::optional<Rigid3> depth_from_reference;
+  for (std::size_t t = 0; t < recording.topics().size(); ++t) {
+    const RecordedTopic& topic = recording.topics()[t];
+    const bool is_unit =
+        topic.name.ends_with("/option/Depth_Units/value") || topic.name.ends_with("/option/Depth Units/value");
+    const bool is_transform = topic.type == "geometry_msgs/Transform";
+    if (!is_transform && !(is_unit && topic.type == "std_msgs/Float32")) continue;
+    const auto bytes = read_first_message(recording, static_cast<int>(t), 4096);
+    if (!bytes) return bytes.error();
+    if (!*bytes) continue;
+    if (is_unit) {
+      const auto unit_m = decode_float(**bytes, topic.layout, topic.name);
+      if (unit_m && *unit_m > 1e-7 && *unit_m <= 1) depth_unit_m_ = *unit_m;
+      continue;
+    }
+    const auto transform = decode_plain_transform(**bytes, topic.layout, topic.name);
+    if (!transform) return transform.error();
+    if (topic.name.starts_with(color + "/tf/")) color_from_reference = *transform;
+    if (topic.name.starts_with(depth + "/tf/")) depth_from_reference = *transform;
+  }
+  if (color_from_reference && depth_from_reference)
+    color_from_depth_ = *color_from_reference * depth_from_reference->inverse();
+  return {};
+}
+
+std::optional<Rigid3> RecordedPoses::world_from_camera(std::int64_t stamp_ns) const {
+  return transforms_.find(world_frame_, camera_frame_, stamp_ns, kMaxTransformGap_s);
+}
+
+std::optional<Rigid3> RecordedPoses::color_from_depth(const ViewTopics& topics) const {
+  if (color_from_depth_) return color_from_depth_;
+  if (topics.color_frame == topics.depth_frame) return std::nullopt;
+  // The two are fixed to each other, so that any time will do.
+  return transforms_.find(topics.color_frame, topics.depth_frame, 0, 1e300);
+}
+
+std::string RecordedPoses::describe() const {
+  if (!has_poses()) return "no camera poses: no transform of the frame '" + printable(camera_frame_) + "' changes";
+  if (!pose_topic_.empty())
+    return fmt::format("poses: {}, taken as those of {}", printable(pose_topic_), printable(posed_frame_));
+  return fmt::format("poses: {} in {}", printable(camera_frame_), printable(world_frame_));
+}
+
+}  // namespace resight::io

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/recording_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace resight::io {
+namespace {
+
+using StampOf = std::int64_t (*)(const StampedImage&);
+std::int64_t header_stamp(const StampedImage& image) { return image.stamp_ns; }
+std::int64_t recorded_stamp(const StampedImage& image) { return image.entry.time_ns; }
+
+std::vector<RecordedPair> pair_by(StampOf stamp_of, std::vector<StampedImage> colors, std::vector<StampedImage> depths,
+                                  double max_difference_s) {
+  std::ranges::stable_sort(colors, {}, stamp_of);
+  std::ranges::stable_sort(depths, {}, stamp_of);
+  std::vector<RecordedPair> pairs;
+  std::size_t next = 0;
+  for (const StampedImage& color : colors) {
+    const auto distance_s = [&](std::size_t i) {
+      return std::abs(static_cast<double>(stamp_of(depths[i])) - static_cast<double>(stamp_of(color))) * 1e-9;
+    };
+    while (next + 1 < depths.size() && distance_s(next + 1) <= distance_s(next)) ++next;
+    if (next >= depths.size() || distance_s(next) > max_difference_s) continue;
+    pairs.push_back({color.entry, depths[next].entry, depths[next].stamp_ns});
+    ++next;
+  }
+  return pairs;
+}
+
+}  // namespace
+
+RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics) {
+  constexpr std::size_t kMaxTransformBytes = 1U << 20;
+  constexpr std::size_t kMaxTransforms = 1U << 22;  // an hour of 100 frames at 10 Hz
+  RecordingScan scan;
+  for (const MessageEntry& entry : recording.messages()) {
+    const RecordedTopic& topic = recording.topics()[static_cast<std::size_t>(entry.topic)];
+    const bool is_image = entry.topic == topics.color || entry.topic == topics.depth;
+    if (!is_image && !holds_transforms(topic.type)) continue;
+    const auto bytes = recording.read(entry, is_image ? kImageStartBytes : kMaxTransformBytes);
+    if (!bytes) {
+      scan.damage = bytes.error().message;
+      break;
+    }
+    if (is_image) {
+      const auto start = decode_image_start(*bytes, topic);
+      if (!start) continue;
+      (entry.topic == topics.color ? scan.colors : scan.depths).push_back({entry, start->header.stamp_ns});
+    } else if (scan.transforms.size() > kMaxTransforms) {
+      scan.damage = "more transforms than are read";
+      break;
+    } else if (const auto transforms = decode_transforms(*bytes, topic)) {
+      for (const StampedTransform& transform : *transforms) scan.transforms.push_back({entry.topic, transform});
+    }
+  }
+  return scan;
+}
+
+std::vector<RecordedPair> pair_images(const RecordingScan& scan, double max_difference_s) {
+  auto by_header = pair_by(&header_stamp, scan.colors, scan.depths, max_difference_s);
+  auto by_recording = pair_by(&recorded_stamp, scan.colors, scan.depths, max_difference_s);
+  const bool clocks_differ = by_header.size() * 4 < by_recording.size();
+  return clocks_differ ? by_recording : by_header;
+}
+
+}  // namespace resight::io

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/trajectory_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/text.hpp"
+#include "resight/io/pose_text.hpp"
+
+namespace resight::io {
+namespace {
+
+constexpr double kMaxPoseGap_s = 0.1;  ///< Largest time between an image and the poses before and after it.
+
+/// A line of the file: its words, and their numbers (NaN for other words).
+struct PoseRow {
+  int line = 0;
+  std::string stamp;
+  std::vector<double> numbers;
+};
+
+std::vector<PoseRow> split_rows(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  std::vector<PoseRow> rows;
+  std::string_view rest = text;
+  for (int line = 1; !rest.empty(); ++line) {
+    const auto words = split_tokens(cut_line(rest));
+    if (words.empty() || words[0].starts_with('#')) continue;
+    PoseRow row{line, std::string(words[0]), {}};
+    for (const std::string_view word : words)
+      row.numbers.push_back(parse_number(word).value_or(std::numeric_limits<double>::quiet_NaN()));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+bool is_finite_row(const PoseRow& row, std::size_t first) {
+  return std::all_of(row.numbers.begin() + static_cast<std::ptrdiff_t>(first), row.numbers.end(),
+                     [](double n) { return std::isfinite(n); });
+}
+
+/// A row `stamp tx ty tz qx qy qz qw`; with 9 numbers, `stamp number tx ..` (phone recordings).
+Result<std::vector<StampedPose>> from_stamped_rows(const std::vector<PoseRow>& rows, const fs::path& file,
+                                                   bool may_be_untracked) {
+  std::vector<StampedPose> poses;
+  for (const PoseRow& row : rows) {
+    const std::size_t at = row.numbers.size() - 7;
+    if (may_be_untracked && !is_finite_row(row, at)) continue;
+    const double* n = row.numbers.data() + at;
+    const auto pose = rigid_from_quaternion({n[6], n[3], n[4], n[5]}, {n[0], n[1], n[2]},
+                                            fmt::format("{}: time {}", file.string(), row.stamp));
+    if (!pose) return pose.error();
+    if (!may_be_untracked && !std::isfinite(row.numbers[0]))
+      return file_error(file, fmt::format("line {} cannot be parsed: its time is no number", row.line));
+    poses.push_back({row.numbers[0], row.stamp, *pose});
+  }
+  return poses;
+}
+
+Result<Rigid3> from_matrix_numbers(const std::vector<double>& numbers, const fs::path& file, int line) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
+  return rigid_from_matrix(matrix, fmt::format("{}: line {}", file.string(), line));
+}
+
+/// Matrices of four rows. Rows of other lengths between them are headers.
+Result<std::vector<StampedPose>> from_blocks(const std::vector<PoseRow>& rows, const fs::path& file) {
+  std::vector<StampedPose> poses;
+  std::vector<double> numbers;
+  for (const PoseRow& row : rows) {
+    if (row.numbers.size() != 4) {
+      if (!numbers.empty() || row.numbers.size() > 3)
+        return file_error(file, fmt::format("line {} cannot be parsed (expected a row of 4 numbers)", row.line));
+      continue;
+    }
+    numbers.insert(numbers.end(), row.numbers.begin(), row.numbers.end());
+    if (numbers.size() < 16) continue;
+    const auto pose = from_matrix_numbers(numbers, file, row.line);
+    if (!pose) return pose.error();
+    poses.push_back({std::numeric_limits<double>::quiet_NaN(), "", *pose});
+    numbers.clear();
+  }
+  if (!numbers.empty()) return file_error(file, "is cut off: its last matrix has fewer than 4 rows");
+  return poses;
+}
+
+Result<std::vector<StampedPose>> from_matrix_rows(const std::vector<PoseRow>& rows, const fs::path& file) {
+  std::vector<StampedPose> poses;
+  for (const PoseRow& row : rows) {
+    const auto pose = from_matrix_numbers(row.numbers, file, row.line);
+    if (!pose) return pose.error();
+    poses.push_back({std::numeric_limits<double>::quiet_NaN(), "", *pose});
+  }
+  return poses;
+}
+
+}  // namespace
+
+Result<std::vector<StampedPose>> read_pose_list(const fs::path& file, bool may_be_untracked) {
+  auto text = read_file(file);
+  if (!text) return text.error();
+  std::vector<PoseRow> rows = split_rows(std::move(*text));
+  const bool has_title = rows.size() > 1 && std::isnan(rows[0].numbers[0]) && !is_finite_row(rows[0], 1);
+  if (has_title) rows.erase(rows.begin());  // names of columns
+  if (rows.empty()) return file_error(file, "holds no poses");
+  const std::size_t width = rows.back().numbers.size();
+  if (width == 4) return from_blocks(rows, file);
+  const bool known = width == 8 || width == 9 || width == 12 || width == 16;
+  for (const PoseRow& row : rows)
+    if (!known || row.numbers.size() != width)
+      return file_error(file, fmt::format("line {} cannot be parsed: {} numbers (expected stamp tx ty tz qx qy qz qw, "
+                                          "or a matrix of 12 or 16 numbers)",
+                                          row.line, row.numbers.size()));
+  return width <= 9 ? from_stamped_rows(rows, file, may_be_untracked) : from_matrix_rows(rows, file);
+}
+
+std::optional<Rigid3> interpolate_pose(const std::vector<StampedPose>& poses, double time_s) {
+  const auto after = std::ranges::lower_bound(poses, time_s, {}, &StampedPose::time_s);
+  const bool has_after = after != poses.end() && after->time_s - time_s <= kMaxPoseGap_s;
+  const bool has_before = after != poses.begin() && time_s - std::prev(after)->time_s <= kMaxPoseGap_s;
+  if (has_after && has_before) {
+    const StampedPose& a = *std::prev(after);
+    const double t = after->time_s > a.time_s ? (time_s - a.time_s) / (after->time_s - a.time_s) : 0.0;
+    const Eigen::Quaterniond q = Eigen::Quaterniond(a.world_from_camera.rotation)
+                                     .slerp(t, Eigen::Quaterniond(after->world_from_camera.rotation));
+    return Rigid3{q.normalized().toRotationMatrix(),
+                  (1 - t) * a.world_from_camera.translation + t * after->world_from_camera.translation};
+  }
+  // At the ends of the recording, the nearest pose is used if it is close enough.
+  if (has_after && after->time_s - time_s <= kMaxImageGap_s) return after->world_from_camera;
+  if (has_before && time_s - std::prev(after)->time_s <= kMaxImageGap_s) return std::prev(after)->world_from_camera;
+  return std::nullopt;
+}
+
+}  // namespace resight::io

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recordings/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
+#include "resight/recordings/internal/containers.hpp"
+
+namespace resight {
+namespace recordings {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A ROS 2 bag of several files, one after the other.
+class SplitRecording final : public Recording {
+ public:
+  void add(std::unique_ptr<Recording> part) {
+    if (!damage_.empty()) return;
+    std::vector<int> topic_of_part;
+    for (const RecordedTopic& topic : part->topics()) {
+      const auto same = std::ranges::find_if(
+          topics_, [&](const RecordedTopic& t) { return t.name == topic.name && t.type == topic.type; });
+      topic_of_part.push_back(static_cast<int>(same - topics_.begin()));
+      if (same == topics_.end()) topics_.push_back(topic);
+    }
+    for (const MessageEntry& message : part->messages()) {
+      MessageEntry entry = message;
+      entry.topic = topic_of_part[static_cast<std::size_t>(message.topic)];
+      entry.part = static_cast<std::uint32_t>(parts_.size());
+      entry.offset = places_in_part_.size();
+      places_in_part_.push_back(message);
+      entries_.push_back(entry);
+    }
+    damage_ = part->damage();
+    parts_.push_back(std::move(part));
+  }
+  [[nodiscard]] std::string format() const override { return parts_.front()->format(); }
+  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
+  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return entries_; }
+  [[nodiscard]] const std::string& damage() const override { return damage_; }
+  [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override {
+    return parts_.at(entry.part)->read(places_in_part_.at(entry.offset), max_bytes);
+  }
+
+ private:
+  std::vector<std::unique_ptr<Recording>> parts_;
+  std::vector<RecordedTopic> topics_;
+  std::vector<MessageEntry> entries_;
+  std::vector<MessageEntry> places_in_part_;  ///< The entry of each message in its part.
+  std::string damage_;
+};
+
+RecordingResult open_file(const fs::path& file) {
+  const auto start = read_file_start(file, kSqliteMagic.size());
+  if (!start) return start.error();
+  if (start->starts_with(kRos1BagMagic)) return open_ros1_bag(file);
+  if (start->starts_with("#ROSBAG V1") || start->starts_with("#ROSRECORD"))
+    return file_error(file, "is a bag of an old version; rosbag fix converts it to version 2.0");
+  if (start->starts_with(kMcapMagic)) return open_mcap(file);
+  if (*start == kSqliteMagic) return open_ros2_sqlite(file);
+  return file_error(file, "is no recording (expected a ROS 1 bag 2.0, an MCAP file or a ROS 2 bag)");
+}
+
+/// The parts of a ROS 2 bag, in the order of their numbers.
+std::vector<fs::path> list_parts(const fs::path& folder) {
+  std::vector<fs::path> parts;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string extension = it->path().extension().string();
+    std::error_code ignored;
+    if ((extension == ".db3" || extension == ".mcap") && it->is_regular_file(ignored)) parts.push_back(it->path());
+  }
+  // Of equal length: name_9 precedes name_10.
+  std::ranges::sort(parts, [](const fs::path& a, const fs::path& b) {
+    return a.native().size() != b.native().size() ? a.native().size() < b.native().size() : a < b;
+  });
+  return parts;
+}
+
+bool has_compressed_parts(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".zstd") return true;
+  return false;
+}
+
+}  // namespace
+
+std::string without_msg(std::string_view type) {
+  const std::size_t middle = type.find("/msg/");
+  if (middle == type.npos) return std::string(type);
+  return std::string(type.substr(0, middle)) + std::string(type.substr(middle + 4));
+}
+
+}  // namespace recordings
+
+bool is_recording(const std::filesystem::path& where) {
+  std::error_code error;
+  if (std::filesystem::is_directory(where, error)) {
+    if (std::filesystem::is_regular_file(where / "metadata.yaml", error)) return true;
+    return !recordings::list_parts(where).empty();
+  }
+  const auto start = read_file_start(where, recordings::kSqliteMagic.size());
+  return start.ok() && (start->starts_with("#ROSBAG") || start->starts_with("#ROSRECORD") ||
+                        start->starts_with(recordings::kMcapMagic) || *start == recordings::kSqliteMagic);
+}
+
+Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& where) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(where, error)) return recordings::open_file(where);
+  const auto parts = recordings::list_parts(where);
+  if (parts.empty())
+    return file_error(where, recordings::has_compressed_parts(where)
+                                 ? "its files are compressed as a whole; unpack them with zstd -d"
+                                 : "holds no *.db3 or *.mcap");
+  if (parts.size() == 1) return recordings::open_file(parts.front());
+  auto split = std::make_unique<recordings::SplitRecording>();
+  for (const auto& part : parts) {
+    auto opened = recordings::open_file(part);
+    if (!opened) return opened.error();
+    split->add(std::move(*opened));
+  }
+  return Result<std::unique_ptr<Recording>>(std::move(split));
+}
+
+}  // namespace resight

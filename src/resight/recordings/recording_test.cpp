@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recordings/recording.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "resight/core/random.hpp"
+#include "resight/recordings/internal/decompress.hpp"
+#include "resight/recordings/message.hpp"
+
+namespace resight {
+namespace {
+
+using testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+/// Files that other programs have written (tests/data/recordings/README.md).
+fs::path recorded(const std::string& name) { return fs::path(RESIGHT_SOURCE_DIR) / "tests/data/recordings" / name; }
+
+const std::vector<std::string> kRos1 = {"none.bag", "lz4.bag", "bz2.bag"};
+const std::vector<std::string> kRos2 = {"none.mcap",      "zstd.mcap",     "lz4.mcap",
+                                        "no_chunks.mcap", "no_index.mcap", "ros2.db3"};
+
+std::vector<std::string> all_recordings() {
+  std::vector<std::string> all = kRos1;
+  all.insert(all.end(), kRos2.begin(), kRos2.end());
+  return all;
+}
+
+std::string read_bytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A file for the running test that is removed at its end.
+class TemporaryFile {
+ public:
+  TemporaryFile() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = fs::temp_directory_path() / (std::string("resight_recordings_") + test->name());
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& write(const std::string& bytes) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    return path_;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// All messages of a recording, in order; "" for those that cannot be read.
+std::vector<std::string> read_all(const Recording& recording) {
+  std::vector<std::string> all;
+  for (const MessageEntry& entry : recording.messages()) {
+    const auto bytes = recording.read(entry, kMaxMessageBytes);
+    all.push_back(bytes.ok() ? *bytes : "");
+  }
+  return all;
+}
+
+std::map<std::string, int> count_messages(const Recording& recording) {
+  std::map<std::string, int> counts;
+  for (const MessageEntry& entry : recording.messages())
+    ++counts[recording.topics()[static_cast<std::size_t>(entry.topic)].name];
+  return counts;
+}
+
+TEST(Recording, FilesOfOtherWriters) {
+  for (const std::string& name : all_recordings()) {
+    const auto recording = open_recording(recorded(name));
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ((*recording)->damage(), "") << name;
+    const std::map<std::string, int> expected = {{"/camera/aligned_depth_to_color/image_raw", 4},
+                                                 {"/camera/color/camera_info", 1},
+                                                 {"/camera/color/image_raw", 4},
+                                                 {"/tf", 5},
+                                                 {"/tf_static", 1}};
+    EXPECT_EQ(count_messages(**recording), expected) << name;
+  }
+}
+
+TEST(Recording, SameContentInAllContainers) {
+  for (const auto& names : {kRos1, kRos2}) {
+    const auto first = read_all(**open_recording(recorded(names.front())));
+    for (const std::string& name : names) {
+      auto other = read_all(**open_recording(recorded(name)));
+      EXPECT_EQ(other.size(), first.size());
+      EXPECT_TRUE(std::ranges::is_permutation(other, first)) << name;
+    }
+  }
+}
+
+TEST(Recording, MessagesAreDecoded) {
+  for (const std::string& name : all_recordings()) {
+    const auto recording = open_recording(recorded(name));
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    int num_images = 0;
+    for (const MessageEntry& entry : (*recording)->messages()) {
+      const RecordedTopic& topic = (*recording)->topics()[static_cast<std::size_t>(entry.topic)];
+      const auto bytes = (*recording)->read(entry, kMaxMessageBytes);
+      ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+      if (topic.name == "/camera/color/image_raw") {
+        const auto image = decode_image(*bytes, topic.layout, topic.name);
+        ASSERT_TRUE(image.ok()) << name << image.error().message;
+        EXPECT_EQ(image->width, 16U);
+        EXPECT_EQ(image->height, 12U);
+        EXPECT_EQ(image->encoding, "rgb8");
+        EXPECT_EQ(image->header.frame, "camera_color_optical_frame");
+        ASSERT_EQ(image->data.size(), 3U * 16 * 12);
+        const auto index = (image->header.stamp_ns - 100000000000 + 50000000) / 100000000;
+        EXPECT_EQ(static_cast<unsigned char>(image->data[3 * (2 * 16 + 5)]), 50 + index) << name;
+        ++num_images;
+      }
+      if (topic.name == "/camera/color/camera_info") {
+        const auto info = decode_camera_info(*bytes, topic.layout, topic.name);
+        ASSERT_TRUE(info.ok()) << name << info.error().message;
+        EXPECT_EQ(info->k[4], 21.0);
+        EXPECT_EQ(info->p[2], 7.5);
+        EXPECT_EQ(info->distortion.size(), 5U);
+      }
+      if (topic.name == "/tf") {
+        const auto transforms = decode_transforms(*bytes, topic);
+        ASSERT_TRUE(transforms.ok()) << name << transforms.error().message;
+        ASSERT_EQ(transforms->size(), 1U);
+        EXPECT_EQ(transforms->front().child, "camera_link");
+        const double seconds = static_cast<double>(transforms->front().stamp_ns) * 1e-9 - 100;
+        EXPECT_NEAR(transforms->front().parent_from_child.translation.x(), seconds, 1e-6);
+      }
+    }
+    EXPECT_EQ(num_images, 4);
+  }
+}
+
+TEST(Recording, EverythingBeforeACutIsRead) {
+  TemporaryFile file;
+  for (const char* name : {"none.bag", "lz4.bag", "none.mcap", "zstd.mcap", "no_chunks.mcap"}) {
+    const std::string bytes = read_bytes(recorded(name));
+    const auto whole = read_all(**open_recording(recorded(name)));
+    std::size_t largest = 0;
+    const std::size_t step = std::max<std::size_t>(1, bytes.size() / 400);
+    for (std::size_t cut = 0; cut < bytes.size(); cut += step) {
+      const auto recording = open_recording(file.write(bytes.substr(0, cut)));
+      if (!recording) {
+        EXPECT_FALSE(recording.error().message.empty());
+        continue;
+      }
+      const auto left = read_all(**recording);
+      ASSERT_LE(left.size(), whole.size()) << name << " " << cut;
+      EXPECT_GE(left.size(), largest) << name << ": a longer file must not hold less, cut at " << cut;
+      largest = std::max(largest, left.size());
+      // The scan meets messages in the order of the file; an index may list them by topic.
+      for (const std::string& message : left) ASSERT_TRUE(std::ranges::count(whole, message) > 0) << name << " " << cut;
+    }
+    EXPECT_GT(largest, whole.size() / 2) << name;
+  }
+}
+
+TEST(Recording, CutsAreNamed) {
+  TemporaryFile file;
+  const std::string bytes = read_bytes(recorded("none.bag"));
+  const auto recording = open_recording(file.write(bytes.substr(0, 20000)));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_THAT((*recording)->damage(), HasSubstr("cut off"));
+  EXPECT_GT((*recording)->messages().size(), 2U);
+}
+
+/// Every file with bytes exchanged is refused or read.
+TEST(Recording, SurvivesDamage) {
+  TemporaryFile file;
+  Rng rng(7);
+  for (const std::string& name : all_recordings()) {
+    const std::string bytes = read_bytes(recorded(name));
+    int num_opened = 0;
+    for (int i = 0; i < 150; ++i) {
+      std::string damaged = bytes;
+      const int count = 1 + static_cast<int>(rng.below(4));
+      for (int k = 0; k < count; ++k) {
+        const std::size_t at = rng.below(static_cast<std::uint32_t>(bytes.size()));
+        damaged[at] = static_cast<char>(rng.below(2) == 0 ? 0xFF : rng.below(256));
+      }
+      const auto recording = open_recording(file.write(damaged));
+      if (!recording) {
+        EXPECT_FALSE(recording.error().message.empty());
+        continue;
+      }
+      ++num_opened;
+      for (const MessageEntry& entry : (*recording)->messages()) {
+        const auto message = (*recording)->read(entry, kMaxMessageBytes);
+        if (!message) continue;
+        const RecordedTopic& topic = (*recording)->topics()[static_cast<std::size_t>(entry.topic)];
+        EXPECT_TRUE(decode_image(*message, topic.layout, "x").ok() || true);
+        EXPECT_TRUE(decode_camera_info(*message, topic.layout, "x").ok() || true);
+        EXPECT_TRUE(decode_transforms(*message, topic).ok() || true);
+      }
+    }
+    EXPECT_GT(num_opened, 20) << name;
+  }
+}
+
+TEST(Recording, MessagesThatAreCutAreErrors) {
+  const auto recording = open_recording(recorded("none.mcap"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  for (const MessageEntry& entry : (*recording)->messages()) {
+    const RecordedTopic& topic = (*recording)->topics()[static_cast<std::size_t>(entry.topic)];
+    const std::string bytes = *(*recording)->read(entry, kMaxMessageBytes);
+    for (std::size_t cut = 0; cut < bytes.size(); cut += 1 + bytes.size() / 100) {
+      const std::string part = bytes.substr(0, cut);
+      const bool is_read = topic.type == "sensor_msgs/Image" ? decode_image(part, topic.layout, "x").ok()
+                           : topic.type == "sensor_msgs/CameraInfo"
+                               ? cut < 100 && decode_camera_info(part, topic.layout, "x").ok()  // its end is not needed
+                               : decode_transforms(part, topic).ok();
+      EXPECT_FALSE(is_read) << topic.type << " cut at " << cut;
+    }
+  }
+}
+
+TEST(Recording, RefusesOtherFiles) {
+  TemporaryFile file;
+  EXPECT_FALSE(is_recording(file.write("hello")));
+  EXPECT_THAT(open_recording(file.write("hello")).error().message, HasSubstr("is no recording"));
+  EXPECT_THAT(open_recording(file.write("#ROSBAG V1.2\n")).error().message, HasSubstr("rosbag fix"));
+  EXPECT_FALSE(open_recording("/nowhere").ok());
+  EXPECT_TRUE(is_recording(recorded("none.bag")));
+  EXPECT_TRUE(is_recording(recorded("ros2.db3")));
+}
+
+TEST(Decompress, DeclaredSizesAreBounded) {
+  EXPECT_THAT(recordings::decompress("lz4", "", std::uint64_t{1} << 40).error().message, HasSubstr("declares"));
+  EXPECT_THAT(recordings::decompress("xz", "", 10).error().message, HasSubstr("'xz' is not supported"));
+  for (const char* compression : {"lz4", "bz2", "zstd"}) {
+    EXPECT_FALSE(recordings::decompress(compression, "", 10).ok()) << compression;
+    EXPECT_FALSE(recordings::decompress(compression, "nonsense", 10).ok()) << compression;
+  }
+}
+
+}  // namespace
+}  // namespace resight

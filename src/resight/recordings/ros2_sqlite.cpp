@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <map>
+#include <mutex>
+
+#include "resight/core/files.hpp"
+#include "resight/core/printable.hpp"
+#include "resight/recordings/internal/containers.hpp"
+#include "resight/recordings/internal/random_access_file.hpp"
+
+/// ROS 2 bags in SQLite: tables `topics` and `messages`.
+namespace resight::recordings {
+namespace {
+
+struct DatabaseCloser {
+  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+};
+struct StatementCloser {
+  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+};
+using Database = std::unique_ptr<sqlite3, DatabaseCloser>;
+using Statement = std::unique_ptr<sqlite3_stmt, StatementCloser>;
+
+/// The tables of a hostile file may be views that never end.
+constexpr int kStepsPerCheck = 1000000;
+constexpr int kMaxChecks = 20000;
+
+int count_steps(void* checks) { return ++*static_cast<int*>(checks) > kMaxChecks ? 1 : 0; }
+
+std::string_view column_text(sqlite3_stmt* statement, int column) {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement, column));
+  const int bytes = sqlite3_column_bytes(statement, column);
+  return text == nullptr ? std::string_view() : std::string_view(text, static_cast<std::size_t>(bytes));
+}
+
+class Ros2Sqlite final : public Recording {
+ public:
+  Ros2Sqlite(std::filesystem::path file, Database database) : file_(std::move(file)), database_(std::move(database)) {
+    sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(kMaxMessageBytes));
+    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_progress_handler(database_.get(), kStepsPerCheck, &count_steps, &checks_);
+  }
+
+  [[nodiscard]] std::string format() const override { return "rosbag2-sqlite3"; }
+  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return index_.topics; }
+  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return index_.messages; }
+  [[nodiscard]] const std::string& damage() const override { return index_.damage; }
+
+  [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override;
+  [[nodiscard]] Result<void> build_index();
+
+ private:
+  [[nodiscard]] Result<Statement> prepare(const char* sql) const;
+  [[nodiscard]] Result<void> read_topics();
+  [[nodiscard]] Error fail() const {
+    return file_error(file_,
+                      fmt::format("cannot be read as a ROS 2 bag ({})", printable(sqlite3_errmsg(database_.get()))));
+  }
+
+  std::filesystem::path file_;
+  mutable std::mutex mutex_;
+  mutable int checks_ = 0;
+  Database database_;
+  RecordingIndex index_;
+  std::map<std::int64_t, int> topic_of_id_;
+};
+
+Result<Statement> Ros2Sqlite::prepare(const char* sql) const {
+  sqlite3_stmt* raw = nullptr;
+  const int code = sqlite3_prepare_v2(database_.get(), sql, -1, &raw, nullptr);
+  Statement statement(raw);
+  if (code != SQLITE_OK) return fail();
+  return Result<Statement>(std::move(statement));
+}
+
+Result<void> Ros2Sqlite::read_topics() {
+  const auto statement = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  if (!statement) return statement.error();
+  sqlite3_stmt* row = statement->get();
+  int code = SQLITE_ROW;
+  while ((code = sqlite3_step(row)) == SQLITE_ROW) {
+    if (index_.topics.size() >= kMaxTopics) return file_error(file_, "holds too many topics");
+    topic_of_id_[sqlite3_column_int64(row, 0)] = static_cast<int>(index_.topics.size());
+    const bool is_cdr = column_text(row, 3) == "cdr";
+    index_.topics.push_back({std::string(column_text(row, 1)), without_msg(column_text(row, 2)),
+                             is_cdr ? MessageLayout::kCdr : MessageLayout::kOther});
+  }
+  if (code != SQLITE_DONE) return fail();
+  return {};
+}
+
+Result<void> Ros2Sqlite::build_index() {
+  if (const auto done = read_topics(); !done) return done;
+  const auto statement = prepare("SELECT id, topic_id, timestamp FROM messages ORDER BY id");
+  if (!statement) return statement.error();
+  sqlite3_stmt* row = statement->get();
+  int code = SQLITE_ROW;
+  while ((code = sqlite3_step(row)) == SQLITE_ROW) {
+    const auto topic = topic_of_id_.find(sqlite3_column_int64(row, 1));
+    if (topic == topic_of_id_.end()) continue;
+    if (index_.messages.size() >= kMaxMessages) return file_error(file_, "holds too many messages");
+    index_.messages.push_back(
+        {sqlite3_column_int64(row, 2), topic->second, 0, static_cast<std::uint64_t>(sqlite3_column_int64(row, 0))});
+  }
+  if (code != SQLITE_DONE) index_.damage = fail().message;
+  return {};
+}
+
+Result<std::string> Ros2Sqlite::read(const MessageEntry& entry, std::size_t max_bytes) const {
+  const std::lock_guard lock(mutex_);
+  checks_ = 0;
+  const auto statement = prepare("SELECT substr(data, 1, ?2) FROM messages WHERE id = ?1");
+  if (!statement) return statement.error();
+  sqlite3_bind_int64(statement->get(), 1, static_cast<sqlite3_int64>(entry.offset));
+  sqlite3_bind_int64(statement->get(), 2, static_cast<sqlite3_int64>(max_bytes));
+  if (sqlite3_step(statement->get()) != SQLITE_ROW) return fail();
+  const auto* blob = static_cast<const char*>(sqlite3_column_blob(statement->get(), 0));
+  const int bytes = sqlite3_column_bytes(statement->get(), 0);
+  return blob == nullptr ? std::string() : std::string(blob, static_cast<std::size_t>(bytes));
+}
+
+}  // namespace
+
+RecordingResult open_ros2_sqlite(const std::filesystem::path& file) {
+  const auto checked = RandomAccessFile::open(file);
+  if (!checked) return checked.error();
+  sqlite3* raw = nullptr;
+  // immutable: no journal or lock is written beside the file.
+  std::string uri = "file:";
+  for (const char c : std::filesystem::absolute(file).string())
+    uri += c == '?' || c == '#' || c == '%' ? fmt::format("%{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
+  uri += "?immutable=1";
+  const int code = sqlite3_open_v2(uri.c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  Database database(raw);
+  if (code != SQLITE_OK) return file_error(file, "cannot be opened as a database");
+  auto bag = std::make_unique<Ros2Sqlite>(file, std::move(database));
+  if (const auto done = bag->build_index(); !done) return done.error();
+  return RecordingResult(std::move(bag));
+}
+
+}  // namespace resight::recordings
