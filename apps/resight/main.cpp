@@ -33,6 +33,7 @@ struct Arguments {
   ConvertArguments convert;
   EvaluateArguments evaluate;
   std::string shard;
+  ViewArguments view;
   DemoArguments demo;
 };
 
@@ -232,6 +233,20 @@ std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
   return [&a] { run_demo(a); };
 }
 
+std::function<void()> add_view(CLI::App& app, ViewArguments& a) {
+  CLI::App* command = app.add_subcommand("view", "Look at results, a sequence or models in a browser");
+  command
+      ->add_option("inputs", a.inputs,
+                   "Folder of results (of 'resight recognize'), or several to compare; a sequence folder; a model "
+                   "library; models")
+      ->required();
+  command->add_option("--sequence", a.sequence, "Sequence of the results [default: the one that they name]");
+  command->add_option("--models", a.models, "Model library of the objects [default: the one that the results name]");
+  command->add_option("--port", a.port, "Port on 127.0.0.1; 0 takes a free one")->capture_default_str();
+  command->add_flag("--no-open", a.no_open, "Print the address only, without opening a browser");
+  return [&a] { run_view(a); };
+}
+
 std::function<void()> add_options(CLI::App& app) {
   app.add_subcommand("options", "Print all options of settings files (--config) as Markdown");
   return [] { print_text(resight::options_reference()); };
@@ -289,6 +304,7 @@ int run_program(int argc, char** argv) {
                                           add_model(app, a.model),
                                           add_convert(app, a.convert),
                                           add_evaluate(app, a.evaluate, a.shard),
+                                          add_view(app, a.view),
                                           add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {

@@ -42,6 +42,8 @@ void run_recognize(const RecognizeArguments& arguments) {
   const Sequence& sequence = tracked ? *tracked : *recorded;
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads);
   run.sequence = arguments.sequence.string();
+  run.sequence_path = path_from(arguments.out, arguments.sequence);
+  run.models_path = path_from(arguments.out, arguments.models);
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));

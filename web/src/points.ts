@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points drawn as squares or discs of a size in metres.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  GLSL3,
+  Points,
+  type PerspectiveCamera,
+  ShaderMaterial,
+} from "three";
+
+
+const kVertexShader = `
+uniform float size;
+uniform float scale;
+uniform float hasNormals;
+in vec3 color;
+out vec3 vColor;
+void main() {
+  vec4 p = modelViewMatrix * vec4(position, 1.0);
+  float shade = 1.0;
+  if (hasNormals > 0.5) {
+    float facing = dot(normalize(normalMatrix * normal), normalize(-p.xyz));
+    shade = 0.55 + 0.45 * max(facing, 0.0);
+    if (facing < -0.1) p.xyz = vec3(0.0, 0.0, 1.0); // the far side: behind the camera
+  }
+  vColor = color * shade;
+  gl_Position = projectionMatrix * p;
+  gl_PointSize = clamp(size * scale / -p.z, 1.0, 24.0);
+}`;
+
+const kFragmentShader = `
+uniform float opacity;
+uniform float isRound;
+uniform vec3 tint;
+uniform float tintShare;
+in vec3 vColor;
+out vec4 fragment;
+void main() {
+  if (isRound > 0.5 && length(gl_PointCoord - 0.5) > 0.5) discard;
+  fragment = vec4(mix(vColor, tint, tintShare), opacity);
+}`;
+
+export interface PointStyle {
+  sizeM: number;
+  isRound: boolean;
+  opacity: number;
+}
+
+export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
+  constructor(positions: Float32Array, colors: Uint8Array, normals: Int8Array | null, style: PointStyle) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new BufferAttribute(colors, 3, true));
+    if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3, true));
+    super(
+      geometry,
+      new ShaderMaterial({
+        glslVersion: GLSL3,
+        vertexShader: kVertexShader,
+        fragmentShader: kFragmentShader,
+        transparent: style.opacity < 1,
+        uniforms: {
+          size: { value: style.sizeM },
+          scale: { value: 1 },
+          hasNormals: { value: normals ? 1 : 0 },
+          isRound: { value: style.isRound ? 1 : 0 },
+          opacity: { value: style.opacity },
+          tint: { value: new Color() },
+          tintShare: { value: 0 },
+        },
+      }),
+    );
+    this.frustumCulled = false;
+    this.matrixAutoUpdate = false;
+  }
+
+  get positions(): Float32Array {
+    return this.geometry.getAttribute("position").array as Float32Array;
+  }
+  setColors(colors: Uint8Array): void {
+    this.geometry.setAttribute("color", new BufferAttribute(colors, 3, true));
+  }
+  /** Moves the colours towards another one; share 0 leaves them. */
+  setTint(color: string, share: number): void {
+    const { tint, tintShare } = this.material.uniforms;
+    if (tint) tint.value.set(color).convertLinearToSRGB();
+    if (tintShare) tintShare.value = share;
+  }
+  /** To be called before drawing: pixels per metre at a distance of 1 m. */
+  fitScreen(camera: PerspectiveCamera, heightPx: number): void {
+    const { scale } = this.material.uniforms;
+    if (scale) scale.value = heightPx / (2 * Math.tan((camera.fov * Math.PI) / 360));
+  }
+  dispose(): void {
+    this.geometry.dispose();
+    this.material.dispose();
+  }
+}
+
+/** Colours of n points, all the same. */
+export function plainColors(count: number, color: string): Uint8Array {
+  const rgb = parseColor(color);
+  const colors = new Uint8Array(3 * count);
+  for (let i = 0; i < colors.length; ++i) colors[i] = rgb[i % 3] ?? 0;
+  return colors;
+}
+
+/** Red, green and blue of #rrggbb. */
+export function parseColor(color: string): [number, number, number] {
+  const value = Number.parseInt(color.slice(1), 16);
+  return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
+}
+
+/** A colour per distance, from near (warm) to far (cold). */
+export function distanceColors(distances: Float32Array, near: number, far: number): Uint8Array {
+  const stops = [
+    [240, 90, 50],
+    [245, 190, 60],
+    [110, 200, 110],
+    [50, 150, 210],
+    [70, 70, 170],
+  ];
+  const colors = new Uint8Array(3 * distances.length);
+  for (let i = 0; i < distances.length; ++i) {
+    const share = Math.max(0, Math.min(0.9999, ((distances[i] ?? 0) - near) / (far - near || 1)));
+    const position = share * (stops.length - 1);
+    const index = Math.floor(position);
+    const [a = [], b = []] = [stops[index], stops[index + 1]];
+    for (let c = 0; c < 3; ++c)
+      colors[3 * i + c] = (a[c] ?? 0) + ((b[c] ?? 0) - (a[c] ?? 0)) * (position - index);
+  }
+  return colors;
+}
