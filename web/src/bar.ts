@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bar above the views: which run, which layers, which colours; and the overview of the keyboard.
-import { button, element } from "./dom";
+import { button, byId, element } from "./dom";
 import { kCloudColors, kLayers, kObjectColors, type Layer } from "./link";
+import { kEvidenceColors } from "./points";
 import type { App } from "./store";
 
 export interface BarActions {
@@ -51,7 +52,6 @@ export class Bar {
     root.append(
       element("strong", {}, app.scene.title),
       ...(app.scene.runs.length > 0 ? this.makeRuns() : []),
-      this.makeLayers(),
       ...this.makeColors(),
       element("span", { class: "space" }),
       this.makeMeasure(),
@@ -62,6 +62,7 @@ export class Bar {
       button("?", "Keyboard overview (?)", () => this.help.showModal()),
     );
     document.body.append(this.help);
+    byId("world").append(this.makeLayers(), this.makeLegend());
   }
 
   toggleLayer(index: number): void {
@@ -76,15 +77,21 @@ export class Bar {
   }
 
   private makeRuns(): Node[] {
-    const options = () => this.app.scene.runs.map((run, index) => element("option", { value: index }, run.name));
-    const run = element("select", { "aria-label": "Run", title: "Results that are shown" }, ...options());
+    const options = (prefix: string) =>
+      this.app.scene.runs.map((run, index) => element("option", { value: index }, prefix + run.name));
+    const run = element("select", { "aria-label": "Run", title: "Results that are shown" }, ...options(""));
     run.addEventListener("change", () => this.app.set({ run: Number(run.value), track: -1, event: null }));
     this.follow(() => {
       run.value = String(this.app.get().run);
     });
     if (this.app.scene.runs.length < 2) return [run];
-    const none = element("option", { value: -1 }, "no comparison");
-    const compare = element("select", { "aria-label": "Compare with", title: "Results beside them" }, none, ...options());
+    const none = element("option", { value: -1 }, "compare …");
+    const compare = element(
+      "select",
+      { "aria-label": "Compare with", title: "Results beside them" },
+      none,
+      ...options("vs "),
+    );
     compare.addEventListener("change", () => this.app.set({ compare: Number(compare.value) }));
     this.follow(() => {
       compare.value = String(this.app.get().compare);
@@ -112,6 +119,19 @@ export class Bar {
     return group;
   }
 
+  /** What the colours of evidence mean. */
+  private makeLegend(): HTMLElement {
+    const names = ["not seen", "occluded", "present", "seen through"];
+    const entries = names.map((name, index) =>
+      element("span", { class: "object", style: `--object-color: ${kEvidenceColors[index]}` }, name),
+    );
+    const legend = element("div", { class: "legend" }, ...entries);
+    this.follow(() => {
+      legend.hidden = this.app.get().objectColors !== "evidence";
+    });
+    return legend;
+  }
+
   private makeColors(): Node[] {
     const choose = <T extends string>(
       label: string,
@@ -133,14 +153,14 @@ export class Bar {
     const objects = choose(
       "Colours of the objects",
       kObjectColors,
-      { own: "objects: own colours", label: "objects: by label", evidence: "objects: by evidence" },
+      { own: "objects: own", label: "objects: label", evidence: "objects: evidence" },
       "objectColors",
     );
     if (this.app.scene.views.length === 0) return [];
     const cloud = choose(
       "Colours of the points",
       kCloudColors,
-      { image: "points: colours", distance: "points: distance" },
+      { image: "points: colour", distance: "points: distance" },
       "cloudColors",
     );
     return this.app.scene.runs.length > 0 ? [objects, cloud] : [cloud];
@@ -166,7 +186,11 @@ function makeHelp(): HTMLDialogElement {
     const names = keys.split(" ").map((key) => element("kbd", {}, key));
     list.append(element("dt", {}, ...names), element("dd", {}, what));
   }
-  const mouse = element("p", {}, "3D: drag to turn, right button to move, wheel to zoom. Click to select or to read a place.");
+  const mouse = element(
+    "p",
+    {},
+    "3D: drag to turn, right button to move, wheel to zoom. Click to select or to read a place.",
+  );
   const licenses = element("a", { href: "/licenses.txt", target: "_blank" }, "Licences");
   const close = element("form", { method: "dialog" }, element("button", {}, "Close"), licenses);
   return element("dialog", { "aria-label": "Keyboard overview" }, element("h2", {}, "Keyboard"), list, mouse, close);

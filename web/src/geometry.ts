@@ -153,11 +153,7 @@ export function classifySurface(
       at(positions, 3 * i + 2),
     ]);
     if (normals) {
-      const n = rotateVector(cameraFromSurface, [
-        at(normals, 3 * i),
-        at(normals, 3 * i + 1),
-        at(normals, 3 * i + 2),
-      ]);
+      const n = rotateVector(cameraFromSurface, [at(normals, 3 * i), at(normals, 3 * i + 1), at(normals, 3 * i + 2)]);
       if (dot(n, p) >= 0) continue;
     }
     const pixel = project(camera, p);

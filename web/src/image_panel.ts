@@ -2,7 +2,7 @@
 // The image of the current view with the outlines of its objects.
 import type { Api, ViewImages } from "./api";
 import { element } from "./dom";
-import { project, transformPoint, unproject, type Vec3, inverseRigid } from "./geometry";
+import { inverseRigid, project, transformPoint, unproject, type Vec3 } from "./geometry";
 import type { Detection, Outline, ViewDetails } from "./protocol";
 import type { App } from "./store";
 
@@ -11,12 +11,15 @@ interface Shape {
   track: number;
   object: number;
   color: string;
-  label: string;
+  name: string;
+  /** Shown behind the name where there is room. */
+  note: string;
   top: [number, number];
   isTruth: boolean;
   verdict: string;
 }
 
+const kMinNoteWidthPx = 380;
 const kTruthColor = "#ffffff";
 
 function toPath(outline: Outline): { path: Path2D; top: [number, number] } {
@@ -96,8 +99,17 @@ export class ImagePanel {
     for (const object of details.truth) {
       const { path, top } = toPath(object.outline);
       const color = kTruthColor;
-      const label = object.name;
-      this.shapes.push({ path, top, track: -1, object: object.object, color, label, isTruth: true, verdict: "" });
+      this.shapes.push({
+        path,
+        top,
+        track: -1,
+        object: object.object,
+        color,
+        name: object.name,
+        note: "",
+        isTruth: true,
+        verdict: "",
+      });
     }
     const detections: Detection[] = this.app.runView(run, view)?.detections ?? [];
     detections.forEach((detection, index) => {
@@ -110,7 +122,8 @@ export class ImagePanel {
         track: detection.track,
         object: detection.object,
         color: object?.color ?? "#fff",
-        label: `${isWrong ? `${detection.verdict}: ` : ""}${object?.name ?? "?"} ${detection.score.toFixed(2)}`,
+        name: `${isWrong ? `${detection.verdict}: ` : ""}${object?.name ?? "?"}`,
+        note: ` ${detection.score.toFixed(2)}`,
         isTruth: false,
         verdict: detection.verdict,
       });
@@ -175,9 +188,11 @@ export class ImagePanel {
     const taken: { x: number; y: number; width: number }[] = [];
     context.font = `600 ${size}px system-ui, sans-serif`;
     context.textBaseline = "middle";
+    const isWide = width / pixel > kMinNoteWidthPx;
     for (const shape of shapes) {
       if (!Number.isFinite(shape.top[1])) continue;
-      const labelWidth = context.measureText(shape.label).width + 8 * pixel;
+      const label = shape.name + (isWide ? shape.note : "");
+      const labelWidth = context.measureText(label).width + 8 * pixel;
       const x = Math.max(0, Math.min(width - labelWidth, shape.top[0] - labelWidth / 2));
       let y = Math.max(0, shape.top[1] - 1.7 * size);
       const overlaps = () =>
@@ -189,7 +204,7 @@ export class ImagePanel {
       context.roundRect(x, y, labelWidth, 1.4 * size, 3 * pixel);
       context.fill();
       context.fillStyle = this.isSelected(shape) ? "#0a0e14" : shape.color;
-      context.fillText(shape.label, x + 4 * pixel, y + 0.72 * size);
+      context.fillText(label, x + 4 * pixel, y + 0.72 * size);
     }
   }
 

@@ -30,7 +30,8 @@ export class Inspector {
   ) {
     app.listen((changed) => {
       if (changed.has("view") || changed.has("run")) this.load();
-      else if (["track", "object", "event", "measured", "compare"].some((key) => changed.has(key as "track"))) this.show();
+      else if (["track", "object", "event", "measured", "compare"].some((key) => changed.has(key as "track")))
+        this.show();
     });
     this.load();
   }
@@ -145,7 +146,13 @@ export class Inspector {
     if (truth.length > 0) {
       const list = element("ul", { class: "events" });
       for (const each of truth)
-        list.append(element("li", {}, button(each.name, `Select ${each.name}`, () => this.app.selectObject(each.object))));
+        list.append(
+          element(
+            "li",
+            {},
+            button(each.name, `Select ${each.name}`, () => this.app.selectObject(each.object)),
+          ),
+        );
       parts.push(element("h3", {}, "True objects in this view"), list);
     }
     parts.push(element("p", { class: "hint" }, "Click a place in the image or in 3D to see where it is."));
@@ -164,7 +171,9 @@ export class Inspector {
     }
     const changes = this.app.changes();
     const parts: Node[] = [heading(run.name), table(rows), element("h3", {}, `Changes (${changes.length})`)];
-    parts.push(changes.length > 0 ? this.eventList(changes, true) : element("p", { class: "hint" }, "Nothing changed."));
+    parts.push(
+      changes.length > 0 ? this.eventList(changes, true) : element("p", { class: "hint" }, "Nothing changed."),
+    );
     return parts;
   }
 
@@ -191,7 +200,8 @@ export class Inspector {
     const list = element("ul", { class: "events" });
     for (const event of events) {
       const name = withName ? `${this.app.object(event.object)?.name ?? "?"} ` : "";
-      const distanceM = event.before && event.after ? distance(translationOf(event.before), translationOf(event.after)) : 0;
+      const distanceM =
+        event.before && event.after ? distance(translationOf(event.before), translationOf(event.after)) : 0;
       const by = event.kind === "moved" ? ` by ${metres(distanceM)}` : "";
       const text = `${name}${kEventNames[event.kind]}${by}`;
       const choose = button("", `${text}, view ${event.view + 1}`, () => this.app.selectEvent(event), {
@@ -244,10 +254,15 @@ function evidenceTable(details: DetectionDetails, app: App): Node[] {
     return element(
       "tr",
       {},
-      ...[name, percent(each.visible_share), percent(each.explained_share), note].map((text) => element("td", {}, text)),
+      ...[name, percent(each.visible_share), percent(each.explained_share), note].map((text) =>
+        element("td", {}, text),
+      ),
     );
   });
-  return [element("h3", {}, "Evidence by view"), element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))];
+  return [
+    element("h3", {}, "Evidence by view"),
+    element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)),
+  ];
 }
 
 function formatMatrix(pose: number[]): string {

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points drawn as squares or discs of a size in metres.
-import {
-  BufferAttribute,
-  BufferGeometry,
-  Color,
-  GLSL3,
-  Points,
-  type PerspectiveCamera,
-  ShaderMaterial,
-} from "three";
-
+import { BufferAttribute, BufferGeometry, Color, GLSL3, type PerspectiveCamera, Points, ShaderMaterial } from "three";
 
 const kVertexShader = `
 uniform float size;
 uniform float scale;
 uniform float hasNormals;
+uniform float nearer;
 in vec3 color;
+in float pointSize; // 0 where the points have no sizes of their own
 out vec3 vColor;
 void main() {
   vec4 p = modelViewMatrix * vec4(position, 1.0);
@@ -27,7 +20,9 @@ void main() {
   }
   vColor = color * shade;
   gl_Position = projectionMatrix * p;
-  gl_PointSize = clamp(size * scale / -p.z, 1.0, 24.0);
+  vec4 moved = projectionMatrix * (p + vec4(0.0, 0.0, nearer, 0.0));
+  if (moved.w > 0.0) gl_Position.z = moved.z / moved.w * gl_Position.w;
+  gl_PointSize = clamp((pointSize > 0.0 ? pointSize : size) * scale / -p.z, 1.0, 24.0);
 }`;
 
 const kFragmentShader = `
@@ -42,8 +37,13 @@ void main() {
   fragment = vec4(mix(vColor, tint, tintShare), opacity);
 }`;
 
+/** Colours of what a view says of a surface: not seen, occluded, present, seen through. */
+export const kEvidenceColors = ["#8b949e", "#3e7bfa", "#30a46c", "#e5484d"] as const;
+
 export interface PointStyle {
   sizeM: number;
+  /** Is drawn as if it were this much nearer, in front of other points of the same place. */
+  nearerM: number;
   isRound: boolean;
   opacity: number;
 }
@@ -64,6 +64,7 @@ export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
         uniforms: {
           size: { value: style.sizeM },
           scale: { value: 1 },
+          nearer: { value: style.nearerM },
           hasNormals: { value: normals ? 1 : 0 },
           isRound: { value: style.isRound ? 1 : 0 },
           opacity: { value: style.opacity },
@@ -79,8 +80,9 @@ export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
   get positions(): Float32Array {
     return this.geometry.getAttribute("position").array as Float32Array;
   }
-  setColors(colors: Uint8Array): void {
-    this.geometry.setAttribute("color", new BufferAttribute(colors, 3, true));
+  /** Sizes of the single points, in metres. */
+  setSizes(sizes: Float32Array): void {
+    this.geometry.setAttribute("pointSize", new BufferAttribute(sizes, 1));
   }
   /** Moves the colours towards another one; share 0 leaves them. */
   setTint(color: string, share: number): void {
@@ -92,10 +94,6 @@ export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
   fitScreen(camera: PerspectiveCamera, heightPx: number): void {
     const { scale } = this.material.uniforms;
     if (scale) scale.value = heightPx / (2 * Math.tan((camera.fov * Math.PI) / 360));
-  }
-  dispose(): void {
-    this.geometry.dispose();
-    this.material.dispose();
   }
 }
 
@@ -128,8 +126,7 @@ export function distanceColors(distances: Float32Array, near: number, far: numbe
     const position = share * (stops.length - 1);
     const index = Math.floor(position);
     const [a = [], b = []] = [stops[index], stops[index + 1]];
-    for (let c = 0; c < 3; ++c)
-      colors[3 * i + c] = (a[c] ?? 0) + ((b[c] ?? 0) - (a[c] ?? 0)) * (position - index);
+    for (let c = 0; c < 3; ++c) colors[3 * i + c] = (a[c] ?? 0) + ((b[c] ?? 0) - (a[c] ?? 0)) * (position - index);
   }
   return colors;
 }

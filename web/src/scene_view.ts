@@ -12,7 +12,7 @@ import {
   type Vec3,
 } from "./geometry";
 import { isChange } from "./history";
-import { distanceColors, parseColor, plainColors, PointSet } from "./points";
+import { distanceColors, kEvidenceColors, PointSet, parseColor, plainColors } from "./points";
 import type { Camera, Cloud, Pose } from "./protocol";
 import type { App } from "./store";
 import { type Label, makeAxes, makeCameras, makeSegments, type Pickable, type World } from "./world";
@@ -22,8 +22,8 @@ const kMaxCloudPoints = 320000;
 const kPreviousStep = 3;
 const kSurfaceSizeM = 0.0042;
 const kEvidenceMarginM = 0.015;
-/** Not seen, occluded, present, seen through. */
-const kEvidenceColors = ["#8b949e", "#3e7bfa", "#30a46c", "#e5484d"].map(parseColor);
+const kObjectNearerM = 0.012;
+const kEvidenceRgb = kEvidenceColors.map(parseColor);
 
 interface Item {
   object: number;
@@ -65,7 +65,10 @@ export class SceneView {
 
   /** Where the first view looks from, a little behind and above. */
   home(up: Vec3, camera: Camera, depth: ArrayLike<number>, pose: Pose): void {
-    const values = Array.from({ length: 400 }, (_, i) => depth[Math.floor(((i + 0.5) / 400) * depth.length)] ?? Number.NaN)
+    const values = Array.from(
+      { length: 400 },
+      (_, i) => depth[Math.floor(((i + 0.5) / 400) * depth.length)] ?? Number.NaN,
+    )
       .filter((value) => value > 0)
       .sort((a, b) => a - b);
     const range = values[Math.floor(values.length / 2)] ?? 1;
@@ -97,7 +100,7 @@ export class SceneView {
     const { layers } = this.app.get();
     for (const name of ["cloud", "previous", "objects", "places", "truth", "cameras"] as const)
       this.world.setVisible(name, layers.has(name));
-    this.world.setLabels(layers.has("labels") && layers.has("objects") ? this.labels : []);
+    this.world.setLabels(layers.has("labels") && (layers.has("objects") || !this.app.run()) ? this.labels : []);
   }
 
   private showCameras(): void {
@@ -118,13 +121,18 @@ export class SceneView {
     const images = await this.api.viewImages(view, camera);
     const finest = Math.max(step, Math.ceil(Math.sqrt((camera.width * camera.height) / kMaxCloudPoints)));
     const { positions, pixels } = depthToPoints(camera, images.depth, pose, finest);
-    const spacing = finest / camera.fx;
+    const depths = Float32Array.from(pixels, (pixel) => images.depth[pixel] ?? 0);
     const colors =
       this.app.get().cloudColors === "image"
         ? pickColors(images.pixels, pixels)
-        : distanceColors(Float32Array.from(pixels, (pixel) => images.depth[pixel] ?? 0), ...depthRange(images.depth));
-    const points = new PointSet(positions, colors, null, { sizeM: 1.3 * spacing, isRound: false, opacity: 1 });
-    points.fitDistance = true;
+        : distanceColors(depths, ...depthRange(images.depth));
+    const points = new PointSet(positions, colors, null, {
+      sizeM: kSurfaceSizeM,
+      nearerM: 0,
+      isRound: false,
+      opacity: 1,
+    });
+    points.setSizes(depths.map((z) => (1.3 * finest * z) / camera.fx)); // a little more than the distance of neighbours
     return points;
   }
 
@@ -170,9 +178,14 @@ export class SceneView {
     for (const [kind, group] of Object.entries(groups)) {
       const parts = drawn.filter((_, index) => items[index]?.kind === kind);
       const lines = kind === "place" ? this.makeMoves() : [];
-      this.setGroup(group, [...parts.flatMap((part) => part.objects), ...lines], parts.flatMap((part) => part.pickables));
+      this.setGroup(
+        group,
+        [...parts.flatMap((part) => part.objects), ...lines],
+        parts.flatMap((part) => part.pickables),
+      );
     }
-    this.labels = items.filter((item) => item.kind === "detection").map((item) => this.makeLabel(item));
+    const named = this.app.run() ? "detection" : "truth";
+    this.labels = items.filter((item) => item.kind === named).map((item) => this.makeLabel(item));
     this.showLayers();
   }
 
@@ -194,11 +207,13 @@ export class SceneView {
 
   private async makeItem(item: Item): Promise<{ objects: Object3D[]; pickables: Pickable[] }> {
     const object = this.app.object(item.object);
-    const axes = this.isSelected(item) && item.kind !== "place" ? makeAxes(item.pose, 0.6 * (object?.diameter_m ?? 0.1)) : [];
+    const axes =
+      this.isSelected(item) && item.kind !== "place" ? makeAxes(item.pose, 0.6 * (object?.diameter_m ?? 0.1)) : [];
     if (!object?.has_surface) return { objects: axes.length > 0 ? axes : makeAxes(item.pose, 0.05), pickables: [] };
     const surface = await this.api.surface(item.object);
     const points = new PointSet(surface.positions, await this.surfaceColors(item, surface), surface.normals, {
       sizeM: kSurfaceSizeM,
+      nearerM: item.kind === "detection" ? kObjectNearerM : 0,
       isRound: true,
       opacity: item.kind === "detection" ? 1 : 0.35,
     });
@@ -256,7 +271,7 @@ export class SceneView {
       const surface = await this.api.surface(index);
       if (!isCurrent()) return;
       const colors = surface.colors ?? plainColors(surface.positions.length / 3, object.color);
-      const style = { sizeM: kSurfaceSizeM, isRound: true, opacity: 1 };
+      const style = { sizeM: kSurfaceSizeM, nearerM: 0, isRound: true, opacity: 1 };
       const points = new PointSet(surface.positions, colors, surface.normals, style);
       const place: Vec3 =
         selected >= 0 ? [0, 0, 0] : [(index % columns) * spacing, -Math.floor(index / columns) * spacing, 0];
@@ -307,6 +322,6 @@ function depthRange(depth: Float32Array): [number, number] {
 function paint(classes: Uint8Array): Uint8Array {
   const colors = new Uint8Array(3 * classes.length);
   for (let i = 0; i < classes.length; ++i)
-    for (let c = 0; c < 3; ++c) colors[3 * i + c] = kEvidenceColors[classes[i] ?? 0]?.[c] ?? 0;
+    for (let c = 0; c < 3; ++c) colors[3 * i + c] = kEvidenceRgb[classes[i] ?? 0]?.[c] ?? 0;
   return colors;
 }

@@ -10,7 +10,6 @@ const kPlayIntervalMs = 500;
 
 export class Timeline {
   private readonly slider: HTMLInputElement;
-  private readonly position: HTMLElement;
   private readonly play: HTMLButtonElement;
   private readonly rows: HTMLElement;
   private readonly cursor: HTMLElement;
@@ -22,7 +21,6 @@ export class Timeline {
   ) {
     const step = (offset: number) => () => app.goTo(app.get().view + offset);
     this.play = button("▶", "Play (Space)", () => app.set({ isPlaying: !app.get().isPlaying }));
-    this.position = element("output", { class: "position" });
     this.slider = element("input", { type: "range", min: 0, step: 1, "aria-label": "View" });
     this.slider.addEventListener("input", () => app.goTo(Number(this.slider.value)));
     this.cursor = element("div", { class: "cursor" });
@@ -31,12 +29,11 @@ export class Timeline {
       element(
         "div",
         { class: "transport" },
-        button("⏮", "Previous change (P)", () => this.goToChange(-1)),
-        button("◀", "Previous view (Left)", step(-1)),
+        button("«", "Previous change (P)", () => this.goToChange(-1)),
+        button("‹", "Previous view (Left)", step(-1)),
         this.play,
-        button("▶▏", "Next view (Right)", step(1)),
-        button("⏭", "Next change (N)", () => this.goToChange(1)),
-        this.position,
+        button("›", "Next view (Right)", step(1)),
+        button("»", "Next change (N)", () => this.goToChange(1)),
       ),
       element("div", { class: "scrubber" }, this.slider),
       this.rows,
@@ -60,7 +57,7 @@ export class Timeline {
 
   private setPlaying(isPlaying: boolean): void {
     window.clearInterval(this.timer);
-    this.play.textContent = isPlaying ? "⏸" : "▶";
+    this.play.textContent = isPlaying ? "❚❚" : "▶";
     this.play.title = isPlaying ? "Pause (Space)" : "Play (Space)";
     this.play.setAttribute("aria-label", this.play.title);
     if (!isPlaying) return;
@@ -78,6 +75,7 @@ export class Timeline {
   }
 
   private rebuild(): void {
+    this.root.style.setProperty("--count", String(this.app.scene.views.length));
     this.slider.max = String(this.app.scene.views.length - 1);
     this.rows.replaceChildren(...this.app.tracks().map((track) => this.makeRow(track)), this.cursor);
     this.rows.classList.toggle("empty", this.app.tracks().length === 0);
@@ -122,9 +120,7 @@ export class Timeline {
     const { view } = this.app.get();
     this.slider.value = String(view);
     this.slider.setAttribute("aria-valuetext", `view ${view + 1} of ${this.app.scene.views.length}`);
-    this.position.textContent = `${view + 1} / ${this.app.scene.views.length}`;
     this.cursor.style.setProperty("--view", String(view));
-    this.cursor.style.setProperty("--count", String(this.app.scene.views.length));
   }
 
   private showSelection(): void {

@@ -5,10 +5,10 @@ import {
   Float32BufferAttribute,
   GridHelper,
   Group,
+  Line,
   LineBasicMaterial,
   LineDashedMaterial,
   LineSegments,
-  Line,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -120,7 +120,7 @@ export class World {
       });
     }
     const group = new Group();
-    group.add(...objects);
+    for (const object of objects) group.add(object);
     this.groups.set(name, group);
     this.scene.add(group);
     this.requestDraw();
@@ -187,10 +187,7 @@ export class World {
   pick(x: number, y: number): Picked | null {
     let best: Picked | null = null;
     let bestDepth = Number.POSITIVE_INFINITY;
-    const clipFromWorld = new Matrix4().multiplyMatrices(
-      this.camera.projectionMatrix,
-      this.camera.matrixWorldInverse,
-    );
+    const clipFromWorld = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     for (const { points, track, object } of this.pickables) {
       if (!points.parent?.visible) continue;
       const clip = clipFromWorld.clone().multiply(points.matrix);
@@ -294,7 +291,12 @@ export function makeCameras(
   currentColor: string,
 ): Object3D[] {
   const known = poses.filter((pose): pose is Pose => pose !== null);
-  const objects: Object3D[] = [makePath(known.map((pose) => transformPoint(pose, [0, 0, 0])), color)];
+  const objects: Object3D[] = [
+    makePath(
+      known.map((pose) => transformPoint(pose, [0, 0, 0])),
+      color,
+    ),
+  ];
   const step = Math.ceil(poses.length / kMaxFrusta);
   poses.forEach((pose, view) => {
     if (pose && view !== current && view % step === 0) objects.push(makeFrustum(pose, camera, color, 0.04));
