@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bar above the views: which run, which layers, which colours; and the overview of the keyboard.
+
+import { kEvidenceColors } from "./colors";
 import { button, byId, element } from "./dom";
 import { kCloudColors, kLayers, kObjectColors, type Layer } from "./link";
-import { kEvidenceColors } from "./points";
 import type { App } from "./store";
 
 export interface BarActions {
@@ -54,7 +55,7 @@ export class Bar {
       ...(app.scene.runs.length > 0 ? this.makeRuns() : []),
       ...this.makeColors(),
       element("span", { class: "space" }),
-      this.makeMeasure(),
+      ...(app.scene.views.length > 0 ? [this.makeMeasure()] : []),
       button("Reset", "Reset the 3D view (R)", actions.resetCamera),
       button("Export", "Export a picture (E)", actions.exportPicture),
       button("Link", "Copy a link to this view, camera and selection (L)", actions.copyLink),

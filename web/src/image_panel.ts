@@ -91,7 +91,10 @@ export class ImagePanel {
     const shown = this.app.run(run);
     if (shown) parts.push(this.app.runView(run, view) ? shown.name : `${shown.name}: no results for this view`);
     this.caption.textContent = parts.join(" · ");
-    this.canvas.setAttribute("aria-label", `Image of view ${view + 1}, ${this.shapes.length} objects outlined`);
+    this.canvas.setAttribute(
+      "aria-label",
+      `Image of view ${view + 1}, ${this.visibleShapes().length} objects outlined`,
+    );
   }
 
   private makeShapes(run: number, view: number, details: ViewDetails): void {

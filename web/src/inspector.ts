@@ -3,7 +3,7 @@
 import type { Api } from "./api";
 import { button, coordinates, element, metres, percent } from "./dom";
 import { distance, rotationAngleDeg, translationOf } from "./geometry";
-import { kEventMarks, kEventNames } from "./history";
+import { isChange, kEventMarks, kEventNames } from "./history";
 import type { Detection, DetectionDetails, ObjectEvent, SceneObject, TrueObject, ViewDetails } from "./protocol";
 import type { App } from "./store";
 
@@ -134,7 +134,9 @@ export class Inspector {
     const rows = objectRows(object);
     for (const each of truth)
       rows.push(["true position", coordinates(translationOf(each.pose))], ["visible", percent(each.visible_share)]);
-    return [heading(object.name, object.color), table(rows)];
+    const parts = [heading(object.name, object.color), table(rows)];
+    if (this.app.scene.views.length > 0) return parts;
+    return [...parts, button("All models", "Show all models (Esc)", () => this.app.selectNothing())];
   }
 
   private showOverview(): Node[] {
@@ -198,7 +200,7 @@ export class Inspector {
 
   private eventList(events: ObjectEvent[], withName: boolean): HTMLElement {
     const list = element("ul", { class: "events" });
-    for (const event of events) {
+    for (const { event, last } of joinRepeated(events)) {
       const name = withName ? `${this.app.object(event.object)?.name ?? "?"} ` : "";
       const distanceM =
         event.before && event.after ? distance(translationOf(event.before), translationOf(event.after)) : 0;
@@ -210,12 +212,28 @@ export class Inspector {
       choose.append(
         element("span", { class: `sign ${event.kind}` }, kEventMarks[event.kind]),
         element("span", { class: "what" }, text),
-        element("span", { class: "where" }, `view ${event.view + 1}`),
+        element(
+          "span",
+          { class: "where" },
+          last > event.view ? `views ${event.view + 1}–${last + 1}` : `view ${event.view + 1}`,
+        ),
       );
       list.append(element("li", {}, choose));
     }
     return list;
   }
+}
+
+/** Joins what is the same in one view after the other, such as "still there". */
+function joinRepeated(events: ObjectEvent[]): { event: ObjectEvent; last: number }[] {
+  const joined: { event: ObjectEvent; last: number }[] = [];
+  for (const event of events) {
+    const previous = joined.at(-1);
+    const isSame = previous?.event.kind === event.kind && previous.event.track === event.track;
+    if (previous && isSame && !isChange(event.kind)) previous.last = event.view;
+    else joined.push({ event, last: event.view });
+  }
+  return joined;
 }
 
 function objectRows(object: SceneObject): Row[] {

@@ -52,6 +52,8 @@ class Viewer {
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.showTheme());
     this.world.onMove = () => this.keepLink();
     app.listen((changed) => {
+      if (changed.has("shownView")) document.body.dataset.shown = String(app.get().shownView);
+      if (changed.size === 1 && changed.has("shownView")) return;
       this.keepLink();
       this.update(changed);
     });
@@ -98,16 +100,16 @@ class Viewer {
   private async updateAll(changed: ReadonlySet<string>): Promise<void> {
     const has = (...keys: string[]) => keys.some((key) => changed.has(key));
     const { view, compare } = this.app.get();
-    document.body.dataset.shown = "";
+    const isNew = has("view", "run", "compare");
+    if (isNew) this.app.set({ shownView: -1 });
     document.body.classList.toggle("compares", compare >= 0 && this.panels.length > 1);
     const panels = this.panels.filter((_, index) => index === 0 || compare >= 0);
-    const isNew = has("view", "run", "compare");
     await Promise.all([
       this.sceneView.update(changed),
       ...panels.map((panel) => (isNew ? panel.update() : panel.draw())),
     ]);
     if (isNew) this.say("");
-    if (this.app.get().view === view) document.body.dataset.shown = String(view);
+    if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
   }
 
   private report(error: unknown): void {

@@ -2,6 +2,7 @@
 // Fills the 3D view with what the state asks for.
 import { Matrix4, type Object3D } from "three";
 import type { Api } from "./api";
+import { distanceColors, kEvidenceColors, parseColor, plainColors } from "./colors";
 import {
   classifySurface,
   depthToPoints,
@@ -12,7 +13,7 @@ import {
   type Vec3,
 } from "./geometry";
 import { isChange } from "./history";
-import { distanceColors, kEvidenceColors, PointSet, parseColor, plainColors } from "./points";
+import { PointSet } from "./points";
 import type { Camera, Cloud, Pose } from "./protocol";
 import type { App } from "./store";
 import { type Label, makeAxes, makeCameras, makeSegments, type Pickable, type World } from "./world";

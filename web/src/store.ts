@@ -9,6 +9,8 @@ export interface Store extends LinkState {
   /** A place that was picked without an object, or under the pointer. */
   point: Vec3 | null;
   event: ObjectEvent | null;
+  /** The view that is wholly on the screen; -1 while one is loading. */
+  shownView: number;
   isPlaying: boolean;
   isMeasuring: boolean;
   measured: Vec3[];
@@ -21,6 +23,7 @@ export class App {
     ...kDefaultState,
     point: null,
     event: null,
+    shownView: -1,
     isPlaying: false,
     isMeasuring: false,
     measured: [],

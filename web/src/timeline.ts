@@ -29,11 +29,11 @@ export class Timeline {
       element(
         "div",
         { class: "transport" },
-        button("«", "Previous change (P)", () => this.goToChange(-1)),
+        ...(app.scene.runs.length > 0 ? [button("«", "Previous change (P)", () => this.goToChange(-1))] : []),
         button("‹", "Previous view (Left)", step(-1)),
         this.play,
         button("›", "Next view (Right)", step(1)),
-        button("»", "Next change (N)", () => this.goToChange(1)),
+        ...(app.scene.runs.length > 0 ? [button("»", "Next change (N)", () => this.goToChange(1))] : []),
       ),
       element("div", { class: "scrubber" }, this.slider),
       this.rows,
@@ -50,21 +50,29 @@ export class Timeline {
 
   private onChange(changed: Set<string>): void {
     if (changed.has("run")) this.rebuild();
+    if (changed.has("shownView")) this.playOn();
     if (changed.has("isPlaying")) this.setPlaying(this.app.get().isPlaying);
     if (changed.has("view")) this.showView();
     if (changed.has("track") || changed.has("event")) this.showSelection();
   }
 
   private setPlaying(isPlaying: boolean): void {
-    window.clearInterval(this.timer);
+    window.clearTimeout(this.timer);
     this.play.textContent = isPlaying ? "❚❚" : "▶";
     this.play.title = isPlaying ? "Pause (Space)" : "Play (Space)";
     this.play.setAttribute("aria-label", this.play.title);
     if (!isPlaying) return;
-    const last = this.app.scene.views.length - 1;
-    if (this.app.get().view === last) this.app.goTo(0);
-    this.timer = window.setInterval(() => {
-      if (this.app.get().view >= last) this.app.set({ isPlaying: false });
+    if (this.app.get().view === this.app.scene.views.length - 1) this.app.goTo(0);
+    else this.playOn();
+  }
+
+  /** Shows the next view after a while; a view that is still loading is waited for. */
+  private playOn(): void {
+    window.clearTimeout(this.timer);
+    const { isPlaying, shownView, view } = this.app.get();
+    if (!isPlaying || shownView !== view) return;
+    this.timer = window.setTimeout(() => {
+      if (this.app.get().view >= this.app.scene.views.length - 1) this.app.set({ isPlaying: false });
       else this.app.goTo(this.app.get().view + 1);
     }, kPlayIntervalMs);
   }
