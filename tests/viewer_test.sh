@@ -32,8 +32,9 @@ run simulate scene.toml --out data --format bop --seed 1
 run train data/models --out models.resight
 run recognize --models models.resight --sequence data/test/000001 --out default
 run recognize --models models.resight --sequence data/test/000001 --out mvr --preset mvr
+run changes --sequence data/test/000001 --out changes
 
-cd "$web" || exit 1
+cd "$web" && node build.mjs --tests || { fail "npm ci is missing in web/"; exit 1; }
 RESIGHT=$resight RESULTS=$work/default OTHER=$work/mvr MODELS=$work/models.resight SEQUENCE=$work/data/test/000001 \
-  PICTURES=$pictures timeout 300 node --test build/e2e/view_test.mjs || fail "the browser test failed"
+  CHANGES=$work/changes PICTURES=$pictures timeout 300 node --test build/e2e/view_test.mjs || fail "the browser test failed"
 exit $failures

@@ -14,7 +14,8 @@ namespace resight::app {
 namespace {
 
 bool has_desktop() {
-  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;  // NOLINT(concurrency-mt-unsafe)
+  return std::getenv("DISPLAY") != nullptr ||
+         std::getenv("WAYLAND_DISPLAY") != nullptr;  // NOLINT(concurrency-mt-unsafe)
 }
 
 /// Empty if the file cannot be written.

@@ -56,6 +56,7 @@ struct RecognizeArguments {
   std::optional<int> num_previous_views;
   std::optional<double> deadline_ms;
   std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
+  bool view = false;                  ///< Show views in a browser as they are recognised, and the results afterwards.
   int num_threads = 1;
 };
 
@@ -132,6 +133,7 @@ struct ViewArguments {
   std::vector<std::filesystem::path> inputs;
   std::optional<std::filesystem::path> sequence;  ///< Otherwise that of the results.
   std::optional<std::filesystem::path> models;    ///< Otherwise those of the results.
+  std::optional<std::filesystem::path> changes;   ///< Results of `resight changes` on the same views.
   std::uint16_t port = 0;                         ///< 0: a free one.
   bool no_open = false;                           ///< Do not open a browser.
 };

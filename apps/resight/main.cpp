@@ -111,6 +111,8 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
                    "no limit]")
       ->check(kPositive);
+  command->add_flag("--view", a.view,
+                    "Show the views in a browser as they are recognised; afterwards, Ctrl-C ends the program");
   add_recognition_options(command, a);
   return [&a] { run_recognize(a); };
 }
@@ -242,6 +244,8 @@ std::function<void()> add_view(CLI::App& app, ViewArguments& a) {
       ->required();
   command->add_option("--sequence", a.sequence, "Sequence of the results [default: the one that they name]");
   command->add_option("--models", a.models, "Model library of the objects [default: the one that the results name]");
+  command->add_option("--changes", a.changes,
+                      "Folder of 'resight changes' on the same views: also show its reconstruction and changes");
   command->add_option("--port", a.port, "Port on 127.0.0.1; 0 takes a free one")->capture_default_str();
   command->add_flag("--no-open", a.no_open, "Print the address only, without opening a browser");
   return [&a] { run_view(a); };

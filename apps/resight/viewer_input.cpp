@@ -91,9 +91,7 @@ ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::pa
   return scene;
 }
 
-}  // namespace
-
-ViewerScene open_viewer_scene(const ViewArguments& arguments) {
+ViewerScene open_views_or_models(const ViewArguments& arguments) {
   const fs::path& input = arguments.inputs.front();
   std::error_code error;
   if (!fs::exists(input, error)) throw InputError(file_error(input, "no such file or directory").message);
@@ -101,6 +99,24 @@ ViewerScene open_viewer_scene(const ViewArguments& arguments) {
   if (arguments.inputs.size() > 1)
     throw InputError(input.string() + ": holds no results of 'resight recognize' to compare with the others");
   return open_sequence_or_models(arguments, input);
+}
+
+/// Checked by the first view, so that a wrong folder is noticed at once.
+void add_changes(const fs::path& folder, ViewerScene& scene) {
+  if (!scene.sequence) throw InputError(file_error(folder, "needs the sequence that it is of (pass it, too)").message);
+  const fs::path first = folder / (scene.sequence->view_name(0) + ".ply");
+  std::error_code error;
+  if (!fs::is_regular_file(first, error))
+    throw InputError(file_error(folder, "holds no results of 'resight changes' on these views").message);
+  scene.changes = folder;
+}
+
+}  // namespace
+
+ViewerScene open_viewer_scene(const ViewArguments& arguments) {
+  ViewerScene scene = open_views_or_models(arguments);
+  if (arguments.changes) add_changes(*arguments.changes, scene);
+  return scene;
 }
 
 }  // namespace resight::app

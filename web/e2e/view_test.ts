@@ -3,6 +3,8 @@
 //   RESIGHT          the program
 //   RESULTS, OTHER   two folders of results on the same views, of which one is removed and one has moved
 //   MODELS           the model library
+//   SEQUENCE         the views
+//   CHANGES          results of 'resight changes' on them
 //   PICTURES         folder for pictures of the page
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
@@ -175,6 +177,7 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   await page.waitForSelector(".legend:visible");
   await page.keyboard.press("d");
   await picture(page, "compare");
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280, "something is cut off");
   await waitForDrawing(page, 100);
 
   // A picture of it.
@@ -223,12 +226,18 @@ test("a sequence and a model library are shown as well", async () => {
   await modelPage.close();
   assert.equal(await models.stop(), 0);
 
-  const sequence = await serve([setting("SEQUENCE"), "--models", setting("MODELS")]);
+  const sequence = await serve([setting("SEQUENCE"), "--models", setting("MODELS"), "--changes", setting("CHANGES")]);
   const page = await open(sequence.address);
   await page.locator("button[data-layer=truth]").click();
   await page.waitForFunction(() => document.querySelectorAll(".labels3d span").length === 2);
   await waitForDrawing(page, 100);
   await picture(page, "sequence");
+  await page.keyboard.press("End");
+  await page.locator("button[data-layer=cloud]").click();
+  await page.locator("button[data-layer=changes]").click();
+  await page.keyboard.press("c");
+  await waitForDrawing(page, 100);
+  await picture(page, "changes");
   await page.close();
   assert.equal(await sequence.stop(), 0);
 });

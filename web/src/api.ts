@@ -48,6 +48,7 @@ export interface ViewImages {
 export class Api {
   private readonly images = new Recent<ViewImages>(kMaxViews);
   private readonly details = new Recent<ViewDetails>(kMaxDetails);
+  private readonly clouds = new Recent<Cloud>(kMaxViews);
   private readonly surfaces = new Recent<Cloud>(1000);
 
   constructor(private readonly token: string) {}
@@ -90,6 +91,12 @@ export class Api {
   surface(object: number): Promise<Cloud> {
     return this.surfaces.get(String(object), async () =>
       decodeCloud(await (await this.ask(`/api/surfaces/${object}`)).arrayBuffer()),
+    );
+  }
+  /** Reconstruction at a view, removed points red, novel ones green. */
+  changes(view: number): Promise<Cloud> {
+    return this.clouds.get(String(view), async () =>
+      decodeCloud(await (await this.ask(`/api/views/${view}/changes`)).arrayBuffer()),
     );
   }
   /** Forgets what depends on results, which have changed. */

@@ -21,6 +21,7 @@ const kLayerNames: Record<Layer, [string, string]> = {
   cameras: ["Cameras", "Cameras and their trajectory"],
   outlines: ["Outlines", "Outlines in the image"],
   labels: ["Labels", "Names of the objects"],
+  changes: ["Changes", "Reconstruction of resight changes: removed points red, novel ones green"],
 };
 
 const kKeys: [string, string][] = [
@@ -34,7 +35,7 @@ const kKeys: [string, string][] = [
   ["T", "look from above"],
   ["R", "reset the 3D view"],
   ["M", "measure a distance: click two places"],
-  ["1 … 8", "layers on and off"],
+  ["1 … 9", "layers on and off"],
   ["E", "export a picture"],
   ["L", "copy a link to this view, camera and selection"],
   ["D", "dark, light"],
@@ -107,6 +108,7 @@ export class Bar {
       if (layer === "labels") return true;
       if (layer === "objects") return scene.runs.length > 0 || !hasViews;
       if (layer === "places" || layer === "outlines") return scene.runs.length > 0;
+      if (layer === "changes") return scene.has_changes;
       return layer === "truth" ? scene.has_truth : hasViews;
     };
     const group = element("div", { class: "layers", role: "group", "aria-label": "Layers" });

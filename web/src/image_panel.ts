@@ -159,8 +159,10 @@ export class ImagePanel {
   }
 
   private isSelected(shape: Shape): boolean {
-    const { track, object } = this.app.get();
-    return shape.isTruth ? object >= 0 && object === shape.object : track >= 0 && track === shape.track;
+    const { track, run } = this.app.get();
+    // Numbers of tracks mean the same within a run only.
+    if (!shape.isTruth && this.runOf() === run && track >= 0) return shape.track === track;
+    return shape.object >= 0 && shape.object === this.app.selectedObject();
   }
 
   private drawShapes(context: CanvasRenderingContext2D, pixel: number): void {

@@ -2,7 +2,17 @@
 // The state of the page in the fragment of its address, so that it survives a reload and can be kept as a link.
 import type { Vec3 } from "./geometry";
 
-export const kLayers = ["cloud", "previous", "objects", "places", "truth", "cameras", "outlines", "labels"] as const;
+export const kLayers = [
+  "cloud",
+  "previous",
+  "objects",
+  "places",
+  "truth",
+  "cameras",
+  "outlines",
+  "labels",
+  "changes",
+] as const;
 export type Layer = (typeof kLayers)[number];
 
 export const kDefaultLayers: readonly Layer[] = ["cloud", "objects", "places", "cameras", "outlines", "labels"];

@@ -190,7 +190,7 @@ class Viewer {
 
   private actionOf(key: string): (() => void) | undefined {
     const { app } = this;
-    if (/^[1-8]$/.test(key)) return () => this.bar.toggleLayer(Number(key) - 1);
+    if (/^[1-9]$/.test(key)) return () => this.bar.toggleLayer(Number(key) - 1);
     const actions: Record<string, () => void> = {
       "?": () => this.bar.showHelp(),
       Escape: () => app.selectNothing(),

@@ -61,6 +61,7 @@ export interface Scene {
   is_live: boolean;
   has_poses: boolean;
   has_truth: boolean;
+  has_changes: boolean;
   views: { name: string; pose: Pose | null }[];
   objects: SceneObject[];
   runs: Run[];

@@ -21,6 +21,7 @@ import { type Label, makeAxes, makeCameras, makeSegments, type Pickable, type Wo
 const kNumPrevious = 5;
 const kMaxCloudPoints = 320000;
 const kPreviousStep = 3;
+const kReconstructionSizeM = 0.006;
 const kSurfaceSizeM = 0.0042;
 const kEvidenceMarginM = 0.015;
 const kObjectNearerM = 0.012;
@@ -60,6 +61,7 @@ export class SceneView {
     this.world.setMarker(this.app.get().point);
     await Promise.all([
       has("view", "run", "layers", "cloudColors") ? this.showCloud() : null,
+      has("view", "layers") ? this.showChanges() : null,
       has("view", "run", "layers", "track", "object", "event", "objectColors") ? this.showItems() : null,
     ]);
   }
@@ -99,7 +101,7 @@ export class SceneView {
 
   private showLayers(): void {
     const { layers } = this.app.get();
-    for (const name of ["cloud", "previous", "objects", "places", "truth", "cameras"] as const)
+    for (const name of ["cloud", "previous", "objects", "places", "truth", "cameras", "changes"] as const)
       this.world.setVisible(name, layers.has(name));
     this.world.setLabels(layers.has("labels") && (layers.has("objects") || !this.app.run()) ? this.labels : []);
   }
@@ -152,6 +154,22 @@ export class SceneView {
     const pickable = (points: PointSet): Pickable => ({ points, track: -1, object: -1 });
     this.setGroup("cloud", current ? [current] : [], current ? [pickable(current)] : []);
     this.setGroup("previous", previous, previous.map(pickable));
+  }
+
+  private async showChanges(): Promise<void> {
+    const isCurrent = this.begin("changes");
+    const { view, layers } = this.app.get();
+    const isShown = this.app.scene.has_changes && layers.has("changes");
+    const cloud = isShown ? await this.api.changes(view) : null;
+    if (!isCurrent()) return;
+    if (!cloud) {
+      this.setGroup("changes", [], []);
+      return;
+    }
+    const colors = cloud.colors ?? plainColors(cloud.positions.length / 3, "#888888");
+    const style = { sizeM: kReconstructionSizeM, nearerM: 0, isRound: false, opacity: 1 };
+    const points = new PointSet(cloud.positions, colors, null, style);
+    this.setGroup("changes", [points], [{ points, track: -1, object: -1 }]);
   }
 
   private findItems(): Item[] {

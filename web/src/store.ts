@@ -79,6 +79,11 @@ export class App {
   selectedDetection(): Detection | null {
     return this.runView()?.detections.find((detection) => detection.track === this.state.track) ?? null;
   }
+  /** Number of the object that is selected, by itself or by its track; -1: none. */
+  selectedObject(): number {
+    const { track, object } = this.state;
+    return track >= 0 ? (this.tracks().find((each) => each.track === track)?.object ?? -1) : object;
+  }
   /** Pose of the camera of a view: corrected, if there are results. */
   cameraPose(view: number): number[] | null {
     return this.run()?.views[view]?.pose ?? this.scene.views[view]?.pose ?? null;

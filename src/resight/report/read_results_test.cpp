@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -12,6 +13,7 @@
 #include "resight/io/recognition_results.hpp"
 #include "resight/report/report_test_scene.hpp"
 #include "resight/report/results.hpp"
+#include "resight/report/stored_view.hpp"
 
 namespace resight {
 namespace {
@@ -84,6 +86,34 @@ TEST_F(ReadResults, ReadsWhatWasWritten) {
   EXPECT_FALSE(results->events[3].world_from_object_after.has_value());
 }
 
+TEST_F(ReadResults, EqualsWhatTheViewerGetsDuringTheRun) {
+  const auto results = read_recognition_results(folder_);
+  ASSERT_TRUE(results.ok());
+  const ReportRun run = test::make_run();
+  const ModelLibrary library = test::make_library();
+  std::vector<StoredEvent> events;
+  for (std::size_t v = 0; v < run.views.size(); ++v) {
+    const StoredView live = to_stored_view(run.views[v], library);
+    const StoredView& read = results->views.at(v);
+    EXPECT_EQ(live.name, read.name);
+    EXPECT_EQ(live.num_novel_points, read.num_novel_points);
+    ASSERT_EQ(live.detections.size(), read.detections.size());
+    for (std::size_t d = 0; d < live.detections.size(); ++d) {
+      EXPECT_EQ(live.detections[d].object, read.detections[d].object);
+      EXPECT_EQ(live.detections[d].bop_id, read.detections[d].bop_id);
+      EXPECT_EQ(live.detections[d].verdict, read.detections[d].verdict);
+      EXPECT_EQ(live.detections[d].evidence.size(), read.detections[d].evidence.size());
+    }
+    std::ranges::move(to_stored_events(run.views[v], library), std::back_inserter(events));
+  }
+  ASSERT_EQ(events.size(), results->events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    EXPECT_EQ(events[i].kind, results->events[i].kind);
+    EXPECT_EQ(events[i].object, results->events[i].object);
+    EXPECT_EQ(events[i].world_from_object_after.has_value(), results->events[i].world_from_object_after.has_value());
+  }
+}
+
 TEST_F(ReadResults, NamesTheFirstFault) {
   const auto detection = [](json& file) -> json& { return file["views"][0]["detections"][0]; };
   const std::pair<std::function<void(json&)>, const char*> faults[] = {
@@ -96,7 +126,10 @@ TEST_F(ReadResults, NamesTheFirstFault) {
       {[&](json& f) { detection(f)["track"] = 1.5; }, "views[0].detections[0].track: expected a whole number"},
       {[&](json& f) { detection(f)["score"] = 1.5; }, "views[0].detections[0].score: expected a number in [0, 1]"},
       {[&](json& f) { detection(f).erase("fit"); }, "views[0].detections[0].fit: expected a number in [0, 1]"},
-      {[&](json& f) { detection(f)["uncertainty"] = {{"covariance", {1, 2}}}; }, "expected a covariance of 36 numbers"},
+      {[&](json& f) {
+         detection(f)["uncertainty"] = {{"covariance", {1, 2}}};
+       },
+       "expected a covariance of 36 numbers"},
       {[&](json& f) { detection(f)["evidence"][1]["allowed"] = 1; }, "evidence[1].allowed: expected true or false"},
   };
   for (const auto& [change, message] : faults) {

@@ -33,10 +33,9 @@ bool is_same_secret(std::string_view a, std::string_view b) {
 }
 
 bool is_loopback_host(std::string_view host) {
-  return std::ranges::any_of(std::initializer_list<std::string_view>{"localhost", "127.0.0.1", "[::1]"},
-                             [&](std::string_view name) {
-                               return host.starts_with(name) && is_port(host.substr(name.size()));
-                             });
+  return std::ranges::any_of(
+      std::initializer_list<std::string_view>{"localhost", "127.0.0.1", "[::1]"},
+      [&](std::string_view name) { return host.starts_with(name) && is_port(host.substr(name.size())); });
 }
 
 std::optional<HttpResponse> AccessGuard::check_asset(const HttpRequest& request) const {

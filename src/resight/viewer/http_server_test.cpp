@@ -72,7 +72,8 @@ TEST(HttpServer, RefusesLongHeadersAndBodies) {
   EXPECT_EQ(status_of(server.ask("GET /" + std::string(300000, 'x'))), 431);
   EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n")), 413);
   // The client sends all of it before it reads.
-  EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nContent-Length: 2000000\r\n\r\n" + std::string(2000000, 'x'))), 413);
+  EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nContent-Length: 2000000\r\n\r\n" + std::string(2000000, 'x'))),
+            413);
   EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nfffff\r\n" +
                                  std::string(0xfffff, 'x'))),
             413);

@@ -27,8 +27,7 @@ class RawConnection {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     is_open_ = ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   }
-  RawConnection(RawConnection&& other) noexcept
-      : socket_(std::exchange(other.socket_, -1)), is_open_(other.is_open_) {}
+  RawConnection(RawConnection&& other) noexcept : socket_(std::exchange(other.socket_, -1)), is_open_(other.is_open_) {}
   RawConnection& operator=(RawConnection&& other) = delete;
   ~RawConnection() {
     if (socket_ >= 0) ::close(socket_);

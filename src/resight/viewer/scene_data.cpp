@@ -7,6 +7,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
+#include "resight/io/ply.hpp"
 #include "resight/report/overlay.hpp"
 #include "resight/viewer/binary_content.hpp"
 #include "resight/viewer/internal/scene_json.hpp"
@@ -71,6 +72,8 @@ int SceneData::num_objects() const {
 }
 
 int SceneData::num_runs() const { return static_cast<int>(scene_.runs.size()); }
+
+bool SceneData::has_changes() const { return !scene_.changes.empty(); }
 
 int SceneData::revision() const {
   const std::scoped_lock lock(mutex_);
@@ -140,6 +143,14 @@ SceneData::Content SceneData::depth(int view) {
 SceneData::Content SceneData::surface(int object) {
   return cached(fmt::format("surface/{}", object), [&]() -> Result<std::string> {
     const auto cloud = read_surface(object);
+    if (!cloud) return cloud.error();
+    return encode_cloud(*cloud);
+  });
+}
+
+SceneData::Content SceneData::changes(int view) {
+  return cached(fmt::format("changes/{}", view), [&]() -> Result<std::string> {
+    const auto cloud = read_ply_cloud(scene_.changes / (scene_.sequence->view_name(view) + ".ply"));
     if (!cloud) return cloud.error();
     return encode_cloud(*cloud);
   });

@@ -27,6 +27,7 @@ class SceneData {
   [[nodiscard]] int num_views() const;
   [[nodiscard]] int num_objects() const;
   [[nodiscard]] int num_runs() const;
+  [[nodiscard]] bool has_changes() const;
 
   // Numbers must be in range.
   [[nodiscard]] Content index();                  ///< JSON: views, objects, detections and events of all runs.
@@ -34,6 +35,7 @@ class SceneData {
   [[nodiscard]] Content color(int view);          ///< JPEG.
   [[nodiscard]] Content depth(int view);          ///< encode_depth()
   [[nodiscard]] Content surface(int object);      ///< encode_cloud()
+  [[nodiscard]] Content changes(int view);        ///< encode_cloud(): reconstruction, removed and novel points.
   /// Counts the changes of the index, so that a client need not fetch it in vain.
   [[nodiscard]] int revision() const;
 

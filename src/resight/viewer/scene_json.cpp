@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "resight/viewer/internal/scene_json.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "resight/report/outline.hpp"
 #include "resight/report/overlay.hpp"
-#include "resight/viewer/internal/scene_json.hpp"
 
 namespace resight::viewer {
 namespace {
@@ -132,6 +133,7 @@ std::string format_index(const ViewerScene& scene, const ObjectTable& objects, c
   Json json = {{"title", scene.title}, {"revision", revision}, {"is_live", scene.is_live}};
   json["views"] = scene.sequence ? views_json(*scene.sequence) : Json::array();
   json["has_poses"] = scene.sequence && scene.sequence->has_poses();
+  json["has_changes"] = !scene.changes.empty();
   json["has_truth"] = scene.sequence && scene.sequence->has_ground_truth();
   json["objects"] = Json::array();
   for (const ObjectTable::Object& object : objects.objects())

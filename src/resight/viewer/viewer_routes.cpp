@@ -55,6 +55,7 @@ HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& 
   }
   if (parts.size() == 4 && parts[3] == "color") return respond("image/jpeg", scene.color(*view));
   if (parts.size() == 4 && parts[3] == "depth") return respond(kBinary, scene.depth(*view));
+  if (parts.size() == 4 && parts[3] == "changes" && scene.has_changes()) return respond(kBinary, scene.changes(*view));
   return not_found();
 }
 

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "resight/io/ply.hpp"
 #include "resight/viewer/http_test_client.hpp"
 
 namespace resight {
@@ -131,11 +133,26 @@ TEST_F(ViewerRoutes, NeedsTheTokenAndALoopbackHost) {
 }
 
 TEST_F(ViewerRoutes, FindsDataByNumberOnly) {
-  for (const char* path :
-       {"/api/views/3", "/api/views/-1", "/api/views/+1", "/api/views/0x0", "/api/views/", "/api/views",
-        "/api/views/99999999999999999999", "/api/views/0/color/", "/api/views/0/../1", "/api/views/0?run=2",
-        "/api/views/0?run=", "/api/surfaces/2", "/api", "/api/../viewer.js", "/../../etc/passwd", "/..%2f..%2fetc/passwd",
-        "//etc/passwd", "/viewer.js/", "/%00", "/index.html"})
+  for (const char* path : {"/api/views/3",
+                           "/api/views/-1",
+                           "/api/views/+1",
+                           "/api/views/0x0",
+                           "/api/views/",
+                           "/api/views",
+                           "/api/views/99999999999999999999",
+                           "/api/views/0/color/",
+                           "/api/views/0/../1",
+                           "/api/views/0?run=2",
+                           "/api/views/0?run=",
+                           "/api/surfaces/2",
+                           "/api",
+                           "/api/../viewer.js",
+                           "/../../etc/passwd",
+                           "/..%2f..%2fetc/passwd",
+                           "//etc/passwd",
+                           "/viewer.js/",
+                           "/%00",
+                           "/index.html"})
     EXPECT_EQ(status_of(get(path)), 404) << path;
 }
 
@@ -198,6 +215,24 @@ TEST_F(ViewerRoutes, ReportsWhatCannotBeRead) {
   EXPECT_EQ(body_of(get("/api/surfaces/1")), "unknown <thing>: has no model");
 }
 
+TEST(SceneData, ReadsTheChangesOfAView) {
+  const auto folder = std::filesystem::temp_directory_path() / ("resight_viewer_test_" + std::to_string(::getpid()));
+  PointCloud cloud;
+  cloud.points.emplace_back(1, 2, 3);
+  cloud.colors.push_back({220, 30, 30});
+  ASSERT_TRUE(write_ply(folder / "view_0.ply", cloud).ok());
+  ViewerScene scene = make_scene();
+  scene.changes = folder;
+  const auto data = SceneData::create(std::move(scene)).value();
+  const test::RunningServer server(make_viewer_handler(*data, kToken));
+  const auto get = [&](const std::string& path) {
+    return server.ask("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nX-Resight-Token: " + kToken + "\r\n\r\n");
+  };
+  EXPECT_EQ(body_of(get("/api/views/0/changes")).size(), 8U + 12U + 3U);
+  EXPECT_EQ(status_of(get("/api/views/1/changes")), 500) << "this view has none";
+  std::filesystem::remove_all(folder);
+}
+
 TEST(SceneData, MakesEachThingOnce) {
   ViewerScene scene = make_scene();
   const auto sequence = std::make_shared<WallSequence>();
@@ -215,8 +250,7 @@ TEST(SceneData, RefusesResultsOfAnotherSequence) {
   scene.runs[1].results.views[1].name = "other";
   const auto data = SceneData::create(std::move(scene));
   ASSERT_FALSE(data.ok());
-  EXPECT_EQ(data.error().message,
-            "second: the sequence has no view 'other' (another sequence was recognised)");
+  EXPECT_EQ(data.error().message, "second: the sequence has no view 'other' (another sequence was recognised)");
 }
 
 TEST(SceneData, TakesViewsWhileTheyAreRecognised) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,7 +26,8 @@ struct ViewerScene {
   std::shared_ptr<const ModelLibrary> library;
   std::vector<ModelLocation> models;  ///< Shown where there is no library.
   std::vector<ViewerRun> runs;
-  bool is_live = false;  ///< Views are still being added to the runs.
+  std::filesystem::path changes;  ///< Folder of `resight changes` on these views: <name of the view>.ply.
+  bool is_live = false;           ///< Views are still being added to the runs.
 };
 
 }  // namespace resight
