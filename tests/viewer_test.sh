@@ -36,5 +36,6 @@ run changes --sequence data/test/000001 --out changes
 
 cd "$web" && node build.mjs --tests || { fail "npm ci is missing in web/"; exit 1; }
 RESIGHT=$resight RESULTS=$work/default OTHER=$work/mvr MODELS=$work/models.resight SEQUENCE=$work/data/test/000001 \
-  CHANGES=$work/changes PICTURES=$pictures timeout 300 node --test build/e2e/view_test.mjs || fail "the browser test failed"
+  CHANGES=$work/changes LIVE=$work/live PICTURES=$pictures timeout 300 node --test build/e2e/view_test.mjs ||
+  fail "the browser test failed"
 exit $failures

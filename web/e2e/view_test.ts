@@ -5,6 +5,7 @@
 //   MODELS           the model library
 //   SEQUENCE         the views
 //   CHANGES          results of 'resight changes' on them
+//   LIVE             folder for new results
 //   PICTURES         folder for pictures of the page
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
@@ -22,6 +23,9 @@ const kBrowser = process.env.CHROMIUM ?? "/usr/bin/chromium";
 // Without a graphics card, WebGL is drawn by SwiftShader, which Chromium does not use unless it is told to.
 const kBrowserArguments = ["--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--no-sandbox"];
 
+// Without a desktop, the program opens no browser of its own.
+const kNoDesktop = { ...process.env, DISPLAY: undefined, WAYLAND_DISPLAY: undefined };
+
 let browser: Browser;
 const servers: ChildProcess[] = [];
 
@@ -34,14 +38,22 @@ after(async () => {
   await browser.close();
 });
 
+interface Served {
+  address: string;
+  output: () => string;
+  stop: () => Promise<number | null>;
+}
+
 /** Starts the program; resolves when it has printed its address. */
-async function serve(inputs: string[]): Promise<{ address: string; stop: () => Promise<number | null> }> {
-  const server: ChildProcess = spawn(setting("RESIGHT"), ["view", "--no-open", ...inputs]);
+async function serve(inputs: string[], command = ["view", "--no-open"]): Promise<Served> {
+  const server: ChildProcess = spawn(setting("RESIGHT"), [...command, ...inputs], { env: kNoDesktop });
   servers.push(server);
   const ended = new Promise<number | null>((resolve) => server.on("exit", resolve));
   let output = "";
   const address = await new Promise<string>((resolve, reject) => {
-    server.stderr?.on("data", (data) => reject(new Error(String(data))));
+    server.stderr?.on("data", (data) => {
+      if (String(data).startsWith("resight: ")) reject(new Error(String(data)));
+    });
     server.on("exit", () => reject(new Error("resight view has ended")));
     server.stdout?.on("data", (data) => {
       output += data;
@@ -53,7 +65,7 @@ async function serve(inputs: string[]): Promise<{ address: string; stop: () => P
     server.kill("SIGINT");
     return ended;
   };
-  return { address, stop };
+  return { address, output: () => output, stop };
 }
 
 /** Opens the page and fails the test for any error in it, and for any request to another server. */
@@ -240,6 +252,19 @@ test("a sequence and a model library are shown as well", async () => {
   await picture(page, "changes");
   await page.close();
   assert.equal(await sequence.stop(), 0);
+});
+
+test("views are shown as they are recognised", async () => {
+  const inputs = ["--models", setting("MODELS"), "--sequence", setting("SEQUENCE"), "--out", setting("LIVE")];
+  const { address, output, stop } = await serve(inputs, ["recognize", "--view"]);
+  const page = await open(address);
+  await page.waitForFunction(() => document.querySelectorAll(".row").length === 2);
+  await page.waitForSelector(".mark.removed");
+  await page.waitForFunction(async () => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
+  await page.close();
+  while (!output().includes("report:")) await new Promise((resolve) => setTimeout(resolve, 100));
+  await new Promise((resolve) => setTimeout(resolve, 500)); // from the last line on, Ctrl-C ends the server
+  assert.equal(await stop(), 0, "Ctrl-C ends it well after the last view");
 });
 
 test("without the token, the page says what to do", async () => {

@@ -40,7 +40,8 @@ export function percent(share: number | null | undefined): string {
 }
 
 export function metres(value: number): string {
-  return Math.abs(value) < 1 ? `${(1000 * value).toFixed(0)} mm` : `${value.toFixed(3)} m`;
+  if (Math.abs(value) >= 1) return `${value.toFixed(3)} m`;
+  return `${(1000 * value).toFixed(Math.abs(value) < 0.01 ? 1 : 0)} mm`;
 }
 
 export function coordinates(p: readonly number[]): string {

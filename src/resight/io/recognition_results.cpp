@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "resight/core/names.hpp"
-#include "resight/geometry/limits.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/pose_text.hpp"
 
@@ -93,7 +92,6 @@ class MemberReader {
     }
     const auto pose = rigid_from_matrix(matrix, key);
     if (!pose) faults_.add(where_, pose.error().message);
-    if (pose && pose->translation.cwiseAbs().maxCoeff() > kMaxSceneCoordinate_m) fault(key, "is more than 10 km away");
     return pose ? *pose : Rigid3();
   }
   [[nodiscard]] std::optional<Rigid3> optional_pose(const char* key) const {

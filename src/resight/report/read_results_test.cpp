@@ -121,7 +121,7 @@ TEST_F(ReadResults, NamesTheFirstFault) {
       {[](json& f) { f["views"] = "none"; }, "views: expected a list"},
       {[](json& f) { f["views"][1]["view"] = 7; }, "views[1].view: views are not in order"},
       {[](json& f) { f["views"][0]["world_from_camera"]["rotation"][0] = 9; }, "world_from_camera"},
-      {[](json& f) { f["views"][0]["world_from_camera"]["translation_m"][0] = 1e9; }, "is more than 10 km away"},
+      {[](json& f) { f["views"][0]["world_from_camera"]["translation_m"][0] = 1e9; }, "is more than 10000 m away"},
       {[&](json& f) { detection(f)["object"] = "../x"; }, "views[0].detections[0].object: the name of an object"},
       {[&](json& f) { detection(f)["track"] = 1.5; }, "views[0].detections[0].track: expected a whole number"},
       {[&](json& f) { detection(f)["score"] = 1.5; }, "views[0].detections[0].score: expected a number in [0, 1]"},
