@@ -127,7 +127,7 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   await waitForDrawing(page, 100);
   assert.equal(await page.locator(".labels3d span").count(), 2);
   assert.match((await page.locator("figure canvas").first().getAttribute("aria-label")) ?? "", /2 objects outlined/);
-  assert.equal(await page.locator("#timeline .mark").count(), 2);
+  assert.equal(await page.locator(".row[data-track] .mark").count(), 2);
   assert.match(await inspector(page), /Changes \(2\)/);
   await picture(page, "results");
 
@@ -158,7 +158,7 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   await page.waitForSelector(".mark.selected.removed");
   await page.keyboard.press("p");
   await page.waitForSelector(".mark.selected.moved");
-  await page.locator(".mark.removed").click();
+  await page.locator(".row[data-track] .mark.removed").click();
   await page.keyboard.press("f");
   await page.waitForSelector("#inspector h2:text('tea_box')");
   await picture(page, "removed");
@@ -258,7 +258,7 @@ test("views are shown as they are recognised", async () => {
   const inputs = ["--models", setting("MODELS"), "--sequence", setting("SEQUENCE"), "--out", setting("LIVE")];
   const { address, output, stop } = await serve(inputs, ["recognize", "--view"]);
   const page = await open(address);
-  await page.waitForFunction(() => document.querySelectorAll(".row").length === 2);
+  await page.waitForFunction(() => document.querySelectorAll(".row[data-track]").length === 2);
   await page.waitForSelector(".mark.removed");
   await page.waitForFunction(async () => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
   await page.close();

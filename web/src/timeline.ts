@@ -7,6 +7,8 @@ import type { ObjectEvent } from "./protocol";
 import type { App } from "./store";
 
 const kPlayIntervalMs = 500;
+const kMarkRadiusPx = 9; // as in viewer.css
+const kMarkStepPx = 16;
 
 export class Timeline {
   private readonly slider: HTMLInputElement;
@@ -85,7 +87,9 @@ export class Timeline {
   private rebuild(): void {
     this.root.style.setProperty("--count", String(this.app.scene.views.length));
     this.slider.max = String(this.app.scene.views.length - 1);
-    this.rows.replaceChildren(...this.app.tracks().map((track) => this.makeRow(track)), this.cursor);
+    const rows = this.app.tracks().map((track) => this.makeRow(track));
+    const summary = this.app.changes().length > 0 ? [this.makeSummary()] : [];
+    this.rows.replaceChildren(...summary, ...rows, this.cursor);
     this.rows.classList.toggle("empty", this.app.tracks().length === 0);
     this.showView();
     this.showSelection();
@@ -112,6 +116,20 @@ export class Timeline {
       this.app.goTo(view);
     });
     return element("div", { class: "row", "data-track": track.track }, label, lane);
+  }
+
+  /** All changes in one row, which stays on top. */
+  private makeSummary(): HTMLElement {
+    const lane = element("div", { class: "lane" });
+    const numInView = new Map<number, number>();
+    for (const event of this.app.changes()) {
+      const mark = this.makeMark(event, this.app.object(event.object)?.name ?? "?");
+      const index = numInView.get(event.view) ?? 0;
+      numInView.set(event.view, index + 1);
+      mark.style.marginLeft = `${kMarkStepPx * index - kMarkRadiusPx}px`; // side by side, not one upon the other
+      lane.append(mark);
+    }
+    return element("div", { class: "row summary" }, element("span", { class: "name" }, "all changes"), lane);
   }
 
   private makeMark(event: ObjectEvent, name: string): HTMLButtonElement {
