@@ -2,6 +2,7 @@
 #include "live_viewer.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 
 #include "resight/report/stored_view.hpp"
@@ -55,6 +56,7 @@ void LiveViewer::finish(const ReportRun& run) {
     std::ranges::move(to_stored_events(view, library_), std::back_inserter(events));
   scene_->finish(std::move(events));
   stop();
+  std::fflush(stdout);  // a program that waits for the results may read it through a pipe
   session_.server().run_until_interrupted();
 }
 

@@ -260,9 +260,10 @@ test("views are shown as they are recognised", async () => {
   const page = await open(address);
   await page.waitForFunction(() => document.querySelectorAll(".row[data-track]").length === 2);
   await page.waitForSelector(".mark.removed");
-  await page.waitForFunction(async () => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
+  await page.waitForFunction(() => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
   await page.close();
-  while (!output().includes("report:")) await new Promise((resolve) => setTimeout(resolve, 100));
+  for (let tries = 0; tries < 300 && !output().includes("report:"); ++tries)
+    await new Promise((resolve) => setTimeout(resolve, 100));
   await new Promise((resolve) => setTimeout(resolve, 500)); // from the last line on, Ctrl-C ends the server
   assert.equal(await stop(), 0, "Ctrl-C ends it well after the last view");
 });
@@ -280,7 +281,9 @@ const text = (page: Page, selector: string) => page.locator(selector).evaluate((
 
 /** Clicks on what lies under a label of the 3D view; labels themselves let clicks pass. */
 async function clickOn(page: Page, selector: string, name: string): Promise<void> {
-  const box = await page.locator(selector, { hasText: name }).boundingBox();
+  const label = page.locator(selector, { hasText: name });
+  await label.waitFor();
+  const box = await label.boundingBox();
   assert.ok(box, `no label ${name}`);
   await page.mouse.click(box.x + box.width / 2, box.y + box.height + 2);
 }

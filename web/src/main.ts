@@ -75,13 +75,14 @@ class Viewer {
   }
 
   async start(state: LinkState): Promise<void> {
-    this.app.set(state);
     const { scene } = this.app;
+    this.app.set(scene.is_live && state.view === 0 ? { ...state, view: Math.max(0, this.app.latestView()) } : state);
     const all = new Set(Object.keys(this.app.get()));
-    const pose = this.app.cameraPose(state.view);
+    const { view } = this.app.get();
+    const pose = this.app.cameraPose(view);
     if (scene.views.length > 0 && pose) {
-      const { camera } = await this.api.view(state.view, this.app.run() ? state.run : -1);
-      const { depth } = await this.api.viewImages(state.view, camera);
+      const { camera } = await this.api.view(view, this.app.run() ? state.run : -1);
+      const { depth } = await this.api.viewImages(view, camera);
       this.sceneView.home(guessUp([pose]), camera, depth, pose);
     }
     await this.updateAll(all);
@@ -276,14 +277,11 @@ class Viewer {
   }
 
   private async reload(): Promise<void> {
-    const latest = (views: unknown[] = []) =>
-      views.reduce<number>((last, view, index) => (view === null ? last : index), -1);
-    const before = latest(this.app.run()?.views);
-    const isFollowing = this.app.get().view >= before;
+    const isFollowing = this.app.get().view >= this.app.latestView();
     const scene = await this.api.scene();
     this.api.forgetDetails();
     this.app.setScene(scene);
-    if (isFollowing) this.app.goTo(latest(this.app.run()?.views));
+    if (isFollowing) this.app.goTo(this.app.latestView());
   }
 }
 

@@ -60,6 +60,11 @@ export class App {
   runView(run: number = this.state.run, view: number = this.state.view): RunView | null {
     return this.scene.runs[run]?.views[view] ?? null;
   }
+  /** The last view of the run with results; -1: none. */
+  latestView(): number {
+    const views = this.run()?.views ?? [];
+    return views.reduce<number>((latest, view, index) => (view === null ? latest : index), -1);
+  }
   object(number: number): SceneObject | undefined {
     return this.scene.objects[number];
   }

@@ -141,6 +141,7 @@ export class World {
       element.textContent = label.text;
       element.style.setProperty("--label-color", label.color);
       if (label.isSelected) element.className = "selected";
+      element.hidden = true; // until the next drawing places it
       this.labelLayer.append(element);
       return { element, position: label.position };
     });
