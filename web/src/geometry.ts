@@ -57,7 +57,11 @@ export function project(camera: Camera, p: Vec3): [number, number] | null {
   return [(camera.fx * p[0]) / p[2] + camera.cx, (camera.fy * p[1]) / p[2] + camera.cy];
 }
 
-/** Points of a depth image (NaN: none) in the world, every `step` pixels in both directions, with their pixels. */
+/** Pixels of a square of four by four, such that the first, the first four and so on are spread evenly. */
+const kPhases = [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12].map((i) => [i % 4, Math.floor(i / 4)] as const);
+
+/** Points of a depth image (NaN: none) in the world, every `step` pixels in both directions, with their pixels. The
+ * first sixteenth of them, the first quarter and so on are spread evenly over the image. */
 export function depthToPoints(
   camera: Camera,
   depth: Float32Array,
@@ -69,18 +73,18 @@ export function depthToPoints(
   const pixels = new Uint32Array(capacity);
   const m = Float64Array.from(worldFromCamera);
   let count = 0;
-  for (let v = 0; v < camera.height; v += step) {
-    const rayY = (v - camera.cy) / camera.fy;
-    for (let u = 0; u < camera.width; u += step) {
-      const z = at(depth, v * camera.width + u);
-      if (!(z > 0)) continue;
-      const x = ((u - camera.cx) / camera.fx) * z;
-      const y = rayY * z;
-      for (let r = 0; r < 3; ++r)
-        positions[3 * count + r] = at(m, r) * x + at(m, r + 4) * y + at(m, r + 8) * z + at(m, r + 12);
-      pixels[count++] = v * camera.width + u;
-    }
-  }
+  const addPixel = (u: number, v: number) => {
+    const z = at(depth, v * camera.width + u);
+    if (!(z > 0)) return;
+    const x = ((u - camera.cx) / camera.fx) * z;
+    const y = ((v - camera.cy) / camera.fy) * z;
+    for (let r = 0; r < 3; ++r)
+      positions[3 * count + r] = at(m, r) * x + at(m, r + 4) * y + at(m, r + 8) * z + at(m, r + 12);
+    pixels[count++] = v * camera.width + u;
+  };
+  for (const [offsetU, offsetV] of kPhases)
+    for (let v = offsetV * step; v < camera.height; v += 4 * step)
+      for (let u = offsetU * step; u < camera.width; u += 4 * step) addPixel(u, v);
   return { positions: positions.slice(0, 3 * count), pixels: pixels.slice(0, count) };
 }
 

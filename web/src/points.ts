@@ -7,6 +7,7 @@ uniform float size;
 uniform float scale;
 uniform float hasNormals;
 uniform float nearer;
+uniform float enlarge;
 in vec3 color;
 in float pointSize; // 0 where the points have no sizes of their own
 out vec3 vColor;
@@ -22,7 +23,7 @@ void main() {
   gl_Position = projectionMatrix * p;
   vec4 moved = projectionMatrix * (p + vec4(0.0, 0.0, nearer, 0.0));
   if (moved.w > 0.0) gl_Position.z = moved.z / moved.w * gl_Position.w;
-  gl_PointSize = clamp((pointSize > 0.0 ? pointSize : size) * scale / -p.z, 1.0, 24.0);
+  gl_PointSize = clamp((pointSize > 0.0 ? pointSize : size) * enlarge * scale / -p.z, 1.0, 24.0);
 }`;
 
 const kFragmentShader = `
@@ -46,6 +47,9 @@ export interface PointStyle {
 }
 
 export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
+  /** Whether the first points alone are spread evenly (depthToPoints()). */
+  isEven = false;
+
   constructor(positions: Float32Array, colors: Uint8Array, normals: Int8Array | null, style: PointStyle) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(positions, 3));
@@ -61,6 +65,7 @@ export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
         uniforms: {
           size: { value: style.sizeM },
           scale: { value: 1 },
+          enlarge: { value: 1 },
           nearer: { value: style.nearerM },
           hasNormals: { value: normals ? 1 : 0 },
           isRound: { value: style.isRound ? 1 : 0 },
@@ -86,6 +91,13 @@ export class PointSet extends Points<BufferGeometry, ShaderMaterial> {
     const { tint, tintShare } = this.material.uniforms;
     if (tint) tint.value.set(color).convertLinearToSRGB();
     if (tintShare) tintShare.value = share;
+  }
+  /** Draws only the first points, enlarged: a cloud whose order allows it is drawn faster while the camera moves. */
+  setShare(share: number): void {
+    const count = this.geometry.getAttribute("position").count;
+    this.geometry.setDrawRange(0, Math.ceil(share * count));
+    const { enlarge } = this.material.uniforms;
+    if (enlarge) enlarge.value = 1 / Math.sqrt(share);
   }
   /** To be called before drawing: pixels per metre at a distance of 1 m. */
   fitScreen(camera: PerspectiveCamera, heightPx: number): void {

@@ -135,6 +135,7 @@ export class SceneView {
       isRound: false,
       opacity: 1,
     });
+    points.isEven = true;
     points.setSizes(depths.map((z) => (1.3 * finest * z) / camera.fx)); // a little more than the distance of neighbours
     return points;
   }

@@ -49,6 +49,9 @@ export interface Label {
 const kPickRadiusPx = 7;
 const kFrustumDepthM = 0.08;
 const kMaxFrusta = 150;
+const kSlowFrameMs = 80;
+const kPauseMs = 5000; // a longer one was no frame
+const kMinShare = 1 / 16;
 
 export class World {
   readonly canvas: HTMLCanvasElement;
@@ -62,6 +65,9 @@ export class World {
   private pickables: Pickable[] = [];
   private readonly marker: Mesh;
   private isDirty = false;
+  private isMoving = false;
+  private lastDrawn = 0;
+  private share = 1;
   private home: CameraState = { position: [1, -1, 1], target: [0, 0, 0] };
   /** Called when the user has moved the camera. */
   onMove: () => void = () => {};
@@ -85,6 +91,13 @@ export class World {
     this.controls.addEventListener("change", () => {
       this.requestDraw();
       this.onMove();
+    });
+    this.controls.addEventListener("start", () => {
+      this.isMoving = true;
+    });
+    this.controls.addEventListener("end", () => {
+      this.isMoving = false;
+      this.requestDraw();
     });
     this.marker = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({ color: 0xffd400 }));
     this.marker.visible = false;
@@ -161,14 +174,26 @@ export class World {
   /** Draws at once. */
   draw(): void {
     this.isDirty = false;
+    this.chooseShare();
     const height = this.renderer.getDrawingBufferSize(new Vector2()).y;
     this.scene.traverse((object) => {
-      if (object instanceof PointSet) object.fitScreen(this.camera, height);
+      if (!(object instanceof PointSet)) return;
+      object.fitScreen(this.camera, height);
+      if (object.isEven) object.setShare(this.share);
     });
     const distance = this.camera.position.distanceTo(this.marker.position);
     this.marker.scale.setScalar(0.006 * distance);
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
+  }
+
+  /** While the camera moves, a machine that is too slow for all points draws fewer. */
+  private chooseShare(): void {
+    const now = performance.now();
+    const elapsed = now - this.lastDrawn;
+    this.lastDrawn = now;
+    if (!this.isMoving) this.share = 1;
+    else if (elapsed > kSlowFrameMs && elapsed < kPauseMs) this.share = Math.max(kMinShare, this.share / 4);
   }
 
   private placeLabels(): void {
