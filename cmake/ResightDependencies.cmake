@@ -9,6 +9,7 @@ find_package(Ceres REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(fmt REQUIRED)
+find_package(Boost 1.74 REQUIRED) # Asio and Beast, which are headers
 find_package(Flatbuffers QUIET)
 if(NOT TARGET flatbuffers::flatbuffers)
   find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)

@@ -15,7 +15,8 @@ set(RESIGHT_LAYERS
     verification shape_search modelling
     recognition
     evaluation
-    report)
+    report
+    viewer)
 
 add_library(resight_build_flags INTERFACE)
 if(RESIGHT_MARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

@@ -14,11 +14,14 @@ packages=(
   libceres-dev libtbb-dev libnanoflann-dev libembree-dev libassimp-dev
   libflatbuffers-dev flatbuffers-compiler liblzf-dev
   liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev
-  nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libcli11-dev
+  nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libcli11-dev libboost-dev
 )
 for option in "$@"; do
   case "$option" in
-    --tests) packages+=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format clang-tidy graphviz) ;;
+    --tests) packages+=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format clang-tidy graphviz
+                        chromium)
+             # Node.js from elsewhere brings its own npm, which Debian's package conflicts with.
+             command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --bench) packages+=(libbenchmark-dev) ;;
     --baselines) packages+=(libpcl-dev libopencv-flann-dev) ;;
     *) echo "setup.sh: unknown option '$option' (expected --tests, --bench or --baselines)" >&2; exit 2 ;;

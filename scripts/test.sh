@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
-# clang-tidy, every public header alone, installation and a project that uses it, all module tests under
-# AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
+# the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, every public header alone,
+# installation and a project that uses it, all module tests under AddressSanitizer and UndefinedBehaviorSanitizer, the
+# program under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
 set -euo pipefail
@@ -26,6 +27,14 @@ count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_
        END { printf "%d tests passed, %d failed, %d skipped\n", total - failed - skipped, failed, skipped }' \
     "$log_dir/tests.log"
 }
+
+# The committed page must be the one that its sources give. Pictures of the page are in build/logs/viewer.
+check_page() {
+  rm -rf build/page && mkdir -p build && cp -r web/dist build/page &&
+    (cd web && npm ci --no-audit --no-fund && npm run check && npm test && npm run build) || return 1
+  diff -r build/page web/dist || { echo "error: web/dist was not up to date; commit the new one"; return 1; }
+}
+run_viewer() { tests/viewer_test.sh build/ci/apps/resight/resight build/logs/viewer; }
 
 # Configures for clang-tidy, without building. All sources of a module are one translation unit, because clang-tidy
 # spends its time on the headers.
@@ -79,6 +88,8 @@ step "configure" cmake --preset ci
 step "build, warnings are errors" cmake --build build/ci -j "$num_jobs"
 step "tests" run_tests || { count_tests; exit 1; }
 if ((!fast)); then
+  step "page of the viewer" check_page
+  step "viewer in a browser" run_viewer
   step "clang-tidy" run_clang_tidy
   step "picture of the modules" scripts/draw_modules.sh --check
   step "each public header compiles alone" check_headers

@@ -610,6 +610,23 @@ const Row kRows[] = {
      "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
     {"ConvertABrokenMesh", cut("meshes/cube.ply", 0.9), "convert meshes out --to bop", 2, "cube\\.ply: "},
     {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
+    {"ViewNothing", kNothing, "view", 2, "view: inputs is required"},
+    {"ViewMissing", kNothing, "view nowhere --no-open", 2, "nowhere: no such file or directory"},
+    {"ViewEmpty", kNothing, "view empty --no-open", 2, "empty: is nothing to view \\(expected results"},
+    {"ViewOnAWrongPort", kNothing, "view views --no-open --port 65536", 2, "port"},
+    {"ViewWithoutLibrary", kNothing, "view views --no-open --models views", 2, "views: is not a file"},
+    {"ViewBrokenLibrary", cut("models.resight", 0.5), "view models.resight --no-open", 2, "models\\.resight: "},
+    {"ViewBrokenResults", write("res/detections.json", "{"), "view res --no-open", 2,
+     "res/detections\\.json: is not valid JSON"},
+    {"ViewResultsOfUnknownViews",
+     both(write("res/detections.json", R"({"version": "1", "preset": "mvr", "views": []})"),
+          write("res/changes.json", R"({"events": [], "views": []})")),
+     "view res --no-open", 2, "res: the results do not name their sequence \\(pass --sequence\\)"},
+    {"ViewOtherChanges", kNothing, "view views --changes meshes --no-open", 2,
+     "meshes: holds no results of 'resight changes' on these views"},
+    {"ViewChangesOfModels", kNothing, "view models.resight --changes meshes --no-open", 2,
+     "meshes: needs the sequence"},
+    {"ViewSequencesBesideEachOther", kNothing, "view views tuw --no-open", 2, "views: holds no results"},
     {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
     {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
     {"PipeAsScript", pipe("s.toml"), "simulate s.toml --out out", 2, "s\\.toml: is not a file"},
@@ -713,6 +730,19 @@ TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
     EXPECT_EQ(run(folder_, "recognize --models models.resight --sequence views --out full").status, 0);
   EXPECT_EQ(read_text(folder_ / "full/mine.txt"), "mine");
   EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
+}
+
+TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {
+  ASSERT_EQ(run(folder_, "recognize --models models.resight --sequence views --out out").status, 0);
+  for (const char* input : {"out", "views", "models.resight", "meshes"}) {
+    const std::string command = "cd " + folder_.string() +
+                                " && timeout --preserve-status -s INT 1 " RESIGHT_PROGRAM " view --no-open " +
+                                std::string(input) + " >told 2>&1 </dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0) << input;
+    EXPECT_TRUE(std::regex_match(read_text(folder_ / "told"),
+                                 std::regex("http://127\\.0\\.0\\.1:[0-9]+/#token=[0-9a-f]{32}\n.*Ctrl-C.*\n")))
+        << input << ": " << read_text(folder_ / "told");
+  }
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ struct RecognizeArguments {
   std::optional<int> num_previous_views;
   std::optional<double> deadline_ms;
   std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
+  bool view = false;                  ///< Show views in a browser as they are recognised, and the results afterwards.
   int num_threads = 1;
 };
 
@@ -139,6 +140,15 @@ struct EvaluateArguments {
   int num_threads = 1;
 };
 
+struct ViewArguments {
+  std::vector<std::filesystem::path> inputs;
+  std::optional<std::filesystem::path> sequence;  ///< Otherwise that of the results.
+  std::optional<std::filesystem::path> models;    ///< Otherwise those of the results.
+  std::optional<std::filesystem::path> changes;   ///< Results of `resight changes` on the same views.
+  std::uint16_t port = 0;                         ///< 0: a free one.
+  bool no_open = false;                           ///< Do not open a browser.
+};
+
 // Each function runs one subcommand. InputError = exit status 2, any other exception = 1.
 void run_train(const TrainArguments& arguments);
 void run_recognize(const RecognizeArguments& arguments);
@@ -149,6 +159,7 @@ void run_model(const ModelArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
 void run_info(const InfoArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);
+void run_view(const ViewArguments& arguments);
 void run_demo(const DemoArguments& arguments);
 
 }  // namespace resight::app

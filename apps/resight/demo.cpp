@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
@@ -49,6 +50,8 @@ void run_demo(const DemoArguments& arguments) {
     config.set_seed(arguments.seed);
     runs.push_back(run_recognition(library, *sequence, config, arguments.num_threads));
     runs.back().sequence = data.string();
+    runs.back().sequence_path = path_from(arguments.out / preset, data);
+    runs.back().models_path = path_from(arguments.out / preset, models);
     value_or_throw(write_results(arguments.out / preset, runs.back(), library));
   }
   const std::filesystem::path report = arguments.out / "report.html";

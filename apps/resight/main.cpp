@@ -35,6 +35,7 @@ struct Arguments {
   InfoArguments info;
   EvaluateArguments evaluate;
   std::string shard;
+  ViewArguments view;
   DemoArguments demo;
 };
 
@@ -113,6 +114,8 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
                    "no limit]")
       ->check(kPositive);
+  command->add_flag("--view", a.view,
+                    "Show the views in a browser as they are recognised; afterwards, Ctrl-C ends the program");
   add_recognition_options(command, a);
   add_sequence_options(command, a.input);
   return [&a] { run_recognize(a); };
@@ -253,6 +256,22 @@ std::function<void()> add_demo(CLI::App& app, DemoArguments& a) {
   return [&a] { run_demo(a); };
 }
 
+std::function<void()> add_view(CLI::App& app, ViewArguments& a) {
+  CLI::App* command = app.add_subcommand("view", "Look at results, a sequence or models in a browser");
+  command
+      ->add_option("inputs", a.inputs,
+                   "Folder of results (of 'resight recognize'), or several to compare; a sequence folder; a model "
+                   "library; models")
+      ->required();
+  command->add_option("--sequence", a.sequence, "Sequence of the results [default: the one that they name]");
+  command->add_option("--models", a.models, "Model library of the objects [default: the one that the results name]");
+  command->add_option("--changes", a.changes,
+                      "Folder of 'resight changes' on the same views: also show its reconstruction and changes");
+  command->add_option("--port", a.port, "Port on 127.0.0.1; 0 takes a free one")->capture_default_str();
+  command->add_flag("--no-open", a.no_open, "Print the address only, without opening a browser");
+  return [&a] { run_view(a); };
+}
+
 std::function<void()> add_options(CLI::App& app) {
   app.add_subcommand("options", "Print all options of settings files (--config) as Markdown");
   return [] { print_text(resight::options_reference()); };
@@ -311,6 +330,7 @@ int run_program(int argc, char** argv) {
                                           add_convert(app, a.convert),
                                           add_info(app, a.info),
                                           add_evaluate(app, a.evaluate, a.shard),
+                                          add_view(app, a.view),
                                           add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {

@@ -75,4 +75,10 @@ void check_output_folder(const fs::path& out, const Paths& inputs) {
     if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
 }
 
+std::string path_from(const fs::path& folder, const fs::path& path) {
+  std::error_code error;
+  const fs::path relative = fs::relative(path, folder, error);
+  return error || relative.empty() ? fs::absolute(path).string() : relative.string();
+}
+
 }  // namespace resight::app

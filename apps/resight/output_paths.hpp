@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,5 +21,9 @@ void check_new_file(const std::filesystem::path& out);
 
 /// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it.
 void check_output_folder(const std::filesystem::path& out, const Paths& inputs);
+
+/// The path as seen from `folder`, links resolved, so that results find their inputs wherever they are called from, and
+/// after both were moved.
+[[nodiscard]] std::string path_from(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace resight::app

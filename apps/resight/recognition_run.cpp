@@ -41,7 +41,7 @@ void warn_about_names(const SequenceTruth& truth, const std::string& sequence) {
 }
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                          int num_threads) {
+                          int num_threads, const std::function<void(const ViewRecord&)>& on_view) {
   const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
   warn_about_names(truth, "ground truth");
   ReportRun run;
@@ -65,6 +65,7 @@ ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
     run.views.push_back(make_view_record(frame, library, std::move(update), std::move(evaluation)));
     run.views.back().scene_id = sequence.scene_id();
     run.views.back().image_id = sequence.image_id(v);
+    if (on_view) on_view(run.views.back());
   });
   std::vector<std::vector<ObjectEvent>> final_events = value_or_throw(std::move(events));
   for (std::size_t v = 0; v < run.views.size(); ++v) run.views[v].update.events = std::move(final_events[v]);

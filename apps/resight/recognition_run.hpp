@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "commands.hpp"
@@ -18,8 +19,10 @@ namespace resight::app {
 /// Warns if the library does not have the names of the true objects.
 void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 
-/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
+/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth. `on_view`
+/// gets each view as it is recognised; later views may change its events.
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
-                                        const RecognizerConfig& config, int num_threads);
+                                        const RecognizerConfig& config, int num_threads,
+                                        const std::function<void(const ViewRecord&)>& on_view = {});
 
 }  // namespace resight::app

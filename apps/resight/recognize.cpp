@@ -5,6 +5,7 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
+#include "live_viewer.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
@@ -42,8 +43,14 @@ void run_recognize(const RecognizeArguments& arguments) {
     tracked.emplace(take_largest_component(*recorded, track_sequence(*recorded, options).track));
   }
   const Sequence& sequence = tracked ? *tracked : *recorded;
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads);
+  std::optional<LiveViewer> viewer;
+  if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](const ViewRecord& view) {
+    if (viewer) viewer->add_view(view);
+  });
   run.sequence = arguments.sequence.string();
+  run.sequence_path = path_from(arguments.out, arguments.sequence);
+  run.models_path = path_from(arguments.out, arguments.models);
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
@@ -55,6 +62,7 @@ void run_recognize(const RecognizeArguments& arguments) {
     print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
           format_share(summary.score.recall()), summary.num_ghosts);
   print("report: {}\n", (arguments.out / "report.html").string());
+  if (viewer) viewer->finish(run);
 }
 
 }  // namespace resight::app

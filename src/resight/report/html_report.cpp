@@ -12,6 +12,7 @@ std::string lead_line(const ReportRun& run) {
   std::string html = "<p class=\"lead\">";
   if (!run.sequence.empty()) html += "Sequence " + report::escape(run.sequence);
   if (!run.version.empty()) html += (run.sequence.empty() ? "resight " : " · resight ") + report::escape(run.version);
+  if (!run.sequence_path.empty()) html += " · in 3D: <code>resight view</code> with the folder of the results";
   return html + "</p>\n";
 }
 

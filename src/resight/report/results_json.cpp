@@ -94,6 +94,8 @@ Json color_offset_json(const ReportRun& run) {
           {"moved_px", {offset.moved_px.x(), offset.moved_px.y()}}};
 }
 
+Json unknown_if_empty(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
 Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
 
 Json header(const ReportRun& run) {
@@ -146,6 +148,7 @@ std::string format_summary_json(const ReportRun& run) {
   Json settings = Json::object();
   for (const auto& [name, value] : run.settings) settings[name] = value;
   Json json = header(run);
+  json["inputs"] = {{"sequence", unknown_if_empty(run.sequence_path)}, {"models", unknown_if_empty(run.models_path)}};
   json["settings"] = settings;
   json["num_threads"] = unknown_if_zero(static_cast<std::size_t>(std::max(0, run.num_threads)));
   json["num_views"] = summary.num_views;

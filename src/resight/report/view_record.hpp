@@ -43,6 +43,9 @@ struct ReportRun {
   std::vector<ViewRecord> views;
   std::size_t peak_memory_bytes = 0;  ///< 0 = unknown.
   int num_threads = 0;                ///< 0 = unknown.
+  /// Paths of the inputs relative to the folder of the results, for `resight view`. Empty = unknown.
+  std::string sequence_path;
+  std::string models_path;
 };
 
 /// Detections of a view in the camera frame, by name, as input of the evaluation.

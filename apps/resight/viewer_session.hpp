@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "browser.hpp"
+#include "commands.hpp"
+#include "resight/viewer/http_server.hpp"
+#include "resight/viewer/scene_data.hpp"
+
+namespace resight::app {
+
+struct ViewerSessionOptions {
+  std::uint16_t port = 0;  ///< 0: a free one.
+  bool no_open = false;    ///< Do not open a browser.
+};
+
+/// A server of one scene under a secret address, which is printed and opened in the browser. Throws an InputError if
+/// the port is taken.
+class ViewerSession {
+ public:
+  /// `scene` must outlive the session.
+  ViewerSession(SceneData& scene, const ViewerSessionOptions& options);
+  [[nodiscard]] HttpServer& server() { return server_; }
+
+ private:
+  std::string token_;
+  HttpServer server_;
+  std::optional<BrowserLaunch> browser_;
+};
+
+}  // namespace resight::app

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/recognition_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "resight/core/names.hpp"
+#include "resight/io/internal/json.hpp"
+#include "resight/io/pose_text.hpp"
+
+namespace resight {
+namespace {
+
+using io::as_integer;
+using io::as_numbers;
+using io::as_text;
+using io::member;
+using nlohmann::json;
+
+constexpr const char* kDetectionsFile = "detections.json";
+constexpr const char* kChangesFile = "changes.json";
+constexpr const char* kSummaryFile = "summary.json";
+
+/// The first thing that is wrong in a file. Readers go on with defaults after it.
+class Faults {
+ public:
+  explicit Faults(std::filesystem::path file) : file_(std::move(file)) {}
+  void add(const std::string& where, const std::string& what) {
+    if (!first_) first_ = file_error(file_, where + ": " + what);
+  }
+  [[nodiscard]] const std::optional<Error>& first() const { return first_; }
+
+ private:
+  std::filesystem::path file_;
+  std::optional<Error> first_;
+};
+
+/// Reads the members of one object of a file. `where` names the object in messages.
+class MemberReader {
+ public:
+  MemberReader(const json& object, std::string where, Faults& faults)
+      : object_(object), where_(std::move(where)), faults_(faults) {}
+
+  [[nodiscard]] int integer(const char* key) const {
+    const auto value = as_integer(member(object_, key));
+    if (!value) fault(key, "expected a whole number");
+    return value.value_or(0);
+  }
+  [[nodiscard]] int count(const char* key) const {
+    const int value = integer(key);
+    if (value < 0) fault(key, "expected a number of 0 or more");
+    return std::max(0, value);
+  }
+  [[nodiscard]] bool flag(const char* key) const {
+    const json& value = member(object_, key);
+    if (!value.is_boolean()) fault(key, "expected true or false");
+    return value.is_boolean() && value.get<bool>();
+  }
+  /// In [0, 1]; null is NaN.
+  [[nodiscard]] double share(const char* key) const {
+    const json& value = member(object_, key);
+    if (value.is_null() && object_.contains(key)) return std::numeric_limits<double>::quiet_NaN();
+    const auto number = io::as_number(value);
+    if (!number || *number < 0 || *number > 1) fault(key, "expected a number in [0, 1]");
+    return number.value_or(0);
+  }
+  [[nodiscard]] std::string text(const char* key) const {
+    const auto value = as_text(member(object_, key));
+    if (!value) fault(key, "expected a text");
+    return value.value_or("");
+  }
+  /// Name of an object.
+  [[nodiscard]] std::string name(const char* key) const {
+    const std::string value = text(key);
+    if (const auto valid = check_object_name(value); !valid) fault(key, valid.error().message);
+    return value;
+  }
+  [[nodiscard]] Rigid3 pose(const char* key) const {
+    const json& value = member(object_, key);
+    const auto r = as_numbers(member(value, "rotation"));
+    const auto t = as_numbers(member(value, "translation_m"));
+    if (!r || r->size() != 9 || !t || t->size() != 3) {
+      fault(key, "expected a rotation of 9 numbers and a translation_m of 3");
+      return {};
+    }
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) matrix(row, column) = (*r)[3 * row + column];
+      matrix(row, 3) = (*t)[row];
+    }
+    const auto pose = rigid_from_matrix(matrix, key);
+    if (!pose) faults_.add(where_, pose.error().message);
+    return pose ? *pose : Rigid3();
+  }
+  [[nodiscard]] std::optional<Rigid3> optional_pose(const char* key) const {
+    if (member(object_, key).is_null()) return std::nullopt;
+    return pose(key);
+  }
+  /// Calls `read` with each element of an array and its place.
+  template <typename Read>
+  void each(const char* key, const Read& read) const {
+    const json& items = member(object_, key);
+    if (!items.is_array()) fault(key, "expected a list");
+    int index = 0;
+    if (items.is_array())
+      for (const json& item : items) read(MemberReader(item, fmt::format("{}{}[{}]", prefix(), key, index++), faults_));
+  }
+  [[nodiscard]] const json& operator[](const char* key) const { return member(object_, key); }
+  void fault(const char* key, const std::string& what) const { faults_.add(prefix() + key, what); }
+
+ private:
+  [[nodiscard]] std::string prefix() const { return where_.empty() ? "" : where_ + "."; }
+  const json& object_;
+  std::string where_;
+  Faults& faults_;
+};
+
+std::optional<std::array<double, 36>> read_covariance(const MemberReader& reader) {
+  const json& uncertainty = reader["uncertainty"];
+  if (uncertainty.is_null()) return std::nullopt;
+  const auto numbers = as_numbers(member(uncertainty, "covariance"));
+  std::array<double, 36> covariance{};
+  if (!numbers || numbers->size() != covariance.size()) {
+    reader.fault("uncertainty", "expected a covariance of 36 numbers");
+    return std::nullopt;
+  }
+  std::ranges::copy(*numbers, covariance.begin());
+  return covariance;
+}
+
+StoredDetection read_detection(const MemberReader& reader) {
+  StoredDetection detection;
+  detection.object = reader.name("object");
+  detection.bop_id = reader.integer("obj_id");
+  detection.track = reader.integer("track");
+  detection.score = reader.share("score");
+  detection.fit = reader.share("fit");
+  detection.visible_share = reader.share("visible_share");
+  detection.world_from_object = reader.pose("world_from_object");
+  detection.covariance = read_covariance(reader);
+  if (!reader["verdict"].is_null()) detection.verdict = reader.text("verdict");
+  reader.each("evidence", [&](const MemberReader& item) {
+    detection.evidence.push_back({item.integer("view"), item.flag("allowed"), item.share("visible_share"),
+                                  item.share("explained_share"), item.share("color_share")});
+  });
+  return detection;
+}
+
+Result<RecognitionResults> parse_detections(const std::filesystem::path& file) {
+  const auto content = io::read_json(file);
+  if (!content) return content.error();
+  Faults faults(file);
+  const MemberReader reader(*content, "", faults);
+  RecognitionResults results;
+  results.version = reader.text("version");
+  results.preset = reader.text("preset");
+  reader.each("views", [&](const MemberReader& item) {
+    StoredView view;
+    view.name = item.text("name");
+    view.world_from_camera = item.pose("world_from_camera");
+    if (item.integer("view") != static_cast<int>(results.views.size())) item.fault("view", "views are not in order");
+    item.each("detections", [&](const MemberReader& d) { view.detections.push_back(read_detection(d)); });
+    results.views.push_back(std::move(view));
+  });
+  if (faults.first()) return *faults.first();
+  return results;
+}
+
+StoredEvent read_event(const MemberReader& reader, int num_views) {
+  StoredEvent event;
+  event.view = reader.integer("view");
+  event.kind = reader.text("kind");
+  event.object = reader.name("object");
+  event.track = reader.integer("track");
+  event.world_from_object_before = reader.optional_pose("world_from_object_before");
+  event.world_from_object_after = reader.optional_pose("world_from_object_after");
+  event.confidence = reader.share("confidence");
+  static constexpr const char* kKinds[] = {"found", "added", "moved", "removed", "still_there", "not_seen"};
+  if (std::ranges::find(kKinds, event.kind) == std::end(kKinds)) reader.fault("kind", "is no kind of event");
+  if (event.view < 0 || event.view >= num_views) reader.fault("view", "is no view of detections.json");
+  return event;
+}
+
+Result<void> add_changes(const std::filesystem::path& file, RecognitionResults& results) {
+  const auto content = io::read_json(file);
+  if (!content) return content.error();
+  Faults faults(file);
+  const MemberReader reader(*content, "", faults);
+  const int num_views = static_cast<int>(results.views.size());
+  reader.each("events", [&](const MemberReader& item) { results.events.push_back(read_event(item, num_views)); });
+  std::size_t index = 0;
+  reader.each("views", [&](const MemberReader& item) {
+    if (index >= results.views.size() || item.text("name") != results.views[index].name) {
+      item.fault("name", "differs from detections.json");
+      return;
+    }
+    StoredView& view = results.views[index++];
+    view.num_novel_points = item.count("novel_points");
+    view.num_removed_points = item.count("removed_points");
+    view.changed_share = item.share("changed_share");
+    view.pose_suspect = item.flag("pose_suspect");
+  });
+  if (index != results.views.size()) reader.fault("views", "has fewer views than detections.json");
+  if (faults.first()) return *faults.first();
+  std::ranges::stable_sort(results.events, {}, &StoredEvent::view);
+  return {};
+}
+
+Result<void> add_inputs(const std::filesystem::path& file, RecognitionResults& results) {
+  const auto content = io::read_json(file);
+  if (!content) return content.error();
+  const json& inputs = member(*content, "inputs");
+  const auto path_of = [&](const char* key) {
+    const std::filesystem::path path = as_text(member(inputs, key)).value_or("");
+    return path.empty() ? path : (file.parent_path() / path).lexically_normal();
+  };
+  results.sequence = path_of("sequence");
+  results.models = path_of("models");
+  return {};
+}
+
+}  // namespace
+
+bool has_recognition_results(const std::filesystem::path& folder) { return io::is_file(folder / kDetectionsFile); }
+
+Result<RecognitionResults> read_recognition_results(const std::filesystem::path& folder) {
+  auto results = parse_detections(folder / kDetectionsFile);
+  if (!results) return results;
+  if (const auto added = add_changes(folder / kChangesFile, *results); !added) return added.error();
+  if (!io::is_file(folder / kSummaryFile)) return results;
+  if (const auto added = add_inputs(folder / kSummaryFile, *results); !added) return added.error();
+  return results;
+}
+
+}  // namespace resight

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/viewer/http_server.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <vector>
+
+#include "resight/viewer/http_test_client.hpp"
+#include "resight/viewer/internal/parse_query.hpp"
+
+namespace resight {
+namespace {
+
+using test::body_of;
+using test::RawConnection;
+using test::RunningServer;
+using test::status_of;
+using testing::HasSubstr;
+
+constexpr const char* kAsk = "GET /x HTTP/1.1\r\nHost: localhost\r\n\r\n";
+
+HttpResponse echo(const HttpRequest& request) {
+  if (request.path == "/throw") throw std::runtime_error("out of order");
+  return make_text_response(200, request.method + " " + request.path + " " + request.host + " " + request.token + " " +
+                                     std::to_string(request.body.size()));
+}
+
+// Short times, so that the test of slow clients is quick.
+HttpLimits small_limits() {
+  HttpLimits limits;
+  limits.max_header_bytes = 2000;
+  limits.max_body_bytes = 1000;
+  limits.max_connections = 8;
+  limits.request_time_s = 0.3;
+  return limits;
+}
+
+TEST(HttpServer, AnswersRequestsOnOneConnection) {
+  const RunningServer server(echo);
+  const RawConnection connection = server.connect();
+  const std::string first = connection.ask("GET /a?b=1 HTTP/1.1\r\nHost: localhost:1\r\nX-Resight-Token: t\r\n\r\n");
+  EXPECT_EQ(status_of(first), 200);
+  EXPECT_EQ(body_of(first), "GET /a localhost:1 t 0");
+  EXPECT_EQ(body_of(connection.ask("POST /c HTTP/1.1\r\nHost: h\r\nContent-Length: 3\r\n\r\nxyz")), "POST /c h  3");
+}
+
+TEST(HttpServer, ForbidsWhatThePageDoesNotNeed) {
+  const RunningServer server(echo);
+  const std::string answer = server.ask(kAsk);
+  EXPECT_THAT(answer, HasSubstr("Content-Security-Policy: default-src 'none'; script-src 'self'"));
+  EXPECT_THAT(answer, HasSubstr("Cross-Origin-Resource-Policy: same-origin"));
+  EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff"));
+  EXPECT_THAT(answer, testing::Not(HasSubstr("Access-Control")));
+}
+
+TEST(HttpServer, RefusesMalformedRequests) {
+  const RunningServer server(echo);
+  for (const std::string& request :
+       {std::string("\r\n\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"),
+        std::string("GET / HTTP/1.1\r\nno colon\r\n\r\n"), std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03", 10),
+        std::string("POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n"),
+        std::string("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n")})
+    EXPECT_EQ(status_of(server.ask(request)), 400) << request;
+  EXPECT_EQ(status_of(server.ask(kAsk)), 200);
+}
+
+TEST(HttpServer, RefusesLongHeadersAndBodies) {
+  const RunningServer server(echo, small_limits());
+  EXPECT_EQ(status_of(server.ask("GET / HTTP/1.1\r\nX: " + std::string(3000, 'x') + "\r\n\r\n")), 431);
+  EXPECT_EQ(status_of(server.ask("GET /" + std::string(300000, 'x'))), 431);
+  EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n")), 413);
+  // The client sends all of it before it reads.
+  EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nContent-Length: 2000000\r\n\r\n" + std::string(2000000, 'x'))),
+            413);
+  EXPECT_EQ(status_of(server.ask("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nfffff\r\n" +
+                                 std::string(0xfffff, 'x'))),
+            413);
+  EXPECT_EQ(status_of(server.ask(kAsk)), 200);
+}
+
+TEST(HttpServer, GivesUpOnSlowClients) {
+  const RunningServer server(echo, small_limits());
+  const RawConnection connection = server.connect();
+  // A byte now and then does not prolong the time of a request.
+  const std::string request = kAsk;
+  std::size_t num_sent = 0;
+  while (num_sent < 8 && connection.send(request.substr(num_sent, 1))) {
+    ++num_sent;
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  }
+  EXPECT_EQ(status_of(connection.receive()), 408);
+  EXPECT_EQ(server.connect().receive(), "") << "a connection that asks nothing is closed";
+  EXPECT_EQ(status_of(server.ask(kAsk)), 200);
+}
+
+TEST(HttpServer, SurvivesClientsThatLeave) {
+  RunningServer server(echo, small_limits());
+  for (int i = 0; i < 50; ++i) server.connect().send("GET / HT");
+  for (int i = 0; i < 50; ++i) server.connect().send(kAsk);
+  int status = 0;
+  for (int wait = 0; wait < 200 && status != 200; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    status = status_of(server.ask(kAsk));
+  }
+  EXPECT_EQ(status, 200);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // longer than a request may take
+  server.stop();
+  EXPECT_EQ(server.server().num_connections(), 0);
+}
+
+TEST(HttpServer, RefusesFurtherConnectionsWithAStatus) {
+  HttpLimits limits = small_limits();
+  limits.request_time_s = 30;
+  const RunningServer server(echo, limits);
+  std::vector<RawConnection> connections;
+  for (int i = 0; i < 100; ++i) connections.push_back(server.connect());
+  int num_answered = 0;
+  int num_refused = 0;
+  for (const RawConnection& connection : connections) {
+    const int status = status_of(connection.ask(kAsk));
+    num_answered += status == 200;
+    num_refused += status == 503;
+  }
+  EXPECT_EQ(num_answered, limits.max_connections);
+  EXPECT_EQ(num_refused, 100 - limits.max_connections);
+  connections.clear();
+  int status = 0;  // the server notices soon that they have gone
+  for (int wait = 0; wait < 100 && status != 200; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    status = status_of(server.ask(kAsk));
+  }
+  EXPECT_EQ(status, 200);
+}
+
+TEST(HttpServer, ReportsFailuresOfTheHandler) {
+  const RunningServer server(echo);
+  const std::string answer = server.ask("GET /throw HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(status_of(answer), 500);
+  EXPECT_EQ(body_of(answer), "failed: out of order");
+}
+
+TEST(HttpServer, ListensOnLoopbackOnly) {
+  const auto taken = HttpServer::listen(0, echo);
+  ASSERT_TRUE(taken.ok());
+  const auto second = HttpServer::listen(taken->port(), echo);
+  ASSERT_FALSE(second.ok());
+  EXPECT_THAT(second.error().message, HasSubstr("of 127.0.0.1: "));
+}
+
+TEST(SplitTarget, SeparatesPathAndQuery) {
+  std::string path;
+  std::map<std::string, std::string> query;
+  split_target("/a/b?x=1&y&x=2&=3", path, query);
+  EXPECT_EQ(path, "/a/b");
+  EXPECT_EQ(query, (std::map<std::string, std::string>{{"x", "1"}, {"y", ""}, {"", "3"}}));
+}
+
+}  // namespace
+}  // namespace resight

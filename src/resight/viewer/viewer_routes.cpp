@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/viewer/viewer_routes.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "resight/viewer/access_guard.hpp"
+#include "resight/viewer/assets.hpp"
+
+namespace resight {
+namespace {
+
+constexpr const char* kJson = "application/json";
+constexpr const char* kBinary = "application/octet-stream";
+
+std::vector<std::string_view> split_path(std::string_view path) {
+  std::vector<std::string_view> parts;
+  while (!path.empty()) {
+    path.remove_prefix(1);  // the slash
+    const std::size_t end = path.find('/');
+    parts.push_back(path.substr(0, end));
+    path.remove_prefix(end == path.npos ? path.size() : end);
+  }
+  return parts;
+}
+
+/// A number below `count`, of digits only.
+std::optional<int> parse_number_below(std::string_view text, int count) {
+  int number = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || text.size() > 9 || end != text.data() + text.size() || error != std::errc()) return std::nullopt;
+  return number >= 0 && number < count ? std::optional(number) : std::nullopt;
+}
+
+HttpResponse not_found() { return make_text_response(404, "there is nothing under this address"); }
+
+HttpResponse respond(const char* type, const SceneData::Content& content) {
+  if (!content) return make_text_response(500, content.error().message);
+  return {200, type, *content};
+}
+
+/// Addresses below /api/views/.
+HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& parts, const HttpRequest& request) {
+  const auto view = parse_number_below(parts[2], scene.num_views());
+  if (!view) return not_found();
+  if (parts.size() == 3) {
+    const auto asked = request.query.find("run");
+    if (asked == request.query.end()) return respond(kJson, scene.view(*view, -1));
+    const auto run = parse_number_below(asked->second, scene.num_runs());
+    return run ? respond(kJson, scene.view(*view, *run)) : not_found();
+  }
+  if (parts.size() == 4 && parts[3] == "color") return respond("image/jpeg", scene.color(*view));
+  if (parts.size() == 4 && parts[3] == "depth") return respond(kBinary, scene.depth(*view));
+  if (parts.size() == 4 && parts[3] == "changes" && scene.has_changes()) return respond(kBinary, scene.changes(*view));
+  return not_found();
+}
+
+HttpResponse answer_data(SceneData& scene, const HttpRequest& request) {
+  const auto parts = split_path(request.path);
+  if (parts.size() == 2 && parts[1] == "scene") return respond(kJson, scene.index());
+  if (parts.size() == 2 && parts[1] == "revision")
+    return {200, kJson, std::make_shared<const std::string>(std::to_string(scene.revision()))};
+  if (parts.size() >= 3 && parts[1] == "views") return answer_view(scene, parts, request);
+  if (parts.size() == 3 && parts[1] == "surfaces") {
+    const auto object = parse_number_below(parts[2], scene.num_objects());
+    return object ? respond(kBinary, scene.surface(*object)) : not_found();
+  }
+  return not_found();
+}
+
+HttpResponse answer_asset(const HttpRequest& request) {
+  for (const Asset& asset : viewer_assets())
+    if (asset.path == request.path)
+      return {200, std::string(asset.content_type), std::make_shared<const std::string>(asset.bytes)};
+  return not_found();
+}
+
+}  // namespace
+
+HttpHandler make_viewer_handler(SceneData& scene, const std::string& token) {
+  return [&scene, guard = std::make_shared<AccessGuard>(token)](const HttpRequest& request) {
+    const bool is_data = request.path.starts_with("/api/");
+    if (auto refusal = is_data ? guard->check_data(request) : guard->check_asset(request)) return *std::move(refusal);
+    return is_data ? answer_data(scene, request) : answer_asset(request);
+  };
+}
+
+}  // namespace resight

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+
+#include "resight/viewer/http_message.hpp"
+#include "resight/viewer/scene_data.hpp"
+
+namespace resight {
+
+/// The handler of the viewer: its page from memory, and under /api/ the data of a scene, addressed by number.
+/// docs/viewer.md lists the addresses. `scene` must outlive the handler.
+[[nodiscard]] HttpHandler make_viewer_handler(SceneData& scene, const std::string& token);
+
+}  // namespace resight

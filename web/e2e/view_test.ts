@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// The viewer in a real browser, against the real program. tests/viewer_test.sh makes the data and calls it:
+//   RESIGHT          the program
+//   RESULTS, OTHER   two folders of results on the same views, of which one is removed and one has moved
+//   MODELS           the model library
+//   SEQUENCE         the views
+//   CHANGES          results of 'resight changes' on them
+//   LIVE             folder for new results
+//   PICTURES         folder for pictures of the page
+import assert from "node:assert/strict";
+import { type ChildProcess, spawn } from "node:child_process";
+import { mkdir } from "node:fs/promises";
+import { after, before, test } from "node:test";
+import { type Browser, chromium, type Page } from "playwright-core";
+
+function setting(name: string): string {
+  const value = process.env[name];
+  if (!value) throw new Error(`${name} is not set`);
+  return value;
+}
+
+const kBrowser = process.env.CHROMIUM ?? "/usr/bin/chromium";
+// Without a graphics card, WebGL is drawn by SwiftShader, which Chromium does not use unless it is told to.
+const kBrowserArguments = ["--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--no-sandbox"];
+
+// Without a desktop, the program opens no browser of its own.
+const kNoDesktop = { ...process.env, DISPLAY: undefined, WAYLAND_DISPLAY: undefined };
+
+let browser: Browser;
+const servers: ChildProcess[] = [];
+
+before(async () => {
+  await mkdir(setting("PICTURES"), { recursive: true });
+  browser = await chromium.launch({ executablePath: kBrowser, args: kBrowserArguments });
+});
+after(async () => {
+  for (const server of servers) server.kill("SIGKILL"); // those of tests that have failed
+  await browser.close();
+});
+
+interface Served {
+  address: string;
+  output: () => string;
+  stop: () => Promise<number | null>;
+}
+
+/** Starts the program; resolves when it has printed its address. */
+async function serve(inputs: string[], command = ["view", "--no-open"]): Promise<Served> {
+  const server: ChildProcess = spawn(setting("RESIGHT"), [...command, ...inputs], { env: kNoDesktop });
+  servers.push(server);
+  const ended = new Promise<number | null>((resolve) => server.on("exit", resolve));
+  let output = "";
+  const address = await new Promise<string>((resolve, reject) => {
+    server.stderr?.on("data", (data) => {
+      if (String(data).startsWith("resight: ")) reject(new Error(String(data)));
+    });
+    server.on("exit", () => reject(new Error("resight view has ended")));
+    server.stdout?.on("data", (data) => {
+      output += data;
+      const line = /^(http:\/\/127\.0\.0\.1:\d+\/#token=[0-9a-f]{32})\n/.exec(output);
+      if (line?.[1]) resolve(line[1]);
+    });
+  });
+  const stop = () => {
+    server.kill("SIGINT");
+    return ended;
+  };
+  return { address, output: () => output, stop };
+}
+
+/** Opens the page and fails the test for any error in it, and for any request to another server. */
+async function open(address: string): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "dark" });
+  page.on("pageerror", (error) => assert.fail(`error in the page: ${error.message}`));
+  page.on("console", (message) => {
+    if (message.type() === "error") assert.fail(`error in the page: ${message.text()}`);
+  });
+  page.on("request", (request) => {
+    const { protocol, host } = new URL(request.url());
+    assert.ok(protocol === "blob:" || host === new URL(address).host, `a request to ${request.url()}`);
+  });
+  await page.goto(address);
+  await page.waitForSelector("body[data-ready=yes]");
+  return page;
+}
+
+async function waitForView(page: Page, view: number): Promise<void> {
+  await page.waitForSelector(`body[data-shown="${view}"]`);
+}
+
+/** Waits until the 3D view has at least so many colours. An empty one has one. */
+async function waitForDrawing(page: Page, minColors: number): Promise<void> {
+  let count = 0;
+  for (let tries = 0; tries < 50 && count < minColors; ++tries) {
+    if (tries > 0) await page.waitForTimeout(100);
+    count = await countColors(page);
+  }
+  assert.ok(count >= minColors, `the 3D view is blank: ${count} colours`);
+}
+
+function countColors(page: Page): Promise<number> {
+  return page.evaluate(() => {
+    const drawing = document.querySelector<HTMLCanvasElement>("#world canvas");
+    const copy = document.createElement("canvas");
+    copy.width = 160;
+    copy.height = 120;
+    const context = copy.getContext("2d");
+    if (!drawing || !context) return 0;
+    context.drawImage(drawing, 0, 0, copy.width, copy.height);
+    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const colors = new Set<number>();
+    for (let i = 0; i < data.length; i += 4)
+      colors.add(((data[i] ?? 0) << 16) | ((data[i + 1] ?? 0) << 8) | (data[i + 2] ?? 0));
+    return colors.size;
+  });
+}
+
+const picture = (page: Page, name: string) => page.screenshot({ path: `${setting("PICTURES")}/${name}.png` });
+// biome-ignore lint/performance/useDomNodeTextContent: lines of the page are told apart
+const inspector = (page: Page) => page.locator("#inspector").innerText({ timeout: 5000 });
+
+test("results: scrub, pick, select a change, keep a link, compare", async () => {
+  const { address, stop } = await serve([setting("RESULTS"), setting("OTHER")]);
+  const page = await open(address);
+
+  // Load: the 3D view shows something, the image has its outlines, the timeline its changes.
+  await waitForDrawing(page, 100);
+  assert.equal(await page.locator(".labels3d span").count(), 2);
+  assert.match((await page.locator("figure canvas").first().getAttribute("aria-label")) ?? "", /2 objects outlined/);
+  assert.equal(await page.locator(".row[data-track] .mark").count(), 2);
+  assert.match(await inspector(page), /Changes \(2\)/);
+  await picture(page, "results");
+
+  // Scrub, by slider and by keys.
+  await page.locator("#timeline input[type=range]").fill("2");
+  await waitForView(page, 2);
+  await page.locator("#world canvas").focus();
+  await page.keyboard.press("ArrowRight");
+  await waitForView(page, 3);
+  await page.keyboard.press("Home");
+  await waitForView(page, 0);
+
+  // Pick an object in the image, then the same one in 3D.
+  await page.locator(".row .name", { hasText: "cereal_blue" }).click();
+  assert.match(await inspector(page), /cereal_blue[\s\S]*score/);
+  await page.keyboard.press("Escape");
+  assert.match(await inspector(page), /Changes \(2\)/);
+  await clickOn(page, ".labels3d span", "cereal_blue");
+  await page.waitForSelector("#inspector h2:text('cereal_blue')");
+  assert.match(await inspector(page), /to ground truth/);
+  assert.match(await inspector(page), /Evidence by view/);
+
+  // The keys lead to the changes, in order.
+  await page.keyboard.press("n");
+  await page.waitForSelector(".mark.selected.moved");
+  await picture(page, "moved");
+  await page.keyboard.press("n");
+  await page.waitForSelector(".mark.selected.removed");
+  await page.keyboard.press("p");
+  await page.waitForSelector(".mark.selected.moved");
+  await page.locator(".row[data-track] .mark.removed").click();
+  await page.keyboard.press("f");
+  await page.waitForSelector("#inspector h2:text('tea_box')");
+  await picture(page, "removed");
+
+  // A link restores all of it.
+  await page.waitForFunction(() => location.hash.includes("track="));
+  await page.waitForTimeout(400);
+  const link = page.url();
+  const shown = await inspector(page);
+  await page.reload();
+  await page.waitForSelector("body[data-ready=yes]");
+  await page.waitForFunction(
+    (text) => document.querySelector("#inspector")?.textContent === text,
+    await text(page, "#inspector"),
+  );
+  assert.equal((await inspector(page)).split("\n")[0], shown.split("\n")[0]);
+  await page.waitForTimeout(400);
+  assert.equal(page.url(), link);
+
+  // Compare with another run.
+  await page.getByLabel("Compare with").selectOption("1");
+  await page.waitForSelector("body.compares");
+  assert.equal(await page.locator("figure.image:visible").count(), 2);
+  await page.getByLabel("Colours of the objects").selectOption("evidence");
+  await page.getByLabel("Colours of the points").selectOption("distance");
+  await page.locator("button[data-layer=previous]").click();
+  await page.locator("button[data-layer=truth]").click();
+  await page.waitForSelector(".legend:visible");
+  await page.keyboard.press("d");
+  await picture(page, "compare");
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280, "something is cut off");
+  await waitForDrawing(page, 100);
+
+  // A picture of it.
+  const download = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Export a picture" }).click();
+  assert.match((await download).suggestedFilename(), /-view\d+\.png$/);
+  await page.close();
+  assert.equal(await stop(), 0, "Ctrl-C ends it well");
+});
+
+test("places have coordinates, and distances are measured", async () => {
+  const { address, stop } = await serve([setting("RESULTS")]);
+  const page = await open(address);
+  const image = page.locator("figure canvas").first();
+  await image.hover({ position: { x: 150, y: 150 } });
+  await page.waitForFunction(() =>
+    /pixel \d+, \d+ · depth .* · world /.test(document.querySelector("#status")?.textContent ?? ""),
+  );
+  await page.keyboard.press("m");
+  await image.click({ position: { x: 150, y: 150 } });
+  await image.click({ position: { x: 200, y: 150 } });
+  assert.match(await inspector(page), /distance\s+\d+ mm/);
+  await page.keyboard.press("m");
+  await page.keyboard.press("Escape");
+  await page.locator("#world canvas").hover({ position: { x: 390, y: 300 } });
+  await page.waitForFunction(() => /^world /.test(document.querySelector("#status")?.textContent ?? ""));
+  await page.keyboard.press("?");
+  await page.waitForSelector("dialog[open]");
+  await picture(page, "keys");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("End");
+  await page.keyboard.press("Space"); // plays from the start
+  await page.waitForSelector('body[data-shown="1"]');
+  await page.close();
+  assert.equal(await stop(), 0);
+});
+
+test("a sequence and a model library are shown as well", async () => {
+  const models = await serve([setting("MODELS")]);
+  const modelPage = await open(models.address);
+  await waitForDrawing(modelPage, 50);
+  await modelPage.getByRole("button", { name: "Select tea_box" }).click();
+  await modelPage.waitForSelector("#inspector h2:text('tea_box')");
+  assert.match(await inspector(modelPage), /diameter[\s\S]*keypoints/);
+  await picture(modelPage, "models");
+  await modelPage.close();
+  assert.equal(await models.stop(), 0);
+
+  const sequence = await serve([setting("SEQUENCE"), "--models", setting("MODELS"), "--changes", setting("CHANGES")]);
+  const page = await open(sequence.address);
+  await page.locator("button[data-layer=truth]").click();
+  await page.waitForFunction(() => document.querySelectorAll(".labels3d span").length === 2);
+  await waitForDrawing(page, 100);
+  await picture(page, "sequence");
+  await page.keyboard.press("End");
+  await page.locator("button[data-layer=cloud]").click();
+  await page.locator("button[data-layer=changes]").click();
+  await page.keyboard.press("c");
+  await waitForDrawing(page, 100);
+  await picture(page, "changes");
+  await page.close();
+  assert.equal(await sequence.stop(), 0);
+});
+
+test("views are shown as they are recognised", async () => {
+  const inputs = ["--models", setting("MODELS"), "--sequence", setting("SEQUENCE"), "--out", setting("LIVE")];
+  const { address, output, stop } = await serve(inputs, ["recognize", "--view"]);
+  const page = await open(address);
+  await page.waitForFunction(() => document.querySelectorAll(".row[data-track]").length === 2);
+  await page.waitForSelector(".mark.removed");
+  await page.waitForFunction(() => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
+  await page.close();
+  for (let tries = 0; tries < 300 && !output().includes("report:"); ++tries)
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  await new Promise((resolve) => setTimeout(resolve, 500)); // from the last line on, Ctrl-C ends the server
+  assert.equal(await stop(), 0, "Ctrl-C ends it well after the last view");
+});
+
+test("without the token, the page says what to do", async () => {
+  const { address, stop } = await serve([setting("MODELS")]);
+  const page = await browser.newPage();
+  await page.goto(address.replace(/#.*/, ""));
+  assert.match((await page.locator(".failure").textContent()) ?? "", /open the address that resight printed/);
+  await page.close();
+  assert.equal(await stop(), 0);
+});
+
+const text = (page: Page, selector: string) => page.locator(selector).evaluate((part) => part.textContent);
+
+/** Clicks on what lies under a label of the 3D view; labels themselves let clicks pass. */
+async function clickOn(page: Page, selector: string, name: string): Promise<void> {
+  const label = page.locator(selector, { hasText: name });
+  await label.waitFor();
+  const box = await label.boundingBox();
+  assert.ok(box, `no label ${name}`);
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height + 2);
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fetches data from the server and keeps what was used last. Data are made once on both sides.
+import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
+import { decodeCloud } from "./protocol";
+
+const kMaxViews = 24;
+const kMaxDetails = 300;
+
+/** Keeps promises of the values that were used last; failures are not kept. */
+export class Recent<T> {
+  private readonly values = new Map<string, Promise<T>>();
+  constructor(
+    private readonly maxCount: number,
+    private readonly drop: (value: T) => void = () => {},
+  ) {}
+
+  get(key: string, make: () => Promise<T>): Promise<T> {
+    const known = this.values.get(key);
+    if (known) {
+      this.values.delete(key);
+      this.values.set(key, known);
+      return known;
+    }
+    const made = make();
+    this.values.set(key, made);
+    made.catch(() => this.values.delete(key));
+    while (this.values.size > this.maxCount) {
+      const [oldest] = this.values;
+      if (!oldest) break;
+      this.values.delete(oldest[0]);
+      oldest[1].then(this.drop, () => {});
+    }
+    return made;
+  }
+  clear(): void {
+    this.values.clear();
+  }
+}
+
+/** The images of a view. */
+export interface ViewImages {
+  bitmap: ImageBitmap;
+  /** Red, green, blue and alpha of each pixel. */
+  pixels: Uint8ClampedArray;
+  depth: Float32Array;
+}
+
+export class Api {
+  private readonly images = new Recent<ViewImages>(kMaxViews);
+  private readonly details = new Recent<ViewDetails>(kMaxDetails);
+  private readonly clouds = new Recent<Cloud>(kMaxViews);
+  private readonly surfaces = new Recent<Cloud>(1000);
+
+  constructor(private readonly token: string) {}
+
+  private async ask(path: string): Promise<Response> {
+    let response: Response;
+    try {
+      response = await fetch(path, { headers: { "X-Resight-Token": this.token } });
+    } catch {
+      throw new Error("resight does not answer; has it been stopped?");
+    }
+    if (!response.ok) throw new Error(await response.text());
+    return response;
+  }
+
+  async scene(): Promise<Scene> {
+    return (await this.ask("/api/scene")).json();
+  }
+  async revision(): Promise<number> {
+    return (await this.ask("/api/revision")).json();
+  }
+  view(view: number, run: number): Promise<ViewDetails> {
+    return this.details.get(`${view}/${run}`, async () => {
+      const query = run >= 0 ? `?run=${run}` : "";
+      return (await this.ask(`/api/views/${view}${query}`)).json();
+    });
+  }
+  viewImages(view: number, camera: Camera): Promise<ViewImages> {
+    return this.images.get(String(view), async () => {
+      const [color, depth] = await Promise.all([
+        this.ask(`/api/views/${view}/color`).then((response) => response.blob()),
+        this.ask(`/api/views/${view}/depth`).then((response) => response.arrayBuffer()),
+      ]);
+      const bitmap = await createImageBitmap(color);
+      const values = new Float32Array(depth);
+      if (values.length !== camera.width * camera.height) throw new Error("the depth of a view is cut off");
+      return { bitmap, pixels: readPixels(bitmap), depth: values };
+    });
+  }
+  surface(object: number): Promise<Cloud> {
+    return this.surfaces.get(String(object), async () =>
+      decodeCloud(await (await this.ask(`/api/surfaces/${object}`)).arrayBuffer()),
+    );
+  }
+  /** Reconstruction at a view, removed points red, novel ones green. */
+  changes(view: number): Promise<Cloud> {
+    return this.clouds.get(String(view), async () =>
+      decodeCloud(await (await this.ask(`/api/views/${view}/changes`)).arrayBuffer()),
+    );
+  }
+  /** Forgets what depends on results, which have changed. */
+  forgetDetails(): void {
+    this.details.clear();
+  }
+}
+
+function readPixels(bitmap: ImageBitmap): Uint8ClampedArray {
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (!context) throw new Error("this browser has no 2D canvas");
+  context.drawImage(bitmap, 0, 0);
+  return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+}

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+import { Api } from "./api";
+import { Bar, isDark, restoreTheme, toggleTheme } from "./bar";
+import { byId, coordinates, download, element, metres } from "./dom";
+import { guessUp, type Vec3 } from "./geometry";
+import { ImagePanel, type PointedAt } from "./image_panel";
+import { Inspector } from "./inspector";
+import { formatLink, type LinkState, parseLink } from "./link";
+import { makePicture } from "./picture";
+import type { Pose } from "./protocol";
+import { SceneView } from "./scene_view";
+import { App } from "./store";
+import { Timeline } from "./timeline";
+import { World } from "./world";
+
+const kPollMs = 1000;
+
+/** The whole page. */
+class Viewer {
+  private readonly world: World;
+  private readonly sceneView: SceneView;
+  private readonly panels: ImagePanel[] = [];
+  private readonly bar: Bar;
+  private readonly timeline: Timeline | null;
+  private readonly status = byId("status");
+  private linkTimer = 0;
+
+  constructor(
+    private readonly app: App,
+    private readonly api: Api,
+    private readonly token: string,
+  ) {
+    const { scene } = app;
+    const hasViews = scene.views.length > 0;
+    document.body.classList.toggle("models", !hasViews);
+    document.title = `${scene.title} – resight`;
+    const poses = scene.views.map((_, view) => app.cameraPose(view)).filter((pose): pose is Pose => pose !== null);
+    this.world = new World(byId("world"), hasViews ? guessUp(poses) : [0, 0, 1]);
+    this.sceneView = new SceneView(this.world, app, api);
+    this.bar = new Bar(byId("bar"), app, {
+      exportPicture: () => this.exportPicture(),
+      copyLink: () => this.copyLink(),
+      resetCamera: () => this.world.goHome(),
+    });
+    this.timeline = hasViews ? new Timeline(byId("timeline"), app) : null;
+    const inspector = new Inspector(byId("inspector"), app, api);
+    inspector.onError = (error) => this.report(error);
+    if (hasViews) this.addPanels();
+    this.listenToPointer();
+    document.addEventListener("keydown", (event) => this.onKey(event));
+    window.addEventListener("themechange", () => this.showTheme());
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.showTheme());
+    this.world.onMove = () => this.keepLink();
+    app.listen((changed) => {
+      if (changed.has("shownView")) document.body.dataset.shown = String(app.get().shownView);
+      if (changed.size === 1 && changed.has("shownView")) return;
+      this.keepLink();
+      this.update(changed);
+    });
+    this.showTheme();
+  }
+
+  private addPanels(): void {
+    const host = byId("images");
+    this.panels.push(new ImagePanel(this.app, this.api, () => (this.app.run() ? this.app.get().run : -1)));
+    if (this.app.scene.runs.length > 1)
+      this.panels.push(new ImagePanel(this.app, this.api, () => this.app.get().compare));
+    for (const panel of this.panels) {
+      host.append(panel.root);
+      panel.onPoint = (at) => this.showPointedAt(at);
+      panel.onPick = (at) => {
+        if (at.position) this.pickPlace(at.position);
+      };
+    }
+  }
+
+  async start(state: LinkState): Promise<void> {
+    const { scene } = this.app;
+    this.app.set(scene.is_live && state.view === 0 ? { ...state, view: Math.max(0, this.app.latestView()) } : state);
+    const all = new Set(Object.keys(this.app.get()));
+    const { view } = this.app.get();
+    const pose = this.app.cameraPose(view);
+    if (scene.views.length > 0 && pose) {
+      const { camera } = await this.api.view(view, this.app.run() ? state.run : -1);
+      const { depth } = await this.api.viewImages(view, camera);
+      this.sceneView.home(guessUp([pose]), camera, depth, pose);
+    }
+    await this.updateAll(all);
+    if (state.camera) this.world.setCamera(state.camera);
+    else this.world.goHome();
+    if (scene.is_live) this.follow();
+    if (scene.views.length > 1 && !scene.has_poses)
+      this.say("The sequence has no camera poses: each view is drawn in the frame of its own camera.");
+    document.body.dataset.ready = "yes";
+  }
+
+  private update(changed: ReadonlySet<string>): void {
+    this.updateAll(changed).catch((error) => this.report(error));
+  }
+
+  private async updateAll(changed: ReadonlySet<string>): Promise<void> {
+    const has = (...keys: string[]) => keys.some((key) => changed.has(key));
+    const { view, compare } = this.app.get();
+    const isNew = has("view", "run", "compare");
+    if (isNew) this.app.set({ shownView: -1 });
+    document.body.classList.toggle("compares", compare >= 0 && this.panels.length > 1);
+    const panels = this.panels.filter((_, index) => index === 0 || compare >= 0);
+    await Promise.all([
+      this.sceneView.update(changed),
+      ...panels.map((panel) => (isNew ? panel.update() : panel.draw())),
+    ]);
+    if (isNew) this.say("");
+    if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
+  }
+
+  private report(error: unknown): void {
+    this.app.set({ isPlaying: false });
+    this.say(error instanceof Error ? error.message : String(error), true);
+  }
+  private say(text: string, isError = false): void {
+    this.status.textContent = text;
+    this.status.classList.toggle("error", isError);
+  }
+
+  private showPointedAt(at: PointedAt | null): void {
+    if (!at) {
+      this.say("");
+      return;
+    }
+    const [u, v] = at.pixel;
+    const depth = at.depth > 0 ? `depth ${metres(at.depth)}` : "no depth";
+    this.say(`pixel ${u}, ${v} · ${depth}${at.position ? ` · world ${coordinates(at.position)} m` : ""}`);
+    this.world.setMarker(at.position ?? this.app.get().point);
+  }
+
+  private pickPlace(position: Vec3): void {
+    const { isMeasuring, measured } = this.app.get();
+    if (isMeasuring)
+      this.app.set({ measured: measured.length === 1 ? [...measured, position] : [position], point: position });
+    else this.app.set({ point: position, track: -1, object: -1, event: null });
+    this.say(`world ${coordinates(position)} m`);
+  }
+
+  private listenToPointer(): void {
+    const { canvas } = this.world;
+    let down: [number, number] = [0, 0];
+    let isWaiting = false;
+    const locate = (event: PointerEvent): [number, number] => {
+      const box = canvas.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      down = locate(event);
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const [x, y] = locate(event);
+      if (event.button !== 0 || Math.hypot(x - down[0], y - down[1]) > 4) return;
+      this.pickInWorld(x, y);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons !== 0 || isWaiting) return;
+      isWaiting = true;
+      requestAnimationFrame(() => {
+        isWaiting = false;
+        const picked = this.world.pick(...locate(event));
+        const name = picked && picked.object >= 0 ? ` · ${this.app.object(picked.object)?.name ?? ""}` : "";
+        this.say(picked ? `world ${coordinates(picked.position)} m${name}` : "");
+      });
+    });
+  }
+
+  private pickInWorld(x: number, y: number): void {
+    const picked = this.world.pick(x, y);
+    if (!picked) this.app.selectNothing();
+    else if (this.app.get().isMeasuring) this.pickPlace(picked.position);
+    else if (picked.track >= 0) this.app.selectTrack(picked.track);
+    else if (picked.object >= 0) this.app.selectObject(picked.object);
+    else this.pickPlace(picked.position);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    if (target.matches("input[type=search], select")) return;
+    if (event.key === " " && target.matches("button")) return;
+    const action = this.actionOf(event.key);
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  private actionOf(key: string): (() => void) | undefined {
+    const { app } = this;
+    if (/^[1-9]$/.test(key)) return () => this.bar.toggleLayer(Number(key) - 1);
+    const actions: Record<string, () => void> = {
+      "?": () => this.bar.showHelp(),
+      Escape: () => app.selectNothing(),
+      d: toggleTheme,
+      e: () => this.exportPicture(),
+      l: () => this.copyLink(),
+      r: () => this.world.goHome(),
+      t: () => this.world.lookDown(),
+    };
+    if (this.timeline) {
+      const { timeline } = this;
+      Object.assign(actions, {
+        ArrowLeft: () => app.goTo(app.get().view - 1),
+        ArrowRight: () => app.goTo(app.get().view + 1),
+        Home: () => app.goTo(0),
+        End: () => app.goTo(app.scene.views.length - 1),
+        " ": () => app.set({ isPlaying: !app.get().isPlaying }),
+        n: () => timeline.goToChange(1),
+        p: () => timeline.goToChange(-1),
+        m: () => app.set({ isMeasuring: !app.get().isMeasuring, measured: [] }),
+        c: () => this.lookFromCamera(),
+        f: () => this.lookAtSelection(),
+      });
+    }
+    return actions[key.length === 1 ? key.toLowerCase() : key];
+  }
+
+  private lookFromCamera(): void {
+    const pose = this.app.cameraPose(this.app.get().view);
+    if (pose) this.world.lookFrom(pose, 1);
+  }
+  private lookAtSelection(): void {
+    const place = this.sceneView.selectedPlace();
+    if (place) this.world.lookAt(place.center, 3 * place.size);
+  }
+
+  private showTheme(): void {
+    this.world.setBackground(isDark() ? "#10151b" : "#eef1f4");
+  }
+
+  private link(): string {
+    return formatLink({ ...this.app.get(), camera: this.world.cameraState() }, this.token);
+  }
+  /** Keeps the state in the address, not more often than browsers allow. */
+  private keepLink(): void {
+    window.clearTimeout(this.linkTimer);
+    this.linkTimer = window.setTimeout(() => history.replaceState(null, "", this.link()), 250);
+  }
+  private copyLink(): void {
+    history.replaceState(null, "", this.link());
+    navigator.clipboard.writeText(location.href).then(
+      () => this.say("The link is copied. It works while resight view runs."),
+      () => this.say("The address of this page is the link."),
+    );
+  }
+
+  private exportPicture(): void {
+    this.world.draw();
+    const images = this.panels.filter((_, index) => index === 0 || this.app.get().compare >= 0);
+    const picture = makePicture(
+      byId("world"),
+      images.map((panel) => panel.picture()),
+      isDark(),
+    );
+    picture.toBlob((blob) => {
+      if (blob) download(`${this.app.scene.title}-view${this.app.get().view + 1}.png`, blob);
+    });
+  }
+
+  /** Shows views as they are recognised. */
+  private follow(): void {
+    const poll = async () => {
+      try {
+        const { revision } = this.app.scene;
+        if ((await this.api.revision()) !== revision) await this.reload();
+      } catch (error) {
+        this.report(error);
+        return;
+      }
+      if (this.app.scene.is_live) window.setTimeout(poll, kPollMs);
+    };
+    window.setTimeout(poll, kPollMs);
+  }
+
+  private async reload(): Promise<void> {
+    const isFollowing = this.app.get().view >= this.app.latestView();
+    const scene = await this.api.scene();
+    this.api.forgetDetails();
+    this.app.setScene(scene);
+    if (isFollowing) this.app.goTo(this.app.latestView());
+  }
+}
+
+async function main(): Promise<void> {
+  restoreTheme();
+  const token = parseLink(location.hash, { views: 0, runs: 0, objects: 0 }).token;
+  const api = new Api(token);
+  const scene = await api.scene();
+  const counts = { views: scene.views.length, runs: scene.runs.length, objects: scene.objects.length };
+  const { state } = parseLink(location.hash, counts);
+  await new Viewer(new App(scene), api, token).start(state);
+}
+
+main().catch((error) => {
+  const text = error instanceof Error ? error.message : String(error);
+  document.body.append(element("div", { class: "failure", role: "alert" }, text));
+});

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import test from "node:test";
+import { Recent } from "../src/api";
+import { distanceColors, parseColor, plainColors } from "../src/colors";
+import { decodeCloud } from "../src/protocol";
+
+function encode(count: number, flags: number, size: number): ArrayBuffer {
+  const bytes = new ArrayBuffer(size);
+  new Uint32Array(bytes, 0, 2).set([count, flags]);
+  return bytes;
+}
+
+test("clouds are decoded by their flags", () => {
+  assert.equal(decodeCloud(encode(4, 0, 8 + 48)).positions.length, 12);
+  const whole = decodeCloud(encode(4, 3, 8 + 48 + 12 + 12));
+  assert.equal(whole.normals?.length, 12);
+  assert.equal(whole.colors?.length, 12);
+  assert.equal(decodeCloud(encode(4, 2, 8 + 48 + 12)).normals, null);
+});
+
+test("clouds that are cut off are refused", () => {
+  assert.throws(() => decodeCloud(new ArrayBuffer(4)));
+  assert.throws(() => decodeCloud(encode(4, 1, 8 + 48)));
+  assert.throws(() => decodeCloud(encode(1 << 30, 0, 8 + 48)));
+});
+
+test("what was used last is kept, and made once", async () => {
+  const dropped: string[] = [];
+  const recent = new Recent<string>(2, (value) => dropped.push(value));
+  let made = 0;
+  const make = (value: string) => async () => {
+    ++made;
+    return value;
+  };
+  await recent.get("a", make("A"));
+  await recent.get("b", make("B"));
+  await recent.get("a", make("A"));
+  await recent.get("c", make("C"));
+  assert.equal(made, 3);
+  await Promise.resolve();
+  assert.deepEqual(dropped, ["B"]);
+});
+
+test("what failed is tried again", async () => {
+  const recent = new Recent<number>(2);
+  await assert.rejects(recent.get("a", () => Promise.reject(new Error("no"))));
+  assert.equal(await recent.get("a", async () => 3), 3);
+});
+
+test("colours are bytes", () => {
+  assert.deepEqual(parseColor("#ff8001"), [255, 128, 1]);
+  assert.deepEqual([...plainColors(2, "#010203")], [1, 2, 3, 1, 2, 3]);
+  const [near, far, beyond] = [0, 3, 6].map((i) => distanceColors(new Float32Array([1, 2, 9]), 1, 2).slice(i, i + 3));
+  assert.notDeepEqual(near, far);
+  assert.deepEqual(far, beyond);
+});
