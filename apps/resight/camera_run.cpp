@@ -36,12 +36,23 @@ PreparedView read_prepared(const Sequence& sequence, int view, int num_threads) 
   return prepare_view(value_or_throw(sequence.read_view(view)), options);
 }
 
+// What the first view holds: other intrinsics, or another unit of depth, are another job.
+std::uint64_t hash_first_view(const Sequence& sequence) {
+  if (sequence.num_views() == 0) return kHashSeed;
+  const RgbdFrame frame = value_or_throw(sequence.read_view(0));
+  const Camera& camera = frame.camera;
+  const std::uint64_t intrinsics = hash_text(
+      fmt::format("{}x{} {} {} {} {}", camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy));
+  const std::span<const float> depth = frame.depth_m.data();
+  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(depth.data()), depth.size_bytes()}, intrinsics);
+}
+
 std::string describe_job(const Sequence& sequence, const std::filesystem::path& folder) {
   std::string names;
   for (int v = 0; v < sequence.num_views(); ++v) names += sequence.view_name(v) + "\n";
-  return fmt::format("resight {}, {}: {} views, names {:016x}", RESIGHT_VERSION,
+  return fmt::format("resight {}, {}: {} views, names {:016x}, first view {:016x}", RESIGHT_VERSION,
                      std::filesystem::absolute(folder).lexically_normal().string(), sequence.num_views(),
-                     hash_text(names));
+                     hash_text(names), hash_first_view(sequence));
 }
 
 // Restores the views that an interrupted run tracked; returns their number.
