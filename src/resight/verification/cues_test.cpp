@@ -56,7 +56,8 @@ Evidence expected_evidence(const SmallCase& c, const Eigen::Vector3d& p, const E
 }
 
 TEST(PrepareDepthViews, PixelsNearDepthEdgesSayNothing) {
-  const SmallCase c;
+  SmallCase c;
+  for (PreparedView& view : c.views) view.edge_distance_px = find_edge_distance(find_depth_edges(view.cloud.z, {}), 5);
   const std::vector<DepthView> narrowed = prepare_depth_views(c.refs, 3, 1);
   int dropped = 0;
   for (std::size_t v = 0; v < narrowed.size(); ++v)

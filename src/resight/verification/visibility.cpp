@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/evidence/fill_small_holes.hpp"
 
@@ -54,6 +55,7 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
     result[i] = {view.frame.camera, view.frame.world_from_camera, has_color ? &view.frame.color : nullptr,
                  fill_small_holes(view.cloud.z)};
     if (min_edge_distance_px == 0) return;
+    require(view.edge_distance_px.size() == view.cloud.z.size(), "prepare_depth_views: a view without depth edges");
     Image<float>& depth_m = result[i].depth_m;
     for (std::size_t k = 0; k < depth_m.size(); ++k)
       if (view.edge_distance_px[k] < static_cast<float>(min_edge_distance_px))
