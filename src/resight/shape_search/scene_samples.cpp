@@ -41,17 +41,21 @@ SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOpti
   ScenePlanes planes =
       find_planes_of_downsampled(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
   std::vector<int> kept;
+  std::vector<int> off_planes;  // Those of smaller planes stay what they are: the faces of boxes.
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const int plane = planes.plane_of_point[i];
-    if (plane < 0 || planes.planes[static_cast<std::size_t>(plane)].extent_m <= static_cast<float>(kMaxPlane_m))
-      kept.push_back(static_cast<int>(i));
+    if (plane >= 0 && planes.planes[static_cast<std::size_t>(plane)].extent_m > static_cast<float>(kMaxPlane_m))
+      continue;
+    kept.push_back(static_cast<int>(i));
+    if (plane < 0) off_planes.push_back(static_cast<int>(i));
   }
   const std::vector<float> noise_m = noise_of(cloud, focal_px);
   for (ScenePlane& plane :
-       find_noisy_planes(cloud.points, cloud.normals, noise_m, kept, {.min_extent_m = kMaxPlane_m})) {
+       find_noisy_planes(cloud.points, cloud.normals, noise_m, off_planes, {.min_extent_m = kMaxPlane_m})) {
     std::erase_if(kept, [&](int i) {
       const auto k = static_cast<std::size_t>(i);
-      return plane.holds(cloud.points[k], cloud.normals[k], plane.tolerance_m(noise_m[k]), ScenePlane::kMinNoisyDot);
+      return planes.plane_of_point[k] < 0 &&
+             plane.holds(cloud.points[k], cloud.normals[k], plane.tolerance_m(noise_m[k]), ScenePlane::kMinNoisyDot);
     });
     planes.planes.push_back(std::move(plane));
   }
