@@ -320,18 +320,12 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{add_demo(app, a.demo),
-                                          add_simulate(app, a.simulate),
-                                          add_train(app, a.train),
-                                          add_recognize(app, a.recognize),
-                                          add_changes(app, a.changes),
-                                          add_track(app, a.track),
-                                          add_model(app, a.model),
-                                          add_convert(app, a.convert),
-                                          add_info(app, a.info),
-                                          add_evaluate(app, a.evaluate, a.shard),
-                                          add_view(app, a.view),
-                                          add_options(app)};
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
+                                          add_train(app, a.train),     add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes), add_track(app, a.track),
+                                          add_model(app, a.model),     add_convert(app, a.convert),
+                                          add_info(app, a.info),       add_evaluate(app, a.evaluate, a.shard),
+                                          add_view(app, a.view),       add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);

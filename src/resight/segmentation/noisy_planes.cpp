@@ -22,7 +22,7 @@ constexpr float kScoringSigmas = 6;      // Within this, in modelled sigmas, a p
 constexpr int kNoisyRefits = 4;
 constexpr float kMaxNoiseScale = 3;  // Of the residuals to the model: more is no noise.
 constexpr float kMedianToSigma = 1.4826F;
-constexpr float kSurroundings = 3;     // Points within so many tolerances of a plane are around it.
+constexpr float kSurroundings = 3;      // Points within so many tolerances of a plane are around it.
 constexpr float kMinCleanShare = 0.9F;  // Of the points around a plane, on it.
 
 class NoisyPlaneFinder {
