@@ -9,6 +9,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
+#include "resight/io/internal/bgr_image.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_header.hpp"
 
@@ -46,18 +47,6 @@ Result<cv::Mat> read(const std::filesystem::path& file, int flags, std::int64_t 
 /// Keeps the orientation of the file, so that depth and colour remain registered.
 constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
 
-Image<Rgb8> to_color(const cv::Mat& bgr) {
-  Image<Rgb8> color(bgr.cols, bgr.rows);
-  for (int v = 0; v < bgr.rows; ++v) {
-    const auto* source = bgr.ptr<unsigned char>(v);
-    for (Rgb8& c : color.row(v)) {
-      c = {source[2], source[1], source[0]};
-      source += 3;
-    }
-  }
-  return color;
-}
-
 Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
   const std::string extension = io::extension_of(file);
   const bool jpeg = extension == "jpg" || extension == "jpeg";
@@ -78,13 +67,13 @@ Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
 Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name, std::int64_t max_pixels) {
   const auto bgr = decode(bytes, name, kColorFlags, max_pixels);
   if (!bgr) return bgr.error();
-  return to_color(*bgr);
+  return io::from_bgr(*bgr);
 }
 
 Result<Image<Rgb8>> read_color(const std::filesystem::path& file, std::int64_t max_pixels) {
   const auto bgr = read(file, kColorFlags, max_pixels);
   if (!bgr) return bgr.error();
-  return to_color(*bgr);
+  return io::from_bgr(*bgr);
 }
 
 Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file) {

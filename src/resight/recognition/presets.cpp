@@ -23,7 +23,7 @@ void set_default_verification(VerifyOptions& verify) {
   verify.visibility.arrival_share = 0.6;
   verify.appearance.sigma_l = 0.45;                 // An object in shadow is darker than the fit has it,
   verify.appearance.sigma_ab = 0.17;                // but not of another chromaticity.
-  verify.appearance.pattern_radius_m = 0.015;       // Three voxels
+  verify.appearance.pattern_radius_m = 0.015;       // Three voxels.
   verify.appearance.light.max_log_darkening = 1.2;  // Objects in a shelf
   verify.appearance.light.max_log_shading = 1.2;    // are lit from one side.
   verify.refine.symmetry_step_rad = 0.1745;         // 10 deg.

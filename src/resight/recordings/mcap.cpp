@@ -71,14 +71,11 @@ std::optional<ChunkHead> parse_chunk_head(std::string_view bytes) {
   return reader.ok() ? std::optional(head) : std::nullopt;
 }
 
-class McapFile final : public Recording {
+class McapFile final : public IndexedRecording {
  public:
   explicit McapFile(RandomAccessFile file) : file_(std::move(file)) {}
 
   [[nodiscard]] std::string format() const override { return "mcap"; }
-  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return index_.topics; }
-  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return index_.messages; }
-  [[nodiscard]] const std::string& damage() const override { return index_.damage; }
 
   [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override;
 
@@ -102,7 +99,6 @@ class McapFile final : public Recording {
   [[nodiscard]] Error fail(std::string_view what) const { return file_error(file_.path(), what); }
 
   RandomAccessFile file_;
-  RecordingIndex index_;
   std::vector<McapChunk> chunks_;
   std::map<std::uint16_t, std::string> type_of_schema_;
   std::map<std::uint16_t, int> topic_of_channel_;

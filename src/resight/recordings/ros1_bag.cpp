@@ -79,14 +79,11 @@ struct BagRecord {
   [[nodiscard]] std::uint64_t end() const { return data_offset + data_bytes; }
 };
 
-class Ros1Bag final : public Recording {
+class Ros1Bag final : public IndexedRecording {
  public:
   explicit Ros1Bag(RandomAccessFile file) : file_(std::move(file)) {}
 
   [[nodiscard]] std::string format() const override { return "rosbag"; }
-  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return index_.topics; }
-  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return index_.messages; }
-  [[nodiscard]] const std::string& damage() const override { return index_.damage; }
 
   [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override;
 
@@ -108,7 +105,6 @@ class Ros1Bag final : public Recording {
   [[nodiscard]] Error fail(std::string_view what) const { return file_error(file_.path(), what); }
 
   RandomAccessFile file_;
-  RecordingIndex index_;
   std::vector<BagChunk> chunks_;
   std::map<std::uint32_t, int> topic_of_connection_;
   ChunkCache cache_;

@@ -35,7 +35,7 @@ std::string_view column_text(sqlite3_stmt* statement, int column) {
   return text == nullptr ? std::string_view() : std::string_view(text, static_cast<std::size_t>(bytes));
 }
 
-class Ros2Sqlite final : public Recording {
+class Ros2Sqlite final : public IndexedRecording {
  public:
   Ros2Sqlite(std::filesystem::path file, Database database) : file_(std::move(file)), database_(std::move(database)) {
     sqlite3_limit(database_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(kMaxMessageBytes));
@@ -47,9 +47,6 @@ class Ros2Sqlite final : public Recording {
   }
 
   [[nodiscard]] std::string format() const override { return "rosbag2-sqlite3"; }
-  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return index_.topics; }
-  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return index_.messages; }
-  [[nodiscard]] const std::string& damage() const override { return index_.damage; }
 
   [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override;
   [[nodiscard]] Result<void> build_index();
@@ -66,7 +63,6 @@ class Ros2Sqlite final : public Recording {
   mutable std::mutex mutex_;
   mutable int checks_ = 0;
   Database database_;
-  RecordingIndex index_;
   std::map<std::int64_t, int> topic_of_id_;
 };
 

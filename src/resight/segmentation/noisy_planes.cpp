@@ -15,6 +15,7 @@ namespace resight {
 namespace {
 
 constexpr int kMaxPlanes = 4;            // Floor and walls.
+constexpr std::size_t kMinPoints = 300;  // Of a plane.
 constexpr int kTriples = 200;            // A plane of a third of the points is missed once in 2,000 times.
 constexpr std::uint32_t kScored = 1000;  // Points that the triples are drawn from and scored by.
 constexpr float kScoringSigmas = 6;      // Within this, in modelled sigmas, a point supports a triple: the scale is not
@@ -38,7 +39,7 @@ class NoisyPlaneFinder {
 
   std::vector<ScenePlane> find() {
     std::vector<ScenePlane> planes;
-    for (int i = 0; i < kMaxPlanes && left_.size() >= static_cast<std::size_t>(options_.min_points); ++i)
+    for (int i = 0; i < kMaxPlanes && left_.size() >= kMinPoints; ++i)
       if (std::optional<ScenePlane> plane = find_one()) planes.push_back(std::move(*plane));
     return planes;
   }
@@ -49,7 +50,7 @@ class NoisyPlaneFinder {
     std::optional<ScenePlane> plane = best_of_triples();
     if (!plane || !refit(*plane)) return std::nullopt;
     std::vector<int> on = on_plane(*plane);
-    if (on.size() < static_cast<std::size_t>(options_.min_points)) return std::nullopt;
+    if (on.size() < kMinPoints) return std::nullopt;
     set_outline(*plane, points_, on);
     plane->num_points = static_cast<int>(on.size());
     if (plane->extent_m < options_.min_extent_m || !is_clean(*plane, on.size())) return std::nullopt;
@@ -75,7 +76,7 @@ class NoisyPlaneFinder {
 
   // Facing the side of the normals, which all must agree.
   [[nodiscard]] std::optional<ScenePlane> through(int a, int b, int c) const {
-    constexpr float kMinArea_m2 = 1e-4F;
+    constexpr float kMinArea_m2 = 1e-4F;  // Of the parallelogram: three points in a row determine no plane.
     const Eigen::Vector3f normal = (points_[b] - points_[a]).cross(points_[c] - points_[a]);
     if (!(normal.norm() > kMinArea_m2)) return std::nullopt;
     ScenePlane plane;

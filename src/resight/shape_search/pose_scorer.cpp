@@ -72,10 +72,10 @@ float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<
                       double focal_px) {
   float extent_m = 0;
   if (!cloud.has_normal(pixel)) return extent_m;
+  const Eigen::Vector3f p = cloud.point(pixel);
+  const Eigen::Vector3f n = cloud.normal(pixel);
   for (const ScenePlane& plane : planes)
-    if (plane.extent_m > std::max(extent_m, kMinPlane_m) &&
-        holds(plane, cloud.point(pixel), cloud.normal(pixel), focal_px))
-      extent_m = plane.extent_m;
+    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && holds(plane, p, n, focal_px)) extent_m = plane.extent_m;
   return extent_m;
 }
 

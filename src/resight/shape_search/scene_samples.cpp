@@ -50,8 +50,8 @@ SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOpti
     if (plane < 0) off_planes.push_back(static_cast<int>(i));
   }
   const std::vector<float> noise_m = noise_of(cloud, focal_px);
-  for (ScenePlane& plane :
-       find_noisy_planes(cloud.points, cloud.normals, noise_m, off_planes, {.min_extent_m = kMaxPlane_m})) {
+  for (ScenePlane& plane : find_noisy_planes(cloud.points, cloud.normals, noise_m, off_planes,
+                                             {.min_extent_m = kMaxPlane_m, .seed = options.seed})) {
     std::erase_if(kept, [&](int i) {
       const auto k = static_cast<std::size_t>(i);
       return planes.plane_of_point[k] < 0 &&

@@ -14,6 +14,7 @@ struct SampleSceneOptions {
   double spacing_m = 0.008;
   double max_depth_m = 2.0;
   double min_edge_distance_px = 2;
+  std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("SampleSceneOptions", *this); }
 };

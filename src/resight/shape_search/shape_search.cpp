@@ -39,9 +39,11 @@ constexpr int kMaxRoundPerPlace = 1;                 // Verification finds the r
 
 constexpr int kAlikeEntries = 4;  // Of round objects, this many entries differ by a rotation only: fewer are tried.
 
-SampleSceneOptions with_threads(SampleSceneOptions options, int num_threads) {
-  options.num_threads = num_threads;
-  return options;
+SampleSceneOptions scene_options(const ShapeSearchOptions& options) {
+  SampleSceneOptions scene = options.scene;
+  scene.seed = options.seed;
+  scene.num_threads = options.num_threads;
+  return scene;
 }
 
 PointCloud without_explained(const PointCloud& points, const Camera& camera, const Image<std::uint8_t>& explained) {
@@ -244,8 +246,7 @@ struct ShapeSearch::Impl {
 
 SearchView::SearchView(const PreparedView& view, const ShapeSearchOptions& options,
                        const Image<std::uint8_t>& explained)
-    : samples(sample_scene(view, with_threads(options.scene, options.num_threads))),
-      scorer(view, samples.planes, options.num_threads) {
+    : samples(sample_scene(view, scene_options(options))), scorer(view, samples.planes, options.num_threads) {
   if (explained.size() == 0 || samples.points.empty()) return;
   PointCloud searched = without_explained(samples.points, view.frame.camera, explained);
   searched_share = static_cast<double>(searched.size()) / static_cast<double>(samples.points.size());

@@ -129,11 +129,9 @@ struct CueComputer::Impl {
       model_colors.push_back(lab_[m.visible]);
       scene_colors.push_back(association_.local_lab[m.local]);
     }
-    const TextureMatch match = match_texture(own_colors, model_colors, scene_colors, options_.appearance);
-    cues_.evidence.appearance.pattern_similarity =
-        match.texture_contrast < kMinTextureContrast
-            ? surface_pattern_similarity(places, model_colors, scene_colors, options_.appearance)
-            : match.similarity;
+    const TextureMatch match =
+        match_surface_texture(places, own_colors, model_colors, scene_colors, options_.appearance);
+    cues_.evidence.appearance.pattern_similarity = match.similarity;
     cues_.evidence.appearance.texture_contrast = match.texture_contrast;
     cues_.evidence.appearance.shared_texture = match.shared_texture;
   }

@@ -55,7 +55,7 @@ Evidence expected_evidence(const SmallCase& c, const Eigen::Vector3d& p, const E
   return depth - in_camera.z() > c.options.visibility.margin_m ? Evidence::kSeenThrough : Evidence::kPresent;
 }
 
-TEST(PrepareDepthViews, PixelsNearDepthEdgesSayNothing) {
+TEST(PrepareDepthViews, PixelsNearDepthEdgesAreUnobserved) {
   SmallCase c;
   for (PreparedView& view : c.views) view.edge_distance_px = find_edge_distance(find_depth_edges(view.cloud.z, {}), 5);
   const std::vector<DepthView> narrowed = prepare_depth_views(c.refs, 3, 1);

@@ -47,11 +47,8 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
 double NewestViewAppearance::similarity(const Eigen::Array3f& white_balance) const {
   if (colors_.empty()) return 1;
   const std::vector<LabColor> expected = adapt_colors(colors_, limit_chromaticity(light_, white_balance));
-  const std::vector<LabColor> seen = to_lab(colors_.scene);
-  const TextureMatch match = match_texture(to_lab(colors_.model), expected, seen, options_.appearance);
-  return match.texture_contrast < kMinTextureContrast
-             ? surface_pattern_similarity(points_, expected, seen, options_.appearance)
-             : match.similarity;
+  return match_surface_texture(points_, to_lab(colors_.model), expected, to_lab(colors_.scene), options_.appearance)
+      .similarity;
 }
 
 }  // namespace resight

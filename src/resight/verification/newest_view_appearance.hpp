@@ -15,7 +15,7 @@ class NewestViewAppearance {
   NewestViewAppearance(const PreparedModel& model, const SceneAssociation& association,
                        std::span<const DepthView> views, const VerifyOptions& options);
 
-  /// surface_pattern_similarity() under the white balance of the scene; 1 if no view sees enough.
+  /// Similarity by match_surface_texture() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;
 
  private:

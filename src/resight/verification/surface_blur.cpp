@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/surface_blur.hpp"
 
-#include "resight/appearance/appearance_match.hpp"
 #include "resight/appearance/pattern_similarity.hpp"
 #include "resight/core/check.hpp"
 #include "resight/geometry/kd_tree.hpp"
@@ -33,11 +32,14 @@ std::vector<LabColor> SurfaceBlur::operator()(std::span<const LabColor> colors) 
   return blurred;
 }
 
-double surface_pattern_similarity(std::span<const Eigen::Vector3f> points, std::span<const LabColor> expected,
-                                  std::span<const LabColor> seen, const AppearanceOptions& options) {
-  if (!options.pattern_radius_m) return pattern_similarity(expected, seen, chroma_weight(options));
+TextureMatch match_surface_texture(std::span<const Eigen::Vector3f> points, std::span<const LabColor> model,
+                                   std::span<const LabColor> expected, std::span<const LabColor> seen,
+                                   const AppearanceOptions& options) {
+  TextureMatch match = match_texture(model, expected, seen, options);
+  if (!options.pattern_radius_m || match.texture_contrast >= kMinTextureContrast) return match;
   const SurfaceBlur blur(points, *options.pattern_radius_m);
-  return pattern_similarity(blur(expected), blur(seen), chroma_weight(options));
+  match.similarity = pattern_similarity(blur(expected), blur(seen), chroma_weight(options));
+  return match;
 }
 
 }  // namespace resight

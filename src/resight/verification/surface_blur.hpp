@@ -4,13 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "resight/appearance/appearance_options.hpp"
-#include "resight/appearance/lab_color.hpp"
+#include "resight/appearance/appearance_match.hpp"
 
 namespace resight {
 
-/// Averages colours over the surroundings of each point of a surface. What a noisy view and a scan share is the texture
-/// that both resolve; noise, sharpening and small highlights are none.
+/// Averages colours over the surroundings of each point of a surface. This suppresses image noise, sharpening and small
+/// highlights, which a scan does not share.
 class SurfaceBlur {
  public:
   /// Averages over points nearer than `radius_m`.
@@ -23,10 +22,10 @@ class SurfaceBlur {
   std::vector<int> neighbors_;
 };
 
-/// pattern_similarity() of the colours of a model and of the scene at `points`, both blurred by
-/// AppearanceOptions::pattern_radius_m. One colour per point, or std::invalid_argument.
-[[nodiscard]] double surface_pattern_similarity(std::span<const Eigen::Vector3f> points,
-                                                std::span<const LabColor> expected, std::span<const LabColor> seen,
-                                                const AppearanceOptions& options);
+/// match_texture() at `points`. The similarity of an untextured model (below kMinTextureContrast) is that of the
+/// blurred colours, if AppearanceOptions::pattern_radius_m is set. One colour per point, or std::invalid_argument.
+[[nodiscard]] TextureMatch match_surface_texture(std::span<const Eigen::Vector3f> points,
+                                                 std::span<const LabColor> model, std::span<const LabColor> expected,
+                                                 std::span<const LabColor> seen, const AppearanceOptions& options);
 
 }  // namespace resight

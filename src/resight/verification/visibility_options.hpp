@@ -38,8 +38,8 @@ inline void declare(OptionVisitor& v, VisibilityOptions& o) {
           "A model point farther than the measured depth by more than this is hidden; nearer by more, it is seen "
           "through.");
   v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
-          "Pixels nearer to a depth edge say nothing: the reconstruction has no points there (integrate."
-          "min_edge_distance_px), and a slightly wrong pose looks past the object. 0: all say something.",
+          "Pixels nearer to a depth edge count as unobserved: the reconstruction has no points there (integrate."
+          "min_edge_distance_px), and the model at a slightly wrong pose projects beside the object. 0: none does.",
           "ours");
   v.choice("free_space", o.free_space,
            {{"majority", "most of the views that observe the point"},

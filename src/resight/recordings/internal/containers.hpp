@@ -32,4 +32,15 @@ struct RecordingIndex {
   std::string damage;
 };
 
+/// A recording that is indexed when it is opened.
+class IndexedRecording : public Recording {
+ public:
+  [[nodiscard]] const std::vector<RecordedTopic>& topics() const final { return index_.topics; }
+  [[nodiscard]] const std::vector<MessageEntry>& messages() const final { return index_.messages; }
+  [[nodiscard]] const std::string& damage() const final { return index_.damage; }
+
+ protected:
+  RecordingIndex index_;
+};
+
 }  // namespace resight::recordings
