@@ -24,6 +24,7 @@ inline void declare(OptionVisitor& v, SampleSceneOptions& o) {
   v.field("max_depth_m", o.max_depth_m, positive(), "Farther points are not searched: their normals say little.");
   v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
           "Points nearer to a depth edge are not searched: normals are bent there. 0: all are.");
+  v.seed(o.seed);
   v.num_threads(o.num_threads);
 }
 
