@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "resight/core/names.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
@@ -55,6 +56,20 @@ Result<ListedView> parse_camera(const fs::path& scene, int image_id, const nlohm
     view.world_from_camera = camera_from_world->inverse();
   }
   return view;
+}
+
+/// Notes depth images that scene_camera.json does not name: their views are left out.
+void note_unnamed_images(const fs::path& scene, SequenceTable& table) {
+  std::set<std::string> named;
+  for (const ListedView& view : table.views) named.insert(view.depth.filename().string());
+  std::vector<std::string> unnamed;
+  for (const std::string& name : list_files(scene / "depth")) {
+    const auto number = parse_integer(fs::path(name).stem().string());
+    if (number && *number >= 0 && extension_of(name) == "png" && !named.contains(name)) unnamed.push_back(name);
+  }
+  if (unnamed.empty()) return;
+  table.notes.push_back(fmt::format("{} depth images, such as {}, are not in scene_camera.json and are left out",
+                                    unnamed.size(), unnamed.front()));
 }
 
 /// Visible share of the silhouette; NaN if the file does not state it, or states -1.
@@ -145,6 +160,7 @@ Result<SequenceTable> read_bop_scene(const fs::path& directory) {
   }
   table.has_poses = num_poses == static_cast<int>(table.views.size());
   if (const auto done = read_ground_truth(directory, table); !done) return done.error();
+  note_unnamed_images(directory, table);
   return table;
 }
 

@@ -63,6 +63,16 @@ TEST(BopScene, ReadsUnitsNamesAndPoses) {
   EXPECT_LT(((*truth)[0].camera_from_object.translation - Eigen::Vector3d(0.01, 0.02, 0.5)).norm(), 1e-12);
 }
 
+TEST(BopScene, NotesImagesThatNoCameraNames) {
+  io::TestDirectory directory;
+  write_scene(directory / "scene", 2, true);
+  EXPECT_TRUE((*open_sequence(directory / "scene"))->notes().empty());
+  ASSERT_TRUE(write_depth(directory / "scene/depth/000009.png", Image<float>(4, 3, 0.5F), 2e-4).ok());
+  const auto notes = (*open_sequence(directory / "scene"))->notes();
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0], "1 depth images, such as 000009.png, are not in scene_camera.json and are left out");
+}
+
 TEST(BopScene, SeveralScenesAreAmbiguous) {
   io::TestDirectory directory;
   write_scene(directory / "test/000001", 1, true);

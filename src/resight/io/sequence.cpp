@@ -86,7 +86,13 @@ Result<path> find_sequence_folder(const path& directory) {
 }
 
 Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const OpenSequenceOptions& options) {
-  if (io::is_file(directory) && io::extension_of(directory) == "pcd") return io::open_single_pcd(directory);
+  if (io::is_file(directory) && io::extension_of(directory) == "pcd") {
+    auto single = io::open_single_pcd(directory);
+    if (!single) return single;
+    if (const auto done = io::apply_options(**single, options); !done)
+      return io::file_error(directory, done.error().message);
+    return single;
+  }
   const auto folder = find_sequence_folder(directory);
   if (!folder) return folder.error();
   if (find_format(*folder) == nullptr) return io::open_recording_sequence(*folder, options);

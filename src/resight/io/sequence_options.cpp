@@ -104,7 +104,7 @@ Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& option
   if (!gives_something(options)) return {};
   if (SequenceTable* table = listed_table(sequence)) return apply_options(*table, options);
   return Error{
-      "is a sequence of PCD files, which hold camera, unit and poses themselves: --intrinsics, "
+      "consists of PCD files, which hold camera, unit and poses themselves: --intrinsics, "
       "--depth-scale, --poses, --every, --from and --until do not apply"};
 }
 
