@@ -11,7 +11,7 @@ set(RESIGHT_LAYERS
     sensor segmentation recordings
     io rendering features evidence
     registration models changes simulation
-    hypotheses history reconstruction training cameras
+    hypotheses history reconstruction training cameras inspection
     verification shape_search modelling
     recognition
     evaluation

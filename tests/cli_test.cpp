@@ -570,7 +570,16 @@ const Row kRows[] = {
      "evaluate --models models.resight --dataset views -k 0 --out out", 2, "views: has no ground truth"},
     {"EvaluateABrokenView", cut("views/depth/000001.png", 0.5),
      "evaluate --models models.resight --dataset views -k 0 --out out", 2, "000001\\.png: "},
-    {"NoDepthAtAll", no_depth_at_all(), kRecognize, 0, "", "out/changes.json"},
+    {"NoDepthAtAll", no_depth_at_all(), kRecognize, 0,
+     "warning: only 0\\.0 % of the pixels have depth; remedy: ", "out/changes.json"},
+    {"CheckNothing", kNothing, "check empty", 2, "empty: "},
+    {"CheckGoodViews", kNothing, "check views --json", 0, ""},
+    {"CheckASinglePcdWithOptions", kNothing, "check tuw/cloud_01.pcd --depth-scale 0.001", 2,
+     "cloud_01\\.pcd: consists of PCD files"},
+    {"CheckWithoutDepth", no_depth_at_all(), "check views", 1, ""},
+    {"CheckWithPictures", no_depth_at_all(), "check views --out out", 1, "", "out/no_depth.png"},
+    {"StreamBesideTheViewer", kNothing, "recognize --models models.resight --sequence views --out out --stream --view",
+     2, "--view excludes --stream"},
     {"NoDepthAtAllInChanges", no_depth_at_all(), kChanges, 0, "", "out/000002.ply"},
     {"TruncatedPcd", cut("tuw/cloud_01.pcd", 0.5), kChangesTuw, 2, "cloud_01\\.pcd: "},
     {"PcdOfAFewBytes", cut("tuw/cloud_01.pcd", 0.001), kChangesTuw, 2, "cloud_01\\.pcd: "},
@@ -730,6 +739,20 @@ TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
     EXPECT_EQ(run(folder_, "recognize --models models.resight --sequence views --out full").status, 0);
   EXPECT_EQ(read_text(folder_ / "full/mine.txt"), "mine");
   EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
+}
+
+TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
+  const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views --out out --stream");
+  ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
+  std::istringstream lines(outcome.output);
+  auto views = nlohmann::json::array();
+  for (std::string line; std::getline(lines, line);) {
+    views.push_back(nlohmann::json::parse(line));
+    EXPECT_TRUE(views.back()["events"].is_array());
+    views.back().erase("events");
+  }
+  EXPECT_EQ(views.size(), static_cast<std::size_t>(kViews));
+  EXPECT_EQ(views, nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"]);
 }
 
 TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {

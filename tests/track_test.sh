@@ -32,6 +32,11 @@ cp good.png "$depth"
 cmp -s <(grep -v '^#' whole.txt) <(grep -v '^#' parts.txt) || fail "an interrupted run ends with other poses"
 [ ! -e parts.txt.partial ] || fail "parts.txt.partial is left behind"
 
+# From a file of poses on.
+"$resight" track --sequence "$sequence" --poses whole.txt --out again.txt >out 2>err || fail "from a file: $(tail -1 err)"
+grep -q '^7 of 7 views joined' out || fail "not all views joined from a file: $(cat out)"
+awk '/ATE/ { exit !($6 < 5) }' out || fail "poses from a file are off: $(grep ATE out)"
+
 "$resight" track --sequence "$sequence" --models models.resight --out with.txt >out 2>err || fail "with objects: $(tail -1 err)"
 for object in cereal_blue tea_box; do
   grep -q "^0 .* $object\$" with_objects.txt || fail "$object is not among the objects: $(cat with_objects.txt)"

@@ -58,6 +58,7 @@ struct RecognizeArguments {
   std::optional<double> deadline_ms;
   std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
   bool view = false;                  ///< Show views in a browser as they are recognised, and the results afterwards.
+  bool stream = false;                ///< Print each view as one line of JSON as it is recognised, and nothing else.
   int num_threads = 1;
 };
 
@@ -78,8 +79,8 @@ struct TrackArguments {
   std::optional<std::filesystem::path> models;  ///< Joins views by common objects.
   std::optional<std::filesystem::path> posed;   ///< Folder for the sequence with its poses.
   std::optional<std::filesystem::path> fused;   ///< Point cloud of all views.
-  std::string poses = "auto";
-  std::string format = "tuw";  ///< Format of the posed sequence.
+  std::string poses = "auto";                   ///< auto, refine, or a file.
+  std::string format = "tuw";                   ///< Format of the posed sequence.
   int num_threads = 1;
 };
 
@@ -116,6 +117,15 @@ struct InfoArguments {
   std::filesystem::path path;
   OpenSequenceOptions input;
   bool as_json = false;
+};
+
+struct CheckArguments {
+  std::filesystem::path sequence;
+  OpenSequenceOptions input;
+  std::optional<std::filesystem::path> out;  ///< Folder for pictures.
+  int max_views = 24;
+  bool as_json = false;
+  int num_threads = 1;
 };
 
 struct DemoArguments {
@@ -158,6 +168,8 @@ void run_simulate(const SimulateArguments& arguments);
 void run_model(const ModelArguments& arguments);
 void run_convert(const ConvertArguments& arguments);
 void run_info(const InfoArguments& arguments);
+/// Whether the sequence is sound.
+[[nodiscard]] bool run_check(const CheckArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);
 void run_view(const ViewArguments& arguments);
 void run_demo(const DemoArguments& arguments);

@@ -33,6 +33,8 @@ struct Arguments {
   ModelArguments model;
   ConvertArguments convert;
   InfoArguments info;
+  CheckArguments check;
+  bool is_sound = true;  ///< Result of `check`.
   EvaluateArguments evaluate;
   std::string shard;
   ViewArguments view;
@@ -116,6 +118,10 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
       ->check(kPositive);
   command->add_flag("--view", a.view,
                     "Show the views in a browser as they are recognised; afterwards, Ctrl-C ends the program");
+  command
+      ->add_flag("--stream", a.stream,
+                 "Print each view as one line of JSON on standard output as it is recognised, and nothing else there")
+      ->excludes("--view");
   add_recognition_options(command, a);
   add_sequence_options(command, a.input);
   return [&a] { run_recognize(a); };
@@ -135,8 +141,11 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
   CLI::App* command = app.add_subcommand("track", "Estimate or refine the camera poses of a sequence from its views");
   command->add_option("--sequence", a.sequence, "Sequence folder; needs no poses")->required();
   command->add_option("--out", a.out, "Trajectory to write (TUM: stamp tx ty tz qx qy qz qw, metres)")->required();
-  command->add_option("--poses", a.poses, "auto: from the views alone; refine: starting from the given poses")
-      ->check(CLI::IsMember({"auto", "refine"}))
+  command
+      ->add_option(
+          "--poses", a.poses,
+          "auto: from the views alone; refine: starting from the given poses; or a file of poses to start from")
+      ->check(CLI::IsMember({"auto", "refine"}) | CLI::ExistingFile)
       ->capture_default_str();
   command->add_option("--models", a.models, "Model library; joins views without overlap by common objects");
   command->add_option("--write-sequence", a.posed,
@@ -213,6 +222,21 @@ std::function<void()> add_info(CLI::App& app, InfoArguments& a) {
   add_sequence_options(command, a.input);
   add_pose_file_option(command, a.input);
   return [&a] { run_info(a); };
+}
+
+std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound) {
+  CLI::App* command = app.add_subcommand(
+      "check", "Measure what is wrong with a sequence: depth, colours, intrinsics, poses. Exit status 1: something is");
+  command->add_option("sequence", a.sequence, "Sequence folder or recording (detected)")->required();
+  command->add_option("--out", a.out, "Folder for a picture of each finding");
+  command->add_option("--views", a.max_views, "Largest number of inspected views, spread over the sequence")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", a.as_json, "Print JSON");
+  add_threads(command, a.num_threads);
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
+  return [&a, &is_sound] { is_sound = run_check(a); };
 }
 
 std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::string& shard) {
@@ -320,12 +344,19 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", RESIGHT_VERSION);
   app.require_subcommand(1);
   Arguments a;
-  std::vector<std::function<void()>> runs{add_demo(app, a.demo),       add_simulate(app, a.simulate),
-                                          add_train(app, a.train),     add_recognize(app, a.recognize),
-                                          add_changes(app, a.changes), add_track(app, a.track),
-                                          add_model(app, a.model),     add_convert(app, a.convert),
-                                          add_info(app, a.info),       add_evaluate(app, a.evaluate, a.shard),
-                                          add_view(app, a.view),       add_options(app)};
+  std::vector<std::function<void()>> runs{add_demo(app, a.demo),
+                                          add_simulate(app, a.simulate),
+                                          add_train(app, a.train),
+                                          add_recognize(app, a.recognize),
+                                          add_changes(app, a.changes),
+                                          add_track(app, a.track),
+                                          add_model(app, a.model),
+                                          add_convert(app, a.convert),
+                                          add_info(app, a.info),
+                                          add_check(app, a.check, a.is_sound),
+                                          add_evaluate(app, a.evaluate, a.shard),
+                                          add_view(app, a.view),
+                                          add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {
     app.parse(argc, argv);
@@ -343,7 +374,7 @@ int run_program(int argc, char** argv) {
     // A path that no check has caught: a loop of links, a name that is too long.
     return refuse(error.path1().string() + ": " + error.code().message());
   }
-  return 0;
+  return a.is_sound ? 0 : kExitFailed;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <optional>
 
 #include "camera_run.hpp"
@@ -16,6 +17,20 @@
 #include "sequence_input.hpp"
 
 namespace resight::app {
+
+namespace {
+
+void print_summary(const ReportRun& run, const std::filesystem::path& out) {
+  const RunSummary summary = summarize(run);
+  print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views, summary.num_detections,
+        summary.num_events, summary.median_view_wall_s);
+  if (summary.num_scored_views > 0)
+    print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
+          format_share(summary.score.recall()), summary.num_ghosts);
+  print("report: {}\n", (out / "report.html").string());
+}
+
+}  // namespace
 
 void run_recognize(const RecognizeArguments& arguments) {
   check_output_folder(arguments.out, {arguments.sequence, arguments.models});
@@ -33,6 +48,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   OpenSequenceOptions input = arguments.input;
   if (!estimated && arguments.poses != "given") input.poses = arguments.poses;
   const auto recorded = estimated ? open_input(arguments.sequence, input) : open_posed_input(arguments.sequence, input);
+  warn_about_faults(*recorded, arguments.poses != "auto");
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   std::optional<PosedSequence> tracked;
   if (estimated) {
@@ -47,6 +63,9 @@ void run_recognize(const RecognizeArguments& arguments) {
   if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](const ViewRecord& view) {
     if (viewer) viewer->add_view(view);
+    if (!arguments.stream) return;
+    print_text(format_view_line(view, library) + "\n");
+    std::fflush(stdout);  // The reader of a pipe gets each view at once.
   });
   run.sequence = arguments.sequence.string();
   run.sequence_path = path_from(arguments.out, arguments.sequence);
@@ -55,13 +74,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
   value_or_throw(folder.commit());
-  const RunSummary summary = summarize(run);
-  print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views, summary.num_detections,
-        summary.num_events, summary.median_view_wall_s);
-  if (summary.num_scored_views > 0)
-    print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
-          format_share(summary.score.recall()), summary.num_ghosts);
-  print("report: {}\n", (arguments.out / "report.html").string());
+  if (!arguments.stream) print_summary(run, arguments.out);
   if (viewer) viewer->finish(run);
 }
 

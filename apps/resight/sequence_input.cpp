@@ -6,6 +6,7 @@
 #include <map>
 
 #include "commands.hpp"
+#include "resight/inspection/quick_check.hpp"
 
 namespace resight::app {
 namespace {
@@ -46,6 +47,10 @@ void add_recording_options(CLI::App* command, RecordingTopics& topics) {
 
 void print_notes(const Sequence& sequence) {
   for (const std::string& note : sequence.notes()) print_error_line("note: ", note);
+}
+
+void warn_about_faults(const Sequence& sequence, bool uses_poses) {
+  for (const Finding& f : check_quickly(sequence, uses_poses)) print_warning(f.message + "; remedy: " + f.remedy);
 }
 
 void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {

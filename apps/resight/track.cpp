@@ -101,10 +101,14 @@ void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
   if (arguments.posed && std::filesystem::exists(*arguments.posed))
     throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
-  const auto sequence = open_input(arguments.sequence, arguments.input);
+  const bool refine = arguments.poses != "auto";
+  OpenSequenceOptions input = arguments.input;
+  if (refine && arguments.poses != "refine") input.poses = arguments.poses;
+  const auto sequence = open_input(arguments.sequence, input);
+  warn_about_faults(*sequence, refine);
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
-  const auto [track, objects] = track_sequence(*sequence, {.refine = arguments.poses == "refine",
+  const auto [track, objects] = track_sequence(*sequence, {.refine = refine,
                                                            .library = library ? &*library : nullptr,
                                                            .journal = arguments.out.string() + ".partial",
                                                            .sequence_folder = arguments.sequence,

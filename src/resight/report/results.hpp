@@ -17,6 +17,10 @@ namespace resight {
 /// camera and world, and evidence per view of each detection. Metres; rotations row by row; unknown values are null.
 [[nodiscard]] std::string format_detections_json(const ReportRun& run, const ModelLibrary& library);
 
+/// Formats one view as one line of JSON, without a line break: what format_detections_json() holds of it, and "events",
+/// those of format_changes_json() that were reported at this view. Later views may still supersede an event.
+[[nodiscard]] std::string format_view_line(const ViewRecord& view, const ModelLibrary& library);
+
 /// Formats the changes as JSON: one entry per event, and the changed share per view.
 [[nodiscard]] std::string format_changes_json(const ReportRun& run, const ModelLibrary& library);
 

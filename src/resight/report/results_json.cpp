@@ -73,6 +73,20 @@ Json event_json(const ObjectEvent& event, const ModelLibrary& library) {
           {"confidence", event.confidence}};
 }
 
+Json view_json(const ViewRecord& view, const ModelLibrary& library) {
+  Json detections = Json::array();
+  for (std::size_t i = 0; i < view.update.detections.size(); ++i)
+    detections.push_back(detection_json(view, i, library));
+  Json of_view = {{"view", view.update.view},
+                  {"name", view.update.view_name},
+                  {"scene_id", view.scene_id},
+                  {"image_id", view.image_id},
+                  {"world_from_camera", pose_json(view.update.world_from_camera)},
+                  {"detections", detections}};
+  if (!view.update.left_out.empty()) of_view["left_out"] = view.update.left_out;
+  return of_view;
+}
+
 Json stage_times_json(const StageTimes& times, int num_views) {
   Json json = Json::array();
   for (const StageTime& time : times.stages()) {
@@ -106,23 +120,17 @@ Json header(const ReportRun& run) {
 
 std::string format_detections_json(const ReportRun& run, const ModelLibrary& library) {
   Json views = Json::array();
-  for (const ViewRecord& view : run.views) {
-    Json detections = Json::array();
-    for (std::size_t i = 0; i < view.update.detections.size(); ++i) {
-      detections.push_back(detection_json(view, i, library));
-    }
-    Json of_view = {{"view", view.update.view},
-                    {"name", view.update.view_name},
-                    {"scene_id", view.scene_id},
-                    {"image_id", view.image_id},
-                    {"world_from_camera", pose_json(view.update.world_from_camera)},
-                    {"detections", detections}};
-    if (!view.update.left_out.empty()) of_view["left_out"] = view.update.left_out;
-    views.push_back(std::move(of_view));
-  }
+  for (const ViewRecord& view : run.views) views.push_back(view_json(view, library));
   Json json = header(run);
   json["views"] = views;
   return to_text(json);
+}
+
+std::string format_view_line(const ViewRecord& view, const ModelLibrary& library) {
+  Json json = view_json(view, library);
+  json["events"] = Json::array();
+  for (const ObjectEvent& event : view.update.events) json["events"].push_back(event_json(event, library));
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string format_changes_json(const ReportRun& run, const ModelLibrary& library) {

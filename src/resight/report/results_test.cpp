@@ -6,7 +6,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -107,6 +110,53 @@ TEST(FormatDetectionsJson, NamesWhatThereWasNoTimeFor) {
   run.views[1].update.left_out = {"shape search"};
   const json parsed = json::parse(format_detections_json(run, make_library()));
   EXPECT_EQ(parsed["views"][1]["left_out"], json({"shape search"}));
+}
+
+TEST(FormatDetectionsJson, HoldsWhatTheDocumentSays) {
+  const fs::path document = fs::path(__FILE__).parent_path() / "../../../docs/formats.md";
+  if (!fs::exists(document)) GTEST_SKIP() << "no " << document;
+  const std::string all = read_all(document);
+  const std::size_t begin = all.find("\n## Detections");
+  const std::string text = all.substr(begin, all.find("\n## ", begin + 1) - begin);
+  ReportRun run = make_run();
+  run.views[0].update.left_out = {"shape search"};
+  run.views[0].evaluation.emplace();
+  run.views[0].marks.resize(run.views[0].update.detections.size());
+  const json view = json::parse(format_detections_json(run, make_library()))["views"][0];
+  std::set<std::string> keys;
+  const std::function<void(const json&)> collect = [&](const json& value) {
+    if (value.is_object())
+      for (const auto& [key, item] : value.items()) keys.insert(key);
+    for (const json& item : value)
+      if (item.is_structured()) collect(item);
+  };
+  collect(view);
+  for (const std::string& key : keys) EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << key;
+  const json& detection = view["detections"][0];
+  std::istringstream lines(text);
+  int num_rows = 0;
+  const std::regex name("`([a-z_]+)`");
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| `")) continue;
+    ++num_rows;
+    const std::string first = line.substr(1, line.find('|', 1));
+    for (auto it = std::sregex_iterator(first.begin(), first.end(), name); it != std::sregex_iterator(); ++it)
+      EXPECT_TRUE(detection.contains((*it)[1].str())) << (*it)[1];
+  }
+  EXPECT_GE(num_rows, 9);
+}
+
+TEST(FormatViewLine, IsTheViewOfTheDetectionsWithItsEvents) {
+  const ReportRun run = make_run();
+  const json views = json::parse(format_detections_json(run, make_library()))["views"];
+  for (std::size_t v = 0; v < run.views.size(); ++v) {
+    const std::string line = format_view_line(run.views[v], make_library());
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    json parsed = json::parse(line);
+    EXPECT_EQ(parsed["events"].size(), run.views[v].update.events.size());
+    parsed.erase("events");
+    EXPECT_EQ(parsed, views[v]);
+  }
 }
 
 TEST(FormatChangesJson, HoldsEventsOfAllViews) {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "resight/sensor/prepared_view.hpp"
+
+namespace resight {
+
+/// Where the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel
+/// middle + scale * (p - middle) + shift. A scale other than 1 is that of two cameras with different focal lengths.
+struct ColorDepthShift {
+  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
+  double scale = 1;
+  double peak_sigmas = 0;  ///< Height of the peak above the scores of all shifts, in their standard deviations.
+  int num_contour_pixels = 0;
+};
+
+/// Contrast of the colours across the occluding contours of the depth, for each shift and scale of the colours. The
+/// scores of several views of one camera may be added.
+class ShiftScores {
+ public:
+  /// Largest shift searched, px.
+  static constexpr int kReach_px = 48;
+  static constexpr std::array<double, 8> kScales{0.8, 0.85, 0.9, 0.95, 1, 1.05, 1.1, 1.2};
+
+  ShiftScores();
+  /// Takes up to about 1,000 pixels of the contours.
+  void add(const PreparedView& view);
+  void add(const ShiftScores& other);
+  /// The best shift and scale; none with fewer than 200 pixels of contours.
+  [[nodiscard]] std::optional<ColorDepthShift> peak() const;
+
+ private:
+  static constexpr int kNumShifts = 2 * kReach_px + 1;
+  std::array<std::vector<float>, kScales.size()> sums_;
+  int num_pixels_ = 0;
+};
+
+}  // namespace resight

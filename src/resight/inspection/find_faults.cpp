@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/inspection/find_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "resight/core/statistics.hpp"
+#include "resight/inspection/internal/image_faults.hpp"
+#include "resight/inspection/internal/pose_faults.hpp"
+
+namespace resight {
+namespace {
+
+constexpr double kMaxEdgeWidth_px = 8;  // Of images 640 px wide: SIFT finds little in the finest three octaves then.
+constexpr double kMaxBlurredShare = 0.1;
+constexpr double kMaxFineShift_px = 2;  // Twice the width of a depth edge; appearance tolerates one pixel.
+constexpr double kMaxWideShift_px = 5;  // measure_color_offset() reaches 4.
+constexpr double kMinPeakSigmas = 5;
+constexpr double kSameShift_px = 4;
+constexpr double kSameScale = 0.06;  // A step of ShiftScores::kScales.
+constexpr std::size_t kMinShiftViews = 3;
+constexpr double kMaxRelativeSpread = 0.34;  // A shift that varies is none of the calibration.
+
+/// The faults of all views, once per kind, with the number of views that have it. The middle one stands for them.
+std::vector<Finding> join_view_faults(const SequenceMeasurements& measured) {
+  std::vector<Finding> all;
+  for (const ViewMeasurements& v : measured.views) {
+    inspection::add_depth_faults(v.depth, v.noise_ratio, v.view, all);
+    inspection::add_color_faults(v.color.bright_grey, v.view, all);
+  }
+  std::vector<Finding> joined;
+  std::set<std::string> done;
+  for (const Finding& f : all) {
+    if (!done.insert(f.fault).second) continue;
+    std::vector<Finding> same;
+    std::ranges::copy_if(all, std::back_inserter(same), [&](const Finding& g) { return g.fault == f.fault; });
+    // A single near wall is no wrong unit: that one is common to all views.
+    const bool is_common = f.fault == "depth_scale" || f.fault == "eight_bit_depth";
+    if (is_common && 2 * same.size() <= measured.views.size()) continue;
+    joined.push_back(same[same.size() / 2]);
+    joined.back().message += fmt::format(" ({} of {} inspected views)", same.size(), measured.views.size());
+  }
+  return joined;
+}
+
+void add_blur(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  std::vector<double> widths_px;
+  const ViewMeasurements* worst = nullptr;
+  int num_blurred = 0;
+  for (const ViewMeasurements& v : measured.views) {
+    if (!(v.color.edge_width_px > kMaxEdgeWidth_px)) continue;
+    ++num_blurred;
+    if (worst == nullptr || v.color.edge_width_px > worst->color.edge_width_px) worst = &v;
+  }
+  if (worst == nullptr || num_blurred <= kMaxBlurredShare * static_cast<double>(measured.views.size())) return;
+  findings.push_back({.fault = "motion_blur",
+                      .message = fmt::format("{} of {} inspected views are blurred (edges are up to {:.1f} px wide)",
+                                             num_blurred, measured.views.size(), worst->color.edge_width_px),
+                      .remedy = "move the camera more slowly or shorten the exposure; --every leaves views out",
+                      .value = worst->color.edge_width_px,
+                      .unit = "px",
+                      .threshold = kMaxEdgeWidth_px,
+                      .margin = worst->color.edge_width_px / kMaxEdgeWidth_px,
+                      .view = worst->view});
+}
+
+/// A shift of more than measure_color_offset() reaches, if both halves of the views show the same one.
+bool add_wide_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  const auto a = measured.half_shifts[0].peak();
+  const auto b = measured.half_shifts[1].peak();
+  const auto is_scaled = [](const ColorDepthShift& s) { return std::abs(s.scale - 1) > kSameScale; };
+  const auto is_wide = [&](const ColorDepthShift& s) { return s.shift_px.norm() > kMaxWideShift_px || is_scaled(s); };
+  if (!a || !b || !is_wide(*a) || !is_wide(*b)) return false;
+  if (std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas || std::abs(a->scale - b->scale) > kSameScale ||
+      (a->shift_px - b->shift_px).norm() > kSameShift_px)
+    return false;
+  const double shift_px = a->shift_px.norm();
+  findings.push_back({.fault = "unregistered_depth",
+                      .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
+                                             a->shift_px.x(), a->shift_px.y(), a->scale),
+                      .remedy = "record depth registered (aligned) to colour",
+                      .value = shift_px,
+                      .unit = "px",
+                      .threshold = kMaxWideShift_px,
+                      .margin = std::max({1.0, shift_px / kMaxWideShift_px, std::abs(a->scale - 1) / kSameScale}),
+                      .view = measured.views.front().view});
+  return true;
+}
+
+void add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  std::vector<double> x_px, y_px, distances_px;
+  for (const ViewMeasurements& v : measured.views)
+    if (v.fine_shift_px) {
+      x_px.push_back(v.fine_shift_px->x());
+      y_px.push_back(v.fine_shift_px->y());
+    }
+  if (x_px.size() < std::min(kMinShiftViews, measured.views.size())) return;
+  const Eigen::Vector2d shift_px(upper_median(x_px), upper_median(y_px));
+  for (std::size_t i = 0; i < x_px.size(); ++i)
+    distances_px.push_back((Eigen::Vector2d(x_px[i], y_px[i]) - shift_px).norm());
+  const double spread_px = upper_median(std::move(distances_px));
+  if (shift_px.norm() <= kMaxFineShift_px || spread_px > kMaxRelativeSpread * shift_px.norm()) return;
+  findings.push_back(
+      {.fault = "color_offset",
+       .message = fmt::format("colours lie ({:.1f}, {:.1f}) px beside the depth ({} views, spread {:.1f} px)",
+                              shift_px.x(), shift_px.y(), x_px.size(), spread_px),
+       .remedy = "calibrate both cameras; preset default corrects up to 4 px by itself",
+       .value = shift_px.norm(),
+       .unit = "px",
+       .threshold = kMaxFineShift_px,
+       .margin = shift_px.norm() / kMaxFineShift_px,
+       .view = measured.views.front().view});
+}
+
+}  // namespace
+
+std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
+  std::vector<Finding> findings;
+  inspection::add_camera_faults(measured.camera, measured.views.front().view, findings);
+  const bool has_camera = findings.empty();
+  for (Finding& f : join_view_faults(measured)) findings.push_back(std::move(f));
+  if (measured.poses) inspection::add_origin_fault(measured.poses->farthest_m, 0, findings);
+  add_blur(measured, findings);
+  if (!add_wide_shift(measured, findings)) add_fine_shift(measured, findings);
+  const bool has_depth_fault = std::ranges::any_of(findings, [](const Finding& f) {
+    return f.fault == "depth_scale" || f.fault == "eight_bit_depth" || f.fault == "unregistered_depth";
+  });
+  if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, findings);
+  return findings;
+}
+
+std::vector<std::string> list_facts(const SequenceMeasurements& measured) {
+  std::vector<std::string> facts;
+  constexpr double kStill_px = 1.5;
+  if (!measured.pairs.empty() && measured.pair_shift_px < kStill_px)
+    facts.push_back(fmt::format("the camera does not move (views differ by {:.1f} px)", measured.pair_shift_px));
+  if (measured.num_views > 2 && measured.pairs.size() < 3)
+    facts.push_back(fmt::format("{} pairs of views could be matched, so poses and intrinsics were not checked",
+                                measured.pairs.size()));
+  if (measured.num_views > 1 && !measured.pairs.empty() && !measured.poses)
+    facts.emplace_back("the sequence has no poses; give --poses, or use resight track");
+  return facts;
+}
+
+}  // namespace resight

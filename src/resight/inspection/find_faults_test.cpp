@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/inspection/find_faults.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "resight/inspection/quick_check.hpp"
+#include "resight/inspection/testing/broken_sequence.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
+#include "resight/sensor/testing/memory_sequence.hpp"
+
+namespace resight {
+namespace {
+
+/// Gives the smooth texture sharp edges, as printed things have.
+RgbdFrame sharpen(RgbdFrame frame) {
+  for (Rgb8& c : frame.color.data()) c.r = c.g = c.b = c.r > 160 ? 220 : c.r > 110 ? 130 : 50;
+  return frame;
+}
+
+/// Eight views from a camera that swings around a ball before a wall, with changing speed.
+const test::MemorySequence& good_sequence() {
+  static const test::MemorySequence sequence = [] {
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 8; ++v) {
+      const double angle = -0.5 + 0.13 * v + 0.05 * (v % 3);
+      const Eigen::Vector3d eye(1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75 + 0.06 * (v % 2));
+      frames.push_back(sharpen(test::render_ball_scene({}, test::look_at_point(eye, {0.05 * (v % 2), 0.1, 0.15}),
+                                                       0.0015, static_cast<std::uint64_t>(v + 1))));
+      frames.back().name = std::to_string(v);
+    }
+    return test::MemorySequence(std::move(frames));
+  }();
+  return sequence;
+}
+
+std::vector<Finding> check(const Sequence& sequence) {
+  return find_faults(measure_sequence(sequence, {.max_views = 24, .num_threads = 1}).value());
+}
+
+std::string names_of(const std::vector<Finding>& findings) {
+  std::string names;
+  for (const Finding& f : findings) names += f.fault + ": " + f.message + "; ";
+  return names;
+}
+
+TEST(FindFaults, AGoodSequenceHasNone) {
+  const auto measured = measure_sequence(good_sequence(), {.max_views = 24, .num_threads = 1}).value();
+  EXPECT_GE(measured.pairs.size(), 8U);
+  EXPECT_EQ(names_of(find_faults(measured)), "");
+  EXPECT_TRUE(list_facts(measured).empty());
+  EXPECT_EQ(names_of(check_quickly(good_sequence(), true)), "");
+}
+
+TEST(FindFaults, ResultsDoNotDependOnThreads) {
+  const test::BrokenSequence broken(good_sequence(), "depth_x1.25");
+  const auto one = find_faults(measure_sequence(broken, {.max_views = 24, .num_threads = 1}).value());
+  const auto three = find_faults(measure_sequence(broken, {.max_views = 24, .num_threads = 3}).value());
+  ASSERT_EQ(names_of(one), names_of(three));
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].value, three[i].value);
+}
+
+TEST(FindFaults, ACameraThatStandsIsAFactAndNoFault) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 4; ++v)
+    frames.push_back(sharpen(test::render_ball_scene({}, test::look_at_point({0.3, -1, 0.8}, {0, 0.1, 0.1}), 0.0015,
+                                                     static_cast<std::uint64_t>(v + 1))));
+  const auto measured = measure_sequence(test::MemorySequence(frames), {.max_views = 24, .num_threads = 1}).value();
+  EXPECT_EQ(names_of(find_faults(measured)), "");
+  ASSERT_EQ(list_facts(measured).size(), 1U);
+  EXPECT_NE(list_facts(measured).front().find("does not move"), std::string::npos);
+}
+
+class BreakageTest : public ::testing::TestWithParam<test::Breakage> {};
+
+TEST_P(BreakageTest, IsFound) {
+  const test::BrokenSequence broken(good_sequence(), GetParam().name);
+  const std::vector<Finding> findings = check(broken);
+  EXPECT_TRUE(std::ranges::any_of(findings, [&](const Finding& f) {
+    return std::ranges::find(GetParam().expected, f.fault) != GetParam().expected.end();
+  })) << names_of(findings);
+  for (const Finding& f : findings) {
+    EXPECT_GE(f.margin, 1) << f.message;
+    EXPECT_FALSE(f.remedy.empty());
+  }
+}
+
+std::string breakage_name(const ::testing::TestParamInfo<test::Breakage>& info) {
+  std::string name = info.param.name;
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '-'; }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BreakageTest, ::testing::ValuesIn(test::breakages()), breakage_name);
+
+TEST(CheckQuickly, SeesWhatTheFirstViewsShow) {
+  for (const char* name : {"depth_x0.1", "depth_x1000", "no_depth", "eight_bits", "black", "intrinsics_of_double_size",
+                           "focal_1e-6", "focal_1e300", "poses_in_mm", "poses_inverted", "poses_100_km_away"}) {
+    const test::BrokenSequence broken(good_sequence(), name);
+    EXPECT_EQ(check_quickly(broken, true).size(), 1U) << name << " " << names_of(check_quickly(broken, true));
+  }
+}
+
+TEST(CheckQuickly, LeavesPosesAloneThatAreNotUsed) {
+  EXPECT_TRUE(check_quickly(test::BrokenSequence(good_sequence(), "poses_inverted"), false).empty());
+}
+
+}  // namespace
+}  // namespace resight

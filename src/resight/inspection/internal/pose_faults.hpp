@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "resight/inspection/finding.hpp"
+#include "resight/inspection/measure_sequence.hpp"
+
+namespace resight::inspection {
+
+/// Adds faults that the motion between views shows: of poses, of their unit and time, of the intrinsics.
+void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings);
+
+}  // namespace resight::inspection

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "resight/core/result.hpp"
+#include "resight/inspection/color_depth_shift.hpp"
+#include "resight/inspection/color_values.hpp"
+#include "resight/inspection/depth_values.hpp"
+#include "resight/inspection/motion_fit.hpp"
+#include "resight/sensor/sequence.hpp"
+
+namespace resight {
+
+/// One inspected view.
+struct ViewMeasurements {
+  int view = 0;  ///< Number in the sequence.
+  std::string name;
+  DepthValues depth;
+  double noise_ratio = 0;  ///< measure_noise_ratio().
+  ColorValues color;
+  std::optional<Eigen::Vector2d> fine_shift_px;  ///< measure_color_offset(), up to 4 px.
+};
+
+/// How the poses of a sequence are read.
+struct PoseReading {
+  bool inverted = false;  ///< They are camera_from_world.
+  bool opengl = false;    ///< The camera looks along -z, with y up.
+  double views_late = 0;  ///< The pose of view v is that at this many views after it.
+};
+
+/// One reading of the poses, tried on the views.
+struct TriedReading {
+  PoseReading reading;
+  GivenPosesFit fit;
+};
+
+/// What the given poses say about the views, and what the views say about them.
+struct PoseMeasurements {
+  GivenPosesFit given;                 ///< As they are.
+  std::vector<TriedReading> readings;  ///< All conventions with their best scale; the first one is as given.
+  std::vector<TriedReading> shifted;   ///< In steps of a quarter of a view; scale as given.
+  bool all_equal = false;              ///< The poses say that the camera does not move.
+  double farthest_m = 0;               ///< From the origin of the world.
+  double extent_m = 0;
+};
+
+/// Everything that is measured on a sequence.
+struct SequenceMeasurements {
+  int num_views = 0;
+  Camera camera;  ///< Of the first inspected view.
+  std::vector<ViewMeasurements> views;
+  std::array<ShiftScores, 2> half_shifts;  ///< Of every second view, and of the others.
+  double depth_unit_m = 1;      ///< Median depth of the inspected views: the unit of the pairs' translations.
+  std::vector<ViewPair> pairs;  ///< Those that could be matched.
+  int num_tried_pairs = 0;
+  double pair_error_px = 0;  ///< Median over the pairs of their own errors.
+  double pair_shift_px = 0;  ///< Median over the pairs of the distance between matched pixels.
+  std::optional<IntrinsicsFit> intrinsics;
+  std::optional<PoseMeasurements> poses;  ///< None without poses or without matched pairs.
+};
+
+struct MeasureSequenceOptions {
+  int max_views = 24;  ///< Inspected ones, spread over the sequence.
+  int num_threads = 1;
+};
+
+/// Reads up to max_views views, and measures them and the motion between them. Fails with the error of the first view
+/// that cannot be read.
+[[nodiscard]] Result<SequenceMeasurements> measure_sequence(const Sequence& sequence,
+                                                            const MeasureSequenceOptions& options = {});
+
+}  // namespace resight

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/inspection/internal/pose_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace resight::inspection {
+namespace {
+
+constexpr std::size_t kMinPosePairs = 3;
+// Beyond this, contours of other surfaces agree by chance (estimate_misregistration_px()).
+constexpr double kMaxPoseError_px = 8;
+constexpr double kMinMotion_px = 5;  // Between views; less says nothing about poses and intrinsics.
+constexpr double kMinGain = 3;       // How much better another convention must explain the views.
+constexpr double kMinTimeGain = 2;   // The same for another time: the poses between views are interpolated.
+// Factory calibrations of depth differ by up to 4 % (TUM RGB-D: 3.5 %), those of focal lengths by 5 %.
+constexpr double kMaxLogScale = 0.06;
+constexpr double kMaxLogFocal = 0.08;
+constexpr double kMaxCenter = 0.06;  // Of the image's width.
+constexpr double kSigmas = 4;        // Standard errors, which come from few pairs.
+
+struct PoseContext {
+  const SequenceMeasurements& all;
+  const PoseMeasurements& poses;
+  std::vector<Finding>& findings;
+  int view;
+
+  void add(const char* fault, std::string message, std::string remedy, double value, const char* unit, double threshold,
+           double margin) const {
+    findings.push_back({.fault = fault,
+                        .message = std::move(message),
+                        .remedy = std::move(remedy),
+                        .value = value,
+                        .unit = unit,
+                        .threshold = threshold,
+                        .margin = margin,
+                        .view = view});
+  }
+  /// Errors of poses beside those of the matches themselves.
+  [[nodiscard]] double excess_px(double error_px) const { return std::max(0.1, error_px - all.pair_error_px); }
+};
+
+bool add_fixed(const PoseContext& c) {
+  if (!c.poses.all_equal) return false;
+  if (c.all.pair_shift_px > kMaxPoseError_px)
+    c.add("fixed_poses",
+          fmt::format("the poses say that the camera stands, but views differ by {:.0f} px", c.all.pair_shift_px),
+          "--poses auto, or resight track", c.all.pair_shift_px, "px", kMaxPoseError_px,
+          c.all.pair_shift_px / kMaxPoseError_px);
+  return true;
+}
+
+bool add_convention(const PoseContext& c) {
+  const TriedReading& given = c.poses.readings.front();
+  const TriedReading& best =
+      *std::ranges::min_element(c.poses.readings, {}, [](const TriedReading& r) { return r.fit.error_px; });
+  const double gain = c.excess_px(given.fit.error_px) / c.excess_px(best.fit.error_px);
+  if (gain < kMinGain || given.fit.error_px < kMaxPoseError_px) return false;
+  const std::string name = best.reading.inverted ? "world to camera" : "camera to world";
+  const std::string option = best.reading.opengl ? "opengl" : "world-to-camera";
+  c.add("pose_convention",
+        fmt::format("the poses are {}{}: views disagree by {:.0f} px, and by {:.1f} px so", name,
+                    best.reading.opengl ? ", y up" : "", given.fit.error_px, best.fit.error_px),
+        best.reading.opengl && best.reading.inverted ? "invert the poses, then --pose-convention opengl"
+                                                     : "--pose-convention " + option + " (if it was given: without it)",
+        gain, "", kMinGain, gain / kMinGain);
+  return true;
+}
+
+bool add_time(const PoseContext& c) {
+  const TriedReading& best =
+      *std::ranges::min_element(c.poses.shifted, {}, [](const TriedReading& r) { return r.fit.error_px; });
+  const double gain = c.excess_px(c.poses.given.error_px) / c.excess_px(best.fit.error_px);
+  if (std::abs(best.reading.views_late) < 0.5 || gain < kMinTimeGain || c.poses.given.error_px < kMaxPoseError_px)
+    return false;
+  c.add("pose_time",
+        fmt::format("the poses are those of {:.2g} views later: views disagree by {:.0f} px, and by "
+                    "{:.1f} px so",
+                    -best.reading.views_late, c.poses.given.error_px, best.fit.error_px),
+        "shift the times in the file of poses", best.reading.views_late, "views", 0.5, gain / kMinTimeGain);
+  return true;
+}
+
+bool add_scale(const PoseContext& c) {
+  const GivenPosesFit& fit = c.poses.readings.front().fit;
+  const double log_scale = fit.log_scale.value;
+  const double limit = std::max(kMaxLogScale, kSigmas * fit.log_scale.standard_error);
+  if (std::abs(log_scale) < limit || c.excess_px(fit.error_px) > 0.8 * c.excess_px(c.poses.given.error_px))
+    return false;
+  const double scale = std::exp(log_scale);
+  const bool is_unit = std::abs(std::abs(log_scale) - std::log(1000)) < 0.3;
+  c.add(is_unit ? "pose_unit" : "depth_scale",
+        fmt::format("the motion that depth shows is {:.4g} times that of the poses (+- {:.1f} %)", scale,
+                    100 * fit.log_scale.standard_error),
+        is_unit && scale < 1
+            ? "divide the translations by 1000: poses are in metres"
+            : fmt::format("--depth-scale {:.3g} times the present one, if the poses are right", 1 / scale),
+        scale, "", std::exp(limit), std::abs(log_scale) / limit);
+  return true;
+}
+
+bool add_intrinsics(const PoseContext& c) {
+  if (!c.all.intrinsics) return false;
+  const IntrinsicsFit& fit = *c.all.intrinsics;
+  const double focal_limit = std::max(kMaxLogFocal, kSigmas * fit.log_focal.standard_error);
+  const auto margin_of_center = [&](const Estimate& e) {
+    return std::abs(e.value) / std::max(kMaxCenter * c.all.camera.width, kSigmas * e.standard_error);
+  };
+  const double margin = std::max({std::abs(fit.log_focal.value) / focal_limit, margin_of_center(fit.center_x_px),
+                                  margin_of_center(fit.center_y_px)});
+  if (margin <= 1) return false;
+  const Camera& k = c.all.camera;
+  const double focal = std::exp(fit.log_focal.value);
+  const std::string better = fmt::format("{:.0f},{:.0f},{:.0f},{:.0f}", focal * k.fx, focal * k.fy,
+                                         k.cx + fit.center_x_px.value, k.cy + fit.center_y_px.value);
+  c.add("intrinsics", fmt::format("the views move like those of a camera with fx,fy,cx,cy = {}", better),
+        "--intrinsics of this camera and resolution (about " + better + ")", focal, "", std::exp(focal_limit), margin);
+  return true;
+}
+
+void add_accuracy(const PoseContext& c) {
+  const double error_px = c.excess_px(c.poses.given.error_px);
+  if (error_px <= kMaxPoseError_px) return;
+  c.add("pose_error",
+        fmt::format("views disagree by {:.0f} px under the given poses: they drift or are coarse", error_px),
+        "--poses refine, or resight track", error_px, "px", kMaxPoseError_px, error_px / kMaxPoseError_px);
+}
+
+}  // namespace
+
+void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  if (measured.pairs.size() < kMinPosePairs) return;
+  const PoseMeasurements none;
+  const PoseContext c{measured, measured.poses ? *measured.poses : none, findings, measured.pairs.front().b};
+  const bool moves = measured.pair_shift_px > kMinMotion_px;
+  if (moves && add_intrinsics(c)) return;
+  if (!measured.poses || add_fixed(c)) return;
+  if (add_convention(c) || add_scale(c) || add_time(c)) return;
+  add_accuracy(c);
+}
+
+}  // namespace resight::inspection
