@@ -22,6 +22,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { pickPoint, transformPoint, type Vec3 } from "./geometry";
+import { Gizmo } from "./gizmo";
 import type { CameraState } from "./link";
 import { PointSet } from "./points";
 import type { Camera, Pose } from "./protocol";
@@ -68,6 +69,7 @@ export class World {
   private isMoving = false;
   private lastDrawn = 0;
   private share = 1;
+  private knownGizmo: Gizmo | null = null;
   private home: CameraState = { position: [1, -1, 1], target: [0, 0, 0] };
   /** Called when the user has moved the camera. */
   onMove: () => void = () => {};
@@ -143,6 +145,16 @@ export class World {
     if (!group || group.visible === isVisible) return;
     group.visible = isVisible;
     this.requestDraw();
+  }
+  /** Handles for the selected object; made when they are first needed. */
+  gizmo(): Gizmo {
+    if (!this.knownGizmo) {
+      this.knownGizmo = new Gizmo(this.scene, this.camera, this.canvas, () => this.requestDraw());
+      this.knownGizmo.onHold = (isHeld) => {
+        this.controls.enabled = !isHeld;
+      };
+    }
+    return this.knownGizmo;
   }
   setPickables(pickables: Pickable[]): void {
     this.pickables = pickables;
@@ -259,6 +271,10 @@ export class World {
   lookAt(target: Vec3, distance: number): void {
     const direction = this.camera.position.clone().sub(this.controls.target).normalize().multiplyScalar(distance);
     this.setCamera({ position: new Vector3(...target).add(direction).toArray(), target });
+  }
+  /** The direction that is up. */
+  upward(): Vec3 {
+    return this.up;
   }
   /** Looks down on the target. */
   lookDown(): void {
