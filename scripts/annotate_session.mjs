@@ -23,6 +23,8 @@ const angle = (a, b) => {
   const skew = Math.hypot(r[6] - r[9], r[8] - r[2], r[1] - r[4]);
   return (Math.atan2(skew / 2, (r[0] + r[5] + r[10] - 1) / 2) * 180) / Math.PI;
 };
+/** Beyond this, the outline or the texture is seen to be wrong, and the object is placed again. */
+const kMaxTurn_deg = 20;
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 /** The true placements: an object at one place, from view to view. */
@@ -76,7 +78,7 @@ const put = (placement) => ({ do: "put_object", id: -1, track: -1, ...placement 
 const centerOf = (object, pose) => at(pose, scene.objects[object].center);
 /** The annotated placement that shows the true one, if it is near enough to be snapped. */
 const find = (t) =>
-  state.objects.find((o) => o.object === numOf(t.name) && o.first_view <= t.last && o.last_view >= t.first && distance(centerOf(o.object, o.pose), centerOf(o.object, t.pose)) < 0.03);
+  state.objects.find((o) => o.object === numOf(t.name) && o.first_view <= t.last && o.last_view >= t.first && distance(centerOf(o.object, o.pose), centerOf(o.object, t.pose)) < 0.03 && angle(o.pose, t.pose) < kMaxTurn_deg);
 const interval = (found, view) => {
   const gone = found.filter((r) => r.is_gone).map((r) => r.view);
   return [Math.max(-1, ...gone.filter((v) => v < view)) + 1, Math.min(numViews, ...gone.filter((v) => v > view)) - 1];
@@ -100,7 +102,7 @@ for (const t of truth) {
   const object = numOf(t.name);
   const { pose } = await ask("annotation/place", { object, view: best.view, u, v });
   const [first_view, last_view] = interval(await ask("annotation/assess", { object, pose }), best.view);
-  const refined = await ask("annotation/refine", { object, pose, first_view, last_view });
+  const refined = await ask("annotation/refine", { object, pose, first_view, last_view, all_turns: true });
   await act(`Place ${t.name}`, [put({ object, first_view, last_view, pose: refined.pose })]);
   if (!find(t)) misplaced.push(t.name);
 }

@@ -111,7 +111,7 @@ export class Annotator {
       const numViews = this.app.scene.views.length;
       const found = await this.api.post<ViewResidual[]>("assess", { object, pose });
       const [first_view, last_view] = presentInterval(found, view, numViews);
-      const refined = await this.refinePose(object, pose, first_view, last_view);
+      const refined = await this.refinePose(object, pose, first_view, last_view, true);
       this.placing = -1;
       await this.send({
         title: `Place ${this.nameOf(object)}`,
@@ -133,12 +133,20 @@ export class Annotator {
     return this.edit(`${title} ${this.nameOf(placement.object)}`, [putObject({ ...placement, pose })]);
   }
 
-  private async refinePose(object: number, pose: Pose, first_view: number, last_view: number): Promise<Pose> {
+  /** `all_turns`: also chooses between poses of the same shape by their colours. */
+  private async refinePose(
+    object: number,
+    pose: Pose,
+    first_view: number,
+    last_view: number,
+    all_turns = false,
+  ): Promise<Pose> {
     const answer = await this.api.post<{ pose: Pose; views: ViewResidual[]; num_pairs: number }>("refine", {
       object,
       pose,
       first_view,
       last_view,
+      all_turns,
     });
     if (answer.num_pairs < 30) throw new Error("No view shows enough of the object here. Move it nearer first.");
     return answer.pose;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "resight/annotation/internal/color_difference.hpp"
 #include "resight/annotation/internal/sampled_surface.hpp"
 #include "resight/annotation/internal/support_plane.hpp"
 #include "resight/annotation/refine_over_views.hpp"
@@ -28,29 +29,6 @@ struct ScoredPose {
   double score = -std::numeric_limits<double>::infinity();
 };
 
-/// Mean absolute difference of colours at the supported points, after the light is fitted per channel, in [0, 1].
-double color_difference(const SampledSurface& surface, const SurfaceEvidence& evidence,
-                        const Rigid3& camera_from_object, const RgbdFrame& frame) {
-  std::vector<std::array<float, 6>> pairs;
-  std::array<double, 6> sums{};
-  for (std::size_t i = 0; i < evidence.points.size(); ++i) {
-    if (evidence.points[i] != Evidence::kPresent) continue;
-    const auto pixel = frame.camera.pixel_of(camera_from_object * surface.cloud.points[i].cast<double>());
-    if (!pixel) continue;
-    const Rgb8 seen = frame.color(pixel->u, pixel->v);
-    const Rgb8 own = surface.cloud.colors[i];
-    pairs.push_back({static_cast<float>(seen.r), static_cast<float>(seen.g), static_cast<float>(seen.b),
-                     static_cast<float>(own.r), static_cast<float>(own.g), static_cast<float>(own.b)});
-    for (std::size_t c = 0; c < 6; ++c) sums[c] += pairs.back()[c];
-  }
-  if (pairs.empty()) return 1;
-  double difference = 0;
-  for (const auto& pair : pairs)
-    for (std::size_t c = 0; c < 3; ++c)
-      difference += std::abs(pair[c] - pair[c + 3] * std::clamp((sums[c] + 1) / (sums[c + 3] + 1), 0.4, 2.0));
-  return difference / (3 * 128.0 * static_cast<double>(pairs.size()));
-}
-
 /// Of the points that face the camera: present ones count for the pose, those seen through against it, and so do wrong
 /// colours.
 double score_pose(const SampledSurface& surface, const Rigid3& camera_from_object, const RgbdFrame& frame,
@@ -64,7 +42,7 @@ double score_pose(const SampledSurface& surface, const Rigid3& camera_from_objec
   const double num_seen_through = evidence.num(Evidence::kSeenThrough);
   const double num_occluded = evidence.num(Evidence::kOccluded);
   const double color =
-      surface.cloud.has_colors() ? color_difference(surface, evidence, camera_from_object, frame) : 0.0;
+      color_difference(surface, evidence, camera_from_object, frame).value_or(surface.cloud.has_colors() ? 1.0 : 0.0);
   const double facing = std::max(1.0, num_present + num_seen_through + 0.5 * num_occluded);
   // The second term prefers the pose that explains more of the view: a narrow side fits into a wide one.
   const double explained = num_present * (1 - 2 * std::min(0.5, color));
@@ -134,6 +112,7 @@ std::optional<Rigid3> place_by_click(const ObjectModel& model, double surface_vo
     RefineOverViewsOptions options;
     options.max_points = kFinePoints;
     options.max_iterations = 20;
+    options.fit_twice = false;
     const auto refined =
         refine_over_views(model, surface_voxel_m, poses[i].camera_from_object, std::span(&view, 1), options);
     const double score = score_pose(surface, refined.world_from_object, frame, 0.008);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/annotation/refine_over_views.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "resight/annotation/internal/sampled_surface.hpp"
@@ -18,7 +20,10 @@ constexpr int kMinVisible = 25;        // Points that tell whether an object is 
 constexpr double kMaxGoneShare = 0.6;  // As in the object history.
 constexpr double kMinCosine = 0.3;
 constexpr int kMinPairs = 30;
-constexpr double kShrink = 0.75;  // Of the gate, per iteration.
+constexpr double kNarrowGate = 0.35;      // Of the largest gate, for the second fit.
+constexpr double kCloseMargin_m = 0.003;  // Of points that count for a pose.
+constexpr double kMinInformation = 0.01;  // Of a direction, over the mean.
+constexpr double kShrink = 0.75;          // Of the gate, per iteration.
 
 /// The surface at a pose in one view, and the depth of that view.
 struct PosedView {
@@ -104,6 +109,63 @@ void add_pairs(const SampledSurface& surface, const PosedView& view, const Rigid
   }
 }
 
+/// Keeps directions that the pairs hardly determine, such as the rotation of a mug whose handle no view shows. They
+/// would drift from step to step.
+void hold_weak_directions(StepEquations& equations) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(equations.matrix);
+  const double mean = equations.matrix.trace() / 6;
+  for (int i = 0; i < 6; ++i) {
+    if (solver.eigenvalues()[i] > kMinInformation * mean) continue;
+    const Vector6 direction = solver.eigenvectors().col(i);
+    equations.right -= direction.dot(equations.right) * direction;
+    equations.matrix += mean * direction * direction.transpose();
+  }
+}
+
+/// A pose and the number of its pairs.
+struct FittedPose {
+  Rigid3 world_from_object;
+  int num_pairs = 0;
+};
+
+/// Fits from pairs within `gate_m`, which shrinks.
+FittedPose fit_pose(const SampledSurface& surface, const Rigid3& world_from_object, std::span<const NumberedView> views,
+                    double gate_m, const RefineOverViewsOptions& options) {
+  FittedPose fitted{world_from_object, 0};
+  for (int i = 0; i < options.max_iterations; ++i) {
+    StepEquations equations;
+    for (const NumberedView& view : views) {
+      // A view decides whether the object is there by the same points that it moves.
+      const PosedView posed =
+          classify(surface, fitted.world_from_object, *view.frame, DepthMargin{.base_m = gate_m, .noise_sigmas = 3});
+      const int num_present = posed.evidence.num(Evidence::kPresent);
+      const int num_visible = num_present + posed.evidence.num(Evidence::kSeenThrough);
+      if (num_visible < kMinVisible || num_present < (1 - kMaxGoneShare) * num_visible) continue;
+      add_pairs(surface, posed, fitted.world_from_object, gate_m, equations);
+    }
+    fitted.num_pairs = equations.num_pairs;
+    if (equations.num_pairs < kMinPairs) break;
+    hold_weak_directions(equations);
+    const double step_m = equations.step(fitted.world_from_object, surface.middle, surface.radius_m);
+    const bool is_last_gate = gate_m <= options.min_distance_m;
+    if (is_last_gate && step_m < 0.1 * StepEquations::kStill_m) break;
+    gate_m = std::max(options.min_distance_m, kShrink * gate_m);
+  }
+  fitted.world_from_object.rotation = nearest_rotation(fitted.world_from_object.rotation);
+  return fitted;
+}
+
+/// Points that the views support closely, less those that they see through.
+int count_support(const SampledSurface& surface, const Rigid3& world_from_object, std::span<const NumberedView> views) {
+  int support = 0;
+  for (const NumberedView& view : views) {
+    const PosedView posed =
+        classify(surface, world_from_object, *view.frame, DepthMargin{.base_m = kCloseMargin_m, .noise_sigmas = 2});
+    support += posed.evidence.num(Evidence::kPresent) - posed.evidence.num(Evidence::kSeenThrough);
+  }
+  return support;
+}
+
 }  // namespace
 
 void RefineOverViewsOptions::check() const {
@@ -126,27 +188,18 @@ RefinedPlacement refine_over_views(const ObjectModel& model, double surface_voxe
   require(std::ranges::none_of(views, [](const NumberedView& v) { return v.frame == nullptr; }),
           "refine_over_views: a view is null");
   const SampledSurface surface = sample_surface_evenly(model, surface_voxel_m, options.max_points);
-  RefinedPlacement refined{.world_from_object = world_from_object, .views = {}, .num_pairs = 0};
-  double gate_m = options.max_distance_m;
-  for (int i = 0; i < options.max_iterations; ++i) {
-    StepEquations equations;
-    for (const NumberedView& view : views) {
-      // A view decides whether the object is there by the same points that it moves.
-      const PosedView posed =
-          classify(surface, refined.world_from_object, *view.frame, DepthMargin{.base_m = gate_m, .noise_sigmas = 3});
-      const int num_present = posed.evidence.num(Evidence::kPresent);
-      const int num_visible = num_present + posed.evidence.num(Evidence::kSeenThrough);
-      if (num_visible < kMinVisible || num_present < (1 - kMaxGoneShare) * num_visible) continue;
-      add_pairs(surface, posed, refined.world_from_object, gate_m, equations);
-    }
-    refined.num_pairs = equations.num_pairs;
-    if (equations.num_pairs < kMinPairs) break;
-    const double step_m = equations.step(refined.world_from_object, surface.middle, surface.radius_m);
-    const bool is_last_gate = gate_m <= options.min_distance_m;
-    if (is_last_gate && step_m < 0.1 * StepEquations::kStill_m) break;
-    gate_m = std::max(options.min_distance_m, kShrink * gate_m);
+  FittedPose best{world_from_object, 0};
+  int best_support = std::numeric_limits<int>::min();
+  for (const double share : {1.0, kNarrowGate}) {
+    if (share < 1 && !options.fit_twice) continue;
+    const FittedPose fitted = fit_pose(surface, world_from_object, views,
+                                       std::max(options.min_distance_m, share * options.max_distance_m), options);
+    const int support = count_support(surface, fitted.world_from_object, views);
+    if (support <= best_support) continue;
+    best_support = support;
+    best = fitted;
   }
-  refined.world_from_object.rotation = nearest_rotation(refined.world_from_object.rotation);
+  RefinedPlacement refined{.world_from_object = best.world_from_object, .views = {}, .num_pairs = best.num_pairs};
   for (const NumberedView& view : views) refined.views.push_back(assess_view(surface, refined.world_from_object, view));
   return refined;
 }

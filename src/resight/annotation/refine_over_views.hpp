@@ -29,7 +29,8 @@ struct RefineOverViewsOptions {
   double max_distance_m = 0.03;   ///< Of the first pairs; the gate shrinks from here to `min_distance_m`.
   double min_distance_m = 0.006;  ///< Of the last pairs, along the normal.
   int max_points = 2500;          ///< Surface points used.
-  int max_iterations = 60;        ///< In all.
+  int max_iterations = 60;        ///< Per fit.
+  bool fit_twice = true;          ///< Also from nearer pairs, so that a good start is not lost to what is nearby.
   void check() const;
 };
 
@@ -47,7 +48,8 @@ struct RefinedPlacement {
 /// Moves an object so that its surface lies on the measured surface of all views together: projective point-to-plane
 /// ICP with the normals of the model, Tukey's weights, and the noise of the sensor as unit. The camera poses are
 /// trusted. Views that see through the object take no part: it is not there. Directions that no view determines stay as
-/// they are. Deterministic. Throws std::invalid_argument if a view is null or the model has no normals.
+/// they are. Of two fits, the one that the views support better counts. Deterministic. Throws std::invalid_argument if
+/// a view is null or the model has no normals.
 [[nodiscard]] RefinedPlacement refine_over_views(const ObjectModel& model, double surface_voxel_m,
                                                  const Rigid3& world_from_object, std::span<const NumberedView> views,
                                                  const RefineOverViewsOptions& options = {});

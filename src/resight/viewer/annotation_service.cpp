@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "resight/annotation/color_symmetry.hpp"
 #include "resight/annotation/export_annotation.hpp"
 #include "resight/annotation/place_by_click.hpp"
 #include "resight/annotation/refine_over_views.hpp"
@@ -119,8 +120,11 @@ HttpResponse answer_refine(const AnnotationTask& task, ViewStore& store, const j
   if (!posed || !first || !last || *last < *first) return refuse("expected an object, a pose and a range of views");
   const auto loaded = load_views(store, choose_views(*first, *last, kMaxRefinedViews));
   if (!loaded) return make_text_response(500, loaded.error().message);
-  const RefinedPlacement refined = refine_over_views(*posed->model, static_cast<double>(task.library->surface_voxel_m),
-                                                     posed->world_from_object, loaded->views);
+  const auto voxel_m = static_cast<double>(task.library->surface_voxel_m);
+  RefinedPlacement refined = refine_over_views(*posed->model, voxel_m, posed->world_from_object, loaded->views);
+  const bool all_turns = body.contains("all_turns") && body["all_turns"] == true;
+  refined.world_from_object = turn_by_color(*posed->model, voxel_m, refined.world_from_object, loaded->views,
+                                            all_turns ? TurnSearch::kAll : TurnSearch::kNear);
   nlohmann::ordered_json answer = {{"pose", viewer::pose_json(refined.world_from_object)},
                                    {"num_pairs", refined.num_pairs},
                                    {"views", viewer::residuals_json(refined.views)}};
