@@ -118,10 +118,24 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
   await waitForRevision(page, 10);
   assert.match(await inspector(page), /view 3 of 5, 4 unchecked/);
 
+  // Drag the object by the handle at its centre, and undo that.
+  const label = await page.locator(".labels3d span.selected").boundingBox();
+  assert.ok(label);
+  const [left, top] = [label.x + label.width / 2, label.y + label.height];
+  await page.mouse.move(left - 2, top);
+  await page.mouse.move(left, top, { steps: 3 });
+  await page.mouse.down();
+  await page.mouse.move(left + 40, top + 10, { steps: 6 });
+  await page.mouse.up();
+  await waitForRevision(page, 11);
+  assert.notDeepEqual((await annotation(address)).objects[2]?.pose, shown.objects[2]?.pose);
+  await click(page, "Undo");
+  await waitForRevision(page, 12);
+
   // Reload: everything is there.
   await page.reload();
   await page.waitForSelector("body[data-ready=yes]");
-  await waitForRevision(page, 10);
+  await waitForRevision(page, 12);
 
   // Two windows: the second one is told, and loads the changes of the first.
   const other = await browser.newPage();
@@ -129,12 +143,12 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
   await other.waitForSelector("body[data-ready=yes]");
   await page.locator("#world canvas").focus();
   await page.keyboard.press("k");
-  await waitForRevision(page, 11);
+  await waitForRevision(page, 13);
   await other.locator("#world canvas").focus();
   await other.keyboard.press("k");
   await other.waitForFunction(() => /Another window/.test(document.querySelector("#status")?.textContent ?? ""));
-  await waitForRevision(other, 11);
-  assert.equal((await annotation(address)).revision, 11);
+  await waitForRevision(other, 13);
+  assert.equal((await annotation(address)).revision, 13);
   await other.close();
 
   await click(page, "Export");
@@ -144,7 +158,7 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
 
   // A new start continues, and a killed one loses nothing.
   const again = await serve(inputs(), command);
-  assert.equal((await annotation(again.address)).revision, 11);
+  assert.equal((await annotation(again.address)).revision, 13);
   await again.stop();
 });
 

@@ -28,6 +28,12 @@ export class AnnotatePanel {
     placeholder: "Search models",
     "aria-label": "Search models",
   });
+  private readonly unknownName = element("input", {
+    value: "unknown",
+    maxlength: 60,
+    "aria-label": "Name of things without model",
+    title: "Name of things without model, for Unknown",
+  });
   private symmetriesOf = -1;
   private symmetries: number[][] = [];
   private symmetryIndex = 0;
@@ -43,6 +49,7 @@ export class AnnotatePanel {
       this.toolbar,
       this.selection,
       element("h2", {}, "To do"),
+      this.unknownName,
       this.toDos,
       element("h2", {}, "Place a model"),
       this.search,
@@ -243,6 +250,7 @@ export class AnnotatePanel {
 
   private showToDos(): void {
     const { to_dos, unknown_events } = this.annotator.annotation;
+    this.unknownName.hidden = !to_dos.some((each) => each.region >= 0);
     const rows = to_dos.slice(0, kMaxToDos).map((toDo) => this.makeToDo(toDo));
     if (to_dos.length > kMaxToDos) rows.push(element("p", {}, `… and ${to_dos.length - kMaxToDos} more`));
     const events = unknown_events.map((event) =>
@@ -269,7 +277,9 @@ export class AnnotatePanel {
     const row = element("div", { class: `to-do ${toDo.kind}` }, go);
     if (toDo.region < 0) return row;
     row.append(
-      button("Unknown", "A thing without model came or left", () => annotator.addUnknown(toDo.region, "unknown")),
+      button("Unknown", "A thing without model came or left", () =>
+        annotator.addUnknown(toDo.region, this.unknownName.value),
+      ),
       button("Accept", "A change of the selected track, or of none", () =>
         annotator.judge(toDo.region, "accepted", annotator.selected()?.track ?? -1),
       ),

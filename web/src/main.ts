@@ -15,7 +15,7 @@ import type { Pose } from "./protocol";
 import { SceneView } from "./scene_view";
 import { App } from "./store";
 import { Timeline } from "./timeline";
-import { World } from "./world";
+import { makeBox, World } from "./world";
 
 const kPollMs = 1000;
 
@@ -99,6 +99,17 @@ class Viewer {
       gizmo.attach(isHere ? placement.pose : null, this.app.object(placement?.object ?? -1)?.center);
     };
     panel.onGizmo = showGizmo;
+    const showRegions = () => {
+      const { view } = this.app.get();
+      const open = annotator.annotation.regions.filter(
+        (region) => region.view === view && region.verdict === "open" && !region.is_explained,
+      );
+      this.world.setGroup(
+        "regions",
+        open.map((region) => makeBox(region.pose, region.size_m, region.kind === "novel" ? "#46c67f" : "#ff6b76")),
+      );
+    };
+    showRegions();
     gizmo.onDrag = (pose) => {
       this.sceneView.movePoints(this.app.get().track, pose);
       this.panels[0]?.showMoved(annotator.selected()?.object ?? -1, pose);
@@ -106,6 +117,7 @@ class Viewer {
     gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move");
     this.app.listen((changed) => {
       if (["view", "track", "edit"].some((key) => changed.has(key as "view"))) showGizmo();
+      if (changed.has("view") || changed.has("edit")) showRegions();
     });
     for (const imagePanel of this.panels)
       imagePanel.onPlace = (at) => {
@@ -239,7 +251,7 @@ class Viewer {
   private onKey(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
     if (event.altKey || document.querySelector("dialog[open]")) return;
-    if (target.matches("input[type=search], input[type=number], select")) return;
+    if (target.matches("input:not([type=range]), select")) return;
     const edit = this.annotateKeys?.actionOf(event);
     if (edit) {
       event.preventDefault();

@@ -348,6 +348,15 @@ export function makeCameras(
   return objects;
 }
 
+/** The edges of a box around the origin of a pose. */
+export function makeBox(pose: Pose, size: Vec3, color: string): LineSegments {
+  const corner = (i: number): Vec3 =>
+    transformPoint(pose, [0, 1, 2].map((axis) => ((i >> axis) & 1 ? 0.5 : -0.5) * (size[axis] ?? 0)) as Vec3);
+  const points: Vec3[] = [];
+  for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if ((i & bit) === 0) points.push(corner(i), corner(i | bit));
+  return makeSegments(points, color);
+}
+
 export function makeAxes(pose: Pose, length: number): LineSegments[] {
   const origin = transformPoint(pose, [0, 0, 0]);
   return [
