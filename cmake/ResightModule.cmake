@@ -15,7 +15,7 @@ set(RESIGHT_LAYERS
     verification shape_search modelling
     recognition
     evaluation
-    report
+    report annotation
     viewer)
 
 add_library(resight_build_flags INTERFACE)

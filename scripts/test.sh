@@ -34,7 +34,10 @@ check_page() {
     (cd web && npm ci --no-audit --no-fund && npm run check && npm test && npm run build) || return 1
   diff -r build/page web/dist || { echo "error: web/dist was not up to date; commit the new one"; return 1; }
 }
-run_viewer() { tests/viewer_test.sh build/ci/apps/resight/resight build/logs/viewer; }
+run_viewer() {
+  tests/viewer_test.sh build/ci/apps/resight/resight build/logs/viewer &&
+    tests/annotate_test.sh build/ci/apps/resight/resight build/logs/viewer
+}
 
 # Configures for clang-tidy, without building. All sources of a module are one translation unit, because clang-tidy
 # spends its time on the headers.

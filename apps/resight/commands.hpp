@@ -159,6 +159,17 @@ struct ViewArguments {
   bool no_open = false;                           ///< Do not open a browser.
 };
 
+struct AnnotateArguments {
+  std::filesystem::path models;
+  std::filesystem::path sequence;
+  OpenSequenceOptions input;
+  std::optional<std::filesystem::path> detections;  ///< detections.json of `resight recognize`, or its folder.
+  std::filesystem::path out;                        ///< The project.
+  std::uint16_t port = 0;                           ///< 0: a free one.
+  bool no_open = false;                             ///< Do not open a browser.
+  int num_threads = 1;
+};
+
 // Each function runs one subcommand. InputError = exit status 2, any other exception = 1.
 void run_train(const TrainArguments& arguments);
 void run_recognize(const RecognizeArguments& arguments);
@@ -172,6 +183,7 @@ void run_info(const InfoArguments& arguments);
 [[nodiscard]] bool run_check(const CheckArguments& arguments);
 void run_evaluate(const EvaluateArguments& arguments);
 void run_view(const ViewArguments& arguments);
+void run_annotate(const AnnotateArguments& arguments);
 void run_demo(const DemoArguments& arguments);
 
 }  // namespace resight::app

@@ -38,6 +38,7 @@ struct Arguments {
   EvaluateArguments evaluate;
   std::string shard;
   ViewArguments view;
+  AnnotateArguments annotate;
   DemoArguments demo;
 };
 
@@ -296,6 +297,21 @@ std::function<void()> add_view(CLI::App& app, ViewArguments& a) {
   return [&a] { run_view(a); };
 }
 
+std::function<void()> add_annotate(CLI::App& app, AnnotateArguments& a) {
+  CLI::App* command = app.add_subcommand("annotate", "Annotate the objects and changes of a sequence in a browser");
+  command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder or recording, with camera poses")->required();
+  add_sequence_options(command, a.input);
+  add_pose_file_option(command, a.input);
+  command->add_option("--detections", a.detections,
+                      "detections.json of 'resight recognize' on the sequence: a new project starts from it");
+  command->add_option("--out", a.out, "Project folder; an existing project is continued")->required();
+  command->add_option("--port", a.port, "Port on 127.0.0.1; 0 takes a free one")->capture_default_str();
+  command->add_flag("--no-open", a.no_open, "Print the address only, without opening a browser");
+  add_threads(command, a.num_threads);
+  return [&a] { run_annotate(a); };
+}
+
 std::function<void()> add_options(CLI::App& app) {
   app.add_subcommand("options", "Print all options of settings files (--config) as Markdown");
   return [] { print_text(resight::options_reference()); };
@@ -356,6 +372,7 @@ int run_program(int argc, char** argv) {
                                           add_check(app, a.check, a.is_sound),
                                           add_evaluate(app, a.evaluate, a.shard),
                                           add_view(app, a.view),
+                                          add_annotate(app, a.annotate),
                                           add_options(app)};
   const std::vector<CLI::App*> commands = app.get_subcommands({});
   try {

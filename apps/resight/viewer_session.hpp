@@ -5,6 +5,7 @@
 
 #include "browser.hpp"
 #include "commands.hpp"
+#include "resight/viewer/annotation_service.hpp"
 #include "resight/viewer/http_server.hpp"
 #include "resight/viewer/scene_data.hpp"
 
@@ -19,8 +20,8 @@ struct ViewerSessionOptions {
 /// the port is taken.
 class ViewerSession {
  public:
-  /// `scene` must outlive the session.
-  ViewerSession(SceneData& scene, const ViewerSessionOptions& options);
+  /// `scene` and `annotation` must outlive the session.
+  ViewerSession(SceneData& scene, const ViewerSessionOptions& options, AnnotationService* annotation = nullptr);
   [[nodiscard]] HttpServer& server() { return server_; }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fetches data from the server and keeps what was used last. Data are made once on both sides.
+import type { Action, Annotation } from "./annotation";
 import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
 import { decodeCloud } from "./protocol";
 
@@ -37,6 +38,16 @@ export class Recent<T> {
   }
 }
 
+/** An answer other than success. */
+export class StatusError extends Error {
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
 /** The images of a view. */
 export interface ViewImages {
   bitmap: ImageBitmap;
@@ -51,27 +62,46 @@ export class Api {
   private readonly clouds = new Recent<Cloud>(kMaxViews);
   private readonly surfaces = new Recent<Cloud>(1000);
 
+  /** Views are those of the annotation. */
+  isAnnotated = false;
+
   constructor(private readonly token: string) {}
 
-  private async ask(path: string): Promise<Response> {
+  private async ask(path: string, body?: unknown): Promise<Response> {
     let response: Response;
+    const headers = { "X-Resight-Token": this.token, "Content-Type": "application/json" };
+    const request = body === undefined ? { headers } : { headers, method: "POST", body: JSON.stringify(body) };
     try {
-      response = await fetch(path, { headers: { "X-Resight-Token": this.token } });
+      response = await fetch(path, request);
     } catch {
       throw new Error("resight does not answer; has it been stopped?");
     }
-    if (!response.ok) throw new Error(await response.text());
+    if (!response.ok) throw new StatusError(response.status, await response.text());
     return response;
   }
 
   async scene(): Promise<Scene> {
     return (await this.ask("/api/scene")).json();
   }
+  async annotation(): Promise<Annotation> {
+    return (await this.ask("/api/annotation")).json();
+  }
+  async act(revision: number, action: Action): Promise<Annotation> {
+    return (await this.ask("/api/annotation/actions", { revision, action })).json();
+  }
+  /** Asks for something that changes nothing but takes work (docs/annotate.md). */
+  async post<T>(what: "place" | "refine" | "assess" | "export", body: unknown): Promise<T> {
+    return (await this.ask(`/api/annotation/${what}`, body)).json();
+  }
+  async symmetries(object: number): Promise<number[][]> {
+    return (await this.ask(`/api/annotation/symmetries/${object}`)).json();
+  }
   async revision(): Promise<number> {
     return (await this.ask("/api/revision")).json();
   }
   view(view: number, run: number): Promise<ViewDetails> {
     return this.details.get(`${view}/${run}`, async () => {
+      if (this.isAnnotated) return (await this.ask(`/api/annotation/views/${view}`)).json();
       const query = run >= 0 ? `?run=${run}` : "";
       return (await this.ask(`/api/views/${view}${query}`)).json();
     });

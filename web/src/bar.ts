@@ -42,6 +42,22 @@ const kKeys: [string, string][] = [
   ["?", "this overview"],
 ];
 
+const kAnnotateKeys: [string, string][] = [
+  ["Ctrl+Z Ctrl+Y", "undo, redo"],
+  ["Ctrl+S", "export"],
+  ["S", "snap the selected object to all its views"],
+  ["Shift+S", "snap all objects"],
+  ["G H X", "handles move, turn, change their axes"],
+  ["Shift+arrows", "move the object 1 mm left, right, up, down in the image (Ctrl: 10 mm)"],
+  ["Shift+PgUp Shift+PgDn", "move it 1 mm away, nearer"],
+  [", .", "turn it by 1° about the vertical axis of its handles (Shift: 10°)"],
+  ["I O V", "it came, left, moved before this view"],
+  ["Y", "next pose of the same shape"],
+  ["Delete", "delete the placement"],
+  ["K", "this view is checked"],
+  ["Tab", "next object"],
+];
+
 export class Bar {
   private readonly help: HTMLDialogElement;
 
@@ -50,10 +66,10 @@ export class Bar {
     private readonly app: App,
     actions: BarActions,
   ) {
-    this.help = makeHelp();
+    this.help = makeHelp(app.scene.is_annotated ? [...kKeys, ...kAnnotateKeys] : kKeys);
     root.append(
       element("strong", {}, app.scene.title),
-      ...(app.scene.runs.length > 0 ? this.makeRuns() : []),
+      ...(app.scene.runs.length > 0 && !app.scene.is_annotated ? this.makeRuns() : []),
       ...this.makeColors(),
       element("span", { class: "space" }),
       ...(app.scene.views.length > 0 ? [this.makeMeasure()] : []),
@@ -109,7 +125,7 @@ export class Bar {
       if (layer === "objects") return scene.runs.length > 0 || !hasViews;
       if (layer === "places" || layer === "outlines") return scene.runs.length > 0;
       if (layer === "changes") return scene.has_changes;
-      return layer === "truth" ? scene.has_truth : hasViews;
+      return layer === "truth" ? scene.has_truth && !scene.is_annotated : hasViews;
     };
     const group = element("div", { class: "layers", role: "group", "aria-label": "Layers" });
     kLayers.forEach((layer, index) => {
@@ -183,9 +199,9 @@ export class Bar {
   }
 }
 
-function makeHelp(): HTMLDialogElement {
+function makeHelp(shown: [string, string][]): HTMLDialogElement {
   const list = element("dl", { class: "keys" });
-  for (const [keys, what] of kKeys) {
+  for (const [keys, what] of shown) {
     const names = keys.split(" ").map((key) => element("kbd", {}, key));
     list.append(element("dt", {}, ...names), element("dd", {}, what));
   }

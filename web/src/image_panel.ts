@@ -2,8 +2,8 @@
 // The image of the current view with the outlines of its objects.
 import type { Api, ViewImages } from "./api";
 import { element } from "./dom";
-import { inverseRigid, project, transformPoint, unproject, type Vec3 } from "./geometry";
-import type { Detection, Outline, ViewDetails } from "./protocol";
+import { inverseRigid, multiply, project, transformPoint, unproject, type Vec3 } from "./geometry";
+import type { Detection, Outline, Pose, ViewDetails } from "./protocol";
 import type { App } from "./store";
 
 interface Shape {
@@ -20,6 +20,7 @@ interface Shape {
 }
 
 const kMinNoteWidthPx = 380;
+const kMovedStep = 3; // of the points of a surface
 const kTruthColor = "#ffffff";
 
 function toPath(outline: Outline): { path: Path2D; top: [number, number] } {
@@ -53,6 +54,9 @@ export class ImagePanel {
   private wanted = "";
   onPoint: (at: PointedAt | null) => void = () => {};
   onPick: (at: PointedAt) => void = () => {};
+  /** Takes a click before anything else; false: it does not want it. */
+  onPlace: (at: PointedAt) => boolean = () => false;
+  private moved: Path2D | null = null;
 
   /** `run`: which run it shows; -1 for none. */
   constructor(
@@ -80,6 +84,7 @@ export class ImagePanel {
     if (this.wanted !== wanted) return;
     this.details = details;
     this.images = images;
+    this.moved = null;
     this.makeShapes(run, view, details);
     this.setCaption(run, view);
     this.draw();
@@ -89,7 +94,8 @@ export class ImagePanel {
     const name = this.app.scene.views[view]?.name ?? "";
     const parts = [`${view + 1}/${this.app.scene.views.length} · ${name}`];
     const shown = this.app.run(run);
-    if (shown) parts.push(this.app.runView(run, view) ? shown.name : `${shown.name}: no results for this view`);
+    if (shown && !this.app.scene.is_annotated)
+      parts.push(this.app.runView(run, view) ? shown.name : `${shown.name}: no results for this view`);
     this.caption.textContent = parts.join(" · ");
     this.canvas.setAttribute(
       "aria-label",
@@ -126,7 +132,7 @@ export class ImagePanel {
         object: detection.object,
         color: object?.color ?? "#fff",
         name: `${isWrong ? `${detection.verdict}: ` : ""}${object?.name ?? "?"}`,
-        note: ` ${detection.score.toFixed(2)}`,
+        note: this.app.scene.is_annotated ? "" : ` ${detection.score.toFixed(2)}`,
         isTruth: false,
         verdict: detection.verdict,
       });
@@ -150,7 +156,28 @@ export class ImagePanel {
     context.setTransform(zoom, 0, 0, zoom, 0, 0);
     context.drawImage(images.bitmap, 0, 0, width, height);
     this.drawShapes(context, 1 / (scale || 1));
+    if (this.moved) {
+      context.fillStyle = "rgba(255, 212, 0, 0.55)";
+      context.fill(this.moved);
+    }
     this.drawPoint(context, 1 / (scale || 1));
+  }
+
+  /** Shows the points of an object elsewhere, while it is dragged. */
+  async showMoved(object: number, pose: Pose): Promise<void> {
+    const cameraPose = this.pose(this.app.get().view);
+    if (object < 0 || !cameraPose || !this.details) return;
+    const { camera } = this.details;
+    const { positions } = await this.api.surface(object);
+    const cameraFromObject = multiply(inverseRigid(cameraPose), pose);
+    const path = new Path2D();
+    for (let i = 0; i + 2 < positions.length; i += 3 * kMovedStep) {
+      const p: Vec3 = [positions[i] ?? 0, positions[i + 1] ?? 0, positions[i + 2] ?? 0];
+      const pixel = project(camera, transformPoint(cameraFromObject, p));
+      if (pixel) path.rect(pixel[0] - 0.5, pixel[1] - 0.5, 2, 2);
+    }
+    this.moved = path;
+    this.draw();
   }
 
   private visibleShapes(): Shape[] {
@@ -251,6 +278,7 @@ export class ImagePanel {
   private pick(event: MouseEvent): void {
     const at = this.locate(event);
     if (!at) return;
+    if (this.onPlace(at)) return;
     if (this.app.get().isMeasuring) {
       this.onPick(at);
       return;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+import { AnnotateKeys } from "./annotate_keys";
+import { AnnotatePanel } from "./annotate_panel";
+import { toRun } from "./annotation";
+import { Annotator } from "./annotator";
 import { Api } from "./api";
 import { Bar, isDark, restoreTheme, toggleTheme } from "./bar";
 import { byId, coordinates, download, element, metres } from "./dom";
-import { guessUp, type Vec3 } from "./geometry";
+import { guessUp, inverseRigid, project, transformPoint, type Vec3 } from "./geometry";
 import { ImagePanel, type PointedAt } from "./image_panel";
 import { Inspector } from "./inspector";
 import { formatLink, type LinkState, parseLink } from "./link";
@@ -11,7 +15,7 @@ import type { Pose } from "./protocol";
 import { SceneView } from "./scene_view";
 import { App } from "./store";
 import { Timeline } from "./timeline";
-import { World } from "./world";
+import { makeBox, World } from "./world";
 
 const kPollMs = 1000;
 
@@ -23,12 +27,14 @@ class Viewer {
   private readonly bar: Bar;
   private readonly timeline: Timeline | null;
   private readonly status = byId("status");
+  private readonly annotateKeys: AnnotateKeys | null = null;
   private linkTimer = 0;
 
   constructor(
     private readonly app: App,
     private readonly api: Api,
     private readonly token: string,
+    private readonly annotator: Annotator | null,
   ) {
     const { scene } = app;
     const hasViews = scene.views.length > 0;
@@ -43,9 +49,13 @@ class Viewer {
       resetCamera: () => this.world.goHome(),
     });
     this.timeline = hasViews ? new Timeline(byId("timeline"), app) : null;
-    const inspector = new Inspector(byId("inspector"), app, api);
-    inspector.onError = (error) => this.report(error);
     if (hasViews) this.addPanels();
+    if (annotator) {
+      this.annotateKeys = this.startAnnotating(annotator);
+    } else {
+      const inspector = new Inspector(byId("inspector"), app, api);
+      inspector.onError = (error) => this.report(error);
+    }
     this.listenToPointer();
     document.addEventListener("keydown", (event) => this.onKey(event));
     window.addEventListener("themechange", () => this.showTheme());
@@ -72,6 +82,61 @@ class Viewer {
         if (at.position) this.pickPlace(at.position);
       };
     }
+  }
+
+  private startAnnotating(annotator: Annotator): AnnotateKeys {
+    document.body.classList.add("annotates");
+    annotator.say = (text, isError) => this.say(text, isError);
+    const panel = new AnnotatePanel(byId("inspector"), annotator, this.api);
+    const keys = new AnnotateKeys(annotator, panel, this.world);
+    annotator.onChange = () => panel.show();
+    const gizmo = this.world.gizmo();
+    const showGizmo = () => {
+      const placement = annotator.selected();
+      const { view } = this.app.get();
+      const isHere = placement && placement.first_view <= view && view <= placement.last_view;
+      gizmo.setMode(panel.gizmo.mode, panel.gizmo.axes);
+      gizmo.attach(isHere ? placement.pose : null, this.app.object(placement?.object ?? -1)?.center);
+    };
+    panel.onGizmo = showGizmo;
+    const showRegions = () => {
+      const { view } = this.app.get();
+      const open = annotator.annotation.regions.filter(
+        (region) => region.view === view && region.verdict === "open" && !region.is_explained,
+      );
+      this.world.setGroup(
+        "regions",
+        open.map((region) => makeBox(region.pose, region.size_m, region.kind === "novel" ? "#46c67f" : "#ff6b76")),
+      );
+    };
+    showRegions();
+    gizmo.onDrag = (pose) => {
+      this.sceneView.movePoints(this.app.get().track, pose);
+      this.panels[0]?.showMoved(annotator.selected()?.object ?? -1, pose);
+    };
+    gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move");
+    this.app.listen((changed) => {
+      if (["view", "track", "edit"].some((key) => changed.has(key as "view"))) showGizmo();
+      if (changed.has("view") || changed.has("edit")) showRegions();
+    });
+    for (const imagePanel of this.panels)
+      imagePanel.onPlace = (at) => {
+        if (annotator.placing < 0) return false;
+        annotator.place(...at.pixel);
+        return true;
+      };
+    return keys;
+  }
+  /** Places a model where a point of the 3D view is seen. */
+  private async placeInWorld(position: Vec3): Promise<void> {
+    const { view } = this.app.get();
+    const pose = this.app.cameraPose(view);
+    const { camera } = await this.api.view(view, 0);
+    const pixel = pose ? project(camera, transformPoint(inverseRigid(pose), position)) : null;
+    const [u, v] = (pixel ?? [-1, -1]).map(Math.round) as [number, number];
+    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height)
+      this.say("The current view does not show this place.", true);
+    else await this.annotator?.place(u, v);
   }
 
   async start(state: LinkState): Promise<void> {
@@ -101,7 +166,7 @@ class Viewer {
   private async updateAll(changed: ReadonlySet<string>): Promise<void> {
     const has = (...keys: string[]) => keys.some((key) => changed.has(key));
     const { view, compare } = this.app.get();
-    const isNew = has("view", "run", "compare");
+    const isNew = has("view", "run", "compare", "edit");
     if (isNew) this.app.set({ shownView: -1 });
     document.body.classList.toggle("compares", compare >= 0 && this.panels.length > 1);
     const panels = this.panels.filter((_, index) => index === 0 || compare >= 0);
@@ -109,7 +174,7 @@ class Viewer {
       this.sceneView.update(changed),
       ...panels.map((panel) => (isNew ? panel.update() : panel.draw())),
     ]);
-    if (isNew) this.say("");
+    if (has("view", "run", "compare")) this.say("");
     if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
   }
 
@@ -170,7 +235,12 @@ class Viewer {
   }
 
   private pickInWorld(x: number, y: number): void {
+    if (this.annotator && this.world.gizmo().isHovered) return;
     const picked = this.world.pick(x, y);
+    if (picked && this.annotator && this.annotator.placing >= 0) {
+      this.placeInWorld(picked.position).catch((error) => this.report(error));
+      return;
+    }
     if (!picked) this.app.selectNothing();
     else if (this.app.get().isMeasuring) this.pickPlace(picked.position);
     else if (picked.track >= 0) this.app.selectTrack(picked.track);
@@ -180,8 +250,15 @@ class Viewer {
 
   private onKey(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
-    if (target.matches("input[type=search], select")) return;
+    if (event.altKey || document.querySelector("dialog[open]")) return;
+    if (target.matches("input:not([type=range]), select")) return;
+    const edit = this.annotateKeys?.actionOf(event);
+    if (edit) {
+      event.preventDefault();
+      edit();
+      return;
+    }
+    if (event.ctrlKey || event.metaKey) return;
     if (event.key === " " && target.matches("button")) return;
     const action = this.actionOf(event.key);
     if (!action) return;
@@ -290,9 +367,21 @@ async function main(): Promise<void> {
   const token = parseLink(location.hash, { views: 0, runs: 0, objects: 0 }).token;
   const api = new Api(token);
   const scene = await api.scene();
+  api.isAnnotated = scene.is_annotated === true;
+  const annotation = api.isAnnotated ? await api.annotation() : null;
+  if (annotation) {
+    scene.runs = [
+      toRun(
+        annotation,
+        scene.views.map((view) => view.pose),
+      ),
+    ];
+    document.body.dataset.revision = String(annotation.revision);
+  }
   const counts = { views: scene.views.length, runs: scene.runs.length, objects: scene.objects.length };
   const { state } = parseLink(location.hash, counts);
-  await new Viewer(new App(scene), api, token).start(state);
+  const app = new App(scene);
+  await new Viewer(app, api, token, annotation ? new Annotator(app, api, annotation) : null).start(state);
 }
 
 main().catch((error) => {

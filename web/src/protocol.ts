@@ -59,6 +59,8 @@ export interface Scene {
   title: string;
   revision: number;
   is_live: boolean;
+  /** The page annotates (annotation.ts). */
+  is_annotated?: boolean;
   has_poses: boolean;
   has_truth: boolean;
   has_changes: boolean;

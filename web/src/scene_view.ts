@@ -39,6 +39,7 @@ export class SceneView {
   private readonly pickablesOf = new Map<string, Pickable[]>();
   private readonly versions = new Map<string, number>();
   private labels: Label[] = [];
+  private readonly pointsOfTrack = new Map<number, PointSet>();
   onError: (error: unknown) => void = () => {};
 
   constructor(
@@ -62,7 +63,7 @@ export class SceneView {
     await Promise.all([
       has("view", "run", "layers", "cloudColors") ? this.showCloud() : null,
       has("view", "layers") ? this.showChanges() : null,
-      has("view", "run", "layers", "track", "object", "event", "objectColors") ? this.showItems() : null,
+      has("view", "run", "layers", "track", "object", "event", "objectColors", "edit") ? this.showItems() : null,
     ]);
   }
 
@@ -194,6 +195,11 @@ export class SceneView {
     }
     const drawn = await Promise.all(items.map((item) => this.makeItem(item)));
     if (!isCurrent()) return;
+    this.pointsOfTrack.clear();
+    items.forEach((item, index) => {
+      const points = drawn[index]?.pickables[0]?.points;
+      if (item.kind === "detection" && points) this.pointsOfTrack.set(item.track, points);
+    });
     const groups = { detection: "objects", place: "places", truth: "truth" } as const;
     for (const [kind, group] of Object.entries(groups)) {
       const parts = drawn.filter((_, index) => items[index]?.kind === kind);
@@ -307,6 +313,15 @@ export class SceneView {
     this.world.setHome({ position: [target[0], target[1] - 0.6 * range, 0.9 * range], target });
     this.setGroup("objects", [...parts, ...(selected >= 0 ? makeAxes(new Matrix4().toArray(), 0.05) : [])], pickables);
     this.world.goHome();
+  }
+
+  /** Draws an object elsewhere while it is dragged. */
+  movePoints(track: number, pose: Pose): void {
+    const points = this.pointsOfTrack.get(track);
+    if (!points) return;
+    points.matrix = new Matrix4().fromArray(pose);
+    points.matrixWorldNeedsUpdate = true;
+    this.world.requestDraw();
   }
 
   /** Centre and size of what is selected. */

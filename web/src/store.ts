@@ -14,6 +14,8 @@ export interface Store extends LinkState {
   isPlaying: boolean;
   isMeasuring: boolean;
   measured: Vec3[];
+  /** Counts the edits of the annotation. */
+  edit: number;
 }
 
 export type Change = Partial<Store>;
@@ -27,6 +29,7 @@ export class App {
     isPlaying: false,
     isMeasuring: false,
     measured: [],
+    edit: 0,
   };
   private readonly listeners: ((changed: Set<keyof Store>) => void)[] = [];
   private tracksOf: Run | null = null;

@@ -51,7 +51,7 @@ export class Timeline {
   }
 
   private onChange(changed: Set<string>): void {
-    if (changed.has("run")) this.rebuild();
+    if (changed.has("run") || changed.has("edit")) this.rebuild();
     if (changed.has("shownView")) this.playOn();
     if (changed.has("isPlaying")) this.setPlaying(this.app.get().isPlaying);
     if (changed.has("view")) this.showView();

@@ -22,6 +22,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { pickPoint, transformPoint, type Vec3 } from "./geometry";
+import { Gizmo } from "./gizmo";
 import type { CameraState } from "./link";
 import { PointSet } from "./points";
 import type { Camera, Pose } from "./protocol";
@@ -68,6 +69,7 @@ export class World {
   private isMoving = false;
   private lastDrawn = 0;
   private share = 1;
+  private knownGizmo: Gizmo | null = null;
   private home: CameraState = { position: [1, -1, 1], target: [0, 0, 0] };
   /** Called when the user has moved the camera. */
   onMove: () => void = () => {};
@@ -143,6 +145,16 @@ export class World {
     if (!group || group.visible === isVisible) return;
     group.visible = isVisible;
     this.requestDraw();
+  }
+  /** Handles for the selected object; made when they are first needed. */
+  gizmo(): Gizmo {
+    if (!this.knownGizmo) {
+      this.knownGizmo = new Gizmo(this.scene, this.camera, this.canvas, () => this.requestDraw());
+      this.knownGizmo.onHold = (isHeld) => {
+        this.controls.enabled = !isHeld;
+      };
+    }
+    return this.knownGizmo;
   }
   setPickables(pickables: Pickable[]): void {
     this.pickables = pickables;
@@ -260,6 +272,10 @@ export class World {
     const direction = this.camera.position.clone().sub(this.controls.target).normalize().multiplyScalar(distance);
     this.setCamera({ position: new Vector3(...target).add(direction).toArray(), target });
   }
+  /** The direction that is up. */
+  upward(): Vec3 {
+    return this.up;
+  }
   /** Looks down on the target. */
   lookDown(): void {
     const distance = this.camera.position.distanceTo(this.controls.target);
@@ -330,6 +346,15 @@ export function makeCameras(
   const pose = poses[current];
   if (pose) objects.push(makeFrustum(pose, camera, currentColor));
   return objects;
+}
+
+/** The edges of a box around the origin of a pose. */
+export function makeBox(pose: Pose, size: Vec3, color: string): LineSegments {
+  const corner = (i: number): Vec3 =>
+    transformPoint(pose, [0, 1, 2].map((axis) => ((i >> axis) & 1 ? 0.5 : -0.5) * (size[axis] ?? 0)) as Vec3);
+  const points: Vec3[] = [];
+  for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if ((i & bit) === 0) points.push(corner(i), corner(i | bit));
+  return makeSegments(points, color);
 }
 
 export function makeAxes(pose: Pose, length: number): LineSegments[] {

@@ -14,6 +14,11 @@ bool is_port(std::string_view text) {
                           std::ranges::all_of(text.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
 }
 
+std::optional<HttpResponse> check_host(const HttpRequest& request) {
+  if (is_loopback_host(request.host)) return std::nullopt;
+  return make_text_response(403, "only localhost and 127.0.0.1 are served");
+}
+
 }  // namespace
 
 std::string make_access_token() {
@@ -39,13 +44,27 @@ bool is_loopback_host(std::string_view host) {
 }
 
 std::optional<HttpResponse> AccessGuard::check_asset(const HttpRequest& request) const {
-  if (!is_loopback_host(request.host)) return make_text_response(403, "only localhost and 127.0.0.1 are served");
+  if (auto refusal = check_host(request)) return refusal;
   if (request.method != "GET") return make_text_response(405, "only GET is answered");
   return std::nullopt;
 }
 
 std::optional<HttpResponse> AccessGuard::check_data(const HttpRequest& request) {
   if (auto refusal = check_asset(request)) return refusal;
+  return check_token(request);
+}
+
+std::optional<HttpResponse> AccessGuard::check_write(const HttpRequest& request) {
+  if (auto refusal = check_host(request)) return refusal;
+  if (request.method != "GET" && request.method != "POST") {
+    auto refusal = make_text_response(405, "only GET and POST are answered");
+    refusal.allowed_methods = "GET, POST";
+    return refusal;
+  }
+  return check_token(request);
+}
+
+std::optional<HttpResponse> AccessGuard::check_token(const HttpRequest& request) {
   if (is_same_secret(request.token, token_)) return std::nullopt;
   const auto now = std::chrono::steady_clock::now();
   if (now - count_since_ > std::chrono::seconds(1)) {

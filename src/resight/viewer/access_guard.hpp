@@ -28,8 +28,11 @@ class AccessGuard {
   /// The refusal of a request for data, which needs the token, or none. After 20 wrong tokens within a second, further
   /// wrong ones get status 429.
   [[nodiscard]] std::optional<HttpResponse> check_data(const HttpRequest& request);
+  /// Same, where POST is answered, too.
+  [[nodiscard]] std::optional<HttpResponse> check_write(const HttpRequest& request);
 
  private:
+  [[nodiscard]] std::optional<HttpResponse> check_token(const HttpRequest& request);
   std::string token_;
   std::chrono::steady_clock::time_point count_since_;
   int num_wrong_ = 0;  ///< Wrong tokens since then.

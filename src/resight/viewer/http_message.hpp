@@ -22,11 +22,12 @@ struct HttpResponse {
   int status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;
+  std::string allowed_methods = "GET";  ///< Sent with status 405.
 };
 
 /// A short text with a status.
 [[nodiscard]] inline HttpResponse make_text_response(int status, std::string text) {
-  return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(std::move(text))};
+  return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(std::move(text)), "GET"};
 }
 
 /// Answers a request. Exceptions become status 500.

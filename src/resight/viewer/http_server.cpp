@@ -121,7 +121,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
-    if (content.status == 405) response_.set(http::field::allow, "GET");
+    if (content.status == 405) response_.set(http::field::allow, content.allowed_methods);
     response_.body() = {content_->data(), content_->size()};
     response_.keep_alive(keep_alive);
     response_.prepare_payload();

@@ -130,7 +130,8 @@ Json details_json(const StoredDetection& detection) {
 
 std::string format_index(const ViewerScene& scene, const ObjectTable& objects, const StoredViewNumbers& stored_views,
                          int revision) {
-  Json json = {{"title", scene.title}, {"revision", revision}, {"is_live", scene.is_live}};
+  Json json = {
+      {"title", scene.title}, {"revision", revision}, {"is_live", scene.is_live}, {"is_annotated", scene.is_annotated}};
   json["views"] = scene.sequence ? views_json(*scene.sequence) : Json::array();
   json["has_poses"] = scene.sequence && scene.sequence->has_poses();
   json["has_changes"] = !scene.changes.empty();

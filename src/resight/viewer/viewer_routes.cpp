@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "resight/viewer/access_guard.hpp"
 #include "resight/viewer/assets.hpp"
+#include "resight/viewer/internal/parse_number.hpp"
 
 namespace resight {
 namespace {
@@ -28,13 +28,7 @@ std::vector<std::string_view> split_path(std::string_view path) {
   return parts;
 }
 
-/// A number below `count`, of digits only.
-std::optional<int> parse_number_below(std::string_view text, int count) {
-  int number = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || text.size() > 9 || end != text.data() + text.size() || error != std::errc()) return std::nullopt;
-  return number >= 0 && number < count ? std::optional(number) : std::nullopt;
-}
+using viewer::parse_number_below;
 
 HttpResponse not_found() { return make_text_response(404, "there is nothing under this address"); }
 
@@ -72,6 +66,8 @@ HttpResponse answer_data(SceneData& scene, const HttpRequest& request) {
   return not_found();
 }
 
+bool is_annotation(std::string_view path) { return path == "/api/annotation" || path.starts_with("/api/annotation/"); }
+
 HttpResponse answer_asset(const HttpRequest& request) {
   for (const Asset& asset : viewer_assets())
     if (asset.path == request.path)
@@ -81,8 +77,14 @@ HttpResponse answer_asset(const HttpRequest& request) {
 
 }  // namespace
 
-HttpHandler make_viewer_handler(SceneData& scene, const std::string& token) {
-  return [&scene, guard = std::make_shared<AccessGuard>(token)](const HttpRequest& request) {
+HttpHandler make_viewer_handler(SceneData& scene, const std::string& token, AnnotationService* annotation) {
+  return [&scene, annotation, guard = std::make_shared<AccessGuard>(token)](const HttpRequest& request) {
+    if (annotation != nullptr && is_annotation(request.path)) {
+      if (auto refusal = guard->check_write(request)) return *std::move(refusal);
+      auto parts = split_path(request.path);
+      parts.erase(parts.begin(), parts.begin() + 2);
+      return annotation->answer(request, parts);
+    }
     const bool is_data = request.path.starts_with("/api/");
     if (auto refusal = is_data ? guard->check_data(request) : guard->check_asset(request)) return *std::move(refusal);
     return is_data ? answer_data(scene, request) : answer_asset(request);

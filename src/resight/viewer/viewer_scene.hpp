@@ -28,6 +28,7 @@ struct ViewerScene {
   std::vector<ViewerRun> runs;
   std::filesystem::path changes;  ///< Folder of `resight changes` on these views: <name of the view>.ply.
   bool is_live = false;           ///< Views are still being added to the runs.
+  bool is_annotated = false;      ///< The page annotates the views (AnnotationService).
 };
 
 }  // namespace resight

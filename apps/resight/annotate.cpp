@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.hpp"
+#include "output_paths.hpp"
+#include "progress.hpp"
+#include "recognition_run.hpp"
+#include "resight/annotation/change_proposals.hpp"
+#include "resight/annotation/detections_to_edit.hpp"
+#include "resight/core/files.hpp"
+#include "resight/core/hash.hpp"
+#include "resight/io/recognition_results.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/recognition/stage_options.hpp"
+#include "resight/viewer/annotation_service.hpp"
+#include "sequence_input.hpp"
+#include "viewer_session.hpp"
+
+namespace resight::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMinRegionPoints = 30;  // Of 5 mm: about 3 cm across.
+
+/// Identifies the views and the models, wherever they are.
+std::string identify(const Sequence& sequence, const ModelLibrary& library, std::size_t num_regions) {
+  std::uint64_t views = kHashSeed;
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const Rigid3 pose = value_or_throw(sequence.read_pose(v));
+    views = hash_text(fmt::format("{} {:.6f} {:.6f} {:.6f}\n", sequence.view_name(v), pose.translation.x(),
+                                  pose.translation.y(), pose.translation.z()),
+                      views);
+  }
+  std::uint64_t models = kHashSeed;
+  for (const ObjectModel& model : library.objects)
+    models = hash_text(fmt::format("{} {} {}\n", model.name, model.bop_id, model.surface.size()), models);
+  return fmt::format("{} views {:016x}, {} models {:016x}, {} regions", sequence.num_views(), views,
+                     library.objects.size(), models, num_regions);
+}
+
+std::vector<ChangeProposal> find_regions(const Sequence& sequence, const AnnotateArguments& arguments) {
+  const RecognizerConfig config = make_config("default", std::nullopt, std::nullopt, arguments.num_threads);
+  Progress progress("annotate", sequence.num_views());
+  return value_or_throw(propose_changes(sequence, scene_options(config), kMinRegionPoints, [&](int view) {
+    progress.report(view + 1, sequence.view_name(view) + ": changes");
+  }));
+}
+
+/// A new project starts with what was recognised. A project that has begun stays as it is.
+void add_detections(const fs::path& detections, const Sequence& sequence, const ModelLibrary& library,
+                    AnnotationProject& project) {
+  if (project.revision() > 0) {
+    print_warning("the project has begun already; the detections are not read again");
+    return;
+  }
+  const fs::path folder = fs::is_directory(detections) ? detections : detections.parent_path();
+  const RecognitionResults results = value_or_throw(read_recognition_results(folder.empty() ? "." : folder));
+  AnnotationEdit edit = value_or_throw(detections_to_edit(results, sequence, library));
+  if (edit.changes.empty()) return;
+  const ActionOutcome outcome = project.act(std::move(edit), 0);
+  if (outcome.kind != ActionOutcome::Kind::kApplied) throw InputError(outcome.message);
+}
+
+}  // namespace
+
+void run_annotate(const AnnotateArguments& arguments) {
+  check_output_folder(arguments.out, {arguments.sequence});
+  const std::shared_ptr<const Sequence> sequence = open_posed_input(arguments.sequence, arguments.input);
+  const auto library = std::make_shared<const ModelLibrary>(value_or_throw(load_library(arguments.models)));
+  const std::string name = folder_name(value_or_throw(find_sequence_folder(arguments.sequence)));
+  AnnotationTask task{.sequence = sequence,
+                      .library = library,
+                      .regions = find_regions(*sequence, arguments),
+                      .project = nullptr,
+                      .scene_name = name,
+                      .export_folder = arguments.out / "export"};
+  const AnnotationLimits limits{.num_views = sequence->num_views(),
+                                .num_objects = static_cast<int>(library->objects.size()),
+                                .num_regions = static_cast<int>(task.regions.size())};
+  task.project = value_or_throw(
+      AnnotationProject::open(arguments.out, limits, identify(*sequence, *library, task.regions.size())));
+  if (task.project->was_cut_off()) print_warning("the last action was cut off and is dropped");
+  if (arguments.detections) add_detections(*arguments.detections, *sequence, *library, *task.project);
+  AnnotationService service(std::move(task));
+
+  ViewerScene shown;
+  shown.title = name;
+  shown.sequence = sequence;
+  shown.library = library;
+  shown.is_annotated = true;
+  const auto scene = value_or_throw(SceneData::create(std::move(shown)));
+  ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open}, &service);
+  session.server().run_until_interrupted();
+  value_or_throw(service.save());
+  print("{}\n", (arguments.out / "export").string());
+}
+
+}  // namespace resight::app

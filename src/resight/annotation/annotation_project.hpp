@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "resight/annotation/annotation_action.hpp"
+#include "resight/annotation/annotation_journal.hpp"
+
+namespace resight {
+
+/// What became of an action.
+struct ActionOutcome {
+  enum class Kind {
+    kApplied,
+    kStale,       ///< The document has changed since `based_on`; nothing happened.
+    kInvalid,     ///< The action is wrong, or there is nothing to undo or redo; nothing happened.
+    kNotWritten,  ///< The journal could not be written; nothing happened.
+  };
+  Kind kind = Kind::kApplied;
+  std::string message;  ///< Why not; empty if applied.
+};
+
+/// A document on the disk: every action is written to the journal of its folder before it counts. Undo and redo are
+/// actions, too, so nothing that was ever done is lost.
+class AnnotationProject {
+ public:
+  /// Opens the project in `folder`, which is created if it is missing. `inputs` identifies the views and models. Fails
+  /// if another process has it open, it belongs to other inputs, or it is damaged.
+  [[nodiscard]] static Result<std::unique_ptr<AnnotationProject>> open(const std::filesystem::path& folder,
+                                                                       const AnnotationLimits& limits,
+                                                                       const std::string& inputs);
+
+  [[nodiscard]] const AnnotationDocument& document() const { return document_; }
+  [[nodiscard]] const AnnotationLimits& limits() const { return limits_; }
+  /// Number of actions so far.
+  [[nodiscard]] int revision() const { return revision_; }
+  /// Titles of the edits that undo and redo would concern next; empty if there are none.
+  [[nodiscard]] std::string undo_title() const;
+  [[nodiscard]] std::string redo_title() const;
+  [[nodiscard]] bool was_cut_off() const { return was_cut_off_; }
+
+  /// Applies an action to revision `based_on`.
+  [[nodiscard]] ActionOutcome act(AnnotationAction action, int based_on);
+
+ private:
+  /// An edit as applied, with the changes that undo it, last first.
+  struct Step {
+    AnnotationEdit edit;
+    std::vector<AnnotationChange> undo;
+  };
+  AnnotationProject(AnnotationJournal journal, const AnnotationLimits& limits)
+      : journal_(std::move(journal)), limits_(limits) {}
+  [[nodiscard]] Result<void> replay(const std::vector<std::string>& lines);
+  [[nodiscard]] Result<Step> apply_edit(AnnotationDocument& document, AnnotationEdit edit) const;
+  [[nodiscard]] Result<void> apply(AnnotationAction& action);
+
+  AnnotationJournal journal_;
+  AnnotationLimits limits_;
+  AnnotationDocument document_;
+  std::vector<Step> done_;
+  std::vector<AnnotationEdit> undone_;
+  int revision_ = 0;
+  bool was_cut_off_ = false;
+};
+
+}  // namespace resight

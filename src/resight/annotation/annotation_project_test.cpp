@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/annotation/annotation_project.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "resight/core/input_file.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = ActionOutcome::Kind;
+
+constexpr AnnotationLimits kLimits{.num_views = 10, .num_objects = 3, .num_regions = 2};
+
+class AnnotationProjectTest : public testing::Test {
+ protected:
+  AnnotationProjectTest() {
+    char name[] = "/tmp/resight_annotation_XXXXXX";
+    folder_ = ::mkdtemp(name);
+  }
+  ~AnnotationProjectTest() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::unique_ptr<AnnotationProject> open() const {
+    auto project = AnnotationProject::open(folder_, kLimits, "inputs");
+    EXPECT_TRUE(project.ok()) << project.error().message;
+    return project.ok() ? *std::move(project) : nullptr;
+  }
+  [[nodiscard]] fs::path journal() const { return folder_ / "annotation.jsonl"; }
+  fs::path folder_;
+};
+
+AnnotatedObject make_object(double x_m, int first = 0, int last = 9) {
+  return {.id = -1,
+          .track = -1,
+          .object = 1,
+          .first_view = first,
+          .last_view = last,
+          .world_from_object = Rigid3::from_translation({x_m, 0, 1})};
+}
+AnnotationEdit put(const AnnotatedObject& object) { return {.title = "Place", .changes = {PutObject{object}}}; }
+
+double x_of(const AnnotationProject& project, int id) {
+  return project.document().objects.at(id).world_from_object.translation.x();
+}
+
+TEST_F(AnnotationProjectTest, ActionsSurviveAndCanBeUndone) {
+  {
+    const auto project = open();
+    EXPECT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+    AnnotatedObject moved = project->document().objects.at(0);
+    moved.world_from_object.translation.x() = 0.2;
+    EXPECT_EQ(project->act(put(moved), 1).kind, Kind::kApplied);
+    EXPECT_EQ(project->act(UndoEdit{}, 2).kind, Kind::kApplied);
+  }
+  const auto project = open();
+  EXPECT_EQ(project->revision(), 3);
+  EXPECT_DOUBLE_EQ(x_of(*project, 0), 0.1);
+  EXPECT_EQ(project->act(RedoEdit{}, 3).kind, Kind::kApplied);
+  EXPECT_DOUBLE_EQ(x_of(*project, 0), 0.2);
+  EXPECT_EQ(project->redo_title(), "");
+  EXPECT_EQ(project->act(RedoEdit{}, 4).kind, Kind::kInvalid);
+}
+
+TEST_F(AnnotationProjectTest, UndoOfEveryKindOfChangeRestoresTheDocument) {
+  const auto project = open();
+  ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+  const AnnotationEdit edit{
+      .title = "All",
+      .changes = {DropObject{0}, JudgeRegion{{1, RegionVerdict::kRejected, -1}}, CheckView{3, true},
+                  PutUnknownEvent{{.id = -1,
+                                   .view = 2,
+                                   .kind = AnnotatedEventKind::kAdded,
+                                   .name = "cup",
+                                   .before_in_world_m = std::nullopt,
+                                   .after_in_world_m = Eigen::Vector3d(1, 2, 3)}}}};
+  ASSERT_EQ(project->act(edit, 1).kind, Kind::kApplied);
+  EXPECT_TRUE(project->document().objects.empty());
+  EXPECT_EQ(project->document().unknown_events.size(), 1U);
+  ASSERT_EQ(project->act(UndoEdit{}, 2).kind, Kind::kApplied);
+  EXPECT_EQ(project->document().objects.size(), 1U);
+  EXPECT_TRUE(project->document().regions.empty());
+  EXPECT_TRUE(project->document().checked_views.empty());
+  EXPECT_TRUE(project->document().unknown_events.empty());
+}
+
+TEST_F(AnnotationProjectTest, StaleActionsChangeNothing) {
+  const auto project = open();
+  ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+  EXPECT_EQ(project->act(put(make_object(0.3)), 0).kind, Kind::kStale);
+  EXPECT_EQ(project->document().objects.size(), 1U);
+}
+
+TEST_F(AnnotationProjectTest, WrongActionsAreRefusedAsAWhole) {
+  const auto project = open();
+  AnnotationEdit edit = put(make_object(0.1));
+  edit.changes.emplace_back(DropObject{7});
+  EXPECT_EQ(project->act(edit, 0).kind, Kind::kInvalid);
+  EXPECT_EQ(project->act(put(make_object(0.1, 5, 4)), 0).kind, Kind::kInvalid);
+  EXPECT_EQ(project->act(put(make_object(0.1, 0, 10)), 0).kind, Kind::kInvalid);
+  EXPECT_EQ(project->act(put(make_object(1e9)), 0).kind, Kind::kInvalid);
+  EXPECT_TRUE(project->document().objects.empty());
+  EXPECT_EQ(project->revision(), 0);
+}
+
+TEST_F(AnnotationProjectTest, ACutOffLastLineIsDropped) {
+  {
+    const auto project = open();
+    ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+    ASSERT_EQ(project->act(put(make_object(0.2)), 1).kind, Kind::kApplied);
+  }
+  fs::resize_file(journal(), fs::file_size(journal()) - 5);
+  const auto project = open();
+  EXPECT_TRUE(project->was_cut_off());
+  EXPECT_EQ(project->revision(), 1);
+  EXPECT_EQ(project->act(put(make_object(0.3)), 1).kind, Kind::kApplied);
+  EXPECT_EQ(project->document().objects.size(), 2U);
+}
+
+TEST_F(AnnotationProjectTest, DamageBeforeTheLastLineIsAnError) {
+  {
+    const auto project = open();
+    ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+    ASSERT_EQ(project->act(put(make_object(0.2)), 1).kind, Kind::kApplied);
+  }
+  std::string text = *read_file(journal());
+  text.replace(text.find("put_object"), 3, "###");
+  std::ofstream(journal()) << text;
+  const auto project = AnnotationProject::open(folder_, kLimits, "inputs");
+  ASSERT_FALSE(project.ok());
+  EXPECT_THAT(project.error().message, testing::HasSubstr("line 2 is damaged"));
+}
+
+TEST_F(AnnotationProjectTest, OtherInputsAndASecondProcessAreRefused) {
+  const auto project = open();
+  const auto second = AnnotationProject::open(folder_, kLimits, "inputs");
+  ASSERT_FALSE(second.ok());
+  EXPECT_THAT(second.error().message, testing::HasSubstr("is open in another"));
+}
+
+TEST_F(AnnotationProjectTest, AProjectBelongsToItsInputs) {
+  open().reset();
+  const auto other = AnnotationProject::open(folder_, kLimits, "others");
+  ASSERT_FALSE(other.ok());
+  EXPECT_THAT(other.error().message, testing::HasSubstr("belongs to another sequence"));
+}
+
+TEST_F(AnnotationProjectTest, AKilledProcessLosesNoAcknowledgedActionAndItsLock) {
+  int acknowledged[2];
+  ASSERT_EQ(::pipe(acknowledged), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto project = open();
+    for (int i = 0;; ++i) {
+      if (project->act(put(make_object(0.001 * i)), i).kind != Kind::kApplied) ::_exit(1);
+      const char byte = 1;
+      if (::write(acknowledged[1], &byte, 1) != 1) ::_exit(1);
+    }
+  }
+  char bytes[20];
+  for (int count = 0; count < 20;) count += static_cast<int>(::read(acknowledged[0], bytes, sizeof(bytes)));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ::close(acknowledged[1]);
+  int num_more = 0;
+  while (::read(acknowledged[0], bytes, 1) == 1) ++num_more;
+  ::close(acknowledged[0]);
+  const auto project = open();
+  ASSERT_NE(project, nullptr);
+  EXPECT_GE(project->revision(), 20 + num_more);
+  EXPECT_LE(project->revision(), 22 + num_more + 20);
+}
+
+TEST(ParseAction, ReadsWhatIsWritten) {
+  const AnnotationAction action = put(make_object(0.123456789012345));
+  const auto read = parse_action(format_action(action));
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(format_action(*read), format_action(action));
+}
+
+TEST(ParseAction, RefusesWhatIsNoAction) {
+  const std::string pose = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]";
+  const auto edit = [](const std::string& change) { return R"({"title":"t","changes":[)" + change + "]}"; };
+  const auto object = [&](const std::string& numbers) {
+    return edit(R"({"do":"put_object","object":0,"first_view":0,"last_view":1,"pose":)" + numbers + "}");
+  };
+  EXPECT_TRUE(parse_action(object(pose)).ok());
+  for (const std::string& text :
+       {std::string(""), std::string("7"), std::string("{}"), edit(""), edit("{}"), edit(R"({"do":"drop_object"})"),
+        edit(R"({"do":"format_disk"})"), object("[1,2]"), object("[2,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
+        object("[1,0,0,0,0,1,0,0,0,0,1,0,1e999,0,1,1]"), object("[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
+        edit(R"({"do":"drop_object","id":1e300})"), edit(R"({"do":"drop_object","id":99999999999999})")})
+    EXPECT_FALSE(parse_action(text).ok()) << text;
+}
+
+}  // namespace
+}  // namespace resight

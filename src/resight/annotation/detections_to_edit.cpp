@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/annotation/detections_to_edit.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "resight/models/pose_distance.hpp"
+
+namespace resight {
+namespace {
+
+constexpr SamePlaceOptions kSamePlace{.max_distance_m = 0.03, .max_rotation_rad = 0.35};
+
+/// A detection in the world frame of the sequence.
+struct PlacedDetection {
+  int view = 0;
+  int object = -1;
+  double score = 0;
+  Rigid3 world_from_object;
+};
+
+using DetectionsOfTrack = std::map<int, std::vector<PlacedDetection>>;
+
+Result<std::vector<int>> number_views(const RecognitionResults& results, const Sequence& sequence) {
+  std::map<std::string, int> numbers;
+  for (int v = 0; v < sequence.num_views(); ++v) numbers.emplace(sequence.view_name(v), v);
+  std::vector<int> views;
+  for (const StoredView& view : results.views) {
+    const auto found = numbers.find(view.name);
+    if (found == numbers.end())
+      return Error{"the detections are of another sequence: it has no view '" + view.name + "'"};
+    views.push_back(found->second);
+  }
+  return views;
+}
+
+Result<DetectionsOfTrack> collect_detections(const RecognitionResults& results, const std::vector<int>& views,
+                                             const Sequence& sequence, const ModelLibrary& library) {
+  DetectionsOfTrack tracks;
+  for (std::size_t v = 0; v < results.views.size(); ++v) {
+    const auto camera = sequence.read_pose(views[v]);
+    if (!camera) return camera.error();
+    // The recogniser may have corrected the pose of the camera; the annotation is in the frame of the given poses.
+    const Rigid3 given_from_corrected = *camera * results.views[v].world_from_camera.inverse();
+    for (const StoredDetection& detection : results.views[v].detections) {
+      const int object = library.find(detection.object);
+      if (object < 0) return Error{"the detections name '" + detection.object + "', which is not in the library"};
+      tracks[detection.track].push_back(
+          {views[v], object, detection.score, given_from_corrected * detection.world_from_object});
+    }
+  }
+  return tracks;
+}
+
+/// The placements of one track: a new one begins where the pose differs from that of the last one.
+std::vector<AnnotatedObject> find_placements(const std::vector<PlacedDetection>& detections, int track,
+                                             const ModelLibrary& library) {
+  std::vector<AnnotatedObject> placements;
+  double best_score = 0;
+  for (const PlacedDetection& d : detections) {
+    const bool is_new = placements.empty() || placements.back().object != d.object ||
+                        !is_same_place(library.objects[static_cast<std::size_t>(d.object)],
+                                       placements.back().world_from_object, d.world_from_object, kSamePlace);
+    if (is_new) {
+      if (!placements.empty()) placements.back().last_view = d.view - 1;
+      placements.push_back({.id = -1,
+                            .track = track,
+                            .object = d.object,
+                            .first_view = d.view,
+                            .last_view = d.view,
+                            .world_from_object = d.world_from_object});
+      best_score = d.score;
+    }
+    placements.back().last_view = d.view;
+    if (d.score <= best_score) continue;
+    best_score = d.score;
+    placements.back().world_from_object = d.world_from_object;
+  }
+  return placements;
+}
+
+/// Extends a track to what its events say of its beginning and end.
+void extend_track(const std::vector<StoredEvent>& events, const std::vector<int>& views, int track, int num_views,
+                  std::vector<AnnotatedObject>& placements) {
+  bool was_added = false;
+  int removed_at = num_views;
+  for (const StoredEvent& event : events) {
+    if (event.track != track) continue;
+    const int view = views[static_cast<std::size_t>(event.view)];
+    if (event.kind == "added") was_added = true;
+    if (event.kind == "removed") removed_at = view;
+    if (event.kind != "moved" && event.kind != "removed") continue;
+    for (std::size_t i = 0; i + 1 < placements.size(); ++i)
+      if (placements[i].last_view >= view && placements[i + 1].first_view > view && placements[i].first_view < view)
+        placements[i].last_view = view - 1;
+  }
+  if (!was_added) placements.front().first_view = 0;
+  AnnotatedObject& last = placements.back();
+  last.last_view = removed_at > last.last_view ? removed_at - 1 : num_views - 1;
+}
+
+}  // namespace
+
+Result<AnnotationEdit> detections_to_edit(const RecognitionResults& results, const Sequence& sequence,
+                                          const ModelLibrary& library) {
+  const auto views = number_views(results, sequence);
+  if (!views) return views.error();
+  const auto tracks = collect_detections(results, *views, sequence, library);
+  if (!tracks) return tracks.error();
+  AnnotationEdit edit{.title = "Start from detections", .changes = {}};
+  int next_track = 0;
+  for (const auto& [track, detections] : *tracks) {
+    const bool is_confirmed = std::ranges::any_of(results.events, [&](const auto& e) { return e.track == track; });
+    if (!is_confirmed) continue;
+    auto placements = find_placements(detections, next_track++, library);
+    extend_track(results.events, *views, track, sequence.num_views(), placements);
+    for (const AnnotatedObject& placement : placements) edit.changes.emplace_back(PutObject{placement});
+  }
+  return edit;
+}
+
+}  // namespace resight

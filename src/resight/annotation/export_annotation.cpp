@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/annotation/export_annotation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "resight/annotation/internal/truth_files.hpp"
+#include "resight/core/files.hpp"
+#include "resight/io/images.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/io/tuw_changes.hpp"
+#include "resight/io/tuw_ground_truth.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMark = ".resight-annotation";  // A folder with this file is ours and may be replaced.
+
+std::vector<AnnotatedObject> objects_in_view(const AnnotationDocument& document, int view) {
+  std::vector<AnnotatedObject> objects;
+  for (const auto& [id, object] : document.objects)
+    if (object.is_in(view)) objects.push_back(object);
+  return objects;
+}
+
+/// Writes the files of one export, view by view.
+class TruthWriter {
+ public:
+  TruthWriter(const ModelLibrary& library, fs::path bop, fs::path tuw)
+      : library_(library), masks_of_(library), bop_(std::move(bop)), tuw_(std::move(tuw)) {}
+
+  Result<void> add_view(const AnnotationDocument& document, const RgbdFrame& frame, const std::string& name,
+                        SequenceWriter& writer) {
+    const int view = static_cast<int>(masks_.size());
+    masks_.push_back(masks_of_.render(objects_in_view(document, view), frame));
+    std::vector<GroundTruthObject> truth;
+    std::map<std::string, int> counts;
+    for (const ObjectMask& mask : masks_.back()) {
+      const ObjectModel& model = library_.objects[static_cast<std::size_t>(mask.object.object)];
+      truth.push_back({model.name, model.bop_id, counts[model.name]++,
+                       frame.world_from_camera.inverse() * mask.object.world_from_object, mask.visible_share()});
+      add_to_chain(mask.object.id, {name, view, model.name, truth.back().instance});
+    }
+    num_objects_ += static_cast<int>(truth.size());
+    if (const auto done = writer.write_view(frame, truth); !done) return done;
+    if (const auto done = write_tuw_annotation(tuw_, name, truth); !done) return done;
+    return write_file(tuw_ / (name + ".anno"), annotation::format_anno(truth));
+  }
+
+  /// To be called when the sequence is in its folder.
+  Result<void> write_masks(const std::vector<std::string>& names) {
+    for (std::size_t v = 0; v < masks_.size(); ++v) {
+      for (std::size_t i = 0; i < masks_[v].size(); ++i) {
+        const std::string file = fmt::format("{}_{:06}.png", names[v], i);
+        if (const auto done = write_mask(bop_ / "mask" / file, masks_[v][i].whole); !done) return done;
+        if (const auto done = write_mask(bop_ / "mask_visib" / file, masks_[v][i].visible); !done) return done;
+      }
+    }
+    return write_file(bop_ / "scene_gt_info.json", annotation::format_mask_info(masks_, names));
+  }
+
+  [[nodiscard]] std::vector<ChangeChain> chains() const {
+    std::vector<ChangeChain> chains;
+    for (const auto& [id, chain] : chains_) chains.push_back(chain);
+    return chains;
+  }
+  [[nodiscard]] int num_objects() const { return num_objects_; }
+
+ private:
+  void add_to_chain(int placement, ChangeChainEntry entry) { chains_[placement].entries.push_back(std::move(entry)); }
+
+  const ModelLibrary& library_;
+  ObjectMaskRenderer masks_of_;
+  fs::path bop_;
+  fs::path tuw_;
+  std::vector<std::vector<ObjectMask>> masks_;
+  std::map<int, ChangeChain> chains_;
+  int num_objects_ = 0;
+};
+
+/// Removes an earlier export.
+Result<void> clear_export(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(folder, error))) return {};
+  if (!fs::is_directory(fs::symlink_status(folder, error)) || !fs::exists(folder / kMark, error))
+    return file_error(folder, "is no earlier export, so it is not replaced");
+  fs::remove_all(folder, error);
+  if (error) return file_error(folder, "cannot be replaced (" + error.message() + ")");
+  return {};
+}
+
+}  // namespace
+
+Result<ExportSummary> export_annotation(const AnnotationDocument& document, const ModelLibrary& library,
+                                        ViewStore& views, const std::string& scene, const fs::path& folder) {
+  auto pending = PendingDirectory::create(folder, ExistingFolder::kFill);
+  if (!pending) return pending.error();
+  const fs::path bop = pending->path() / "bop" / scene;
+  const fs::path tuw = pending->path() / "tuw" / scene;
+  auto writer = create_sequence(bop, DatasetFormat::kBop);
+  if (!writer) return writer.error();
+  TruthWriter truth(library, bop, tuw);
+  for (int v = 0; v < views.num_views(); ++v) {
+    const auto frame = views.get(v);
+    if (!frame) return frame.error();
+    if (const auto done = truth.add_view(document, **frame, views.sequence().view_name(v), **writer); !done)
+      return done.error();
+  }
+  const auto events = derive_events(document, library, views.num_views());
+  const std::string text = annotation::format_events(events, library, scene, views.num_views());
+  const std::vector<std::string> names = (*writer)->view_names();
+  if (const auto done = (*writer)->finish(); !done) return done.error();
+  if (const auto done = write_file(bop / "events.json", text); !done) return done.error();
+  if (const auto done = truth.write_masks(names); !done) return done.error();
+  if (const auto done = write_changes(pending->path() / "tuw" / (scene + ".changes"), truth.chains()); !done)
+    return done.error();
+  if (const auto done = write_file(pending->path() / kMark, "may be replaced\n"); !done) return done.error();
+  // The hidden folder lies inside an existing one, so it is moved out before that one is removed.
+  const fs::path ready = folder.parent_path() / ("." + folder.filename().string() + ".new");
+  std::error_code error;
+  fs::remove_all(ready, error);
+  fs::rename(pending->path(), ready, error);
+  if (error) return file_error(ready, "cannot be written (" + error.message() + ")");
+  if (const auto done = clear_export(folder); !done) return done.error();
+  fs::rename(ready, folder, error);
+  if (error) return file_error(folder, "cannot be written (" + error.message() + ")");
+  return ExportSummary{.num_views = views.num_views(),
+                       .num_objects = truth.num_objects(),
+                       .num_events = static_cast<int>(events.size())};
+}
+
+}  // namespace resight

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/annotation/export_annotation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "resight/annotation/annotated_events.hpp"
+#include "resight/annotation/annotated_scene_test.hpp"
+#include "resight/annotation/annotation_checks.hpp"
+#include "resight/evaluation/change_truth.hpp"
+#include "resight/io/change_files.hpp"
+#include "resight/io/images.hpp"
+
+namespace resight {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ExportAnnotationTest : public testing::Test {
+ protected:
+  ExportAnnotationTest() {
+    char name[] = "/tmp/resight_export_XXXXXX";
+    folder_ = ::mkdtemp(name);
+  }
+  ~ExportAnnotationTest() override { fs::remove_all(folder_); }
+  void write() {
+    ViewStore views(scene_);
+    const auto summary = export_annotation(scene_->document, scene_->library, views, "small", folder_ / "export");
+    ASSERT_TRUE(summary.ok()) << summary.error().message;
+  }
+  std::shared_ptr<test::AnnotatedScene> scene_ = std::make_shared<test::AnnotatedScene>();
+  fs::path folder_;
+};
+
+TEST_F(ExportAnnotationTest, TheEvaluationReadsTheExactTruth) {
+  write();
+  const fs::path bop = folder_ / "export" / "bop" / "small";
+  const auto sequence = open_sequence(bop);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  std::vector<std::string> names;
+  for (int v = 0; v < (*sequence)->num_views(); ++v) names.push_back((*sequence)->view_name(v));
+  const auto truth = read_sequence_truth(**sequence, scene_->library, find_change_files(bop, names));
+  ASSERT_TRUE(truth.ok()) << truth.error().message;
+  ASSERT_TRUE(truth->changes);
+  ASSERT_EQ(truth->changes->size(), 2U);
+  EXPECT_EQ((*truth->changes)[0].kind, ObjectEventKind::kMoved);
+  EXPECT_EQ((*truth->changes)[0].view, 3);
+  EXPECT_EQ((*truth->changes)[1].kind, ObjectEventKind::kRemoved);
+  EXPECT_EQ((*truth->changes)[1].object, "tea_box");
+  for (int v = 0; v < 6; ++v) {
+    const auto read = *(*sequence)->read_ground_truth(v);
+    const auto& exact = scene_->truth[static_cast<std::size_t>(v)];
+    ASSERT_EQ(read.size(), exact.size()) << "view " << v;
+    for (const GroundTruthObject& object : exact) {
+      const auto same = std::ranges::find(read, object.object, &GroundTruthObject::object);
+      ASSERT_NE(same, read.end());
+      EXPECT_TRUE(is_same_pose(same->camera_from_object, object.camera_from_object));
+      EXPECT_NEAR(same->visible_share, object.visible_share, 0.05) << object.object << " view " << v;
+    }
+  }
+}
+
+TEST_F(ExportAnnotationTest, MasksAndFilesOfTuwAreThere) {
+  write();
+  const fs::path bop = folder_ / "export" / "bop" / "small";
+  const auto whole = read_mask(bop / "mask" / "000000_000000.png");
+  const auto visible = read_mask(bop / "mask_visib" / "000000_000000.png");
+  ASSERT_TRUE(whole.ok() && visible.ok());
+  const auto count = [](const Image<std::uint8_t>& mask) { return std::ranges::count(mask.data(), 255); };
+  EXPECT_GT(count(*whole), 500);
+  EXPECT_LE(count(*visible), count(*whole));
+  const std::string view = scene_->view_name(0);
+  EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small" / (view + ".anno")));
+  EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small" / (view + "_cereal_blue_0.txt")));
+  EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small.changes"));
+}
+
+TEST_F(ExportAnnotationTest, AnExportReplacesAnEarlierOneAndNothingElse) {
+  write();
+  scene_->document.objects.clear();
+  write();
+  EXPECT_FALSE(fs::exists(folder_ / "export" / "bop" / "small" / "mask"));
+  fs::remove_all(folder_ / "export");
+  fs::create_directories(folder_ / "export");
+  std::ofstream(folder_ / "export" / "thesis.tex") << "text";
+  ViewStore views(scene_);
+  EXPECT_FALSE(export_annotation(scene_->document, scene_->library, views, "small", folder_ / "export").ok());
+  EXPECT_TRUE(fs::exists(folder_ / "export" / "thesis.tex"));
+}
+
+TEST_F(ExportAnnotationTest, ChecksNameWhatDoesNotFit) {
+  using ToDo = AnnotationToDo::Kind;
+  AnnotationDocument& document = scene_->document;
+  EXPECT_TRUE(find_to_dos(document, scene_->library, {}).empty());
+  AnnotatedObject& first = document.objects.begin()->second;
+  first.last_view = 1;
+  auto to_dos = find_to_dos(document, scene_->library, {});
+  ASSERT_EQ(to_dos.size(), 1U);
+  EXPECT_EQ(to_dos[0].kind, ToDo::kGap);
+  first.last_view = 4;
+  to_dos = find_to_dos(document, scene_->library, {});
+  ASSERT_EQ(to_dos.size(), 1U);
+  EXPECT_EQ(to_dos[0].kind, ToDo::kTwoPlaces);
+}
+
+}  // namespace
+}  // namespace resight

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# `resight annotate`: makes small data in which one object moves and one is removed, annotates them in a browser
+# (web/e2e/annotate_test.ts), and lets `resight evaluate` read the export. Needs `npm ci` in web/.
+# Usage: annotate_test.sh PATH_OF_RESIGHT PICTURES
+set -uo pipefail
+resight=$(realpath "$1")
+mkdir -p "$2"
+pictures=$(realpath "$2")
+source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
+web=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../web")
+cd "$work" || exit 1
+
+{
+  write_scene 5 -110 -70 true
+  cat <<'CHANGES'
+[[change]]
+view = 2
+kind = "move"
+object = "cereal_blue"
+on = "table"
+x_m = -0.05
+y_m = 0.12
+yaw_deg = 10
+[[change]]
+view = 3
+kind = "remove"
+object = "tea_box"
+CHANGES
+} >scene.toml
+run() { "$resight" "$@" >log 2>&1 || { fail "$1 failed: $(tail -1 log)"; exit 1; }; }
+run simulate scene.toml --out data --format bop --seed 1
+run train data/models --out models.resight
+sequence=$work/data/test/000001
+
+cd "$web" && node build.mjs --tests || { fail "npm ci is missing in web/"; exit 1; }
+RESIGHT=$resight MODELS=$work/models.resight SEQUENCE=$sequence PROJECT=$work/project \
+  PICTURES=$pictures timeout 300 node --test build/e2e/annotate_test.mjs || fail "the browser test failed"
+
+cd "$work" || exit 1
+export=project/export/bop/000001
+for file in scene_gt.json scene_gt_info.json events.json mask/000000_000000.png mask_visib/000000_000000.png; do
+  [ -s "$export/$file" ] || fail "the export lacks $file"
+done
+[ -s project/export/tuw/000001.changes ] || fail "the export lacks the chains of TUW"
+run evaluate --models models.resight --dataset "$export" --out scores --presets mvr -k 1
+node -e '
+  const { configurations } = JSON.parse(require("fs").readFileSync("scores/results.json"));
+  const { true_positives, recall } = configurations[0].score_1cm_10deg;
+  process.exit(true_positives >= 5 && recall > 0.8 ? 0 : 1)' || fail "the evaluation did not read the annotated truth"
+exit $failures

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keyboard of the annotation.
+import type { AnnotatePanel } from "./annotate_panel";
+import type { Annotator } from "./annotator";
+import { rotateVector, type Vec3 } from "./geometry";
+import { movePose, turnPose } from "./pose_edit";
+import type { Pose } from "./protocol";
+import type { World } from "./world";
+
+const kStepM = 0.001;
+const kCoarse = 10;
+const kPauseMs = 350;
+
+/** Directions in the frame of the camera: x right, y down, z away. */
+const kMoves: Record<string, Vec3> = {
+  ArrowLeft: [-1, 0, 0],
+  ArrowRight: [1, 0, 0],
+  ArrowUp: [0, -1, 0],
+  ArrowDown: [0, 1, 0],
+  PageUp: [0, 0, 1],
+  PageDown: [0, 0, -1],
+};
+
+export class AnnotateKeys {
+  /** A pose that has been moved by keys and is sent when they rest, as one edit. */
+  private pending: Pose | null = null;
+  private timer = 0;
+
+  constructor(
+    private readonly annotator: Annotator,
+    private readonly panel: AnnotatePanel,
+    private readonly world: World,
+  ) {}
+
+  /** What a key does; undefined: it is not one of the annotation. */
+  actionOf(event: KeyboardEvent): (() => void) | undefined {
+    const { annotator, panel } = this;
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    if (event.ctrlKey || event.metaKey) {
+      if (event.shiftKey && kMoves[key]) return () => this.move(kMoves[key] ?? [0, 0, 0], kCoarse * kStepM);
+      const commands: Record<string, () => void> = {
+        z: () => (event.shiftKey ? annotator.redo() : annotator.undo()),
+        y: () => annotator.redo(),
+        s: () => annotator.export(),
+      };
+      return commands[key];
+    }
+    const { view } = annotator.app.get();
+    const placement = annotator.selected();
+    if (event.shiftKey && kMoves[key]) return () => this.move(kMoves[key] ?? [0, 0, 0], kStepM);
+    const actions: Record<string, () => void> = {
+      s: () => (event.shiftKey ? annotator.snapAll() : annotator.snap()),
+      g: () => panel.setGizmo({ mode: "translate" }),
+      h: () => panel.setGizmo({ mode: "rotate" }),
+      x: () => panel.setGizmo({ axes: panel.gizmo.axes === "world" ? "object" : "world" }),
+      ",": () => this.turn(-1),
+      "<": () => this.turn(-kCoarse),
+      ";": () => this.turn(-kCoarse),
+      ".": () => this.turn(1),
+      ">": () => this.turn(kCoarse),
+      ":": () => this.turn(kCoarse),
+      i: () => placement && annotator.setInterval(view, Math.max(view, placement.last_view)),
+      o: () => placement && panel.endBefore(placement, view),
+      v: () => annotator.split(),
+      y: () => panel.nextSymmetry(),
+      Delete: () => annotator.remove(),
+      k: () => annotator.check(),
+      Tab: () => this.selectNext(event.shiftKey ? -1 : 1),
+      Escape: () => {
+        annotator.placing = -1;
+        annotator.app.selectNothing();
+        panel.show();
+      },
+    };
+    return actions[key];
+  }
+
+  private selectNext(step: number): void {
+    const { app, annotation } = this.annotator;
+    const { view, track } = app.get();
+    const tracks = annotation.objects.filter((o) => o.first_view <= view && view <= o.last_view).map((o) => o.track);
+    if (tracks.length === 0) return;
+    const index = tracks.indexOf(track);
+    app.selectTrack(tracks[(index + step + tracks.length) % tracks.length] ?? -1);
+  }
+
+  private move(inCamera: Vec3, metres: number): void {
+    const camera = this.annotator.app.cameraPose(this.annotator.app.get().view);
+    if (!camera) return;
+    this.change((pose) => movePose(pose, rotateVector(camera, inCamera), metres, "world"));
+  }
+  private turn(degrees: number): void {
+    const object = this.annotator.app.object(this.annotator.selected()?.object ?? -1);
+    const { axes } = this.panel.gizmo;
+    const axis: Vec3 = axes === "world" ? this.world.upward() : [0, 0, 1];
+    this.change((pose) => turnPose(pose, object?.center ?? [0, 0, 0], axis, degrees, axes));
+  }
+  private change(by: (pose: Pose) => Pose): void {
+    const placement = this.annotator.selected();
+    if (!placement) return;
+    this.pending = by(this.pending ?? placement.pose);
+    this.world.gizmo().onDrag(this.pending);
+    window.clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => {
+      const pose = this.pending;
+      this.pending = null;
+      if (pose) this.annotator.setPose(pose);
+    }, kPauseMs);
+  }
+}

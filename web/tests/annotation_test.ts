@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import {
+  type Annotation,
+  type Placement,
+  placementAt,
+  presentInterval,
+  toRun,
+  type ViewResidual,
+} from "../src/annotation";
+import { transformPoint, type Vec3 } from "../src/geometry";
+import { fromNumbers, movePose, rotation, toNumbers, translation, turnPose } from "../src/pose_edit";
+
+const isNear = (a: number[], b: number[]) => a.every((value, i) => Math.abs(value - (b[i] ?? 0)) < 1e-9);
+const kCenter: Vec3 = [0.1, -0.2, 0.3];
+
+test("six numbers give the pose back, also where two axes coincide", () => {
+  for (const numbers of [
+    [1, 2, 3, 10, 20, 30],
+    [-500, 0, 1200, -170, 80, 175],
+    [0, 0, 0, 0, 90, 40],
+  ]) {
+    const pose = fromNumbers(numbers, kCenter);
+    assert.ok(pose);
+    const again = fromNumbers(toNumbers(pose, kCenter), kCenter);
+    assert.ok(again && isNear(again, pose));
+  }
+  assert.equal(fromNumbers([1, 2, 3, 4, 5, Number.NaN], kCenter), null);
+});
+
+test("the centre stays where it is when an object turns", () => {
+  const pose = movePose(rotation([0, 0, 1], 30), [1, 0, 0], 0.5, "world");
+  for (const axes of ["world", "object"] as const) {
+    const turned = turnPose(pose, kCenter, [0, 1, 0], 25, axes);
+    assert.ok(isNear(transformPoint(turned, kCenter), transformPoint(pose, kCenter)));
+  }
+  const alongOwnAxis = movePose(rotation([0, 0, 1], 90), [1, 0, 0], 0.5, "object");
+  assert.ok(isNear(alongOwnAxis.slice(12, 15), [0, 0.5, 0]));
+});
+
+const placement = (id: number, track: number, first_view: number, last_view: number): Placement => ({
+  id,
+  track,
+  object: 0,
+  first_view,
+  last_view,
+  pose: translation([id, 0, 0]),
+});
+
+test("an annotation is shown as a run", () => {
+  const annotation: Annotation = {
+    revision: 3,
+    undo: "",
+    redo: "",
+    objects: [placement(0, 5, 0, 1), placement(1, 5, 2, 3), placement(2, 6, 1, 3)],
+    checked_views: [],
+    regions: [],
+    events: [{ view: 2, kind: "moved", track: 5, object: 0, name: "cup", before: null, after: null }],
+    unknown_events: [],
+    to_dos: [],
+  };
+  const run = toRun(annotation, [null, null, null, null]);
+  assert.deepEqual(
+    run.views.map((view) => view?.detections.length),
+    [1, 2, 2, 2],
+  );
+  assert.equal(run.events.length, 1);
+  assert.equal(placementAt(annotation, 5, 1)?.id, 0);
+  assert.equal(placementAt(annotation, 5, 3)?.id, 1);
+  assert.equal(placementAt(annotation, 6, 0)?.id, 2);
+  assert.equal(placementAt(annotation, 9, 0), null);
+});
+
+test("free space bounds the views in which an object is there", () => {
+  const residual = (view: number, is_gone: boolean): ViewResidual => ({
+    view,
+    num_visible: 100,
+    supported_share: is_gone ? 0 : 1,
+    median_mm: 1,
+    is_informative: true,
+    is_gone,
+    is_used: !is_gone,
+  });
+  const residuals = [true, false, false, true, false].map((isGone, view) => residual(view, isGone));
+  assert.deepEqual(presentInterval(residuals, 2, 5), [1, 2]);
+  assert.deepEqual(presentInterval(residuals, 4, 5), [4, 4]);
+  assert.deepEqual(presentInterval([], 2, 5), [0, 4]);
+});
