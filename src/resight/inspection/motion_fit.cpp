@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "resight/core/statistics.hpp"
@@ -15,43 +16,58 @@ constexpr double kStep = 1e-4;            // Of the numerical derivative.
 constexpr double kMinTranslation = 0.01;  // Share of the distance of the scene; shorter ones tell no scale.
 constexpr std::size_t kMinFitPairs = 4;
 
-using Vector = Eigen::VectorXd;
-using PairResiduals = std::function<Vector(std::size_t pair, const Vector& parameters)>;
+/// Up to three parameters; the residuals do not depend on those that are not used.
+using Parameters = Eigen::Vector3d;
+using PairResiduals = std::function<std::vector<Eigen::Vector3d>(std::size_t pair, const Parameters& parameters)>;
 
 struct ParameterFit {
-  Vector values;
-  Vector standard_errors;
+  Parameters values;
+  Parameters standard_errors;
 };
 
-/// Gauss-Newton steps over all pairs; weights are Cauchy's.
-ParameterFit fit_parameters(std::size_t num_pairs, Vector values, const PairResiduals& residuals) {
-  const Eigen::Index n = values.size();
-  std::vector<Eigen::MatrixXd> normals(num_pairs);
-  std::vector<Vector> rights(num_pairs);
-  Eigen::MatrixXd normal;
-  Vector right;
-  for (int step = 0; step < kFitSteps; ++step) {
-    normal = 1e-9 * Eigen::MatrixXd::Identity(n, n);
-    right = Vector::Zero(n);
-    for (std::size_t p = 0; p < num_pairs; ++p) {
-      const Vector r = residuals(p, values);
-      Eigen::MatrixXd jacobian(r.size(), n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        Vector moved = values;
-        moved[i] += kStep;
-        Vector before = values;
-        before[i] -= kStep;
-        jacobian.col(i) = (residuals(p, moved) - residuals(p, before)) / (2 * kStep);
-      }
-      Vector weights(r.size());
-      for (Eigen::Index i = 0; i < r.size(); i += 3)
-        weights.segment<3>(i).setConstant(1 / (1 + r.segment<3>(i).squaredNorm() / 9));
-      normals[p] = jacobian.transpose() * weights.asDiagonal() * jacobian;
-      rights[p] = -jacobian.transpose() * weights.asDiagonal() * r;
-      normal += normals[p];
-      right += rights[p];
+/// Normal equations of one pair.
+struct PairEquations {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+};
+
+/// With Cauchy's weights and numerical derivatives.
+PairEquations linearize_pair(std::size_t pair, const Parameters& values, const PairResiduals& residuals) {
+  const std::vector<Eigen::Vector3d> r = residuals(pair, values);
+  std::array<std::vector<Eigen::Vector3d>, 3> after, before;
+  for (int i = 0; i < 3; ++i) {
+    const Parameters step = kStep * Parameters::Unit(i);
+    after[static_cast<std::size_t>(i)] = residuals(pair, values + step);
+    before[static_cast<std::size_t>(i)] = residuals(pair, values - step);
+  }
+  PairEquations equations;
+  for (std::size_t m = 0; m < r.size(); ++m) {
+    Eigen::Matrix3d jacobian;
+    for (int i = 0; i < 3; ++i) {
+      const auto column = static_cast<std::size_t>(i);
+      jacobian.col(i) = (after[column][m] - before[column][m]) / (2 * kStep);
     }
-    Vector change = normal.ldlt().solve(right);
+    const double weight = 1 / (1 + r[m].squaredNorm() / 9);
+    equations.normal += weight * jacobian.transpose() * jacobian;
+    equations.right -= weight * jacobian.transpose() * r[m];
+  }
+  return equations;
+}
+
+/// Gauss-Newton steps over all pairs.
+ParameterFit fit_parameters(std::size_t num_pairs, Parameters values, const PairResiduals& residuals) {
+  std::vector<PairEquations> pairs(num_pairs);
+  Eigen::Matrix3d normal;
+  Eigen::Vector3d right;
+  for (int step = 0; step < kFitSteps; ++step) {
+    normal = 1e-9 * Eigen::Matrix3d::Identity();
+    right.setZero();
+    for (std::size_t p = 0; p < num_pairs; ++p) {
+      pairs[p] = linearize_pair(p, values, residuals);
+      normal += pairs[p].normal;
+      right += pairs[p].right;
+    }
+    Parameters change = normal.ldlt().solve(right);
     const double largest = change.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) break;
     if (largest > 0.3) change *= 0.3 / largest;
@@ -60,9 +76,11 @@ ParameterFit fit_parameters(std::size_t num_pairs, Vector values, const PairResi
   }
   // Jackknife: one more step from the solution without each pair.
   const auto num = static_cast<double>(num_pairs);
-  Vector sum_sq = Vector::Zero(n);
-  for (std::size_t p = 0; p < num_pairs; ++p)
-    sum_sq += Vector((normal - normals[p]).ldlt().solve(right - rights[p])).cwiseAbs2();
+  Eigen::Vector3d sum_sq = Eigen::Vector3d::Zero();
+  for (const PairEquations& pair : pairs) {
+    const Eigen::Vector3d change = (normal - pair.normal).ldlt().solve(right - pair.right);
+    sum_sq += change.cwiseAbs2();
+  }
   return {values, ((num - 1) / num * sum_sq).cwiseSqrt()};
 }
 
@@ -91,11 +109,11 @@ std::optional<double> find_rough_log_scale(std::span<const ViewPair> pairs, std:
 std::optional<IntrinsicsFit> fit_intrinsics(std::span<const ViewPair> pairs, const Camera& camera) {
   if (pairs.size() < kMinFitPairs) return std::nullopt;
   constexpr double kCenterUnit_px = 100;  // The parameters are of similar size.
-  const auto residuals = [&](std::size_t p, const Vector& v) {
+  const auto residuals = [&](std::size_t p, const Parameters& v) {
     const Camera changed = change_camera(camera, v[0], kCenterUnit_px * v[1], kCenterUnit_px * v[2]);
     return match_residuals(pairs[p].matches, changed, refine_motion(pairs[p].matches, changed, pairs[p].b_from_a));
   };
-  const ParameterFit fit = fit_parameters(pairs.size(), Vector::Zero(3), residuals);
+  const ParameterFit fit = fit_parameters(pairs.size(), Parameters::Zero(), residuals);
   return IntrinsicsFit{{fit.values[0], fit.standard_errors[0]},
                        {kCenterUnit_px * fit.values[1], kCenterUnit_px * fit.standard_errors[1]},
                        {kCenterUnit_px * fit.values[2], kCenterUnit_px * fit.standard_errors[2]}};
@@ -126,8 +144,8 @@ GivenPosesFit fit_pose_scale(std::span<const ViewPair> pairs, const Camera& came
     return b_from_a;
   };
   const ParameterFit fitted = fit_parameters(
-      reached.size(), Vector::Constant(1, *rough),
-      [&](std::size_t p, const Vector& v) { return match_residuals(reached[p].matches, camera, scaled(p, v[0])); });
+      reached.size(), Parameters(*rough, 0, 0),
+      [&](std::size_t p, const Parameters& v) { return match_residuals(reached[p].matches, camera, scaled(p, v[0])); });
   GivenPosesFit fit;
   fit.log_scale = {fitted.values[0], fitted.standard_errors[0]};
   for (std::size_t p = 0; p < reached.size(); ++p)

@@ -82,23 +82,24 @@ ViewPair match_view_pair(int a, const FeatureSet& features_a, int b, const Featu
   return pair;
 }
 
-Eigen::VectorXd match_residuals(std::span<const MatchedPoint> matches, const Camera& camera, const Rigid3& b_from_a) {
-  Eigen::VectorXd residuals(3 * std::ssize(matches));
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const MatchedPoint& m = matches[i];
+std::vector<Eigen::Vector3d> match_residuals(std::span<const MatchedPoint> matches, const Camera& camera,
+                                             const Rigid3& b_from_a) {
+  // No dynamic matrices: Ceres holds the same templates, compiled for other alignments.
+  std::vector<Eigen::Vector3d> residuals;
+  residuals.reserve(matches.size());
+  for (const MatchedPoint& m : matches) {
+    residuals.emplace_back(Eigen::Vector3d::Constant(kBehind));
     const Eigen::Vector3d in_b = b_from_a * camera.unproject(m.pixel_a.x(), m.pixel_a.y(), m.depth_a);
-    auto r = residuals.segment<3>(3 * static_cast<Eigen::Index>(i));
-    r.setConstant(kBehind);
     if (in_b.z() < 1e-3 * m.depth_b) continue;
-    r.head<2>() = (camera.project(in_b) - m.pixel_b) / kMatchSigma_px;
-    r[2] = (in_b.z() - m.depth_b) / (kMatchDepthSigma * m.depth_b);
+    const Eigen::Vector2d off_px = camera.project(in_b) - m.pixel_b;
+    residuals.back() << off_px / kMatchSigma_px, (in_b.z() - m.depth_b) / (kMatchDepthSigma * m.depth_b);
   }
   return residuals;
 }
 
 Rigid3 refine_motion(std::span<const MatchedPoint> matches, const Camera& camera, Rigid3 b_from_a) {
   for (int step = 0; step < kRefineSteps; ++step) {
-    const Eigen::VectorXd r = match_residuals(matches, camera, b_from_a);
+    const std::vector<Eigen::Vector3d> r = match_residuals(matches, camera, b_from_a);
     TwistMatrix normal = 1e-9 * TwistMatrix::Identity();
     Twist right = Twist::Zero();
     for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -113,7 +114,7 @@ Rigid3 refine_motion(std::span<const MatchedPoint> matches, const Camera& camera
       Eigen::Matrix3d turn;  // Of p, by a small rotation.
       turn << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
       jacobian << by_point * turn, by_point;
-      const Eigen::Vector3d at = r.segment<3>(3 * static_cast<Eigen::Index>(i));
+      const Eigen::Vector3d& at = r[i];
       const double weight = 1 / (1 + at.squaredNorm() / 9);
       normal += weight * jacobian.transpose() * jacobian;
       right -= weight * jacobian.transpose() * at;
@@ -127,10 +128,9 @@ Rigid3 refine_motion(std::span<const MatchedPoint> matches, const Camera& camera
 }
 
 double median_error_px(std::span<const MatchedPoint> matches, const Camera& camera, const Rigid3& b_from_a) {
-  const Eigen::VectorXd r = match_residuals(matches, camera, b_from_a);
   std::vector<double> errors_px;
-  for (Eigen::Index i = 0; i + 2 < r.size(); i += 3)
-    errors_px.push_back(std::min(1000.0, kMatchSigma_px * r.segment<2>(i).norm()));
+  for (const Eigen::Vector3d& r : match_residuals(matches, camera, b_from_a))
+    errors_px.push_back(std::min(1000.0, kMatchSigma_px * r.head<2>().norm()));
   return upper_median(std::move(errors_px));
 }
 

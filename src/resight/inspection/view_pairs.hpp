@@ -41,10 +41,10 @@ inline constexpr double kMatchDepthSigma = 0.02;
 [[nodiscard]] ViewPair match_view_pair(int a, const FeatureSet& features_a, int b, const FeatureSet& features_b,
                                        const Camera& camera);
 
-/// Normalised residuals of matches under a motion: x and y in kMatchSigma_px, then depth in kMatchDepthSigma; three per
-/// match. A point that the motion puts behind the camera gets 100 for each.
-[[nodiscard]] Eigen::VectorXd match_residuals(std::span<const MatchedPoint> matches, const Camera& camera,
-                                              const Rigid3& b_from_a);
+/// Normalised residuals of matches under a motion: x and y in kMatchSigma_px, then depth in kMatchDepthSigma. A point
+/// that the motion puts behind the camera gets 100 for each.
+[[nodiscard]] std::vector<Eigen::Vector3d> match_residuals(std::span<const MatchedPoint> matches, const Camera& camera,
+                                                           const Rigid3& b_from_a);
 
 /// Least squares with Cauchy's weights, from a motion nearby.
 [[nodiscard]] Rigid3 refine_motion(std::span<const MatchedPoint> matches, const Camera& camera, Rigid3 b_from_a);
