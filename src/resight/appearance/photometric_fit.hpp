@@ -22,8 +22,8 @@ struct PhotometricFit {
   Eigen::Array3f log_gain = Eigen::Array3f::Zero();
   Eigen::Array3f offset = Eigen::Array3f::Zero();
   Eigen::Vector3f shading = Eigen::Vector3f::Zero();
-  int num_pairs = 0;        ///< Number of colour pairs in the fit; 0 means the identity.
-  float dimmest_light = 0;  ///< Mean linear light of the model in its dimmest channel.
+  int num_pairs = 0;                                    ///< Number of colour pairs in the fit; 0 means the identity.
+  Eigen::Array3f model_light = Eigen::Array3f::Ones();  ///< Mean linear light of the model, per channel; positive.
 
   [[nodiscard]] Eigen::Vector3f operator()(const Eigen::Vector3f& linear, const Eigen::Vector3f& normal) const {
     return (linear.array() * (log_gain + shading.dot(normal)).exp() + offset).min(1.0F).matrix();
@@ -42,7 +42,8 @@ struct PhotometricLimits {
 
 inline void declare(OptionVisitor& v, PhotometricLimits& o) {
   v.field("max_log_exposure", o.max_log_exposure, at_least(0),
-          "Largest brightening: log of the mean gain of the channels. 0.9: 2.5 times brighter; 0: none.");
+          "Largest brightening: mean log gain of the channels, weighted by the model's light in them. 0.9: 2.5 times "
+          "brighter; 0: none.");
   v.field("max_log_darkening", o.max_log_darkening, at_least(0), "Largest darkening (log), for objects in shadow.");
   v.field("max_log_shading", o.max_log_shading, at_least(0),
           "Largest change of the log brightness with the surface normal (light from one side). 0: none.",
@@ -53,7 +54,8 @@ inline void declare(OptionVisitor& v, PhotometricLimits& o) {
 
 /// Largest log gain of a channel relative to the mean of all channels, for the whole scene: 2700 K lamps to daylight.
 inline constexpr double kMaxLogWhiteBalance = 0.6;
-/// Largest log gain of a channel of one object relative to the white balance of the scene: more is another colour.
+/// Largest log gain of a channel of one object relative to its exposure under the white balance of the scene: more is
+/// another colour.
 inline constexpr double kMaxLogChroma = 0.15;
 
 /// Fits a photometric model by robust, iteratively reweighted least squares to pairs of a model colour and the scene

@@ -69,9 +69,44 @@ TEST(LimitChroma, AGreenCanIsNoGreyOne) {
   EXPECT_GT(seen.y(), 1.5F * seen.x());
 }
 
+// A camera that saturates colours shows no blue on a yellow object. That makes it no darker.
+TEST(LimitChroma, ADimChannelDoesNotSetTheExposure) {
+  const std::vector<Eigen::Vector3f> yellow(100, {0.6F, 0.45F, 0.03F});
+  const std::vector<Eigen::Vector3f> saturated(100, {0.6F, 0.45F, 0.001F});
+  const PhotometricFit fit = limit_chromaticity(fit_photometry(yellow, saturated, {}, {}), Eigen::Array3f::Zero());
+  const Eigen::Vector3f seen = fit(yellow[0], Eigen::Vector3f::Zero());
+  EXPECT_NEAR(seen.x(), 0.6F, 0.06F);
+  EXPECT_NEAR(seen.y(), 0.45F, 0.05F);
+  EXPECT_LT(seen.z(), 0.031F);
+}
+
+TEST(LimitChroma, APlainColorInTheSameLightStaysTheSame) {
+  std::vector<Eigen::Vector3f> yellow;
+  for (int i = 0; i < 100; ++i) yellow.emplace_back(0.46F + 1e-6F * static_cast<float>(i % 3), 0.4F, 0.045F);
+  const PhotometricFit fit = limit_chromaticity(fit_photometry(yellow, yellow, {}, {}), Eigen::Array3f::Zero());
+  EXPECT_TRUE(fit(yellow[0], Eigen::Vector3f::Zero()).isApprox(yellow[0], 1e-3F));
+}
+
+// Red, orange and white print, of which the camera's contrast curve brightens the orange and darkens the white: the
+// line through them must not turn red into pink.
+TEST(FitPhotometry, DarkPairsOfAChannelCountMost) {
+  std::vector<Eigen::Vector3f> model;
+  std::vector<Eigen::Vector3f> scene;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector2f green = i % 10 < 4   ? Eigen::Vector2f(0.005F, 0.005F)
+                                  : i % 10 < 7 ? Eigen::Vector2f(0.1F, 0.16F)
+                                               : Eigen::Vector2f(0.4F, 0.3F);
+    model.emplace_back(0.4F, green.x(), green.x());
+    scene.emplace_back(0.4F, green.y(), green.y());
+  }
+  EXPECT_LT(fit_photometry(model, scene, {}, {})(model[0], Eigen::Vector3f::Zero()).y(), 0.022F);
+}
+
 TEST(FindWhiteBalance, IsTheMedianAndNotLedByAWrongFit) {
-  const PhotometricFit blue{{-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
-  const PhotometricFit wrong{{0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, 1.0F};
+  const PhotometricFit blue{
+      {-0.3F, 0.0F, 0.3F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, Eigen::Array3f::Ones()};
+  const PhotometricFit wrong{
+      {0.9F, 0.0F, -0.9F}, Eigen::Array3f::Zero(), Eigen::Vector3f::Zero(), 100, Eigen::Array3f::Ones()};
   const PhotometricFit none;
   const std::vector<PhotometricFit> fits{blue, wrong, none, blue, wrong, wrong};
   const std::vector<float> votes{900, 300, 1e6F, 900, 300, 300};
@@ -91,7 +126,7 @@ TEST(FindWhiteBalance, AYellowObjectDoesNotTellHowBlueTheLightIs) {
   const std::vector<PhotometricFit> fits{fit_photometry(yellow, darker, {}, limits),
                                          fit_photometry(white, white, {}, limits)};
   EXPECT_GT(fits[0].chroma().abs().maxCoeff(), 0.3F);
-  EXPECT_FLOAT_EQ(fits[1].dimmest_light, 0.4F);
+  EXPECT_NEAR(fits[1].model_light.minCoeff(), 0.4F, 2e-3F);
   const std::vector<float> votes{9000, 900};
   EXPECT_LT(find_white_balance(fits, votes).abs().maxCoeff(), 0.01F);
 }
