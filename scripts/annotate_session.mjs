@@ -28,7 +28,7 @@ const kMaxTurn_deg = 20;
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 /** The true placements: an object at one place, from view to view. */
-async function readTruth() {
+async function readTruth(scene) {
   const [cameras, truth] = [await json("scene_camera.json"), await json("scene_gt.json")];
   const info = await json("scene_gt_info.json");
   const views = Object.keys(truth).map(Number).sort((a, b) => a - b);
@@ -37,9 +37,11 @@ async function readTruth() {
     const camera = cameras[id];
     const world = inverse(toPose(camera.cam_R_w2c, camera.cam_t_w2c));
     truth[id].forEach((entry, index) => {
+      const name = entry.name ?? scene.objects.find((object) => object.obj_id === entry.obj_id)?.name;
+      if (!scene.objects.some((object) => object.name === name)) return; // it has no model
       const pose = multiply(world, toPose(entry.cam_R_m2c, entry.cam_t_m2c));
-      const known = placements.find((p) => p.name === entry.name && p.last === view - 1 && distance(p.pose.slice(12, 15), pose.slice(12, 15)) < 1e-4);
-      const placement = known ?? { name: entry.name, first: view, pose, seen: [] };
+      const known = placements.find((p) => p.name === name && p.last === view - 1 && distance(p.pose.slice(12, 15), pose.slice(12, 15)) < 1e-4);
+      const placement = known ?? { name, first: view, pose, seen: [] };
       placement.last = view;
       placement.seen.push({ view, share: info[id][index].visib_fract, k: camera.cam_K, cameraFromObject: toPose(entry.cam_R_m2c, entry.cam_t_m2c) });
       if (!known) placements.push(placement);
@@ -66,8 +68,8 @@ const ask = async (path, body) => {
   return response.json();
 };
 
-const { placements: truth, numViews } = await readTruth();
 const scene = await ask("scene");
+const { placements: truth, numViews } = await readTruth(scene);
 let state = await ask("annotation");
 let clicks = 0;
 const numOf = (name) => scene.objects.findIndex((object) => object.name === name);

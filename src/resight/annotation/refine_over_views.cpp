@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "resight/annotation/internal/sampled_surface.hpp"
@@ -189,12 +188,14 @@ RefinedPlacement refine_over_views(const ObjectModel& model, double surface_voxe
           "refine_over_views: a view is null");
   const SampledSurface surface = sample_surface_evenly(model, surface_voxel_m, options.max_points);
   FittedPose best{world_from_object, 0};
-  int best_support = std::numeric_limits<int>::min();
+  // A fit that makes it clearly worse does not count.
+  int best_support = static_cast<int>(0.95 * count_support(surface, world_from_object, views));
   for (const double share : {1.0, kNarrowGate}) {
     if (share < 1 && !options.fit_twice) continue;
     const FittedPose fitted = fit_pose(surface, world_from_object, views,
                                        std::max(options.min_distance_m, share * options.max_distance_m), options);
     const int support = count_support(surface, fitted.world_from_object, views);
+    best.num_pairs = std::max(best.num_pairs, fitted.num_pairs);
     if (support <= best_support) continue;
     best_support = support;
     best = fitted;

@@ -48,8 +48,8 @@ struct RefinedPlacement {
 /// Moves an object so that its surface lies on the measured surface of all views together: projective point-to-plane
 /// ICP with the normals of the model, Tukey's weights, and the noise of the sensor as unit. The camera poses are
 /// trusted. Views that see through the object take no part: it is not there. Directions that no view determines stay as
-/// they are. Of two fits, the one that the views support better counts. Deterministic. Throws std::invalid_argument if
-/// a view is null or the model has no normals.
+/// they are. Of two fits and the given pose, the one that the views support best counts. Deterministic. Throws
+/// std::invalid_argument if a view is null or the model has no normals.
 [[nodiscard]] RefinedPlacement refine_over_views(const ObjectModel& model, double surface_voxel_m,
                                                  const Rigid3& world_from_object, std::span<const NumberedView> views,
                                                  const RefineOverViewsOptions& options = {});
