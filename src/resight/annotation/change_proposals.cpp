@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMaxKeptPoints = 400;
 
-ChangeProposal make_proposal(int view, ChangeRegion region) {
+ChangeProposal make_proposal(int view, const ChangeRegion& region) {
   ChangeProposal proposal{.view = view,
                           .kind = region.kind,
                           .points_in_world = {},
@@ -30,9 +30,9 @@ Result<std::vector<ChangeProposal>> propose_changes(const Sequence& sequence, co
     auto frame = sequence.read_view(v);
     if (!frame) return frame.error();
     const ChangeResult changes = scene.add_view(prepare_view(*std::move(frame), options.prepare));
-    for (ChangeRegion& region : find_change_regions(scene.window().back().raw, changes, options.changes.voxel_m))
+    for (const ChangeRegion& region : find_change_regions(scene.window().back().raw, changes, options.changes.voxel_m))
       if (static_cast<int>(region.surface_in_world.size()) >= min_points)
-        proposals.push_back(make_proposal(v, std::move(region)));
+        proposals.push_back(make_proposal(v, region));
     if (on_view) on_view(v);
   }
   return proposals;

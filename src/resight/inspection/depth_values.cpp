@@ -83,7 +83,7 @@ DepthValues measure_depth_values(const Image<float>& depth_m) {
   values.near_m = at_share(kLeastNearShare);
   values.median_m = at_share(0.5);
   values.far_m = at_share(1 - kLeastNearShare);
-  depths.erase(std::ranges::unique(depths).begin(), depths.end());
+  depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
   values.num_levels = static_cast<int>(depths.size());
   values.step_m = step_of_levels(depths, values.near_m, values.far_m);
   values.has_eight_bits = are_eight_bits(depths);

@@ -40,7 +40,7 @@ std::vector<int> views_of(const std::vector<std::pair<int, int>>& pairs) {
     views.push_back(b);
   }
   std::ranges::sort(views);
-  views.erase(std::ranges::unique(views).begin(), views.end());
+  views.erase(std::unique(views.begin(), views.end()), views.end());
   return views;
 }
 
