@@ -31,8 +31,7 @@ Result<std::vector<ChangeProposal>> propose_changes(const Sequence& sequence, co
     if (!frame) return frame.error();
     const ChangeResult changes = scene.add_view(prepare_view(*std::move(frame), options.prepare));
     for (const ChangeRegion& region : find_change_regions(scene.window().back().raw, changes, options.changes.voxel_m))
-      if (static_cast<int>(region.surface_in_world.size()) >= min_points)
-        proposals.push_back(make_proposal(v, region));
+      if (static_cast<int>(region.surface_in_world.size()) >= min_points) proposals.push_back(make_proposal(v, region));
     if (on_view) on_view(v);
   }
   return proposals;

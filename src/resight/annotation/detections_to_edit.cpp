@@ -110,7 +110,8 @@ Result<AnnotationEdit> detections_to_edit(const RecognitionResults& results, con
   AnnotationEdit edit{.title = "Start from detections", .changes = {}};
   int next_track = 0;
   for (const auto& [track, detections] : *tracks) {
-    const bool is_confirmed = std::ranges::any_of(results.events, [id = track](const auto& e) { return e.track == id; });
+    const bool is_confirmed =
+        std::ranges::any_of(results.events, [id = track](const auto& e) { return e.track == id; });
     if (!is_confirmed) continue;
     auto placements = find_placements(detections, next_track++, library);
     extend_track(results.events, *views, track, sequence.num_views(), placements);
