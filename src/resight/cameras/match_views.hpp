@@ -2,8 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "resight/features/descriptor_index.hpp"
-#include "resight/features/feature_set.hpp"
+#include "resight/features/view_features.hpp"
 #include "resight/registration/pose_estimation.hpp"
 
 namespace resight {
@@ -12,18 +11,6 @@ struct MatchViewsOptions {
   double max_ratio = 0.85;  ///< Of the distances to the best and the second best descriptor (Lowe 2004).
   EstimatePoseOptions pose{.inlier_distance_m = 0.03, .max_normal_angle_rad = 0.8, .min_inliers = 6};
   void check() const;
-};
-
-/// Features of one view with their index, for matching against other views. Camera frame, metres.
-class ViewFeatures {
- public:
-  explicit ViewFeatures(FeatureSet features_in_camera);
-  [[nodiscard]] const FeatureSet& features() const { return features_; }
-  [[nodiscard]] const DescriptorIndex& index() const { return index_; }
-
- private:
-  FeatureSet features_;
-  DescriptorIndex index_;
 };
 
 /// Relative pose of two cameras and the matches that support it.

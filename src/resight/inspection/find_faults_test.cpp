@@ -72,6 +72,21 @@ TEST(FindFaults, ACameraThatStandsIsAFactAndNoFault) {
   EXPECT_NE(list_facts(measured).front().find("does not move"), std::string::npos);
 }
 
+TEST(EvaluatePoses, PosesThatReachNoPairExplainNothing) {
+  const auto measured = measure_sequence(good_sequence(), {.max_views = 24, .num_threads = 1}).value();
+  const auto nowhere = [](const ViewPair&) { return std::optional<Rigid3>(); };
+  EXPECT_TRUE(std::isinf(evaluate_poses(measured.pairs, measured.camera, nowhere).error_px));
+}
+
+// Shifted by four views, the poses of a short sequence reach few of its pairs. Those tell nothing of their time.
+TEST(MeasurePoses, ShiftsMustReachHalfOfThePairs) {
+  const auto measured = measure_sequence(good_sequence(), {.max_views = 24, .num_threads = 1}).value();
+  ASSERT_TRUE(measured.poses);
+  EXPECT_FALSE(measured.poses->shifted.empty());
+  for (const TriedReading& shifted : measured.poses->shifted)
+    EXPECT_GE(2 * shifted.fit.pair_errors_px.size(), measured.pairs.size()) << shifted.reading.views_late;
+}
+
 class BreakageTest : public ::testing::TestWithParam<test::Breakage> {};
 
 TEST_P(BreakageTest, IsFound) {

@@ -92,7 +92,7 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   }
   all.depth_unit_m = upper_median(std::move(medians_m));
   if (!is_usable(all)) return all;
-  std::map<int, FeatureSet> features;
+  std::map<int, ViewFeatures> features;
   for (auto& [v, frame] : frames)
     if (frame.camera == all.camera)
       features.emplace(v, extract_view_features(std::move(frame), all.depth_unit_m, options.num_threads));

@@ -41,7 +41,7 @@ struct TriedReading {
 struct PoseMeasurements {
   GivenPosesFit given;                 ///< As they are.
   std::vector<TriedReading> readings;  ///< All conventions with their best scale; the first one is as given.
-  std::vector<TriedReading> shifted;   ///< In steps of a quarter of a view; scale as given.
+  std::vector<TriedReading> shifted;   ///< In steps of a quarter of a view, as far as they reach half of the pairs.
   bool all_equal = false;              ///< The poses say that the camera does not move.
   double farthest_m = 0;               ///< From the origin of the world.
   double extent_m = 0;

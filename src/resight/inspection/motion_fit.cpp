@@ -124,7 +124,7 @@ GivenPosesFit evaluate_poses(std::span<const ViewPair> pairs, const Camera& came
   for (const ViewPair& pair : pairs)
     if (const std::optional<Rigid3> given = motion(pair))
       fit.pair_errors_px.push_back(median_error_px(pair.matches, camera, *given));
-  fit.error_px = upper_median(fit.pair_errors_px);
+  if (!fit.pair_errors_px.empty()) fit.error_px = upper_median(fit.pair_errors_px);
   return fit;
 }
 

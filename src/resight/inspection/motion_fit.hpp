@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,8 +28,9 @@ struct IntrinsicsFit {
 
 /// The poses of a sequence under one reading of them, and how well it explains what the views show.
 struct GivenPosesFit {
-  double error_px = 0;  ///< Median over the pairs of the median distance of their matches.
-  Estimate log_scale;   ///< Natural logarithm of depth over poses: translations must be multiplied by the scale.
+  /// Median over the pairs of the median distance of their matches; infinite if the poses reach no pair.
+  double error_px = std::numeric_limits<double>::infinity();
+  Estimate log_scale;  ///< Natural logarithm of depth over poses: translations must be multiplied by the scale.
   std::vector<double> pair_errors_px;
 };
 /// Relative motion b_from_a of a pair as poses give it; none if they do not reach there.

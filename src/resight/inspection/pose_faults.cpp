@@ -61,8 +61,8 @@ bool add_convention(const PoseContext& c) {
   const std::string name = best.reading.inverted ? "world to camera" : "camera to world";
   const std::string option = best.reading.opengl ? "opengl" : "world-to-camera";
   c.add("pose_convention",
-        fmt::format("the poses are {}{}: views disagree by {:.0f} px, and by {:.1f} px so", name,
-                    best.reading.opengl ? ", y up" : "", given.fit.error_px, best.fit.error_px),
+        fmt::format("views disagree by {:.0f} px as given, and by {:.1f} px if the poses are read as {}{}",
+                    given.fit.error_px, best.fit.error_px, name, best.reading.opengl ? " with y up" : ""),
         best.reading.opengl && best.reading.inverted ? "invert the poses, then --pose-convention opengl"
                                                      : "--pose-convention " + option + " (if it was given: without it)",
         gain, "", kMinGain, gain / kMinGain);
@@ -76,9 +76,9 @@ bool add_time(const PoseContext& c) {
   if (std::abs(best.reading.views_late) < 0.5 || gain < kMinTimeGain || c.poses.given.error_px < kMaxPoseError_px)
     return false;
   c.add("pose_time",
-        fmt::format("the poses are those of {:.2g} views later: views disagree by {:.0f} px, and by "
-                    "{:.1f} px so",
-                    -best.reading.views_late, c.poses.given.error_px, best.fit.error_px),
+        fmt::format("views disagree by {:.0f} px as given, and by {:.1f} px with the poses of {:.2g} views {}",
+                    c.poses.given.error_px, best.fit.error_px, std::abs(best.reading.views_late),
+                    best.reading.views_late > 0 ? "later" : "before"),
         "shift the times in the file of poses", best.reading.views_late, "views", 0.5, gain / kMinTimeGain);
   return true;
 }

@@ -64,7 +64,9 @@ Result<PoseMeasurements> measure_poses(const Sequence& sequence, const SequenceM
   constexpr int kMaxQuarters = 16;
   for (int quarters = -kMaxQuarters; quarters <= kMaxQuarters; ++quarters) {
     const PoseReading reading{.inverted = false, .opengl = false, .views_late = 0.25 * quarters};
-    result.shifted.push_back({reading, evaluate_poses(measured.pairs, measured.camera, motion(reading))});
+    GivenPosesFit fit = evaluate_poses(measured.pairs, measured.camera, motion(reading));
+    // Fewer pairs may agree by chance.
+    if (2 * fit.pair_errors_px.size() >= measured.pairs.size()) result.shifted.push_back({reading, std::move(fit)});
   }
   return result;
 }

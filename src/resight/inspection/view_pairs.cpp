@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "resight/core/statistics.hpp"
-#include "resight/features/descriptor_index.hpp"
 #include "resight/features/sift.hpp"
 #include "resight/registration/pose_estimation.hpp"
 #include "resight/registration/twist.hpp"
@@ -21,61 +20,42 @@ constexpr int kMinInliers = 15;
 constexpr int kRefineSteps = 6;
 constexpr double kBehind = 100;
 
-/// For each query its nearest feature, if it is clearly nearer than the second nearest; otherwise -1.
-std::vector<int> find_distinct_features(const FeatureSet& queries, const FeatureSet& among) {
-  const DescriptorIndex index(among.descriptors, among.dimension, {.exact_below = 1 << 20});
-  const std::vector<DescriptorMatch> matches = index.search(queries.descriptors, 2);
-  std::vector<int> nearest(queries.size(), -1);
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    const DescriptorMatch& best = matches[2 * i];
-    const DescriptorMatch& next = matches[2 * i + 1];
-    if (next.index >= 0 && best.distance_sq < kMaxRatio * kMaxRatio * next.distance_sq) nearest[i] = best.index;
-  }
-  return nearest;
-}
-
-std::vector<Correspondence> find_mutual(const FeatureSet& a, const FeatureSet& b) {
-  std::vector<Correspondence> mutual;
-  const std::vector<int> b_of_a = find_distinct_features(a, b);
-  const std::vector<int> a_of_b = find_distinct_features(b, a);
-  for (std::size_t i = 0; i < b_of_a.size(); ++i) {
-    if (b_of_a[i] < 0) continue;
-    const auto j = static_cast<std::size_t>(b_of_a[i]);
-    if (a_of_b[j] != static_cast<int>(i)) continue;
-    mutual.push_back({.model_point = a.points[i],
-                      .model_normal = a.normals[i],
-                      .scene_point = b.points[j],
-                      .scene_normal = b.normals[j]});
-  }
-  return mutual;
-}
-
 }  // namespace
 
-FeatureSet extract_view_features(RgbdFrame frame, double depth_unit_m, int num_threads) {
+ViewFeatures extract_view_features(RgbdFrame frame, double depth_unit_m, int num_threads) {
   for (float& z_m : frame.depth_m.data()) z_m = static_cast<float>(z_m / depth_unit_m);
   PrepareViewOptions options;
   options.min_depth_m.reset();
   options.num_threads = num_threads;
-  return extract_sift(prepare_view(std::move(frame), options), {.root_sift = true});
+  return ViewFeatures(extract_sift(prepare_view(std::move(frame), options), {.root_sift = true}));
 }
 
-ViewPair match_view_pair(int a, const FeatureSet& features_a, int b, const FeatureSet& features_b,
+ViewPair match_view_pair(int a, const ViewFeatures& features_a, int b, const ViewFeatures& features_b,
                          const Camera& camera) {
   ViewPair pair;
   pair.a = a;
   pair.b = b;
-  if (features_a.size() < kMinInliers || features_b.size() < kMinInliers) return pair;
-  const std::vector<Correspondence> mutual = find_mutual(features_a, features_b);
+  const FeatureSet& in_a = features_a.features();
+  const FeatureSet& in_b = features_b.features();
+  if (in_a.size() < kMinInliers || in_b.size() < kMinInliers) return pair;
+  std::vector<Correspondence> mutual;
+  for (const FeaturePair& match : find_mutual_matches(features_a, features_b, kMaxRatio)) {
+    const auto of_a = static_cast<std::size_t>(match.a);
+    const auto of_b = static_cast<std::size_t>(match.b);
+    mutual.push_back({.model_point = in_a.points[of_a],
+                      .model_normal = in_a.normals[of_a],
+                      .scene_point = in_b.points[of_b],
+                      .scene_normal = in_b.normals[of_b]});
+  }
   // Loose: wrong intrinsics bend the scene by some percent.
   const auto pose =
       estimate_pose(mutual, {.inlier_distance_m = 0.04, .max_normal_angle_rad = 1.2, .min_inliers = kMinInliers});
   if (!pose) return pair;
   for (const int i : pose->inliers) {
     const Correspondence& c = mutual[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d in_a = c.model_point.cast<double>();
-    const Eigen::Vector3d in_b = c.scene_point.cast<double>();
-    pair.matches.push_back({camera.project(in_a), camera.project(in_b), in_a.z(), in_b.z()});
+    const Eigen::Vector3d p_in_a = c.model_point.cast<double>();
+    const Eigen::Vector3d p_in_b = c.scene_point.cast<double>();
+    pair.matches.push_back({camera.project(p_in_a), camera.project(p_in_b), p_in_a.z(), p_in_b.z()});
   }
   pair.b_from_a = refine_motion(pair.matches, camera, pose->scene_from_model);
   pair.error_px = median_error_px(pair.matches, camera, pair.b_from_a);

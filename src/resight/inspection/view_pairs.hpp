@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/features/feature_set.hpp"
+#include "resight/features/view_features.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
@@ -28,17 +28,17 @@ struct ViewPair {
   double error_px = 0;                ///< Median distance of the matches in the image of b.
 };
 
-/// Residuals of matches count in these units: SIFT is accurate to about a pixel beside a depth of half a pixel's
-/// error, and no depth camera has errors above 2 % within its range.
+/// Units of the residuals of matches. A SIFT keypoint and the depth beside it are off by about a pixel together; no
+/// depth camera errs by more than 2 % within its range.
 inline constexpr double kMatchSigma_px = 1.5;
 inline constexpr double kMatchDepthSigma = 0.02;
 
 /// Features of a view whose depth was divided by `depth_unit_m`. The camera's depth unit does not matter.
-[[nodiscard]] FeatureSet extract_view_features(RgbdFrame frame, double depth_unit_m, int num_threads);
+[[nodiscard]] ViewFeatures extract_view_features(RgbdFrame frame, double depth_unit_m, int num_threads);
 
 /// Finds the motion between two views from mutual matches (Lowe's ratio test) by RANSAC and least squares. A pair
 /// without matches, if fewer than 15 agree.
-[[nodiscard]] ViewPair match_view_pair(int a, const FeatureSet& features_a, int b, const FeatureSet& features_b,
+[[nodiscard]] ViewPair match_view_pair(int a, const ViewFeatures& features_a, int b, const ViewFeatures& features_b,
                                        const Camera& camera);
 
 /// Normalised residuals of matches under a motion: x and y in kMatchSigma_px, then depth in kMatchDepthSigma. A point
