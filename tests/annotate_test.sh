@@ -11,24 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 web=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../web")
 cd "$work" || exit 1
 
-{
-  write_scene 5 -110 -70 true
-  cat <<'CHANGES'
-[[change]]
-view = 2
-kind = "move"
-object = "cereal_blue"
-on = "table"
-x_m = -0.05
-y_m = 0.12
-yaw_deg = 10
-[[change]]
-view = 3
-kind = "remove"
-object = "tea_box"
-CHANGES
-} >scene.toml
-run() { "$resight" "$@" >log 2>&1 || { fail "$1 failed: $(tail -1 log)"; exit 1; }; }
+write_changing_scene >scene.toml
 run simulate scene.toml --out data --format bop --seed 1
 run train data/models --out models.resight
 sequence=$work/data/test/000001

@@ -41,3 +41,25 @@ on = "table"
 x_m = 0.15
 SCENE
 }
+
+write_changing_scene() { # five views: the cereals move in the third, the tea is gone in the fourth
+  write_scene 5 -110 -70 true
+  cat <<'CHANGES'
+[[change]]
+view = 2
+kind = "move"
+object = "cereal_blue"
+on = "table"
+x_m = -0.05
+y_m = 0.12
+yaw_deg = 10
+[[change]]
+view = 3
+kind = "remove"
+object = "tea_box"
+CHANGES
+}
+
+run() { # run COMMAND ARGUMENTS...: ends the test if the command of $resight fails
+  "$resight" "$@" >log 2>&1 || { fail "$1 failed: $(tail -1 log)"; exit 1; }
+}

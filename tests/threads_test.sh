@@ -7,7 +7,7 @@ resight=$(realpath "$1")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 cd "$work" || exit 1
 
-run() { # run COMMAND ARGUMENT...
+run_threaded() { # run_threaded COMMAND ARGUMENT...
   "$resight" "$@" --threads 2 >log 2>&1 || fail "resight $1 failed: $(tail -n 40 log)"
 }
 
@@ -20,15 +20,15 @@ kind = "remove"
 object = "tea_box"
 CHANGE
 } >scene.toml
-run simulate scene.toml --out data --format bop
-run train data/models --out models.resight
+run_threaded simulate scene.toml --out data --format bop
+run_threaded train data/models --out models.resight
 for preset in mvr-chd default; do
-  run recognize --models models.resight --sequence data/test/000001 --preset $preset --out $preset
+  run_threaded recognize --models models.resight --sequence data/test/000001 --preset $preset --out $preset
   grep -q cereal_blue $preset/detections.json || fail "$preset did not recognise the cereal box"
 done
-run changes --sequence data/test/000001 --out changes
-run evaluate --models models.resight --dataset data --presets default -k 1 --out results
-run track --sequence data/test/000001 --models models.resight --out poses.txt
+run_threaded changes --sequence data/test/000001 --out changes
+run_threaded evaluate --models models.resight --dataset data --presets default -k 1 --out results
+run_threaded track --sequence data/test/000001 --models models.resight --out poses.txt
 
 ((failures == 0)) && echo "threads: all as expected"
 exit $((failures > 0))

@@ -9,6 +9,7 @@
 #include "recognition_run.hpp"
 #include "resight/annotation/change_proposals.hpp"
 #include "resight/annotation/detections_to_edit.hpp"
+#include "resight/annotation/export_annotation.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/io/recognition_results.hpp"
@@ -68,6 +69,8 @@ void add_detections(const fs::path& detections, const Sequence& sequence, const 
 
 void run_annotate(const AnnotateArguments& arguments) {
   check_output_folder(arguments.out, {arguments.sequence});
+  const fs::path export_folder = arguments.out / "export";
+  value_or_throw(check_export_folder(export_folder));  // Before the work, not after it.
   const std::shared_ptr<const Sequence> sequence = open_posed_input(arguments.sequence, arguments.input);
   const auto library = std::make_shared<const ModelLibrary>(value_or_throw(load_library(arguments.models)));
   const std::string name = folder_name(value_or_throw(find_sequence_folder(arguments.sequence)));
@@ -76,7 +79,7 @@ void run_annotate(const AnnotateArguments& arguments) {
                       .regions = find_regions(*sequence, arguments),
                       .project = nullptr,
                       .scene_name = name,
-                      .export_folder = arguments.out / "export"};
+                      .export_folder = export_folder};
   const AnnotationLimits limits{.num_views = sequence->num_views(),
                                 .num_objects = static_cast<int>(library->objects.size()),
                                 .num_regions = static_cast<int>(task.regions.size())};
@@ -95,7 +98,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open}, &service);
   session.server().run_until_interrupted();
   value_or_throw(service.save());
-  print("{}\n", (arguments.out / "export").string());
+  print("{}\n", export_folder.string());
 }
 
 }  // namespace resight::app

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "resight/annotation/internal/annotation_json.hpp"
+#include "resight/annotation/annotation_json.hpp"
 
 namespace resight {
 

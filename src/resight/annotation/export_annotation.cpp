@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "resight/annotation/internal/truth_files.hpp"
 #include "resight/core/files.hpp"
@@ -29,13 +30,14 @@ std::vector<AnnotatedObject> objects_in_view(const AnnotationDocument& document,
 /// Writes the files of one export, view by view.
 class TruthWriter {
  public:
-  TruthWriter(const ModelLibrary& library, fs::path bop, fs::path tuw)
-      : library_(library), masks_of_(library), bop_(std::move(bop)), tuw_(std::move(tuw)) {}
+  /// `masks`: a folder for the masks, which are moved into the sequence when it is finished.
+  TruthWriter(const ModelLibrary& library, fs::path masks, fs::path tuw)
+      : library_(library), renderer_(library), mask_folder_(std::move(masks)), tuw_(std::move(tuw)) {}
 
   Result<void> add_view(const AnnotationDocument& document, const RgbdFrame& frame, const std::string& name,
                         SequenceWriter& writer) {
     const int view = static_cast<int>(masks_.size());
-    masks_.push_back(masks_of_.render(objects_in_view(document, view), frame));
+    masks_.push_back(renderer_.render(objects_in_view(document, view), frame));
     std::vector<GroundTruthObject> truth;
     std::map<std::string, int> counts;
     for (const ObjectMask& mask : masks_.back()) {
@@ -46,22 +48,13 @@ class TruthWriter {
     }
     num_objects_ += static_cast<int>(truth.size());
     if (const auto done = writer.write_view(frame, truth); !done) return done;
+    if (const auto done = write_masks(writer.view_names().back()); !done) return done;
     if (const auto done = write_tuw_annotation(tuw_, name, truth); !done) return done;
     return write_file(tuw_ / (name + ".anno"), annotation::format_anno(truth));
   }
 
-  /// To be called when the sequence is in its folder.
-  Result<void> write_masks(const std::vector<std::string>& names) {
-    for (std::size_t v = 0; v < masks_.size(); ++v) {
-      for (std::size_t i = 0; i < masks_[v].size(); ++i) {
-        const std::string file = fmt::format("{}_{:06}.png", names[v], i);
-        if (const auto done = write_mask(bop_ / "mask" / file, masks_[v][i].whole); !done) return done;
-        if (const auto done = write_mask(bop_ / "mask_visib" / file, masks_[v][i].visible); !done) return done;
-      }
-    }
-    return write_file(bop_ / "scene_gt_info.json", annotation::format_mask_info(masks_, names));
-  }
-
+  /// The masks per view, whose images are in the folder.
+  [[nodiscard]] const std::vector<std::vector<ObjectMask>>& masks() const { return masks_; }
   [[nodiscard]] std::vector<ChangeChain> chains() const {
     std::vector<ChangeChain> chains;
     for (const auto& [id, chain] : chains_) chains.push_back(chain);
@@ -70,29 +63,57 @@ class TruthWriter {
   [[nodiscard]] int num_objects() const { return num_objects_; }
 
  private:
+  /// Of the last view. Their images are dropped: those of a long sequence would fill the memory.
+  Result<void> write_masks(const std::string& view_name) {
+    for (std::size_t i = 0; i < masks_.back().size(); ++i) {
+      ObjectMask& mask = masks_.back()[i];
+      const std::string file = fmt::format("{}_{:06}.png", view_name, i);
+      if (const auto done = write_mask(mask_folder_ / "mask" / file, std::exchange(mask.whole, {})); !done) return done;
+      if (const auto done = write_mask(mask_folder_ / "mask_visib" / file, std::exchange(mask.visible, {})); !done)
+        return done;
+    }
+    return {};
+  }
   void add_to_chain(int placement, ChangeChainEntry entry) { chains_[placement].entries.push_back(std::move(entry)); }
 
   const ModelLibrary& library_;
-  ObjectMaskRenderer masks_of_;
-  fs::path bop_;
+  ObjectMaskRenderer renderer_;
+  fs::path mask_folder_;
   fs::path tuw_;
   std::vector<std::vector<ObjectMask>> masks_;
   std::map<int, ChangeChain> chains_;
   int num_objects_ = 0;
 };
 
+Result<void> move_masks(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  for (const char* name : {"mask", "mask_visib"}) {
+    if (!fs::exists(from / name)) continue;  // No object is in any view.
+    fs::rename(from / name, to / name, error);
+    if (error) return file_error(to / name, "cannot be written (" + error.message() + ")");
+  }
+  fs::remove(from, error);
+  return {};
+}
+
 /// Removes an earlier export.
 Result<void> clear_export(const fs::path& folder) {
+  if (auto done = check_export_folder(folder); !done) return done;
   std::error_code error;
-  if (!fs::exists(fs::symlink_status(folder, error))) return {};
-  if (!fs::is_directory(fs::symlink_status(folder, error)) || !fs::exists(folder / kMark, error))
-    return file_error(folder, "is no earlier export, so it is not replaced");
   fs::remove_all(folder, error);
   if (error) return file_error(folder, "cannot be replaced (" + error.message() + ")");
   return {};
 }
 
 }  // namespace
+
+Result<void> check_export_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(folder, error))) return {};
+  if (!fs::is_directory(fs::symlink_status(folder, error)) || !fs::exists(folder / kMark, error))
+    return file_error(folder, "is no earlier export, so it is not replaced");
+  return {};
+}
 
 Result<ExportSummary> export_annotation(const AnnotationDocument& document, const ModelLibrary& library,
                                         ViewStore& views, const std::string& scene, const fs::path& folder) {
@@ -102,7 +123,8 @@ Result<ExportSummary> export_annotation(const AnnotationDocument& document, cons
   const fs::path tuw = pending->path() / "tuw" / scene;
   auto writer = create_sequence(bop, DatasetFormat::kBop);
   if (!writer) return writer.error();
-  TruthWriter truth(library, bop, tuw);
+  const fs::path masks = pending->path() / "masks";
+  TruthWriter truth(library, masks, tuw);
   for (int v = 0; v < views.num_views(); ++v) {
     const auto frame = views.get(v);
     if (!frame) return frame.error();
@@ -111,10 +133,12 @@ Result<ExportSummary> export_annotation(const AnnotationDocument& document, cons
   }
   const auto events = derive_events(document, library, views.num_views());
   const std::string text = annotation::format_events(events, library, scene, views.num_views());
-  const std::vector<std::string> names = (*writer)->view_names();
+  if (const auto done = (*writer)->add_file("events.json", text); !done) return done.error();
+  const std::string info = annotation::format_mask_info(truth.masks(), (*writer)->view_names());
   if (const auto done = (*writer)->finish(); !done) return done.error();
-  if (const auto done = write_file(bop / "events.json", text); !done) return done.error();
-  if (const auto done = truth.write_masks(names); !done) return done.error();
+  // The writer's own one knows no masks.
+  if (const auto done = write_file(bop / "scene_gt_info.json", info); !done) return done.error();
+  if (const auto done = move_masks(masks, bop); !done) return done.error();
   if (const auto done = write_changes(pending->path() / "tuw" / (scene + ".changes"), truth.chains()); !done)
     return done.error();
   if (const auto done = write_file(pending->path() / kMark, "may be replaced\n"); !done) return done.error();

@@ -15,6 +15,9 @@ struct ExportSummary {
   int num_events = 0;
 };
 
+/// Fails if there is anything but an earlier export.
+[[nodiscard]] Result<void> check_export_folder(const std::filesystem::path& folder);
+
 /// Writes an annotation as ground truth to `folder`, which replaces an earlier export there as a whole:
 /// bop/<scene>/ (a BOP scene with its views, masks and events.json) and tuw/<scene>/ with tuw/<scene>.changes (poses of
 /// TUW in both styles, for the views as they are named in the sequence). Listed are the objects of which at least one

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "resight/annotation/internal/sampled_surface.hpp"
 #include "resight/core/check.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/evidence/surface_evidence.hpp"
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/sensor/noise_model.hpp"
@@ -75,15 +77,12 @@ ViewResidual assess_view(const SampledSurface& surface, const Rigid3& world_from
   residual.is_gone = residual.is_informative && 1 - residual.supported_share > kMaxGoneShare;
   residual.is_used = residual.is_informative && !residual.is_gone;
   const Rigid3f to_camera(posed.camera_from_object);
-  std::vector<float> distances;
+  std::vector<float> distances_m;
   for (std::size_t i = 0; i < posed.evidence.points.size(); ++i) {
     if (posed.evidence.points[i] != Evidence::kPresent) continue;
-    if (const auto pair = measure_pair(posed, to_camera, surface, i)) distances.push_back(std::abs(pair->distance_m));
+    if (const auto pair = measure_pair(posed, to_camera, surface, i)) distances_m.push_back(std::abs(pair->distance_m));
   }
-  if (distances.empty()) return residual;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  residual.median_distance_m = *middle;
+  if (!distances_m.empty()) residual.median_distance_m = static_cast<double>(upper_median(std::move(distances_m)));
   return residual;
 }
 

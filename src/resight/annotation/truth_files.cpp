@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "resight/annotation/internal/annotation_json.hpp"
+#include "resight/annotation/annotation_json.hpp"
 
 namespace resight::annotation {
 namespace {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "resight/annotation/annotation_json.hpp"
 #include "resight/annotation/color_symmetry.hpp"
 #include "resight/annotation/export_annotation.hpp"
 #include "resight/annotation/place_by_click.hpp"
@@ -12,6 +13,7 @@
 #include "resight/geometry/symmetry.hpp"
 #include "resight/viewer/internal/annotation_state_json.hpp"
 #include "resight/viewer/internal/parse_number.hpp"
+#include "resight/viewer/internal/view_json.hpp"
 
 namespace resight {
 
@@ -51,7 +53,7 @@ struct PosedObject {
 
 std::optional<PosedObject> parse_posed_object(const json& body, const ModelLibrary& library) {
   const auto object = whole_number(body, "object", static_cast<int>(library.objects.size()));
-  const auto pose = body.contains("pose") ? viewer::parse_pose_json(body["pose"]) : std::nullopt;
+  const auto pose = body.contains("pose") ? annotation::pose_from_json(body["pose"]) : std::nullopt;
   if (!object || !pose) return std::nullopt;
   return PosedObject{&library.objects[static_cast<std::size_t>(*object)], *pose};
 }
@@ -125,7 +127,7 @@ HttpResponse answer_refine(const AnnotationTask& task, ViewStore& store, const j
   const bool all_turns = body.contains("all_turns") && body["all_turns"] == true;
   refined.world_from_object = turn_by_color(*posed->model, voxel_m, refined.world_from_object, loaded->views,
                                             all_turns ? TurnSearch::kAll : TurnSearch::kNear);
-  nlohmann::ordered_json answer = {{"pose", viewer::pose_json(refined.world_from_object)},
+  nlohmann::ordered_json answer = {{"pose", viewer::matrix_json(refined.world_from_object)},
                                    {"num_pairs", refined.num_pairs},
                                    {"views", viewer::residuals_json(refined.views)}};
   return json_response(answer.dump());
@@ -157,7 +159,7 @@ HttpResponse answer_place(const AnnotationTask& task, ViewStore& store, const js
   const auto pose = place_by_click(task.library->objects[static_cast<std::size_t>(*object)],
                                    static_cast<double>(task.library->surface_voxel_m), **frame, {*u, *v});
   if (!pose) return refuse("there is no depth at this pixel");
-  return json_response(nlohmann::ordered_json{{"pose", viewer::pose_json(*pose)}}.dump());
+  return json_response(nlohmann::ordered_json{{"pose", viewer::matrix_json(*pose)}}.dump());
 }
 
 /// Motions that look the same, or have the same shape, without the identity.
@@ -166,7 +168,7 @@ HttpResponse answer_symmetries(const ObjectModel& model) {
   nlohmann::ordered_json motions = nlohmann::ordered_json::array();
   for (const Rigid3& motion : enumerate_symmetries(symmetries, kOfferedStep_rad))
     if (!is_same_pose(motion, Rigid3::identity()) && motions.size() < kMaxOffered)
-      motions.push_back(viewer::pose_json(motion));
+      motions.push_back(viewer::matrix_json(motion));
   return json_response(motions.dump());
 }
 

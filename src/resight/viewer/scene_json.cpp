@@ -8,19 +8,10 @@
 
 #include "resight/report/outline.hpp"
 #include "resight/report/overlay.hpp"
+#include "resight/viewer/internal/view_json.hpp"
 
 namespace resight::viewer {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-Json matrix_json(const Rigid3& pose) {
-  const Eigen::Matrix4d matrix = pose.matrix();  // stored column by column
-  return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
-}
-Json matrix_json(const std::optional<Rigid3>& pose) { return pose ? matrix_json(*pose) : Json(nullptr); }
 
 Json object_json(const ViewerScene& scene, const ObjectTable::Object& object, int number) {
   const Rgb8 color = object_color(number);
@@ -96,20 +87,10 @@ Json views_json(const Sequence& sequence) {
   return views;
 }
 
-/// Outline as a list of contours, each a list of columns and rows.
 Json outline_json(const ViewerScene& scene, int object, const Camera& camera, const Rigid3& camera_from_object) {
-  Json contours = Json::array();
-  if (!scene.library || object < 0 || object >= static_cast<int>(scene.library->objects.size())) return contours;
+  if (!scene.library || object < 0 || object >= static_cast<int>(scene.library->objects.size())) return Json::array();
   const PointCloud& surface = scene.library->objects[static_cast<std::size_t>(object)].surface;
-  for (const auto& contour : find_outline(camera, camera_from_object, surface, scene.library->surface_voxel_m)) {
-    Json line = Json::array();
-    for (const Pixel& pixel : contour) {
-      line.push_back(pixel.u);
-      line.push_back(pixel.v);
-    }
-    contours.push_back(std::move(line));
-  }
-  return contours;
+  return contours_json(find_outline(camera, camera_from_object, surface, scene.library->surface_voxel_m));
 }
 
 Json details_json(const StoredDetection& detection) {
@@ -149,13 +130,7 @@ std::string format_view(const ViewerScene& scene, const ObjectTable& objects, co
                         const StoredView* stored, const std::vector<GroundTruthObject>& truth) {
   const Camera& camera = frame.camera;
   const Rigid3 world_from_camera = stored != nullptr ? stored->world_from_camera : frame.world_from_camera;
-  Json json = {{"camera",
-                {{"width", camera.width},
-                 {"height", camera.height},
-                 {"fx", camera.fx},
-                 {"fy", camera.fy},
-                 {"cx", camera.cx},
-                 {"cy", camera.cy}}}};
+  Json json = {{"camera", camera_json(camera)}};
   json["detections"] = Json::array();
   for (const StoredDetection& detection : stored != nullptr ? stored->detections : std::vector<StoredDetection>{}) {
     Json entry = details_json(detection);

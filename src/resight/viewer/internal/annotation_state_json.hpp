@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,11 +11,6 @@
 #include "resight/models/object_model.hpp"
 
 namespace resight::viewer {
-
-/// A pose as a 4x4 matrix, column by column.
-[[nodiscard]] nlohmann::ordered_json pose_json(const Rigid3& pose);
-/// None unless `json` is such a matrix of a rigid motion.
-[[nodiscard]] std::optional<Rigid3> parse_pose_json(const nlohmann::json& json);
 
 /// Everything that the page shows of an annotation.
 [[nodiscard]] std::string format_annotation(const AnnotationProject& project, const ModelLibrary& library,
