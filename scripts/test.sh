@@ -2,17 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
 # the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, every public header alone,
-# installation and a project that uses it, all module tests under AddressSanitizer and UndefinedBehaviorSanitizer, the
-# program under ThreadSanitizer.
+# installation and a project that uses it, the program and the tests of the modules that read files of others under
+# AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
+#   scripts/test.sh --long  all of these, and the tests of all modules under AddressSanitizer: before a release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
+asan_modules=(core recordings io models evaluation report annotation viewer)  # They read files of others.
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
-    *) echo "test.sh: unknown option '$option' (expected --fast)" >&2; exit 2 ;;
+    --long) mapfile -t asan_modules < <(ls src/resight/*/*_test.cpp | cut -d/ -f3 | uniq) ;;
+    *) echo "test.sh: unknown option '$option' (expected --fast or --long)" >&2; exit 2 ;;
   esac
 done
 scripts/setup.sh --tests
@@ -69,13 +72,16 @@ build_consumer() {
     cmake --build build/consumer && build/consumer/consumer
 }
 build_asan() {
-  cmake --preset asan-ubsan -DRESIGHT_BUILD_APPS=OFF -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_unit_tests
+  local tests=("${asan_modules[@]/%/_test}")
+  cmake --preset asan-ubsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
+    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_app "${tests[@]/#/resight_}"
 }
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  find build/asan-ubsan/src/resight -name 'resight_*_test' -type f -executable |
-    xargs -P "$num_jobs" -n 1 sh -c '"$0" --gtest_brief=1'
+  local module
+  for module in "${asan_modules[@]}"; do echo "build/asan-ubsan/src/resight/$module/resight_${module}_test"; done |
+    xargs -P "$num_jobs" -n 1 sh -c '"$0" --gtest_brief=1' &&
+    tests/threads_test.sh build/asan-ubsan/apps/resight/resight
 }
 build_tsan() {
   cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
@@ -98,7 +104,7 @@ if ((!fast)); then
   step "each public header compiles alone" check_headers
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan
-  step "module tests with ASan and UBSan" run_asan
+  step "tests and program with ASan and UBSan" run_asan
   step "build with TSan" build_tsan
   step "program with TSan" run_tsan
 fi

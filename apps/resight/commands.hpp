@@ -42,6 +42,7 @@ void print_warning(const std::string& what);
 
 struct TrainArguments {
   std::vector<std::filesystem::path> inputs;
+  std::optional<double> metres_per_unit;  ///< Of meshes and clouds; none: as their layout has it.
   std::filesystem::path out;
   int num_threads = 1;
 };

@@ -93,6 +93,11 @@ std::function<void()> add_train(CLI::App& app, TrainArguments& a) {
   command->add_option("inputs", a.inputs, "TUW model folder, BOP models folder, folder of meshes, or mesh files")
       ->required();
   command->add_option("--out", a.out, "Model library to write")->required();
+  const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
+  command
+      ->add_option("--mesh-unit", a.metres_per_unit,
+                   "Unit of the meshes and clouds [default: mm in a BOP models folder, else m]")
+      ->transform(CLI::CheckedTransformer(units).description("m, cm, mm or in"));
   add_threads(command, a.num_threads);
   return [&a] { run_train(a); };
 }

@@ -9,9 +9,24 @@
 #include "resight/training/train_library.hpp"
 
 namespace resight::app {
+namespace {
+
+// The views of a TUW model are in metres.
+void set_unit(std::vector<ModelLocation>& locations, double metres_per_unit) {
+  bool has_effect = false;
+  for (ModelLocation& location : locations) {
+    if (location.format == "tuw") continue;
+    location.metres_per_unit = metres_per_unit;
+    has_effect = true;
+  }
+  if (!has_effect) throw InputError("--mesh-unit has no effect: no model is a mesh or a cloud");
+}
+
+}  // namespace
 
 void run_train(const TrainArguments& arguments) {
-  const std::vector<ModelLocation> locations = value_or_throw(find_models(arguments.inputs));
+  std::vector<ModelLocation> locations = value_or_throw(find_models(arguments.inputs));
+  if (arguments.metres_per_unit) set_unit(locations, *arguments.metres_per_unit);
   check_output_file(arguments.out, kLibrarySignature, "model library", arguments.inputs);
   TrainOptions options;
   options.num_threads = arguments.num_threads;

@@ -2,7 +2,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace resight {
 
@@ -14,30 +13,17 @@ struct Rigid3 {
 
   [[nodiscard]] static Rigid3 identity() { return {}; }
   /// From the upper 3x4 part of a homogeneous matrix. Not checked (see is_rigid()).
-  [[nodiscard]] static Rigid3 from_matrix(const Eigen::Matrix4d& m) {
-    return {m.topLeftCorner<3, 3>(), m.topRightCorner<3, 1>()};
-  }
+  [[nodiscard]] static Rigid3 from_matrix(const Eigen::Matrix4d& m);
   [[nodiscard]] static Rigid3 from_rotation(const Eigen::Matrix3d& r) { return {r, Eigen::Vector3d::Zero()}; }
   [[nodiscard]] static Rigid3 from_translation(const Eigen::Vector3d& t) { return {Eigen::Matrix3d::Identity(), t}; }
   /// Rotation by `angle_rad` about `axis` through the origin. `axis` need not be normalised.
-  [[nodiscard]] static Rigid3 from_axis_angle(const Eigen::Vector3d& axis, double angle_rad) {
-    return from_rotation(Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix());
-  }
+  [[nodiscard]] static Rigid3 from_axis_angle(const Eigen::Vector3d& axis, double angle_rad);
 
-  [[nodiscard]] Eigen::Matrix4d matrix() const {
-    Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-    m.topLeftCorner<3, 3>() = rotation;
-    m.topRightCorner<3, 1>() = translation;
-    return m;
-  }
-  [[nodiscard]] Rigid3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+  [[nodiscard]] Eigen::Matrix4d matrix() const;
+  [[nodiscard]] Rigid3 inverse() const;
 
   /// Whether the motion is finite, orthonormal within `tolerance`, and not a reflection.
-  [[nodiscard]] bool is_rigid(double tolerance = 1e-3) const {
-    return rotation.allFinite() && translation.allFinite() &&
-           (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
-           rotation.determinant() > 0;
-  }
+  [[nodiscard]] bool is_rigid(double tolerance = 1e-3) const;
 };
 
 [[nodiscard]] inline Rigid3 operator*(const Rigid3& a_from_b, const Rigid3& b_from_c) {
@@ -58,20 +44,11 @@ struct Rigid3f {
 };
 
 /// Geodesic angle between two rotations, in radians in [0, pi].
-[[nodiscard]] inline double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  // atan2 of the skew part and the trace stays exact near 0 and near pi, where acos loses half of the digits.
-  const Eigen::Matrix3d r = a.transpose() * b;
-  const Eigen::Vector3d skew(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
-  return std::atan2(0.5 * skew.norm(), 0.5 * (r.trace() - 1.0));
-}
+[[nodiscard]] double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 
 /// Whether two cameras at these poses see the same rays: equal within 1e-6 (m, and entries of the rotation), which is
 /// far below a pixel.
-[[nodiscard]] inline bool is_same_pose(const Rigid3& a, const Rigid3& b) {
-  constexpr double kTolerance = 1e-6;
-  return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kTolerance &&
-         (a.translation - b.translation).cwiseAbs().maxCoeff() < kTolerance;
-}
+[[nodiscard]] bool is_same_pose(const Rigid3& a, const Rigid3& b);
 
 /// The nearest proper rotation (by SVD), for matrices read from text with few digits.
 [[nodiscard]] Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& m);

@@ -108,10 +108,10 @@ Result<std::vector<TrainingView>> find_training_views(const fs::path& dataset, i
 }
 
 /// Reads a mesh if the PLY has faces, else its points as the surface.
-Result<void> read_geometry(const fs::path& file, ModelSource& model) {
+Result<void> read_geometry(const fs::path& file, double metres_per_unit, ModelSource& model) {
   auto content = read_ply(file);
   if (!content) return content.error();
-  const ReadMeshOptions options{.metres_per_unit = kMetresPerMillimetre};
+  const ReadMeshOptions options{.metres_per_unit = metres_per_unit};
   if (!content->mesh.faces.empty()) {
     auto mesh = read_mesh(file, options);
     if (!mesh) return mesh.error();
@@ -119,7 +119,7 @@ Result<void> read_geometry(const fs::path& file, ModelSource& model) {
     model.warnings = std::move(mesh->warnings);
     return {};
   }
-  auto cloud = read_ply_cloud(file, kMetresPerMillimetre);
+  auto cloud = read_ply_cloud(file, metres_per_unit);
   if (!cloud) return cloud.error();
   model.surface = clean_normals(std::move(*cloud));
   return check_size(model.surface->points, options, file);
@@ -160,8 +160,9 @@ Result<ModelSource> read_bop_model(const ModelLocation& location) {
       model.symmetries_known = true;
     }
   }
+  const double metres_per_unit = location.metres_per_unit.value_or(kMetresPerMillimetre);
   if (is_file(location.path))
-    if (const auto done = read_geometry(location.path, model); !done) return done.error();
+    if (const auto done = read_geometry(location.path, metres_per_unit, model); !done) return done.error();
   if (model.mesh) return model;
   auto views = find_training_views(folder.parent_path(), location.bop_id);
   if (!views) return views.error();

@@ -242,6 +242,11 @@ TEST(BopModels, MetresInAMillimetreFolder) {
   ASSERT_TRUE(found.ok());
   EXPECT_EQ(found->front().name, "obj_000001");
   EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("looks like metres"));
+  ModelLocation in_metres = found->front();
+  in_metres.metres_per_unit = 1;
+  const auto model = read_model(in_metres);
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  EXPECT_FLOAT_EQ(model->mesh->vertices.at(2).y(), 0.2F);
 }
 
 }  // namespace

@@ -116,21 +116,22 @@ Result<ModelSource> model_of_grid(const PcdCloud& cloud, const fs::path& file) {
   return model;
 }
 
-Result<ModelSource> read_points(const fs::path& file) {
+Result<ModelSource> read_points(const fs::path& file, double metres_per_unit) {
   if (extension_of(file) == "pcd") {
-    const auto pcd = read_pcd(file);
+    auto pcd = read_pcd(file);
     if (!pcd) return pcd.error();
+    for (Eigen::Vector3f& p : pcd->points) p *= static_cast<float>(metres_per_unit);
     return pcd->is_organized() ? model_of_grid(*pcd, file) : model_of_points(to_point_cloud(*pcd), file);
   }
-  auto cloud = read_ply_cloud(file);
+  auto cloud = read_ply_cloud(file, metres_per_unit);
   if (!cloud) return cloud.error();
   return model_of_points(std::move(*cloud), file);
 }
 
 }  // namespace
 
-Result<ModelSource> read_cloud_model(const fs::path& file, const std::string& name) {
-  auto model = read_points(file);
+Result<ModelSource> read_cloud_model(const fs::path& file, const std::string& name, double metres_per_unit) {
+  auto model = read_points(file, metres_per_unit);
   if (!model) return model;
   model->name = name;
   for (TrainingView& view : model->views) {

@@ -148,13 +148,15 @@ Result<Locations> find_under(const path& where) {
   return found;
 }
 
-Result<ModelSource> read_mesh_model(const ModelLocation& location) {
+Result<ModelSource> read_mesh_model(const ModelLocation& location, double metres_per_unit) {
   if (io::extension_of(location.path) == "ply") {
     const auto content = read_ply(location.path);
     if (!content) return content.error();
-    if (content->mesh.faces.empty()) return io::read_cloud_model(location.path, location.name);
+    if (content->mesh.faces.empty()) return io::read_cloud_model(location.path, location.name, metres_per_unit);
   }
-  auto mesh = read_mesh(location.path);
+  ReadMeshOptions options;
+  options.metres_per_unit = metres_per_unit;
+  auto mesh = read_mesh(location.path, options);
   if (!mesh) return mesh.error();
   auto extras = io::read_model_extras(location.path.parent_path() / "model_info.json");
   if (!extras) return extras.error();
@@ -193,9 +195,10 @@ Result<Locations> find_models(const std::vector<path>& paths) {
 Result<ModelSource> read_model(const ModelLocation& location) {
   if (location.format == "tuw") return read_tuw_model(location.path, location.name);
   if (location.format == "bop") return io::read_bop_model(location);
-  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name);
+  const double metres_per_unit = location.metres_per_unit.value_or(1);
+  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name, metres_per_unit);
   require(location.format == "mesh", "read_model: the format of the location must be tuw, bop, mesh or cloud");
-  return read_mesh_model(location);
+  return read_mesh_model(location, metres_per_unit);
 }
 
 }  // namespace resight

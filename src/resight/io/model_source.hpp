@@ -31,6 +31,8 @@ struct ModelLocation {
   int bop_id = 0;
   std::filesystem::path path;
   std::string format;  ///< "tuw", "bop", "mesh", "cloud".
+  /// Of the coordinates of a mesh or cloud. None: as the layout has it, millimetres for "bop" and metres for others.
+  std::optional<double> metres_per_unit{};
 };
 
 /// Lists the models under each path, in order of name. A path is a TUW model folder (or a folder of these), a BOP

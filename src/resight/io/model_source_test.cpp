@@ -166,6 +166,12 @@ TEST(CloudModel, OneViewInFrontOfTheCamera) {
   for (auto& p : pcd.points) p *= 1e3F;
   ASSERT_TRUE(write_pcd(directory / "can.pcd", pcd).ok());
   EXPECT_THAT(read_model(found->front()).error().message, HasSubstr("looks like millimetres"));
+  ModelLocation in_millimetres = found->front();
+  in_millimetres.metres_per_unit = 1e-3;
+  const auto scaled = read_model(in_millimetres);
+  ASSERT_TRUE(scaled.ok()) << scaled.error().message;
+  EXPECT_EQ(scaled->views.at(0).frame.depth_m.data().size(), colorless->views[0].frame.depth_m.data().size());
+  EXPECT_NEAR(scaled->views[0].frame.depth_m(310, 210), 0.8, 1e-5);
 }
 
 // All sides of a ball, around the origin or in front of the camera. In a single view, no point hides another.

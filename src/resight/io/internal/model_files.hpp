@@ -30,6 +30,7 @@ struct ModelExtras {
 /// Reads a cloud (PCD, or PLY without faces). An organised cloud is one view of an object. An unorganised cloud is also
 /// one view if it lies in front of a camera at its origin and hides no part of itself, as far as its points show; it is
 /// then projected into that camera. Any other cloud is the whole surface.
-[[nodiscard]] Result<ModelSource> read_cloud_model(const std::filesystem::path& file, const std::string& name);
+[[nodiscard]] Result<ModelSource> read_cloud_model(const std::filesystem::path& file, const std::string& name,
+                                                   double metres_per_unit);
 
 }  // namespace resight::io
