@@ -88,6 +88,12 @@ void check_outputs(const TrackArguments& arguments) {
   for (int component = 1; std::filesystem::exists(file_of_component(arguments.out, component)); ++component)
     check(file_of_component(arguments.out, component), kPosesComment);
   if (arguments.models) check(file_of_objects(arguments.out), kObjectsComment);
+  if (arguments.posed) {
+    check_new_folder(*arguments.posed);
+    for (const std::filesystem::path& file : {arguments.out, arguments.fused.value_or(arguments.out)})
+      if (is_within(file, *arguments.posed))
+        throw InputError(file_error(file, "lies in the folder of --write-sequence, which must be new").message);
+  }
   if (!arguments.fused) return;
   if (arguments.fused->extension() != ".ply")
     throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
@@ -99,8 +105,6 @@ void check_outputs(const TrackArguments& arguments) {
 
 void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
-  if (arguments.posed && std::filesystem::exists(*arguments.posed))
-    throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
   const bool refine = arguments.poses != "auto";
   OpenSequenceOptions input = arguments.input;
   if (refine && arguments.poses != "refine") input.poses = arguments.poses;
