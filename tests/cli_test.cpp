@@ -400,6 +400,10 @@ const Row kRows[] = {
      "poses\\.txt\\.partial: exists already"},
     {"TrackWithAPictureOverAnImage", kNothing, "track --sequence views --out poses.txt --fused views/rgb/000000.ply", 2,
      "000000\\.png: exists already"},
+    {"TrackWithAForeignCloud", write("cloud.ply", "ply\nformat ascii 1.0\n"),
+     "track --sequence views --out poses.txt --fused cloud.ply", 2, "cloud\\.ply: exists already"},
+    {"TrackIntoTheNewSequence", kNothing, "track --sequence views --out new/poses.txt --write-sequence new", 2,
+     "new/poses\\.txt: lies in the folder of --write-sequence"},
     {"TrackOverForeignObjects", write("poses_objects.txt", "mine\n"),
      "track --sequence views --out poses.txt --models models.resight", 2, "poses_objects\\.txt: exists already"},
     {"RecognizeIntoTheSequence", kNothing, "recognize --models models.resight --sequence views --out views", 2,
@@ -408,6 +412,30 @@ const Row kRows[] = {
      "views/rgb: is a folder of the input"},
     {"ChangesInANewFolderOfTheSequence", kNothing, "changes --sequence views --out views/changes", 0, "",
      "views/changes/changes.json"},
+    {"RecognizeToNowhere", kNothing, "recognize --models models.resight --sequence views --out ''", 2,
+     "the name of the output is empty"},
+    {"ChangesToALinkToNowhere", link("dangling", "nowhere"), "changes --sequence views --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"EvaluateToALinkToNowhere", link("dangling", "nowhere"),
+     "evaluate --models models.resight --dataset views -k 0 --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"EvaluateOntoAFile", kNothing, "evaluate --models models.resight --dataset views -k 0 --out file", 2,
+     "file: exists already and is not a folder"},
+    {"EvaluateWithAFileForItsRuns", write("out/runs", ""),
+     "evaluate --models models.resight --dataset views -k 0 --out out", 2,
+     "out/runs: exists already and is not a folder"},
+    {"EvaluateWithoutMeshes", kNothing, "evaluate --models models.resight --dataset views -k 0 --bop --out out", 2,
+     "models: "},
+    {"SimulateToALinkToNowhere", link("dangling", "nowhere"), "simulate --preset demo --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"ModelToALinkToNowhere", link("dangling", "nowhere"), "model --sequence tuw --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"CheckOntoAFile", kNothing, "check views --out file", 2, "file: exists already and is not a folder"},
+    {"RecognizeWithAFolderForAResult", write("out/summary.json/mine", ""), kRecognize, 2,
+     "out/summary\\.json: is a folder"},
+    {"ConvertIntoAnEmptyFolder", kNothing, "convert views empty --to tuw", 0, "", "empty/000001.pcd"},
+    {"ConvertModelsAfterAnInterruption", write(".out.resight-partial/models/a", "cut o"), "convert meshes out --to bop",
+     0, "", "out/models/models_info.json"},
     {"ConvertBelowAFile", kNothing, "convert views file/out --to tuw", 2, "file is not a folder"},
     {"ConvertOverData", kNothing, "convert views full --to tuw", 2, "full: exists already"},
     {"SimulateBelowAFile", kNothing, "simulate --preset demo --out file/out", 2, "file/out: "},
@@ -441,6 +469,8 @@ const Row kRows[] = {
     {"TextAsMesh", kNothing, "train file --out new.resight", 2, "file: is no model file"},
     {"EmptyMeshFile", write("meshes/cube.ply", ""), kTrain, 2, "cube\\.ply: "},
     {"TruncatedMesh", cut("meshes/cube.ply", 0.9), kTrain, 2, "cube\\.ply: "},
+    {"LastMeshIsTruncated", both(mesh("meshes/z.ply", [] { return make_cube(1); }), cut("meshes/z.ply", 0.9)), kTrain,
+     2, "z\\.ply: "},
     {"MeshInMillimetres", mesh("meshes/cube.ply", [] { return make_cube(1000); }), kTrain, 2,
      "cube\\.ply: .*looks like millimetres"},
     {"BopMeshInMetres", mesh("meshes/obj_000001.ply", [] { return make_cube(1); }), kTrain, 2,
@@ -550,21 +580,21 @@ const Row kRows[] = {
      edit("views/scene_gt.json", [](Json& v) { v[0]["cam_R_m2c"] = {3, 0, 0, 0, 3, 0, 0, 0, 3}; }), kRecognize, 2,
      "scene_gt\\.json: image 1: cam_R_m2c"},
     {"MissingDepth", remove("views/depth/000001.png"), kRecognize, 2, "image 1: its depth image is missing"},
-    {"EmptyDepth", write("views/depth/000001.png", ""), kRecognize, 2, "000001\\.png: "},
-    {"TruncatedDepth", cut("views/depth/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
-    {"TruncatedColor", cut("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
-    {"ColorWithAFlippedBit", flip("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: "},
+    {"EmptyDepth", write("views/depth/000001.png", ""), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
+    {"TruncatedDepth", cut("views/depth/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
+    {"TruncatedColor", cut("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
+    {"ColorWithAFlippedBit", flip("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
     {"DepthWithAFlippedBit", flip("views/depth/000001.png", 0.5), kChanges, 2, "000001\\.png: "},
     {"TextAsColor", write("views/rgb/000001.png", "hello"), kChanges, 2, "000001\\.png: "},
     {"ColorAsDepth", small_image("views/depth/000001.png"), kChanges, 2, "000001\\.png: "},
     {"SmallerColor", small_image("views/rgb/000001.png"), kRecognize, 2,
-     "000001\\.png: is 64x48, but its colour image 32x48"},
+     "000001\\.png: is 64x48, but its colour image 32x48", "out/finished_views.jsonl"},
     {"SmallerColorInChanges", small_image("views/rgb/000001.png"), kChanges, 2,
      "000001\\.png: is 64x48, but its colour image 32x48"},
     {"SmallerColorInConvert", small_image("views/rgb/000001.png"), kConvert, 2,
      "000001\\.png: is 64x48, but its colour image 32x48"},
     {"SmallerColorOfTheLastView", small_image("views/rgb/000002.png"), kRecognize, 2,
-     "000002\\.png: is 64x48, but its colour image 32x48"},
+     "000002\\.png: is 64x48, but its colour image 32x48", "out/finished_views.jsonl"},
     {"EvaluateAMissingFolder", kNothing, "evaluate --models models.resight --dataset nowhere --out out", 2,
      "nowhere: is not a folder"},
     {"EvaluateAnEmptyFolder", kNothing, "evaluate --models models.resight --dataset empty --out out", 2,
@@ -756,6 +786,39 @@ TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   }
   EXPECT_EQ(views.size(), static_cast<std::size_t>(kViews));
   EXPECT_EQ(views, nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"]);
+}
+
+TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
+  const std::string depth = read_text(folder_ / "views/depth/000002.png");
+  write_text(folder_ / "views/depth/000002.png", "cut o");
+  EXPECT_EQ(run(folder_, kRecognize).status, 2);
+  EXPECT_EQ(list(folder_ / "out").size(), 1U) << testing::PrintToString(list(folder_ / "out"));
+  std::istringstream lines(read_text(folder_ / "out/finished_views.jsonl"));
+  auto views = nlohmann::json::array();
+  for (std::string line; std::getline(lines, line);) {
+    views.push_back(nlohmann::json::parse(line));
+    views.back().erase("events");
+  }
+  write_text(folder_ / "views/depth/000002.png", depth);
+  EXPECT_EQ(run(folder_, kRecognize).status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/finished_views.jsonl"));
+  auto all = nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"];
+  all.erase(2);
+  EXPECT_EQ(views, all);
+}
+
+TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {
+  write_text(folder_ / "meshes/z.ply", "ply\n");
+  EXPECT_EQ(run(folder_, kTrain).status, 2);
+  EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("train 1/2")));
+}
+
+TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
+  fs::rename(folder_ / "views", folder_ / "v\xff");
+  EXPECT_EQ(
+      run(folder_, "evaluate --models models.resight --dataset v$(printf '\\377') --presets mvr -k 0 --out out").status,
+      0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/worst.md"));
 }
 
 TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "interrupts.hpp"
 #include "output_paths.hpp"
 #include "progress.hpp"
 #include "recognition_run.hpp"
@@ -97,6 +98,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   const auto scene = value_or_throw(SceneData::create(std::move(shown)));
   ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open}, &service);
   session.server().run_until_interrupted();
+  clean_up_when_interrupted();
   value_or_throw(service.save());
   print("{}\n", export_folder.string());
 }

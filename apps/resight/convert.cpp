@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
 #include "resight/evaluation/change_truth.hpp"
@@ -61,11 +62,9 @@ ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequen
 
 void run_convert(const ConvertArguments& arguments) {
   const DatasetFormat format = to_format(arguments.format);
-  if (std::filesystem::exists(arguments.out))
-    throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.out.string()));
+  check_new_folder(arguments.out);
   if (!std::filesystem::exists(arguments.in))
     throw InputError(fmt::format("{}: no such file or folder", arguments.in.string()));
-  value_or_throw(check_writable(arguments.out));
   const auto sequence = open_sequence(arguments.in, arguments.input);
   const auto models = find_models({arguments.in});
   // A damaged sequence is not passed over for the models beside it.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <set>
+
 #include "commands.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
+#include "resight/core/files.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/report/html_report.hpp"
@@ -12,6 +15,8 @@
 
 namespace resight::app {
 namespace {
+
+constexpr const char* kUnfinished = ".resight-demo-unfinished";
 
 void print_table(const std::vector<ReportRun>& runs) {
   print("\n{:<10} {:>9} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "preset", "precision", "recall", "F", "ghosts", "changes",
@@ -25,12 +30,24 @@ void print_table(const std::vector<ReportRun>& runs) {
   print("(right: within 5 cm and 30 deg; ghost: an object reported at a place it has left)\n\n");
 }
 
+/// Removes what an interrupted demo has left in the folder, so that it can start again.
+void clear_unfinished(const std::filesystem::path& out) {
+  if (!std::filesystem::exists(out / kUnfinished)) return;
+  const std::set<std::string> ours{"data", "models.resight", "mvr", "mvr-chd", "default", "report.html", kUnfinished};
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry : std::filesystem::directory_iterator(out))
+    if (ours.contains(entry.path().filename().string()) || entry.path().extension() == ".resight-partial")
+      left.push_back(entry.path());
+  for (const std::filesystem::path& path : left) std::filesystem::remove_all(path);
+}
+
 }  // namespace
 
 // Uses the same files and commands as a user.
 void run_demo(const DemoArguments& arguments) {
-  if (std::filesystem::exists(arguments.out) && !std::filesystem::is_empty(arguments.out))
-    throw InputError(fmt::format("{}: is not empty (a new or empty folder was expected)", arguments.out.string()));
+  clear_unfinished(arguments.out);
+  check_new_folder(arguments.out);
+  value_or_throw(write_file(arguments.out / kUnfinished, "removed by 'resight demo' when it is finished\n"));
   const std::filesystem::path data = arguments.out / "data";
   const std::filesystem::path models = arguments.out / "models.resight";
   run_simulate({.preset = "demo",
@@ -56,6 +73,7 @@ void run_demo(const DemoArguments& arguments) {
   }
   const std::filesystem::path report = arguments.out / "report.html";
   value_or_throw(write_report(report, "resight demo", runs, library));
+  std::filesystem::remove(arguments.out / kUnfinished);
   print_table(runs);
   print("report: {}\n", std::filesystem::absolute(report).string());
 }

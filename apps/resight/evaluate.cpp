@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
@@ -21,6 +23,7 @@
 namespace resight::app {
 namespace {
 
+constexpr double kMergeWait_s = 60;
 constexpr int kNumPictures = 5;  // Of the worst views per configuration.
 
 // The stored run of a unit, unless it is missing or stems from other settings, models or another version.
@@ -37,7 +40,9 @@ class Evaluation {
   explicit Evaluation(const EvaluateArguments& arguments)
       : arguments_(arguments),
         library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))),
-        plan_(make_evaluation_plan(arguments)) {}
+        plan_(make_evaluation_plan(arguments)) {
+    if (arguments.bop) bop_objects_ = value_or_throw(read_bop_objects(plan_.models));
+  }
 
   // Computes the missing runs of this shard. Finished runs are not computed again.
   void compute() {
@@ -46,8 +51,12 @@ class Evaluation {
       if (unit.shard == arguments_.shard && !stored_run(file_of(unit), unit.fingerprint)) mine.push_back(&unit);
     if (mine.empty()) return;
     std::size_t num_views = 0;
-    for (const EvaluationUnit* unit : mine)
-      num_views += static_cast<std::size_t>(value_or_throw(open_posed_sequence(unit->sequence.folder))->num_views());
+    for (const EvaluationUnit* unit : mine) {
+      const auto sequence = value_or_throw(open_posed_sequence(unit->sequence.folder));
+      if (!sequence->has_ground_truth())
+        throw InputError(fmt::format("{}: has no ground truth to evaluate against", unit->sequence.folder.string()));
+      num_views += static_cast<std::size_t>(sequence->num_views());
+    }
     Progress progress("evaluate", static_cast<int>(num_views));
     int done = 0;
     for (std::size_t i = 0; i < mine.size();) {
@@ -64,14 +73,19 @@ class Evaluation {
     std::vector<const EvaluationUnit*> missing;
     for (const EvaluationUnit& unit : plan_.units) {
       auto run = stored_run(file_of(unit), unit.fingerprint);
+      if (run) run->sequence = unit.sequence.name;  // JSON cannot hold every name of a folder
       if (run) runs.push_back(std::move(*run));
       if (!run) missing.push_back(&unit);
     }
     if (!missing.empty()) return report_missing(missing);
-    draw_worst_views(runs);
-    value_or_throw(write_evaluation(arguments_.out, {plan_.dataset_name, RESIGHT_VERSION}, runs, kNumPictures));
+    // All tables of one evaluation appear together. Shards that end at the same time wait for each other.
+    auto folder = value_or_throw(PendingDirectory::create(arguments_.out, ExistingFolder::kFill, kMergeWait_s));
+    draw_worst_views(runs, folder.path());
+    value_or_throw(write_evaluation(folder.path(), {plan_.dataset_name, RESIGHT_VERSION}, runs, kNumPictures));
+    const std::string bop = arguments_.bop ? write_bop(runs, folder.path()) : "";
+    value_or_throw(folder.commit());
     print_table(runs);
-    if (arguments_.bop) write_bop(runs);
+    print_text(bop);
   }
 
  private:
@@ -82,8 +96,6 @@ class Evaluation {
   void compute_group(std::span<const EvaluationUnit* const> units, Progress& progress, int& done) {
     const EvaluationSequence& where = units.front()->sequence;
     const auto sequence = value_or_throw(open_posed_sequence(where.folder));
-    if (!sequence->has_ground_truth())
-      throw InputError(fmt::format("{}: has no ground truth to evaluate against", where.folder.string()));
     const SequenceTruth truth =
         value_or_throw(read_sequence_truth(*sequence, library_, where.changes, where.unknown_models));
     warn_about_names(truth, where.folder.string());
@@ -109,23 +121,23 @@ class Evaluation {
     return open_posed_sequence(unit->sequence.folder);
   }
 
-  void draw_worst_views(const std::vector<EvaluatedRun>& runs) const {
+  void draw_worst_views(const std::vector<EvaluatedRun>& runs, const std::filesystem::path& folder) const {
     for (const WorstView& worst : find_worst_views(runs, kNumPictures)) {
       const auto sequence = value_or_throw(open_evaluated(worst.run->sequence));
       const RgbdFrame frame = value_or_throw(sequence->read_view(worst.view));
       const auto truth = value_or_throw(sequence->read_ground_truth(worst.view));
       const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, truth, worst.evaluated()));
-      value_or_throw(write_file(arguments_.out / worst_view_picture(worst),
+      value_or_throw(write_file(folder / worst_view_picture(worst),
                                 std::string_view(reinterpret_cast<const char*>(jpeg.data()), jpeg.size())));
     }
   }
 
-  void write_bop(const std::vector<EvaluatedRun>& runs) const {
-    const auto objects = value_or_throw(read_bop_objects(plan_.models));
+  // Returns the text to be printed.
+  std::string write_bop(const std::vector<EvaluatedRun>& runs, const std::filesystem::path& folder) const {
     const auto open = [this](const std::string& name) { return open_evaluated(name); };
-    const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, objects, open)));
-    value_or_throw(write_file(arguments_.out / "bop.md", table));
-    print_text("\n" + table);
+    const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, *bop_objects_, open)));
+    value_or_throw(write_file(folder / "bop.md", table));
+    return "\n" + table;
   }
 
   void report_missing(const std::vector<const EvaluationUnit*>& missing) const {
@@ -155,12 +167,15 @@ class Evaluation {
   const EvaluateArguments& arguments_;
   ModelLibrary library_;  // Loaded first: the plan hashes its file.
   EvaluationPlan plan_;
+  std::optional<std::map<std::string, BopObject>> bop_objects_;  // With --bop.
 };
 
 }  // namespace
 
 void run_evaluate(const EvaluateArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.dataset, arguments.models});
+  check_output_folder(arguments.out, {arguments.dataset, arguments.models}, kEvaluationFiles);
+  for (const char* folder : {"runs", "worst"})
+    value_or_throw(check_writable_folder(arguments.out / folder, ExistingFolder::kFill));
   Evaluation evaluation(arguments);
   if (!arguments.merge) evaluation.compute();
   evaluation.conclude();

@@ -89,7 +89,7 @@ Image<Rgb8> draw(const Fused& fused, int num_threads) {
 
 void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads) {
   const Fused fused = fuse(posed, num_threads);
-  value_or_throw(write_ply(file, fused.cloud));
+  value_or_throw(write_ply(file, fused.cloud, 1, "all views of resight track"));
   value_or_throw(write_color(picture_of_cloud(file), draw(fused, num_threads)));
 }
 

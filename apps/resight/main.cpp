@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
+#include "interrupts.hpp"
 #include "processor.hpp"
 #include "resight/core/allocator.hpp"
 #include "resight/core/parallel.hpp"
@@ -155,7 +156,7 @@ std::function<void()> add_track(CLI::App& app, TrackArguments& a) {
       ->capture_default_str();
   command->add_option("--models", a.models, "Model library; joins views without overlap by common objects");
   command->add_option("--write-sequence", a.posed,
-                      "Folder for a copy of the sequence with these poses; must not exist");
+                      "Folder for a copy of the sequence with these poses; must be empty or not exist");
   command->add_option("--fused", a.fused,
                       "Point cloud of all views to write (PLY), with a picture of it next to it (PNG)");
   command->add_option("--format", a.format, "Format of --write-sequence: tuw or bop")
@@ -212,7 +213,7 @@ std::function<void()> add_model(CLI::App& app, ModelArguments& a) {
 std::function<void()> add_convert(CLI::App& app, ConvertArguments& a) {
   CLI::App* command = app.add_subcommand("convert", "Convert a data set (sequence or models) to another format");
   command->add_option("in", a.in, "Sequence, recording or models folder")->required();
-  command->add_option("out", a.out, "Folder to write; must not exist")->required();
+  command->add_option("out", a.out, "Folder to write; must be empty or not exist")->required();
   command->add_option("--to", a.format, "Format to write: tuw or bop")->required()->check(kFormats);
   add_threads(command, a.num_threads);
   add_sequence_options(command, a.input);
@@ -403,6 +404,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   resight::keep_freed_memory();
+  resight::app::clean_up_when_interrupted();
   try {
     return run_program(argc, argv);
   } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "progress.hpp"
 #include "resight/core/files.hpp"
 #include "resight/io/model_source.hpp"
@@ -71,10 +72,7 @@ ObjectTrack read_model_views(const std::filesystem::path& folder) {
 }  // namespace
 
 void run_model(const ModelArguments& arguments) {
-  if (std::filesystem::exists(arguments.out) &&
-      (!std::filesystem::is_directory(arguments.out) || !std::filesystem::is_empty(arguments.out)))
-    throw InputError(file_error(arguments.out, "exists already and is not empty").message);
-  value_or_throw(check_writable(arguments.out));
+  check_new_folder(arguments.out);
   TrackObjectOptions track_options;
   track_options.num_threads = arguments.num_threads;
   BuildModelOptions build_options;

@@ -31,19 +31,11 @@ void check_not_input(const fs::path& out, const Paths& inputs) {
   }
 }
 
-/// Whether `path` lies below `folder`, links resolved.
-bool is_within(const fs::path& path, const fs::path& folder) {
-  std::error_code error;
-  const fs::path inner = fs::weakly_canonical(path, error);
-  const fs::path outer = error ? fs::path() : fs::canonical(folder, error);
-  if (error || !fs::is_directory(outer, error)) return false;
-  return std::ranges::mismatch(outer, inner).in1 == outer.end();
-}
-
 /// Whether `recognize`, `changes` or `evaluate` has written into the folder.
 bool has_results(const fs::path& folder) {
   std::error_code error;
-  return std::ranges::any_of(std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs"},
+  return std::ranges::any_of(std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs",
+                                                                "finished_views.jsonl"},
                              [&](const char* name) { return fs::exists(folder / name, error); });
 }
 
@@ -66,11 +58,22 @@ void check_new_file(const fs::path& out) {
   value_or_throw(check_writable(out));
 }
 
-void check_output_folder(const fs::path& out, const Paths& inputs) {
-  check_not_input(out, inputs);
-  value_or_throw(check_writable(out));
+void check_new_folder(const fs::path& out) { value_or_throw(check_writable_folder(out, ExistingFolder::kRefuse)); }
+
+bool is_within(const fs::path& path, const fs::path& folder) {
   std::error_code error;
-  if (!fs::is_directory(out, error) || fs::is_empty(out, error) || has_results(out)) return;
+  const fs::path inner = fs::weakly_canonical(path, error);
+  const fs::path outer = error ? fs::path() : fs::weakly_canonical(folder, error);
+  return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
+}
+
+void check_output_folder(const fs::path& out, const Paths& inputs, std::span<const char* const> files) {
+  check_not_input(out, inputs);
+  value_or_throw(check_writable_folder(out, ExistingFolder::kFill));
+  for (const char* name : files)
+    if (std::error_code none; fs::is_directory(out / name, none))
+      refuse_output(out / name, "is a folder (a file of this name is to be written)");
+  if (check_writable_folder(out, ExistingFolder::kRefuse).ok() || has_results(out)) return;
   for (const fs::path& input : inputs)
     if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,16 @@ void check_output_file(const std::filesystem::path& out, std::string_view signat
 /// For a file to write that must not exist.
 void check_new_file(const std::filesystem::path& out);
 
-/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it.
-void check_output_folder(const std::filesystem::path& out, const Paths& inputs);
+/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it. `files`:
+/// names of results, which no folder may have.
+void check_output_folder(const std::filesystem::path& out, const Paths& inputs,
+                         std::span<const char* const> files = {});
+
+/// For a folder to write, which must be empty or not exist.
+void check_new_folder(const std::filesystem::path& out);
+
+/// Whether `path` lies below `folder`, links resolved.
+[[nodiscard]] bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 /// The path as seen from `folder`, links resolved, so that results find their inputs wherever they are called from, and
 /// after both were moved.

@@ -6,6 +6,7 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
+#include "finished_views.hpp"
 #include "live_viewer.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
@@ -33,7 +34,7 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
 }  // namespace
 
 void run_recognize(const RecognizeArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.sequence, arguments.models});
+  check_output_folder(arguments.out, {arguments.sequence, arguments.models}, kResultFiles);
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   if (arguments.seed) config.set_seed(*arguments.seed);
@@ -61,10 +62,13 @@ void run_recognize(const RecognizeArguments& arguments) {
   const Sequence& sequence = tracked ? *tracked : *recorded;
   std::optional<LiveViewer> viewer;
   if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
+  FinishedViews finished(arguments.out);
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](const ViewRecord& view) {
     if (viewer) viewer->add_view(view);
+    const std::string line = format_view_line(view, library) + "\n";
+    finished.add(line);
     if (!arguments.stream) return;
-    print_text(format_view_line(view, library) + "\n");
+    print_text(line);
     std::fflush(stdout);  // The reader of a pipe gets each view at once.
   });
   run.sequence = arguments.sequence.string();
@@ -74,6 +78,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
   value_or_throw(folder.commit());
+  finished.remove();
   if (!arguments.stream) print_summary(run, arguments.out);
   if (viewer) viewer->finish(run);
 }

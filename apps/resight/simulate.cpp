@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "output_paths.hpp"
 #include "progress.hpp"
 #include "resight/simulation/dynamic_tabletop.hpp"
 #include "resight/simulation/presets.hpp"
@@ -112,6 +113,7 @@ void run_simulate(const SimulateArguments& arguments) {
     throw InputError("simulate: neither a scene script nor --preset was given");
   if (!arguments.object.empty() && !is_recording(arguments.preset))
     throw InputError("simulate: --object requires --preset turntable-recording or walk-recording");
+  check_new_folder(arguments.out);
   if (is_recording(arguments.preset)) return simulate_recordings(arguments);
   if (arguments.preset == kBenchmark || arguments.preset == kBenchmark2) return simulate_benchmark(arguments);
   if (arguments.preset == kBenchmarkRecordings) return simulate_benchmark_recordings(arguments);

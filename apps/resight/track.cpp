@@ -19,6 +19,7 @@ namespace {
 constexpr double kDegPerRad = 57.29577951308232;
 // How the files begin that this command writes, and may therefore replace.
 constexpr const char* kPosesComment = "# world_from_camera of ";
+constexpr const char* kPngSignature = "\x89PNG";
 constexpr const char* kObjectsComment = "# static objects in ";
 
 std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int component) {
@@ -88,19 +89,26 @@ void check_outputs(const TrackArguments& arguments) {
   for (int component = 1; std::filesystem::exists(file_of_component(arguments.out, component)); ++component)
     check(file_of_component(arguments.out, component), kPosesComment);
   if (arguments.models) check(file_of_objects(arguments.out), kObjectsComment);
+  if (arguments.posed) {
+    check_new_folder(*arguments.posed);
+    for (const std::filesystem::path& file : {arguments.out, arguments.fused.value_or(arguments.out)})
+      if (is_within(file, *arguments.posed))
+        throw InputError(file_error(file, "lies in the folder of --write-sequence, which must be new").message);
+  }
   if (!arguments.fused) return;
   if (arguments.fused->extension() != ".ply")
     throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
-  check_new_file(*arguments.fused);
-  check_new_file(picture_of_cloud(*arguments.fused));
+  const bool is_again = std::filesystem::exists(*arguments.fused);  // The picture belongs to the cloud.
+  check_output_file(*arguments.fused, kFusedSignature, "point cloud of 'resight track'", {arguments.sequence});
+  const std::filesystem::path picture = picture_of_cloud(*arguments.fused);
+  if (is_again) check_output_file(picture, kPngSignature, "picture", {arguments.sequence});
+  if (!is_again) check_new_file(picture);
 }
 
 }  // namespace
 
 void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
-  if (arguments.posed && std::filesystem::exists(*arguments.posed))
-    throw InputError(fmt::format("{}: exists already (a new folder was expected)", arguments.posed->string()));
   const bool refine = arguments.poses != "auto";
   OpenSequenceOptions input = arguments.input;
   if (refine && arguments.poses != "refine") input.poses = arguments.poses;

@@ -18,6 +18,9 @@ using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "resight track journal 1";
 
+/// Names of files need not be UTF-8, and JSON must be.
+std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
+
 template <typename Matrix>
 ordered_json to_json(const Matrix& m) {
   ordered_json values = ordered_json::array();
@@ -57,7 +60,7 @@ std::string to_line(const TrackerStep& step) {
                           {"overlap", v.overlap},
                           {"sigma", to_json(v.sigma)},
                           {"edges", edges}};
-  return line.dump() + "\n";
+  return dump(line) + "\n";
 }
 
 // Reads one step. Edges may lead from earlier views only. None if the line is damaged.
@@ -87,7 +90,7 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
   }
 }
 
-std::string head_line(const std::string& job) { return ordered_json{{"format", kFormat}, {"job", job}}.dump() + "\n"; }
+std::string head_line(const std::string& job) { return dump({{"format", kFormat}, {"job", job}}) + "\n"; }
 
 // Whether the first line is the head of any journal. A head that was cut off while it was written counts.
 bool is_journal(std::string_view text) {

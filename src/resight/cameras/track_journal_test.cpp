@@ -128,5 +128,14 @@ TEST_F(TrackJournalTest, AForeignFileIsNotTakenForAJournal) {
   EXPECT_EQ(read(), "my notes\n");
 }
 
+TEST_F(TrackJournalTest, NamesNeedNotBeUtf8) {
+  ViewTracker tracker;
+  (void)tracker.add_view(make_view(0));
+  auto journal = TrackJournal::open(file_, "a folder \xff");
+  ASSERT_TRUE(journal.ok());
+  ASSERT_TRUE(journal->append(tracker.last_step()).ok());
+  EXPECT_EQ(TrackJournal::open(file_, "a folder \xff")->steps().size(), 1U);
+}
+
 }  // namespace
 }  // namespace resight

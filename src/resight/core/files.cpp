@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/core/files.hpp"
 
-#include <fcntl.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
-#include <cstdint>
 #include <cstdio>
-#include <random>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "resight/core/internal/pending_place.hpp"
 
 namespace resight {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A hidden name in `folder` that nobody can guess, so that nobody can place a link there. Long names are cut.
-fs::path temporary_name(const fs::path& folder, const std::string& name) {
-  constexpr std::size_t kMaxShownBytes = 100;
-  std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof(number), 0) != static_cast<ssize_t>(sizeof(number))) number = std::random_device{}();
-  std::string hidden(1, '.');
-  hidden.append(name, 0, kMaxShownBytes).append(".partial-").append(std::to_string(number));
-  return folder / hidden;
-}
 
 /// Makes the path absolute and removes a trailing slash, which filename() and parent_path() require.
 fs::path clean_path(const fs::path& path) {
@@ -45,55 +33,105 @@ fs::path first_missing(const fs::path& path) {
   return missing;
 }
 
-/// Moves entry by entry, so that a folder that cannot be replaced (a mount point, the current folder) can be filled.
-std::error_code move_entries(const fs::path& from, const fs::path& to) {
+std::string reason_of(const std::error_code& error) { return "cannot be written (" + error.message() + ")"; }
+
+/// Whether the folder holds anything but the hidden folder of this name.
+bool is_filled(const fs::path& folder, const fs::path& hidden) {
   std::error_code error;
-  std::vector<fs::path> names;
-  for (fs::directory_iterator it(from, error), end; !error && it != end; it.increment(error))
-    names.push_back(it->path().filename());
-  for (const fs::path& name : names)
-    if (!error) fs::rename(from / name, to / name, error);
-  if (!error) fs::remove(from, error);
-  return error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().filename() != hidden) return true;
+  return static_cast<bool>(error);
 }
 
-/// A new file, open for writing, that is removed unless it is renamed.
-class PendingFile {
+/// Moves files into an existing folder. All or none: if one cannot be moved, the others are moved back.
+class FileTransfer {
  public:
-  explicit PendingFile(fs::path path)
-      : path_(std::move(path)),
-        // With O_EXCL, neither an existing file nor a link is opened.
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)) {}
-  PendingFile(const PendingFile&) = delete;
-  PendingFile& operator=(const PendingFile&) = delete;
-  ~PendingFile() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    if (!is_renamed_) ::unlink(path_.c_str());
-  }
+  FileTransfer(fs::path from, fs::path to)
+      : from_(std::move(from)), to_(std::move(to)), replaced_(from_ / ".replaced") {}
 
-  [[nodiscard]] bool is_open() const { return descriptor_ >= 0; }
-  bool write(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    }
-    return true;
-  }
-  /// The content must be on the disk before the name is: after a power failure, the old or the new file is there.
-  bool rename(const fs::path& target) {
-    if (::fsync(descriptor_) != 0 && errno != EINVAL) return false;
-    is_renamed_ = std::rename(path_.c_str(), target.c_str()) == 0;
-    return is_renamed_;
+  Result<void> run() {
+    if (auto listed = list(); !listed) return listed;
+    std::error_code error;
+    for (const fs::path& folder : folders_)
+      if (!error) fs::create_directories(to_ / folder, error);
+    if (!error) fs::create_directory(replaced_, error);
+    if (error) return file_error(to_, reason_of(error));
+    for (std::size_t i = 0; i < files_.size(); ++i)
+      if (error = move(i); error) {
+        while (i-- > 0) move_back(i);
+        return file_error(to_ / files_[i], reason_of(error));
+      }
+    fs::remove_all(from_, error);
+    return {};
   }
 
  private:
-  fs::path path_;
-  int descriptor_;
-  bool is_renamed_ = false;
+  /// Checks before anything is moved that no file takes the place of a folder, nor a folder that of a file.
+  Result<void> list() {
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(from_, error), end; !error && it != end; it.increment(error)) {
+      const fs::path name = it->path().lexically_relative(from_);
+      const fs::file_status there = fs::status(to_ / name, error);
+      error.clear();
+      const bool is_folder = fs::is_directory(it->symlink_status());
+      if (is_folder && fs::exists(there) && !fs::is_directory(there))
+        return file_error(to_ / name, "is a file where a folder is to be written");
+      if (!is_folder && fs::is_directory(there))
+        return file_error(to_ / name, "is a folder where a file is to be written");
+      (is_folder ? folders_ : files_).push_back(name);
+    }
+    if (error) return file_error(from_, "cannot be read (" + error.message() + ")");
+    return {};
+  }
+
+  [[nodiscard]] fs::path replaced(std::size_t i) const { return replaced_ / std::to_string(i); }
+
+  std::error_code move(std::size_t i) {
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(to_ / files_[i], error)))
+      fs::rename(to_ / files_[i], replaced(i), error);
+    else
+      error.clear();
+    if (error) return error;
+    fs::rename(from_ / files_[i], to_ / files_[i], error);
+    std::error_code ignored;
+    if (error && fs::exists(replaced(i), ignored)) fs::rename(replaced(i), to_ / files_[i], ignored);
+    return error;
+  }
+
+  void move_back(std::size_t i) const {
+    std::error_code ignored;
+    fs::rename(to_ / files_[i], from_ / files_[i], ignored);
+    if (fs::exists(fs::symlink_status(replaced(i), ignored))) fs::rename(replaced(i), to_ / files_[i], ignored);
+  }
+
+  fs::path from_;
+  fs::path to_;
+  fs::path replaced_;  ///< Holds the files that are replaced, until all are.
+  std::vector<fs::path> folders_;
+  std::vector<fs::path> files_;
 };
+
+/// Moves a complete folder to its final place, which is new or empty.
+Result<void> move_to_new(const fs::path& pending, const fs::path& target) {
+  const Error filled = file_error(target, "was filled by another program meanwhile; choose another folder");
+  if (pending.parent_path() == target)
+    return is_filled(target, pending.filename()) ? filled : FileTransfer(pending, target).run();
+  if (std::rename(pending.c_str(), target.c_str()) == 0) return {};
+  if (errno == ENOTEMPTY || errno == EEXIST) return filled;
+  return file_error(target, reason_of({errno, std::generic_category()}));
+}
+
+/// 0, or the error number.
+int write_all(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return 0;
+}
 
 }  // namespace
 
@@ -104,14 +142,33 @@ Error file_error(const fs::path& file, std::string_view what) {
 std::string folder_name(const fs::path& directory) { return clean_path(directory).filename().string(); }
 
 Result<void> check_writable(const fs::path& path) {
+  if (path.empty()) return Error{"the name of the output is empty"};
   const fs::path target = clean_path(path);
   const fs::path missing = first_missing(target);
   const fs::path folder = missing.empty() ? target : missing.parent_path();  // the innermost existing folder
   std::error_code error;
+  if (!missing.empty() && fs::is_symlink(missing, error))
+    return file_error(path, "cannot be written (" + missing.string() + " is a link that leads nowhere)");
   if (!missing.empty() && !fs::is_directory(folder, error))
     return file_error(path, "cannot be written (" + folder.string() + " is not a folder)");
-  if (target.filename().native().size() > NAME_MAX) return file_error(path, "cannot be written (its name is too long)");
-  if (::access(folder.c_str(), W_OK) != 0) return file_error(path, "cannot be written (no permission)");
+  for (const fs::path& part : target.lexically_relative(folder))
+    if (part.native().size() > NAME_MAX) return file_error(path, "cannot be written (its name is too long)");
+  // A file is replaced by a new one, which its folder must allow.
+  const bool is_file = missing.empty() && !fs::is_directory(target, error);
+  if (::access(folder.c_str(), W_OK) != 0 || (is_file && ::access(target.parent_path().c_str(), W_OK | X_OK) != 0))
+    return file_error(
+        path, errno == EROFS ? "cannot be written (the disk is read-only)" : "cannot be written (no permission)");
+  return {};
+}
+
+Result<void> check_writable_folder(const fs::path& path, ExistingFolder existing) {
+  if (auto writable = check_writable(path); !writable) return writable;
+  const fs::path target = clean_path(path);
+  std::error_code error;
+  if (!fs::exists(target, error)) return {};
+  if (!fs::is_directory(target, error)) return file_error(path, "exists already and is not a folder");
+  if (existing == ExistingFolder::kRefuse && is_filled(target, PendingPlace::name_for(target.filename().string())))
+    return file_error(path, "exists already; choose another folder or delete it first");
   return {};
 }
 
@@ -120,75 +177,55 @@ Result<void> write_file(const fs::path& file, std::string_view bytes) {
 }
 
 Result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
+  constexpr double kWait_s = 10;  // Another process that writes the same file is soon done.
   const fs::path target = clean_path(file);
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  if (error) return file_error(target.parent_path(), "cannot be created (" + error.message() + ")");
-  const auto fail = [&](int code) {
-    return file_error(file, "cannot be written (" + std::generic_category().message(code) + ")");
-  };
-  PendingFile pending(temporary_name(target.parent_path(), target.filename().string()));
-  if (!pending.is_open()) return fail(errno);
+  const auto fail = [&](const std::string& why) { return file_error(file, "cannot be written (" + why + ")"); };
+  const auto fail_with = [&](int code) { return fail(std::generic_category().message(code)); };
+  const auto place =
+      PendingPlace::create(target.parent_path(), target.filename().string(), PendingPlace::Kind::kFile, kWait_s);
+  if (!place) return fail(place.error().message);
   for (const std::string_view bytes : parts)
-    if (!pending.write(bytes)) return fail(errno);
-  if (!pending.rename(target)) return fail(errno);
-  return {};
+    if (const int code = write_all((*place)->descriptor(), bytes); code != 0) return fail_with(code);
+  // The content must be on the disk before the name is: after a power failure, the old or the new file is there.
+  if (::fsync((*place)->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
+  return (*place)->finish([&]() -> Result<void> {
+    if (std::rename((*place)->path().c_str(), target.c_str()) != 0) return fail_with(errno);
+    return {};
+  });
 }
 
-Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path, ExistingFolder existing) {
+Result<PendingDirectory> PendingDirectory::create(const fs::path& final_path, ExistingFolder existing, double wait_s) {
+  if (auto writable = check_writable_folder(final_path, existing); !writable) return writable.error();
   const fs::path target = clean_path(final_path);
+  const std::string name = target.filename().string();
   std::error_code error;
   const bool exists = fs::exists(target, error);
-  if (exists && !fs::is_directory(target, error)) return file_error(final_path, "exists already and is not a folder");
-  if (exists && existing == ExistingFolder::kRefuse && !fs::is_empty(target, error))
-    return file_error(final_path, "exists already; choose another folder or delete it first");
-  fs::path first_made = first_missing(target.parent_path());
-  const fs::path pending = temporary_name(exists ? target : target.parent_path(), target.filename().string());
-  fs::create_directories(pending.parent_path(), error);
-  if (!error && !fs::create_directory(pending, error) && !error) error = std::make_error_code(std::errc::file_exists);
-  if (error) return file_error(final_path, "cannot be created (" + error.message() + ")");
-  return PendingDirectory(target, pending, std::move(first_made));
+  // Another command may have begun when the folder did not exist yet.
+  if (exists)
+    if (auto cleared = PendingPlace::clear(target.parent_path() / PendingPlace::name_for(name)); !cleared)
+      return file_error(final_path, "cannot be written (" + cleared.error().message + ")");
+  auto place = PendingPlace::create(exists ? target : target.parent_path(), name, PendingPlace::Kind::kFolder, wait_s);
+  if (!place) return file_error(final_path, "cannot be created (" + place.error().message + ")");
+  return PendingDirectory(target, existing, std::move(*place));
 }
 
-PendingDirectory::PendingDirectory(PendingDirectory&& other) noexcept
-    : final_(std::move(other.final_)),
-      pending_(std::exchange(other.pending_, {})),
-      first_made_(std::move(other.first_made_)) {}
+PendingDirectory::PendingDirectory(fs::path final_path, ExistingFolder existing, std::unique_ptr<PendingPlace> place)
+    : final_(std::move(final_path)), existing_(existing), place_(std::move(place)) {}
+PendingDirectory::PendingDirectory(PendingDirectory&& other) noexcept = default;
+PendingDirectory& PendingDirectory::operator=(PendingDirectory&& other) noexcept = default;
+PendingDirectory::~PendingDirectory() = default;
 
-PendingDirectory& PendingDirectory::operator=(PendingDirectory&& other) noexcept {
-  if (this != &other) {
-    discard();
-    final_ = std::move(other.final_);
-    pending_ = std::exchange(other.pending_, {});
-    first_made_ = std::move(other.first_made_);
-  }
-  return *this;
-}
-
-PendingDirectory::~PendingDirectory() { discard(); }
-
-void PendingDirectory::discard() noexcept {
-  if (pending_.empty()) return;
-  std::error_code error;
-  fs::remove_all(pending_, error);
-  pending_.clear();
-  if (first_made_.empty()) return;
-  // Removes created folders from the inside out, as far as they are empty.
-  for (fs::path folder = final_.parent_path();; folder = folder.parent_path()) {
-    if (!fs::remove(folder, error) || folder == first_made_) return;
-  }
-}
+const fs::path& PendingDirectory::path() const { return place_->path(); }
 
 Result<void> PendingDirectory::commit() {
-  require(!pending_.empty(), "PendingDirectory::commit: called twice");
-  std::error_code error;
-  if (fs::exists(final_, error))
-    error = move_entries(pending_, final_);
-  else
-    fs::rename(pending_, final_, error);
-  if (error) return file_error(final_, "cannot be written (" + error.message() + ")");
-  pending_.clear();
-  return {};
+  require(place_ != nullptr && !place_->is_finished(), "PendingDirectory::commit: called twice");
+  return place_->finish([&]() -> Result<void> {
+    std::error_code error;
+    if (existing_ == ExistingFolder::kRefuse || !fs::exists(final_, error)) return move_to_new(path(), final_);
+    return FileTransfer(path(), final_).run();
+  });
 }
+
+void remove_pending_files() noexcept { PendingPlace::remove_all(); }
 
 }  // namespace resight

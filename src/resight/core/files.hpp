@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,7 @@ namespace resight {
 [[nodiscard]] Result<void> check_writable(const std::filesystem::path& path);
 
 /// Writes `bytes` under a hidden temporary name beside `file`, then renames it. Creates the folder if it is missing.
+/// Waits for another process that writes the same file, and removes what one that was killed has left.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
 /// Writes the parts one after the other.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::initializer_list<std::string_view> parts);
@@ -30,30 +32,41 @@ enum class ExistingFolder {
   kFill,    ///< Adds files and replaces those of the same name.
 };
 
+/// Same as check_writable(), for a folder that PendingDirectory is to create or to fill.
+[[nodiscard]] Result<void> check_writable_folder(const std::filesystem::path& path, ExistingFolder existing);
+
+class PendingPlace;
+
 /// A folder that is filled under a hidden temporary name. The temporary folder lies beside the final one or, if that
-/// exists, inside it. Files appear under the final name only with commit(); without it, nothing remains.
+/// exists, inside it. Files appear under the final name only with commit(), all or none; without it, nothing remains.
+/// What a process that was killed has left is removed by the next one that writes to the same folder.
 class PendingDirectory {
  public:
-  /// Creates the hidden folder, and the parent folders of `final_path`. Fails if these cannot be written, or if
-  /// `final_path` is a file, or (with kRefuse) a folder that is not empty.
+  /// Creates the hidden folder, and the parent folders of `final_path`. Fails if these cannot be written, if
+  /// `final_path` is a file, or (with kRefuse) a folder that is not empty, or if another process is filling it for
+  /// longer than `wait_s`.
   [[nodiscard]] static Result<PendingDirectory> create(const std::filesystem::path& final_path,
-                                                       ExistingFolder existing = ExistingFolder::kRefuse);
+                                                       ExistingFolder existing = ExistingFolder::kRefuse,
+                                                       double wait_s = 0);
   PendingDirectory(PendingDirectory&& other) noexcept;
   PendingDirectory& operator=(PendingDirectory&& other) noexcept;
   ~PendingDirectory();
   /// The hidden folder, to be filled.
-  [[nodiscard]] const std::filesystem::path& path() const { return pending_; }
+  [[nodiscard]] const std::filesystem::path& path() const;
   [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
-  /// Moves the files to final_path(). May be called once.
+  /// Moves the files to final_path(). May be called once. Fails with kRefuse if another process has filled it
+  /// meanwhile.
   [[nodiscard]] Result<void> commit();
 
  private:
-  PendingDirectory(std::filesystem::path final_path, std::filesystem::path pending, std::filesystem::path first_made)
-      : final_(std::move(final_path)), pending_(std::move(pending)), first_made_(std::move(first_made)) {}
-  void discard() noexcept;
+  PendingDirectory(std::filesystem::path final_path, ExistingFolder existing, std::unique_ptr<PendingPlace> place);
   std::filesystem::path final_;
-  std::filesystem::path pending_;     ///< Empty after commit() or a move.
-  std::filesystem::path first_made_;  ///< The outermost folder that was created; empty if none.
+  ExistingFolder existing_;
+  std::unique_ptr<PendingPlace> place_;  ///< Null after a move.
 };
+
+/// Removes all temporary files and folders of this process, as before a signal ends it. Nothing can be written
+/// afterwards: other threads that try wait for the end of the process.
+void remove_pending_files() noexcept;
 
 }  // namespace resight

@@ -166,7 +166,7 @@ std::string format_run(const EvaluatedRun& run) {
               {"arrivals", score_json(run.events.arrivals)},
               {"delays_views", run.events.delays},
               {"views", views}}
-             .dump() +
+             .dump(-1, ' ', false, Json::error_handler_t::replace) +  // names of folders need not be UTF-8
          "\n";
 }
 

@@ -26,7 +26,10 @@ Result<ConversionSummary> convert_to_bop(std::span<const ModelLocation> models,
   for (const ModelLocation& location : models) wanted.push_back(location.bop_id);
   const auto ids = assign_bop_ids(wanted);
   if (!ids) return io::file_error(directory, ids.error().message);
-  const auto writer = BopModelsWriter::create(directory);
+  // `directory` appears with both of its folders, or not at all.
+  auto pending = io::PendingDirectory::create(directory);
+  if (!pending) return pending.error();
+  const auto writer = BopModelsWriter::create(pending->path());
   if (!writer) return writer.error();
   ConversionSummary summary;
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -36,6 +39,7 @@ Result<ConversionSummary> convert_to_bop(std::span<const ModelLocation> models,
     add_model(*model, summary);
   }
   if (const auto done = (*writer)->finish(); !done) return done.error();
+  if (const auto done = pending->commit(); !done) return done.error();
   return summary;
 }
 

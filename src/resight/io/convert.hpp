@@ -26,7 +26,8 @@ struct ConversionSummary {
                                                          const ChangeFiles& changes = {});
 
 /// Writes models one by one: to BOP as models/ and train/ of the data set `directory` (BopModelsWriter), to TUW as one
-/// folder each. Fails for a mesh without views if the format is TUW, because its views would have to be rendered first.
+/// folder each. `directory` must be empty or not exist, and appears only when it is complete. Fails for a mesh without
+/// views if the format is TUW, because its views would have to be rendered first.
 [[nodiscard]] Result<ConversionSummary> convert_models(std::span<const ModelLocation> models,
                                                        const std::filesystem::path& directory, DatasetFormat format);
 

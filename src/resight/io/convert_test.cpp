@@ -194,6 +194,10 @@ TEST(ConvertModels, MeshesToBopOnly) {
   EXPECT_THAT(convert_models(*found, directory / "tuw", DatasetFormat::kTuw).error().message,
               HasSubstr("without views"));
   EXPECT_FALSE(std::filesystem::exists(directory / "tuw"));
+  io::write_text(directory / "full/mine.txt", "mine");
+  EXPECT_THAT(convert_models(*found, directory / "full", DatasetFormat::kBop).error().message,
+              HasSubstr("exists already"));
+  io::write_text(directory / ".bop.resight-partial/models/obj_000001.ply", "cut o");  // of an interrupted run
   ASSERT_TRUE(convert_models(*found, directory / "bop", DatasetFormat::kBop).ok());
   const auto bop = find_models({directory / "bop"});
   ASSERT_TRUE(bop.ok());

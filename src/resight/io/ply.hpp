@@ -30,9 +30,9 @@ struct PlyContent {
 [[nodiscard]] Result<PointCloud> read_ply_cloud(const std::filesystem::path& file, double metres_per_unit = 1.0);
 
 /// Writes a binary little-endian PLY, with normals and colours if the cloud has them. Coordinates are metres times
-/// `units_per_metre`.
+/// `units_per_metre`. `comment`: a line of the header; none if it is empty.
 [[nodiscard]] Result<void> write_ply(const std::filesystem::path& file, const PointCloud& cloud,
-                                     double units_per_metre = 1.0);
+                                     double units_per_metre = 1.0, const std::string& comment = "");
 
 /// Same for a mesh with uvs. Its texture becomes a PNG with the same stem beside it (named by "comment TextureFile"). A
 /// textured mesh is written without vertex colours, because the texture takes precedence.

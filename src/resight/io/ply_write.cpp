@@ -22,9 +22,9 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
-std::string make_ply_header(const VertexArrays& vertices, std::size_t num_faces, const std::string& texture_file) {
+std::string make_ply_header(const VertexArrays& vertices, std::size_t num_faces, const std::string& comment) {
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment written by resight\n";
-  if (!texture_file.empty()) header += "comment TextureFile " + texture_file + "\n";
+  if (!comment.empty()) header += "comment " + comment + "\n";
   header += "element vertex " + std::to_string(vertices.points.size()) +
             "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!vertices.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
@@ -60,10 +60,11 @@ const std::vector<Rgb8> kNoColors;
 
 }  // namespace
 
-Result<void> write_ply(const std::filesystem::path& file, const PointCloud& cloud, double units_per_metre) {
+Result<void> write_ply(const std::filesystem::path& file, const PointCloud& cloud, double units_per_metre,
+                       const std::string& comment) {
   const VertexArrays vertices{cloud.points, cloud.normals, kNoUvs, cloud.colors};
   check_attributes(vertices, units_per_metre);
-  std::string bytes = make_ply_header(vertices, 0, "");
+  std::string bytes = make_ply_header(vertices, 0, comment);
   append_vertices(bytes, vertices, units_per_metre);
   return io::write_file(file, bytes);
 }
@@ -73,13 +74,13 @@ Result<void> write_ply(const std::filesystem::path& file, const TriangleMesh& me
   const VertexArrays vertices{mesh.vertices, mesh.normals, textured ? mesh.uvs : kNoUvs,
                               textured ? kNoColors : mesh.colors};
   check_attributes(vertices, units_per_metre);
-  std::filesystem::path texture_file;
+  std::string texture;
   if (textured) {
-    texture_file = file;
-    texture_file.replace_extension(".png");
+    const std::filesystem::path texture_file = std::filesystem::path(file).replace_extension(".png");
+    texture = "TextureFile " + texture_file.filename().string();
     if (const auto done = write_color(texture_file, mesh.texture); !done) return done;
   }
-  std::string bytes = make_ply_header(vertices, mesh.faces.size(), texture_file.filename().string());
+  std::string bytes = make_ply_header(vertices, mesh.faces.size(), texture);
   append_vertices(bytes, vertices, units_per_metre);
   for (const auto& face : mesh.faces) {
     append(bytes, std::uint8_t{3});

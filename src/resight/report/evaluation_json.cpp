@@ -11,6 +11,7 @@ namespace resight {
 namespace {
 
 using report::score_json;
+using report::to_text;
 using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -116,7 +117,7 @@ std::string format_evaluation_json(const EvaluationHeader& header,
   Json json = document(header);
   json["configurations"] = Json::array();
   for (const ConfigurationSummary& c : configurations) json["configurations"].push_back(configuration_json(c));
-  return json.dump(1) + "\n";
+  return to_text(json);
 }
 
 std::string format_evaluation_times_json(const EvaluationHeader& header,
@@ -124,7 +125,7 @@ std::string format_evaluation_times_json(const EvaluationHeader& header,
   Json json = document(header);
   json["configurations"] = Json::array();
   for (const ConfigurationSummary& c : configurations) json["configurations"].push_back(times_json(c));
-  return json.dump(1) + "\n";
+  return to_text(json);
 }
 
 }  // namespace resight

@@ -44,7 +44,7 @@ Result<void> write_events(const Simulation& simulation, const fs::path& file) {
                           {"num_views", simulation.num_views()},
                           {"obj_ids", objects},
                           {"events", events}};
-  return write_file(file, json.dump(1) + "\n");
+  return write_file(file, json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 void report(const WriteSimulationOptions& options, const std::string& what) {

@@ -61,6 +61,19 @@ Result<void> check_names(std::span<const ModelLocation> locations) {
   return {};
 }
 
+// Reads every model once before hours of training, so that a mistake in the last one does not lose the others.
+Result<void> check_models(std::span<const ModelLocation> locations) {
+  std::vector<ObjectModel> ids;
+  for (const ModelLocation& location : locations) {
+    const Result<ModelSource> source = read_model(location);
+    if (!source.ok()) return source.error();
+    ObjectModel& model = ids.emplace_back();
+    model.name = source->name;
+    model.bop_id = source->bop_id;
+  }
+  return assign_bop_ids(ids);
+}
+
 ObjectSymmetries find_undeclared(const PointCloud& surface, const TrainOptions& options) {
   SymmetryOptions symmetry = options.symmetry;
   symmetry.num_threads = options.num_threads;
@@ -93,6 +106,7 @@ Result<ModelLibrary> train_library(std::span<const ModelLocation> locations, con
   if (locations.empty()) return Error{"no models to train from"};
   const Result<void> names = check_names(locations);
   if (!names.ok()) return names.error();
+  if (const Result<void> readable = check_models(locations); !readable.ok()) return readable.error();
   ModelLibrary library;
   library.options_hash = options.hash();
   library.surface_voxel_m = static_cast<float>(options.surface_voxel_m);

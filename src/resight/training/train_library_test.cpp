@@ -85,6 +85,17 @@ TEST_F(MeshFolder, AnUnreadableModelNamesItsFile) {
   EXPECT_THAT(library.error().message, HasSubstr(locations->front().path.filename().string()));
 }
 
+TEST_F(MeshFolder, EveryModelIsReadBeforeTheFirstIsTrained) {
+  const Result<std::vector<ModelLocation>> locations = find_models({folder_});
+  ASSERT_TRUE(locations.ok());
+  fs::resize_file(locations->back().path, 20);
+  int num_begun = 0;
+  const auto library =
+      train_library(*locations, quick_library_options(), [&](int, int, const std::string&) { ++num_begun; });
+  EXPECT_THAT(library.error().message, HasSubstr(locations->back().path.filename().string()));
+  EXPECT_EQ(num_begun, 0);
+}
+
 TEST(TrainLibrary, RefusesNothingAndNamesThatAreNotUnique) {
   EXPECT_THAT(train_library({}).error().message, HasSubstr("no models"));
   const std::vector<ModelLocation> twice{{.name = "mug", .bop_id = 0, .path = "/a/mug.ply", .format = "mesh"},

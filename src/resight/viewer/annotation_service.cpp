@@ -211,7 +211,8 @@ HttpResponse AnnotationService::answer(const HttpRequest& request, const std::ve
   if (parts[0] == "place") return answer_place(task, state_->views, body);
   if (parts[0] != "export") return nothing_here();
   if (const auto done = save(); !done) return make_text_response(500, done.error().message);
-  return json_response(nlohmann::ordered_json{{"folder", task.export_folder.string()}}.dump());
+  return json_response(nlohmann::ordered_json{{"folder", task.export_folder.string()}}.dump(
+      -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 Result<void> AnnotationService::save() {

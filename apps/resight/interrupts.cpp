@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "interrupts.hpp"
+
+#include <semaphore.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <thread>
+
+#include "resight/core/files.hpp"
+
+namespace resight::app {
+namespace {
+
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+
+std::atomic<int> interrupt_number = 0;
+sem_t has_interrupt;  // Unlike a condition variable, a handler may post it.
+
+/// A handler may not remove folders itself, because few functions are safe in it.
+void post_interrupt(int number) {
+  const int interrupted_errno = errno;
+  interrupt_number = number;
+  ::sem_post(&has_interrupt);
+  // Whoever wrote into a closed pipe would go on and report it.
+  while (number == SIGPIPE) ::pause();
+  errno = interrupted_errno;
+}
+
+/// Ends the program as the signal would have done without a handler, so that a shell knows the reason.
+[[noreturn]] void end_by_interrupt() {
+  while (::sem_wait(&has_interrupt) != 0) {
+  }
+  remove_pending_files();
+  const int number = interrupt_number;
+  std::signal(number, SIG_DFL);
+  sigset_t one;
+  ::sigemptyset(&one);
+  ::sigaddset(&one, number);
+  ::pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
+  std::raise(number);
+  ::_exit(128 + number);
+}
+
+void start_waiting() {
+  ::sem_init(&has_interrupt, 0, 0);
+  std::thread(end_by_interrupt).detach();
+}
+
+}  // namespace
+
+void clean_up_when_interrupted() {
+  [[maybe_unused]] static const bool is_waiting = (start_waiting(), true);
+  std::signal(SIGXFSZ, SIG_IGN);
+  for (const int number : kInterrupts) {
+    struct sigaction action {};
+    ::sigaction(number, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = post_interrupt;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(number, &action, nullptr);
+  }
+}
+
+}  // namespace resight::app

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace resight::app {
+
+/// From now on, the program removes its temporary files before a signal ends it (Ctrl-C, SIGTERM, a closed terminal or
+/// pipe), and a limit on the size of files is an error like a full disk. Signals that the caller of the program ignores
+/// stay ignored, as under nohup. To be called again after others have handled these signals.
+void clean_up_when_interrupted();
+
+}  // namespace resight::app
