@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "resight/core/options.hpp"
-#include "resight/rendering/lens_distortion.hpp"
+#include "resight/rendering/residual_distortion.hpp"
 
 namespace resight {
 
@@ -10,7 +10,7 @@ namespace resight {
 struct DepthErrors {
   double shift_u_px = 0;
   double shift_v_px = 0;
-  LensDistortion lens = {};
+  ResidualDistortion lens = {};
   double disparity_offset_px = 0;
   double disparity_noise_px = 0;
   double disparity_noise_cell_px = 6;

@@ -120,7 +120,7 @@ TEST(DepthErrors, DepthIsShiftedAgainstColour) {
 }
 
 TEST(DepthErrors, LensMovesTheCornersOnly) {
-  const LensDistortion lens{0.05, 0};
+  const ResidualDistortion lens{0.05, 0};
   const Camera kinect = make_kinect_camera();
   EXPECT_NEAR((ideal_pixel(lens, kinect, 319, 240) - Eigen::Vector2d(319, 240)).norm(), 0, 1e-4);
   EXPECT_NEAR((ideal_pixel(lens, kinect, 0, 0)).norm(), 400 * 0.05 * 0.579, 0.2);  // r^2 = (400 / 525)^2

@@ -6,8 +6,8 @@
 #include "resight/core/image.hpp"
 #include "resight/geometry/camera.hpp"
 #include "resight/geometry/rigid3.hpp"
-#include "resight/rendering/lens_distortion.hpp"
 #include "resight/rendering/raycast_scene.hpp"
+#include "resight/rendering/residual_distortion.hpp"
 
 namespace resight {
 
@@ -37,8 +37,8 @@ struct RenderOptions {
   /// Light adds up in linear intensities, as in a scene, instead of in encoded grey levels. Also fills
   /// RenderedView::light.
   bool linear_light = false;
-  LensDistortion color_lens = {};  ///< Of the colour image only.
-  int num_threads = 1;             ///< Same bytes for any value >= 1.
+  ResidualDistortion color_lens = {};  ///< Of the colour image only.
+  int num_threads = 1;                 ///< Same bytes for any value >= 1.
   void check() const;
 };
 

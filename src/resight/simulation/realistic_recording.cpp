@@ -77,8 +77,8 @@ SensorOptions draw_sensor(Rng& rng) {
   return sensor;
 }
 
-LensDistortion draw_lens(Rng& rng) {
-  LensDistortion lens;
+ResidualDistortion draw_lens(Rng& rng) {
+  ResidualDistortion lens;
   lens.k1 = clamped_normal(rng, 0.005, 0.01);
   lens.k2 = clamped_normal(rng, 0.003, 0.006);
   return lens;

@@ -12,7 +12,7 @@ namespace resight {
 /// A depth camera with structured light and its colour camera, after factory calibration.
 [[nodiscard]] SensorOptions draw_sensor(Rng& rng);
 /// The distortion of the colour camera that its calibration leaves.
-[[nodiscard]] LensDistortion draw_lens(Rng& rng);
+[[nodiscard]] ResidualDistortion draw_lens(Rng& rng);
 /// Two lamps under the ceiling, one warm and one cold, that cast soft shadows, and ambient light.
 [[nodiscard]] Lighting draw_lighting(Rng& rng);
 /// A tracker of camera poses.

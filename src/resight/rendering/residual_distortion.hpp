@@ -9,20 +9,21 @@ namespace resight {
 
 /// Radial distortion that is left after calibration: the pixel at radius r shows what the ideal pixel at
 /// r (1 + k1 r^2 + k2 r^4) would show, with r = 1 at an angle of 45 deg (Brown 1971).
-struct LensDistortion {
+struct ResidualDistortion {
   double k1 = 0;
   double k2 = 0;
-  void check() const { check_options("LensDistortion", *this); }
+  void check() const { check_options("ResidualDistortion", *this); }
 };
 
-inline void declare(OptionVisitor& v, LensDistortion& o) {
+inline void declare(OptionVisitor& v, ResidualDistortion& o) {
   v.field("k1", o.k1, between(-0.2, 0.2), "Coefficient of r^2. 0.01 moves the corner of a Kinect's image by 2.7 px.",
           "Brown 1971");
   v.field("k2", o.k2, between(-0.2, 0.2), "Coefficient of r^4.", "Brown 1971");
 }
 
 /// The ideal pixel that a pixel of the distorted image shows.
-[[nodiscard]] inline Eigen::Vector2d ideal_pixel(const LensDistortion& lens, const Camera& camera, double u, double v) {
+[[nodiscard]] inline Eigen::Vector2d ideal_pixel(const ResidualDistortion& lens, const Camera& camera, double u,
+                                                 double v) {
   const double x = (u - camera.cx) / camera.fx;
   const double y = (v - camera.cy) / camera.fy;
   const double r_sq = x * x + y * y;

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <cstring>
+
+#include "reader.hpp"
+#include "resight/core/crc32.hpp"
+#include "resight/io/images.hpp"
+#include "resight/io/internal/image_header.hpp"
+#include "resight/io/internal/recording_images.hpp"
+#include "resight/recordings/testing/ros1_messages.hpp"
+
+namespace resight::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMaxFuzzPixels = 1 << 18;
+
+Image<Rgb8> make_color() {
+  Image<Rgb8> color(7, 5);
+  for (std::size_t i = 0; i < color.size(); ++i) color[i] = {static_cast<std::uint8_t>(7 * i), 100, 3};
+  return color;
+}
+
+std::vector<std::string> make_image_seeds() {
+  return {bytes_written_by("seed.png", [](const fs::path& file) { (void)write_color(file, make_color()); }),
+          bytes_written_by("seed.jpg", [](const fs::path& file) { (void)write_color(file, make_color()); }),
+          bytes_written_by("seed.png",
+                           [](const fs::path& file) { (void)write_depth(file, Image<float>(7, 5, 1.5F), 1e-3); }),
+          bytes_written_by("seed.png",
+                           [](const fs::path& file) { (void)write_mask(file, Image<std::uint8_t>(7, 5, 255)); })};
+}
+
+std::uint32_t big_endian_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+/// Corrects the checksums of a PNG, so that its decoder sees what was changed.
+std::string with_checksums(std::string_view bytes) {
+  std::string png(bytes);
+  if (!png.starts_with("\x89PNG\r\n\x1a\n")) return png;
+  for (std::size_t at = 8; png.size() - at >= 12;) {
+    const std::size_t length = big_endian_at(png, at);
+    if (length > png.size() - at - 12) break;
+    const std::uint32_t crc = compute_crc32(std::string_view(png).substr(at + 4, length + 4));
+    for (std::size_t i = 0; i < 4; ++i) png[at + 8 + length + i] = static_cast<char>(crc >> (24 - 8 * i));
+    at += length + 12;
+  }
+  return png;
+}
+
+void decode(std::string_view bytes) {
+  const std::string image = with_checksums(bytes);
+  const auto header = io::parse_image_header(image);
+  // Large images are valid, but slow.
+  if (header && static_cast<std::int64_t>(header->width) * header->height > kMaxFuzzPixels) return;
+  (void)decode_color(image, "fuzz.png", kMaxFuzzPixels);
+  (void)decode_depth_raw(image, "fuzz.png");
+}
+
+std::vector<std::string> make_npy_seeds() {
+  const auto npy = [](const std::string& dictionary, std::size_t num_bytes) {
+    return std::string("\x93NUMPY\1\0", 8) + static_cast<char>(dictionary.size()) + '\0' + dictionary +
+           std::string(num_bytes, '\x3f');
+  };
+  return {npy("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }\n", 48),
+          npy("{'descr': '<u2', 'fortran_order': False, 'shape': (2, 2, 1), }\n", 8),
+          npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1), }\n", 8)};
+}
+
+void read_npy(std::string_view bytes) {
+  const fs::path file = write_scratch("depth.npy", bytes);
+  (void)read_depth_npy(file);
+  (void)read_depth_npy(file, 0.001);
+}
+
+/// The first byte chooses type and layout of the message.
+std::vector<std::string> make_image_message_seeds() {
+  std::vector<std::string> seeds;
+  const auto raw = [](const char* encoding, std::size_t pixel_bytes) {
+    return recordings::image_message(1.5, "camera", encoding, 4, 2, std::string(8 * pixel_bytes, '\x20'));
+  };
+  for (const char* encoding : {"rgb8", "bgr8"}) seeds.push_back('\0' + raw(encoding, 3));
+  for (const char* encoding : {"mono8", "bayer_rggb8"}) seeds.push_back('\0' + raw(encoding, 1));
+  for (const char* encoding : {"16UC1", "mono16", "yuv422"}) seeds.push_back('\0' + raw(encoding, 2));
+  seeds.push_back('\0' + raw("32FC1", 4));
+  const std::string png = bytes_written_by(
+      "seed.png", [](const fs::path& file) { (void)write_depth(file, Image<float>(7, 5, 1.5F), 1e-3); });
+  const auto compressed = [](const std::string& format, const std::string& data) {
+    return '\2' + recordings::packed_header(1, "camera") + recordings::packed_text(format) +
+           recordings::packed_text(data);
+  };
+  seeds.push_back(compressed("png", png));
+  seeds.push_back(compressed("16UC1; compressedDepth png", std::string(12, '\0') + png));
+  seeds.push_back(compressed("32FC1; compressedDepth png", std::string(12, '\1') + png));
+  return seeds;
+}
+
+void read_image_message(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const char* const type = (bytes[0] & 2) != 0 ? "sensor_msgs/CompressedImage" : "sensor_msgs/Image";
+  const RecordedTopic topic{"/camera/depth/image", type,
+                            (bytes[0] & 1) != 0 ? MessageLayout::kCdr : MessageLayout::kRos1};
+  bytes.remove_prefix(1);
+  (void)io::decode_color_message(bytes, topic);
+  (void)io::decode_depth_message(bytes, topic, std::nullopt);
+  (void)decode_image_start(bytes, topic);
+}
+
+}  // namespace
+
+std::vector<FuzzReader> image_readers() {
+  return {
+      {"image_header", make_image_seeds, [](std::string_view bytes) { (void)io::parse_image_header(bytes); }},
+      {"image", make_image_seeds, decode, 2000},
+      {"npy", make_npy_seeds, read_npy},
+      {"image_message", make_image_message_seeds, read_image_message},
+  };
+}
+
+}  // namespace resight::fuzz
