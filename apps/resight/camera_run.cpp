@@ -32,6 +32,7 @@ std::vector<ObservedObject> observe_with_progress(const Sequence& sequence, cons
 
 PreparedView read_prepared(const Sequence& sequence, int view, int num_threads) {
   PrepareViewOptions options;
+  options.max_pixels = kMaxWorkingPixels;
   options.num_threads = num_threads;
   return prepare_view(value_or_throw(sequence.read_view(view)), options);
 }

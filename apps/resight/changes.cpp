@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "commands.hpp"
 #include "output_paths.hpp"
@@ -37,11 +38,18 @@ PointCloud paint(PointCloud scene, const ChangeResult& changes) {
   return scene;
 }
 
-/// The first view has no changes, and no masks yet.
-void write_masks(const std::filesystem::path& folder, const RgbdFrame& frame, const ChangeResult& changes) {
-  const Image<std::uint8_t> none(frame.camera.width, frame.camera.height);
+/// A mask of the recorded image from one of a view that was reduced for the work. The first view has no mask yet.
+Image<std::uint8_t> enlarge(const Image<std::uint8_t>& mask, int reduction, const Camera& recorded) {
+  Image<std::uint8_t> enlarged(recorded.width, recorded.height);
+  for (int v = 0; v < reduction * mask.height(); ++v)
+    for (int u = 0; u < reduction * mask.width(); ++u) enlarged(u, v) = mask(u / reduction, v / reduction);
+  return enlarged;
+}
+
+void write_masks(const std::filesystem::path& folder, const std::string& name, const ChangeResult& changes,
+                 int reduction, const Camera& recorded) {
   const auto write = [&](const char* kind, const Image<std::uint8_t>& mask) {
-    value_or_throw(write_mask(folder / fmt::format("{}_{}.png", frame.name, kind), mask.empty() ? none : mask));
+    value_or_throw(write_mask(folder / fmt::format("{}_{}.png", name, kind), enlarge(mask, reduction, recorded)));
   };
   write("novel", changes.novel_mask);
   write("removed", changes.removed_mask);
@@ -68,12 +76,15 @@ void run_changes(const ChangesArguments& arguments) {
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
-    const ChangeResult changes = scene.add_view(prepare_view(value_or_throw(sequence->read_view(v)), config.prepare));
+    RgbdFrame recorded = value_or_throw(sequence->read_view(v));
+    const Camera camera = recorded.camera;
+    const ChangeResult changes = scene.add_view(prepare_view(std::move(recorded), config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
-    write_masks(folder.path(), frame, changes);
+    const int reduction = find_reduction(camera, config.prepare);
+    write_masks(folder.path(), frame.name, changes, reduction, camera);
     value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
-    record.views.push_back({frame.name, frame.camera.width, frame.world_from_camera, changes.changed_share,
+    record.views.push_back({frame.name, frame.camera.width, reduction, frame.world_from_camera, changes.changed_share,
                             changes.pose_suspect,
                             find_change_regions(frame, changes, config.changes.detection.voxel_m)});
     progress.report(v + 1, fmt::format("{}: {}{}", frame.name, count_regions(record.views.back()),

@@ -72,6 +72,7 @@ void set_default(RecognizerConfig& config) {
 RecognizerConfig RecognizerConfig::from_preset(const std::string& name) {
   RecognizerConfig config;
   config.preset = name;
+  config.prepare.max_pixels = kMaxWorkingPixels;
   if (name == "default") {
     set_default(config);
   } else if (name == "mvr-chd" || name == "mvr") {

@@ -10,7 +10,8 @@ namespace resight {
 /// What changed in a view, without knowledge of objects.
 struct ViewChangeRecord {
   std::string view_name;
-  int image_width_px = 0;
+  int image_width_px = 0;    ///< Of the view in which the regions were found.
+  int reduction = 1;         ///< This many pixels of the recorded image are one of that view, in each direction.
   Rigid3 world_from_camera;  ///< Corrected.
   double changed_share = 0;
   bool pose_suspect = false;

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "resight/sensor/reduce_frame.hpp"
+
 namespace resight {
 namespace {
 
@@ -24,11 +26,16 @@ void drop_farther_points(double max_depth_m, OrganizedCloud& cloud) {
 
 }  // namespace
 
+int find_reduction(const Camera& camera, const PrepareViewOptions& options) {
+  return options.max_pixels ? find_reduction(camera, *options.max_pixels) : 1;
+}
+
 PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options) {
   options.check();
   if (const Result<void> valid = check_frame(frame); !valid) throw std::invalid_argument(valid.error().message);
   PreparedView view;
-  view.frame = std::move(frame);
+  const int divisor = find_reduction(frame.camera, options);
+  view.frame = divisor > 1 ? reduce_frame(frame, divisor) : std::move(frame);
   if (options.min_depth_m) drop_nearer_depth(*options.min_depth_m, view.frame.depth_m);
   view.cloud = back_project(view.frame.camera, view.frame.depth_m);
   ComputeNormalsOptions normals = options.normals;

@@ -10,7 +10,11 @@
 
 namespace resight {
 
+/// 1920 x 1080 pixels are within it. More pixels show no more of an object at the resolution of its model.
+inline constexpr int kMaxWorkingPixels = 1 << 21;
+
 struct PrepareViewOptions {
+  std::optional<int> max_pixels{};
   ComputeNormalsOptions normals{};
   DepthEdgeOptions edges{};
   std::optional<double> min_depth_m = 0.15;
@@ -20,6 +24,9 @@ struct PrepareViewOptions {
 };
 
 inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
+  v.field("max_pixels", o.max_pixels, at_least(1),
+          "A view with more pixels is reduced to 1/2, 1/3, ... of its width and height, which bounds time and memory. "
+          "off: never.");
   v.group("normals", o.normals);
   v.group("edges", o.edges);
   v.field(
@@ -42,7 +49,11 @@ struct PreparedView {
   NoiseImages noise;  ///< Axial and lateral sigma in metres; NaN where there is no point.
 };
 
-/// Computes cloud, normals, depth edges and noise of a frame, without what is too near to be measured. Throws
+/// Divisor of width and height by which prepare_view() reduces views of this camera.
+[[nodiscard]] int find_reduction(const Camera& camera, const PrepareViewOptions& options);
+
+/// Computes cloud, normals, depth edges and noise of a frame (reduced if it is large: reduce_frame()), without what is
+/// too near to be measured. Throws
 /// std::invalid_argument if check_frame() fails.
 [[nodiscard]] PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options = {});
 
