@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include <numbers>
 #include <regex>
 
+#include "resight/core/files.hpp"
 #include "resight/core/random.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
@@ -391,7 +393,8 @@ const Row kRows[] = {
     {"TrainOntoAFolder", kNothing, "train meshes --out empty", 2, "empty: is a folder"},
     {"TrainOverItsInput", kNothing, "train meshes/cube.ply --out meshes/cube.ply", 2, "cube\\.ply: is an input"},
     {"TrainOverAForeignFile", kNothing, "train meshes --out file", 2, "file: exists already and is no model library"},
-    {"TrainOverALink", link("dangling", "nowhere"), "train meshes --out dangling", 2, "dangling: exists already"},
+    {"TrainOverALink", link("dangling", "nowhere"), "train meshes --out dangling", 2,
+     "dangling is a link that leads nowhere"},
     {"TrainOverALibrary", kNothing, "train meshes --out models.resight", 0, "", "models.resight"},
     {"TrainToALongName", kNothing, kTrainToLongName.c_str(), 2, "name is too long"},
     {"TrackOverTheSequence", kNothing, "track --sequence views --out views/scene_camera.json", 2,
@@ -583,7 +586,8 @@ const Row kRows[] = {
     {"EmptyDepth", write("views/depth/000001.png", ""), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
     {"TruncatedDepth", cut("views/depth/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
     {"TruncatedColor", cut("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
-    {"ColorWithAFlippedBit", flip("views/rgb/000001.png", 0.5), kRecognize, 2, "000001\\.png: ", "out/finished_views.jsonl"},
+    {"ColorWithAFlippedBit", flip("views/rgb/000001.png", 0.5), kRecognize, 2,
+     "000001\\.png: ", "out/finished_views.jsonl"},
     {"DepthWithAFlippedBit", flip("views/depth/000001.png", 0.5), kChanges, 2, "000001\\.png: "},
     {"TextAsColor", write("views/rgb/000001.png", "hello"), kChanges, 2, "000001\\.png: "},
     {"ColorAsDepth", small_image("views/depth/000001.png"), kChanges, 2, "000001\\.png: "},
@@ -805,6 +809,26 @@ TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
   auto all = nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"];
   all.erase(2);
   EXPECT_EQ(views, all);
+}
+
+TEST_F(CommandLineResults, AFolderIsWrittenByOneCommandAtATime) {
+  const auto other = PendingDirectory::create(folder_ / "out", ExistingFolder::kFill);
+  ASSERT_TRUE(other.ok());
+  for (const char* command : {kConvert, kRecognize, kChanges}) {
+    const Outcome outcome = run(folder_, command);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_THAT(testing::PrintToString(outcome.errors), testing::HasSubstr("another command is writing it")) << command;
+  }
+  EXPECT_TRUE(fs::is_empty(other->path()));
+}
+
+TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) {
+  const std::string command = "cd " + folder_.string() + " && { " RESIGHT_PROGRAM " " + kRecognize +
+                              " --stream 2>/dev/null; echo $? >status; } | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(read_text(folder_ / "status"), std::to_string(128 + SIGPIPE) + "\n");
+  EXPECT_THAT(list(folder_), testing::Not(testing::Contains(testing::HasSubstr("resight-partial"))));
+  EXPECT_FALSE(fs::exists(folder_ / "out/summary.json"));
 }
 
 TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {

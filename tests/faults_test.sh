@@ -33,7 +33,7 @@ faults=(kill interrupt file_limit read_only full_disk)
 write_scene 3 -110 -90 false >scene.toml
 run simulate scene.toml --out data --format bop --seed 1
 run train data/models --out models.resight
-mkdir meshes && cp data/models/obj_000002.ply meshes/tea_box.ply
+mkdir meshes && cp data/models/obj_000002.ply meshes
 [[ " ${commands[*]} " == *" model "* ]] && run simulate --preset turntable-recording --out recording
 
 can_mount=true
