@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
 # the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, every public header alone,
-# installation and a project that uses it, all module tests under AddressSanitizer and UndefinedBehaviorSanitizer, the
-# program under ThreadSanitizer.
+# installation and a project that uses it, all module tests and a short run of the fuzz targets under AddressSanitizer
+# and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
 set -euo pipefail
@@ -19,7 +19,7 @@ scripts/setup.sh --tests
 source scripts/common.sh
 
 check_format() {
-  find src apps examples tests bench \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
+  find src apps examples tests bench fuzz \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
 }
 run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
 count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_tests
@@ -70,7 +70,7 @@ build_consumer() {
 }
 build_asan() {
   cmake --preset asan-ubsan -DRESIGHT_BUILD_APPS=OFF -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_unit_tests
+    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_unit_tests resight_fuzz
 }
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
@@ -99,6 +99,7 @@ if ((!fast)); then
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan
   step "module tests with ASan and UBSan" run_asan
+  step "readers with mutated files" scripts/fuzz.sh --short
   step "build with TSan" build_tsan
   step "program with TSan" run_tsan
 fi
