@@ -137,7 +137,7 @@ std::vector<FuzzReader> mesh_readers() {
        [](std::string_view bytes) { (void)read_mesh(write_bundle(bytes, kObjFiles) / kObjFiles[0], kAnySize); }, 100,
        true},
       {"gltf", [] { return std::vector{std::string(kGltf) + std::string(kGltfBuffer)}; }, mesh_file_reader("mesh.gltf"),
-       1000, true},
+       300, true},
       {"glb", [] { return std::vector{make_glb()}; }, mesh_file_reader("mesh.glb"), 1000, true},
       {"stl", make_stl_seeds, mesh_file_reader("mesh.stl"), 1000, true},
   };

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
 # the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, every public header alone,
-# installation and a project that uses it, the program and the tests of the modules that read files of others under
-# AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
+# installation and a project that uses it, the program, the tests of the modules that read files of others and a short
+# run of the fuzz targets under AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
 #   scripts/test.sh --long  all of these, and the tests of all modules under AddressSanitizer: before a release
@@ -22,7 +22,7 @@ scripts/setup.sh --tests
 source scripts/common.sh
 
 check_format() {
-  find src apps examples tests bench \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
+  find src apps examples tests bench fuzz \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
 }
 run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
 count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_tests
@@ -74,7 +74,7 @@ build_consumer() {
 build_asan() {
   local tests=("${asan_modules[@]/%/_test}")
   cmake --preset asan-ubsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_app "${tests[@]/#/resight_}"
+    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_app resight_fuzz "${tests[@]/#/resight_}"
 }
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
@@ -105,6 +105,7 @@ if ((!fast)); then
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan
   step "tests and program with ASan and UBSan" run_asan
+  step "readers with mutated files" scripts/fuzz.sh --short
   step "build with TSan" build_tsan
   step "program with TSan" run_tsan
 fi

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "resight/io/internal/text.hpp"
@@ -35,40 +34,68 @@ std::string describe_syntax_error(std::string_view text, std::size_t num_read) {
   return fmt::format("is not valid JSON: line {}{}", line, why);
 }
 
-/// Remembers the first key that an object has twice. A parser would silently take one of the values.
-class KeyCheck {
+/// Checks a text without building a value. A parser would silently take one of two values of the same key, and the
+/// parser with a callback, which sees the keys, looks through a whole list at the end of each object in it.
+class JsonCheck final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  bool operator()(int /*depth*/, nlohmann::json::parse_event_t event, const nlohmann::json& value) {
-    using Event = nlohmann::json::parse_event_t;
-    if (event == Event::object_start) keys_.emplace_back();
-    if (event == Event::object_end) keys_.pop_back();
-    if (event == Event::key && !keys_.back().insert(value.get<std::string>()).second && !repeated_)
-      repeated_ = value.get<std::string>();
-    return true;
+  explicit JsonCheck(std::string_view text) : text_(text) {}
+  /// What is wrong; empty if nothing is.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+  bool null() override { return true; }
+  bool boolean(bool /*value*/) override { return true; }
+  bool number_integer(number_integer_t /*value*/) override { return true; }
+  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
+  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
+  bool string(string_t& /*value*/) override { return true; }
+  bool binary(binary_t& /*value*/) override { return true; }
+  bool start_object(std::size_t /*size*/) override { return start(); }
+  bool end_object() override { return end(); }
+  bool start_array(std::size_t /*size*/) override { return start(); }
+  bool end_array() override { return end(); }
+  bool key(string_t& name) override {
+    return keys_.back().insert(name).second || fail(fmt::format("has the key '{:.40}' twice in one object", name));
   }
-  [[nodiscard]] const std::optional<std::string>& repeated() const { return repeated_; }
+  bool parse_error(std::size_t position, const std::string& /*token*/,
+                   const nlohmann::detail::exception& error) override {
+    constexpr int kOutOfRange = 406;
+    return fail(error.id == kOutOfRange ? "is not valid JSON: a number is too large"
+                                        : describe_syntax_error(text_, position));
+  }
 
  private:
-  std::vector<std::set<std::string>> keys_;  ///< Of the objects around the current place.
-  std::optional<std::string> repeated_;
+  bool start() {
+    constexpr std::size_t kMaxNesting = 64;
+    keys_.emplace_back();
+    return keys_.size() <= kMaxNesting || fail(fmt::format("is nested more than {} deep", kMaxNesting));
+  }
+  bool end() {
+    keys_.pop_back();
+    return true;
+  }
+  bool fail(std::string fault) {
+    fault_ = std::move(fault);
+    return false;
+  }
+  std::string_view text_;
+  std::string fault_;
+  std::vector<std::set<std::string>> keys_;  ///< Of the lists and objects around the current place.
 };
 
 }  // namespace
 
+Result<nlohmann::json> parse_json(std::string_view text) {
+  JsonCheck check(text);
+  if (!nlohmann::json::sax_parse(text, &check)) return Error{check.fault()};
+  return nlohmann::json::parse(text);
+}
+
 Result<nlohmann::json> read_json(const fs::path& file) {
   const auto text = read_file(file);
   if (!text) return text.error();
-  KeyCheck keys;
-  try {
-    nlohmann::json json = nlohmann::json::parse(*text, std::ref(keys));
-    if (keys.repeated())
-      return file_error(file, fmt::format("has the key '{:.40}' twice in one object", *keys.repeated()));
-    return json;
-  } catch (const nlohmann::json::parse_error& error) {
-    return file_error(file, describe_syntax_error(*text, error.byte));
-  } catch (const nlohmann::json::exception&) {
-    return file_error(file, "is not valid JSON: a number is too large");
-  }
+  auto json = parse_json(*text);
+  if (!json) return file_error(file, json.error().message);
+  return json;
 }
 
 Result<void> write_json(const fs::path& file, const nlohmann::json& json) {

@@ -3,8 +3,7 @@
 
 #include <assimp/MemoryIOWrapper.h>
 
-#include <cstring>
-
+#include "resight/io/internal/gltf_file.hpp"
 #include "resight/io/internal/text.hpp"
 
 namespace resight::io {
@@ -59,28 +58,14 @@ std::string normalize_mtl(std::string_view text) {
   return result;
 }
 
-Result<void> check_glb(std::string_view bytes) {
-  constexpr std::size_t kHeaderBytes = 12;
-  constexpr std::size_t kChunkHeaderBytes = 8;
-  if (!bytes.starts_with("glTF") || bytes.size() < kHeaderBytes + kChunkHeaderBytes)
-    return Error{"is not a GLB file (no header)"};
-  for (std::size_t at = kHeaderBytes; bytes.size() - at >= kChunkHeaderBytes;) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, bytes.data() + at, sizeof(length));
-    at += kChunkHeaderBytes;
-    if (length > bytes.size() - at) return Error{"is cut off: a chunk is longer than the file"};
-    at += length;
-  }
-  return {};
-}
-
 Result<std::unique_ptr<MeshFiles>> MeshFiles::open(const fs::path& mesh) {
   auto bytes = read_file(mesh, kMaxBinaryBytes);
   if (!bytes) return bytes.error();
   const std::string extension = extension_of(mesh);
-  if (extension == "glb")
-    if (const auto checked = check_glb(*bytes); !checked) return file_error(mesh, checked.error().message);
+  if (extension == "glb") bytes = normalize_glb(*bytes);
+  if (extension == "gltf") bytes = normalize_gltf(*bytes);
   if (extension == "obj") bytes = normalize_obj(*std::move(bytes));
+  if (!bytes) return file_error(mesh, bytes.error().message);
   return std::unique_ptr<MeshFiles>(new MeshFiles(mesh, *std::move(bytes)));
 }
 

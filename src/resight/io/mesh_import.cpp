@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -7,6 +8,8 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <string_view>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/mesh_files.hpp"
@@ -146,6 +149,19 @@ void unify_attributes(std::vector<MeshPart>& parts) {
     if (!part.mesh.has_texture()) part.mesh.uvs.clear();
 }
 
+/// Removes all importers but that of this extension. Assimp would otherwise choose by the content, and parse any of its
+/// fifty formats.
+void keep_importer(Assimp::Importer& importer, std::string_view extension) {
+  const std::string_view name = extension == "obj"   ? "Wavefront Object Importer"
+                                : extension == "stl" ? "Stereolithography (STL) Importer"
+                                                     : "glTF2 Importer";
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    if (importer.GetImporterInfo(i)->mName == name) continue;
+    const std::unique_ptr<Assimp::BaseImporter> removed(importer.GetImporter(i));
+    importer.UnregisterLoader(removed.get());
+  }
+}
+
 }  // namespace
 
 Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name) {
@@ -157,6 +173,7 @@ Result<ImportedParts> import_mesh_parts(const fs::path& file) {
   auto files = MeshFiles::open(file);
   if (!files) return files.error();
   Assimp::Importer importer;
+  keep_importer(importer, extension_of(file));
   const MeshFiles& opened = **files;
   importer.SetIOHandler(files->release());  // The importer owns it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -120,7 +120,11 @@ void read_orbit(TomlFields& fields, std::vector<Rigid3>& poses) {
   if (orbit.num_views < 1 || orbit.num_views > 100000) return fields.fail("views", "must be in 1..100000");
   if (!(orbit.radius_m > 0)) return fields.fail("radius_m", "must be > 0");
   if (!(orbit.end_radius_m.value_or(1) > 0)) return fields.fail("end_radius_m", "must be > 0");
-  poses = make_orbit(orbit);
+  try {
+    poses = make_orbit(orbit);
+  } catch (const std::invalid_argument&) {
+    fields.fail("radius_m", "must not be so small that a camera looks straight up or down");
+  }
 }
 
 void read_camera_pose(TomlFields& fields, std::vector<Rigid3>& poses) {
@@ -131,9 +135,11 @@ void read_camera_pose(TomlFields& fields, std::vector<Rigid3>& poses) {
   Eigen::Vector3d target = Eigen::Vector3d::UnitX();
   read_vector(fields, "eye_m", eye);
   read_vector(fields, "target_m", target);
-  if ((target - eye).head<2>().norm() < 1e-6)
-    return fields.fail("target_m", "must not lie straight above or below eye_m");
-  poses.push_back(look_at(eye, target));
+  try {
+    poses.push_back(look_at(eye, target));
+  } catch (const std::invalid_argument&) {
+    fields.fail("target_m", "must not lie straight above or below eye_m");
+  }
 }
 
 void read_drift(TomlFields& fields, SceneScript& script) {
@@ -151,8 +157,8 @@ void read_camera(TomlFields& fields, SceneScript& script) {
   fields.read("height", script.camera.height);
   fields.read("fx", script.camera.fx);
   fields.read("fy", script.camera.fy);
-  script.camera.cx = 0.5 * (script.camera.width - 1);
-  script.camera.cy = 0.5 * (script.camera.height - 1);
+  script.camera.cx = 0.5 * script.camera.width - 0.5;  // no overflow for any int
+  script.camera.cy = 0.5 * script.camera.height - 0.5;
   fields.read("cx", script.camera.cx);
   fields.read("cy", script.camera.cy);
   if (fields.has("orbit") && fields.has("pose")) fields.fail("pose", "excludes orbit");

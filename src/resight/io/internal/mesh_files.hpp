@@ -17,9 +17,6 @@ namespace resight::io {
 /// textures before the first material.
 [[nodiscard]] std::string normalize_mtl(std::string_view text);
 
-/// Checks that the chunks of a GLB file lie within it, because Assimp allocates what they announce.
-[[nodiscard]] Result<void> check_glb(std::string_view bytes);
-
 /// The files that Assimp may open: the mesh under its bare name, and regular files in its folder that it refers to.
 class MeshFiles final : public Assimp::IOSystem {
  public:
