@@ -28,6 +28,29 @@ std::string_view trim_start(std::string_view line) {
 
 }  // namespace
 
+Result<void> check_obj(std::string_view text) {
+  constexpr int kMaxParts = 4096;
+  constexpr std::size_t kMaxCorners = 1024;
+  int num_parts = 0;
+  std::size_t num_words = 0;  // of the statement, which may go on in the next line
+  bool goes_on = false;
+  bool is_face = false;
+  while (!text.empty()) {
+    const std::string_view line = trim_start(cut_line(text));
+    if (!goes_on) {
+      const std::string_view keyword = line.substr(0, line.find_first_of(" \t"));
+      is_face = keyword == "f";
+      num_words = 0;
+      if (keyword == "o" || keyword == "g" || keyword == "usemtl" || keyword == "mtllib") ++num_parts;
+    }
+    goes_on = line.ends_with('\\');
+    if (is_face) num_words += split_tokens(line).size();
+    if (num_words > kMaxCorners + 1) return Error{"has a face of more than 1024 corners"};
+    if (num_parts > kMaxParts) return Error{"has more than 4096 groups, objects and changes of material"};
+  }
+  return {};
+}
+
 std::string normalize_obj(std::string text) {
   if (text.find(" .") == text.npos && text.find("\t.") == text.npos) return text;
   std::string result;
@@ -64,7 +87,10 @@ Result<std::unique_ptr<MeshFiles>> MeshFiles::open(const fs::path& mesh) {
   const std::string extension = extension_of(mesh);
   if (extension == "glb") bytes = normalize_glb(*bytes);
   if (extension == "gltf") bytes = normalize_gltf(*bytes);
-  if (extension == "obj") bytes = normalize_obj(*std::move(bytes));
+  if (extension == "obj") {
+    if (const auto checked = check_obj(*bytes); !checked) return file_error(mesh, checked.error().message);
+    bytes = normalize_obj(*std::move(bytes));
+  }
   if (!bytes) return file_error(mesh, bytes.error().message);
   return std::unique_ptr<MeshFiles>(new MeshFiles(mesh, *std::move(bytes)));
 }

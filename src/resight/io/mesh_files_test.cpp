@@ -32,6 +32,27 @@ TEST(MeshFiles, NumbersMayBeginWithAPoint) {
   EXPECT_EQ(io::normalize_obj("  v\t.5 -.5 0.5\no a .b\n"), "  v\t0.5 -.5 0.5\no a .b\n");
 }
 
+TEST(MeshFiles, ObjFilesThatTakeAssimpTooLongAreRefused) {
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  const auto message_of = [](const std::string& text) {
+    const auto checked = io::check_obj(kTriangleObj + text);
+    return checked ? std::string() : checked.error().message;
+  };
+  EXPECT_EQ(message_of("f" + repeated(" 1/1/1", 1024) + "\n" + repeated("f 1 2 3\n", 5000)), "");
+  EXPECT_THAT(message_of("f" + repeated(" 1/1/1", 1025) + "\n"), HasSubstr("1024 corners"));
+  EXPECT_THAT(message_of("f" + repeated(" 1 2 \\\n", 700) + "3\n"), HasSubstr("1024 corners")) << "over several lines";
+  EXPECT_EQ(message_of(repeated("usemtl a\nf 1 2 3\n", 1300) + repeated("o a\n", 1300) + repeated("g a\n", 1300)), "");
+  EXPECT_THAT(message_of(repeated("usemtl a\nf 1 2 3\n", 4097)), HasSubstr("4096 groups"));
+  EXPECT_THAT(message_of(repeated(" o a\n", 4097)), HasSubstr("4096 groups"));
+  io::TestDirectory directory;
+  write_text(directory / "m.obj", kTriangleObj + ("f" + repeated(" 1", 400000)));
+  EXPECT_THAT(read_mesh(directory / "m.obj").error().message, HasSubstr("1024 corners"));
+}
+
 TEST(MeshFiles, TexturesBeforeTheFirstMaterialAreSkipped) {
   io::TestDirectory directory;
   write_text(directory / "t.obj", std::string("mtllib t.mtl\n") + kTriangleObj);

@@ -9,6 +9,10 @@
 
 namespace resight::io {
 
+/// Fails for an OBJ file with faces of more than 1024 corners or with more than 4096 parts: Assimp takes time in the
+/// square of their number.
+[[nodiscard]] Result<void> check_obj(std::string_view text);
+
 /// The text of an OBJ file as Assimp reads it: a number such as ".5" gets its leading zero, without which Assimp skips
 /// it.
 [[nodiscard]] std::string normalize_obj(std::string text);
