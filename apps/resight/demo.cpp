@@ -57,7 +57,7 @@ void run_demo(const DemoArguments& arguments) {
                 .format = "bop",
                 .seed = arguments.seed,
                 .num_threads = arguments.num_threads});
-  run_train({.inputs = {data / "models"}, .out = models, .num_threads = arguments.num_threads});
+  run_train({.inputs = {data / "models"}, .metres_per_unit = {}, .out = models, .num_threads = arguments.num_threads});
 
   const ModelLibrary library = value_or_throw(load_library(models, TrainOptions{}.hash()));
   const auto sequence = value_or_throw(open_posed_sequence(data));
