@@ -167,7 +167,7 @@ TEST_F(LibraryFile, AFailedSaveLeavesTheOldFile) {
   ASSERT_TRUE(save_library(make_library(), path_).ok());
   const Result<void> saved = save_library(make_library(), path_ / "models.bin");
   ASSERT_FALSE(saved.ok());
-  EXPECT_THAT(saved.error().message, HasSubstr("cannot be created"));
+  EXPECT_THAT(saved.error().message, HasSubstr("cannot be written"));
   fs::remove(path_);
   fs::create_directories(path_ / "occupied");  // a folder under the final name
   const Result<void> onto_folder = save_library(make_library(), path_);
