@@ -25,7 +25,8 @@ void post_interrupt(int number) {
   interrupt_number = number;
   ::sem_post(&has_interrupt);
   // Whoever wrote into a closed pipe would go on and report it.
-  while (number == SIGPIPE) ::pause();
+  if (number == SIGPIPE)
+    for (;;) ::pause();
   errno = interrupted_errno;
 }
 
