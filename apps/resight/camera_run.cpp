@@ -100,7 +100,7 @@ std::vector<AlignmentView> read_surfaces(const Sequence& sequence, const CameraT
   for (const std::vector<int>& views : of_component)
     for (std::size_t k = 0; k < std::min(views.size(), kViewsOfPart); ++k) {
       const int v = views[k * views.size() / std::min(views.size(), kViewsOfPart)];
-      surfaces[static_cast<std::size_t>(v)] = make_alignment_view(prepare_view(value_or_throw(sequence.read_view(v))));
+      surfaces[static_cast<std::size_t>(v)] = make_alignment_view(read_prepared(sequence, v, 1));
     }
   return surfaces;
 }

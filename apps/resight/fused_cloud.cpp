@@ -50,6 +50,7 @@ double median_depth_m(const Image<float>& depth_m) {
 
 Fused fuse(const Sequence& posed, int num_threads) {
   PrepareViewOptions prepare;
+  prepare.max_pixels = kMaxWorkingPixels;
   prepare.num_threads = num_threads;
   IntegrateOptions integrate;
   VoxelNumbers numbers;

@@ -1,39 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/report/scene_changes.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 namespace resight {
 namespace {
 
-using ::testing::ElementsAre;
-
-ChangeRegion region_of(std::vector<int> pixels) {
-  ChangeRegion region;
-  region.kind = RegionKind::kRemoved;
-  region.pixels = std::move(pixels);
-  return region;
+TEST(SceneChangesJson, NumbersRegionsAcrossViews) {
+  const ChangeRegion came{RegionKind::kNovel, {{{0, 0, 1}}, {}, {}}, {12, 15, 23, 31}, {{}, {0.3, 0.2, 0.1}}};
+  const ChangeRegion left{RegionKind::kRemoved, {{{0, 0, 1}, {0, 0, 2}}, {}, {}}, {}, {}};
+  const SceneChanges changes{
+      "1.0", "default", "desk", {{"first", 10, 1, {}, 0, false, {}}, {"second", 10, 1, {}, 0.25, true, {came, left}}}};
+  const auto parsed = nlohmann::json::parse(format_scene_changes_json(changes));
+  EXPECT_EQ(parsed["preset"], "default");
+  ASSERT_EQ(parsed["views"].size(), 2U);
+  EXPECT_TRUE(parsed["views"][0]["regions"].empty());
+  const auto& second = parsed["views"][1];
+  EXPECT_EQ(second["view"], 1);
+  EXPECT_EQ(second["changed_share"], 0.25);
+  EXPECT_EQ(second["pose_suspect"], true);
+  ASSERT_EQ(second["regions"].size(), 2U);
+  EXPECT_EQ(second["regions"][0]["id"], 1);
+  EXPECT_EQ(second["regions"][0]["kind"], "novel");
+  EXPECT_EQ(second["regions"][0]["rectangle_px"], nlohmann::json({1, 1, 5, 3}));
+  EXPECT_EQ(second["regions"][0]["box_size_m"], nlohmann::json({0.3, 0.2, 0.1}));
+  EXPECT_EQ(second["regions"][1]["id"], 2);
+  EXPECT_EQ(second["regions"][1]["kind"], "removed");
+  EXPECT_EQ(second["regions"][1]["points"], 2);
+  EXPECT_TRUE(second["regions"][1]["rectangle_px"].is_null());
 }
 
-TEST(FormatSceneChanges, PixelsAreThoseOfTheRecordedImage) {
-  const auto format = [](int reduction) {
-    ViewChangeRecord view;
-    view.view_name = "a";
-    view.image_width_px = 10;
-    view.reduction = reduction;
-    view.regions = {region_of({12, 13, 23}), region_of({})};
-    return nlohmann::json::parse(format_scene_changes_json({"1", "default", "s", {view}}))["views"][0]["regions"];
+TEST(SceneChangesJson, PixelsAreThoseOfTheRecordedImage) {
+  const ChangeRegion came{RegionKind::kNovel, {{{0, 0, 1}}, {}, {}}, {12, 15, 23, 31}, {}};
+  const auto region = [&](int reduction) {
+    const SceneChanges changes{"1.0", "default", "desk", {{"first", 10, reduction, {}, 0, false, {came}}}};
+    return nlohmann::json::parse(format_scene_changes_json(changes))["views"][0]["regions"][0];
   };
-  const nlohmann::json whole = format(1);
-  EXPECT_THAT(whole.at(0)["rectangle_px"].get<std::vector<int>>(), ElementsAre(2, 1, 2, 2));
-  EXPECT_EQ(whole[0]["pixels"], 3);
-  EXPECT_EQ(whole[0]["kind"], "removed");
-  EXPECT_TRUE(whole.at(1)["rectangle_px"].is_null());
-  const nlohmann::json reduced = format(3);
-  EXPECT_THAT(reduced.at(0)["rectangle_px"].get<std::vector<int>>(), ElementsAre(6, 3, 6, 6));
-  EXPECT_EQ(reduced[0]["pixels"], 27);
+  EXPECT_EQ(region(1)["pixels"], 4);
+  EXPECT_EQ(region(3)["pixels"], 36);
+  EXPECT_EQ(region(3)["rectangle_px"], nlohmann::json({3, 3, 15, 9}));
 }
 
 }  // namespace
