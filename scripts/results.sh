@@ -165,9 +165,9 @@ write_pages() {
 }
 
 ((merge)) || make_data
-evaluate paper --presets mvr,mvr-chd -k 0-7
-evaluate default --presets default -k 0,5
 evaluate clustering --presets mvr,mvr-chd,default -k 5 --without-clustering
+evaluate default --presets default -k 0,5
+evaluate paper --presets mvr,mvr-chd -k 0-7
 validation=$parts/validation
 part demo.txt run_demo
 part degraded.md "$build/bench/bench_robustness" "$validation/test/000001" "$validation.resight" mvr,mvr-chd,default 5 \
