@@ -13,7 +13,8 @@ namespace resight {
 namespace {
 
 constexpr int kMinRadius_px = 2;
-constexpr int kMaxGap_px = 2;  // Within a region: the pixels of one view do not cover all of another's.
+constexpr int kMaxGap_px = 2;     // Within a region: the pixels of one view do not cover all of another's.
+constexpr int kMinAroundGap = 6;  // Of the 25 pixels around: a quarter, as many as remain at half the distance.
 
 /// What a view and an earlier one say about each other.
 struct PairEvidence {
@@ -101,7 +102,8 @@ class RemovedSurface {
  public:
   explicit RemovedSurface(const PreparedView& view)
       : view_(view),
-        decided_(view.cloud.width(), view.cloud.height()),
+        met_(view.cloud.width(), view.cloud.height()),
+        decided_(met_),
         removed_(decided_),
         sigmas_(view.cloud.width(), view.cloud.height()) {}
 
@@ -110,8 +112,10 @@ class RemovedSurface {
     GonePixels gone;
     std::vector<std::size_t> present;
     for (std::size_t i = 0; i < evidence.size(); ++i) {
-      if (!is_observed(evidence[i])) continue;
+      if (pair.earlier_in_view[i] < 0) continue;
       const auto at = static_cast<std::size_t>(pair.earlier_in_view[i]);
+      met_[at] = 1;
+      if (!is_observed(evidence[i])) continue;
       if (evidence[i] == Evidence::kPresent) present.push_back(at);
       if (evidence[i] == Evidence::kPresent || decided_[at] != 0) continue;
       removed_[at] = 1;
@@ -127,15 +131,47 @@ class RemovedSurface {
     return gone;
   }
   Image<std::uint8_t>& mask() { return removed_; }
+  /// A pixel that no earlier view projects to is removed if most of those around it are.
+  void fill_gaps();
   /// Of the removed pixels, in standard deviations.
   [[nodiscard]] const Image<float>& sigmas() const { return sigmas_; }
 
  private:
   const PreparedView& view_;
+  Image<std::uint8_t> met_;  // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
   Image<float> sigmas_;
 };
+
+/// Calls `visit` with each pixel that is at most kMaxGap_px rows and columns away.
+template <typename Visit>
+void visit_neighbours(const Image<std::uint8_t>& image, std::size_t pixel, const Visit& visit) {
+  const int row = static_cast<int>(pixel) / image.width();
+  const int column = static_cast<int>(pixel) % image.width();
+  for (int v = std::max(row - kMaxGap_px, 0); v <= std::min(row + kMaxGap_px, image.height() - 1); ++v)
+    for (int u = std::max(column - kMaxGap_px, 0); u <= std::min(column + kMaxGap_px, image.width() - 1); ++u)
+      visit(image.index(u, v));
+}
+
+void RemovedSurface::fill_gaps() {
+  Image<std::uint8_t> is_tested(removed_);
+  std::vector<std::size_t> gaps;
+  const auto test = [&](std::size_t i) {
+    if (is_tested[i] != 0 || met_[i] != 0) return;
+    is_tested[i] = 1;
+    int num_removed = 0;
+    int num_present = 0;
+    visit_neighbours(removed_, i, [&](std::size_t j) {
+      num_removed += removed_[j];
+      num_present += decided_[j] != 0 && removed_[j] == 0 ? 1 : 0;
+    });
+    if (num_removed >= kMinAroundGap && num_removed > num_present) gaps.push_back(i);
+  };
+  for (std::size_t i = 0; i < removed_.size(); ++i)
+    if (removed_[i] != 0) visit_neighbours(removed_, i, test);
+  for (const std::size_t i : gaps) removed_[i] = 1;
+}
 
 }  // namespace
 
@@ -155,13 +191,14 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
     gone[e] = removed.add(*earlier_views[e], pairs[e]);
   }
-  changes.removed = std::move(removed.mask());
-  drop_weak_regions(removed.sigmas(), options, changes.removed);
+  drop_weak_regions(removed.sigmas(), options, removed.mask());
   for (const GonePixels& pixels : gone) {
     std::vector<int>& kept = changes.gone_pixels.emplace_back();
     for (std::size_t i = 0; i < pixels.in_view.size(); ++i)
-      if (changes.removed[static_cast<std::size_t>(pixels.in_view[i])] != 0) kept.push_back(pixels.in_earlier[i]);
+      if (removed.mask()[static_cast<std::size_t>(pixels.in_view[i])] != 0) kept.push_back(pixels.in_earlier[i]);
   }
+  removed.fill_gaps();
+  changes.removed = std::move(removed.mask());
   return changes;
 }
 

@@ -98,6 +98,33 @@ TEST(DepthChanges, ARemovedBoxIsSeenThrough) {
   }
 }
 
+TEST(DepthChanges, TheRemovedMaskHasNoGaps) {
+  // A nearer camera has more pixels of the box than the one that saw it, and noise scatters these.
+  const Rigid3 nearer = look_at({0, -0.6, 0.55}, {0, 0, 0.1});
+  const Scene with_box = scene_with({kCarton});
+  const Image<std::uint8_t> mask =
+      detect(see_with_noise(with_box, usual_pose(), 1), see_with_noise(table(), nearer, 2)).removed_mask;
+  const PreparedView box_view = see(with_box, nearer);
+  const PreparedView table_view = see(table(), nearer);
+  const auto is_box = [&](int u, int v) { return box_view.cloud.z(u, v) < table_view.cloud.z(u, v) - 0.02F; };
+  constexpr int kBorder_px = 5;
+  int num_inside = 0;
+  int num_gaps = 0;
+  int num_outside = 0;
+  for (int v = kBorder_px; v < mask.height() - kBorder_px; ++v)
+    for (int u = kBorder_px; u < mask.width() - kBorder_px; ++u) {
+      int num_box = 0;
+      for (const int dv : {-kBorder_px, 0, kBorder_px})
+        for (const int du : {-kBorder_px, 0, kBorder_px}) num_box += is_box(u + du, v + dv) ? 1 : 0;
+      num_inside += num_box == 9 ? 1 : 0;
+      num_gaps += num_box == 9 && mask(u, v) == 0 ? 1 : 0;
+      num_outside += num_box == 0 ? mask(u, v) : 0;
+    }
+  ASSERT_GT(num_inside, 3000);
+  EXPECT_LT(num_gaps, num_inside / 100);
+  EXPECT_EQ(num_outside, 0);
+}
+
 TEST(DepthChanges, AnAddedBoxIsNovel) {
   for (const Rigid3& pose : {usual_pose(), kBeside}) {
     const ChangeResult changes = detect(see(table()), see(scene_with({kCarton}), pose));
