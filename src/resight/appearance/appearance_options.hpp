@@ -26,7 +26,8 @@ inline void declare(OptionVisitor& v, AppearanceOptions& o) {
             "ours; reference code: 0.6");
     v.field("pattern_radius_m", o.pattern_radius_m, positive(),
             "Verification compares the patterns of untextured models after both colours are averaged over the surface "
-            "within this radius: noise, sharpening and small highlights are no texture. off: as they are.",
+            "within this radius, relative to their mean within three radii: noise, sharpening, small highlights and "
+            "light that changes slowly are no texture. off: as they are.",
             "ours");
     v.group("light", o.light);
   });

@@ -22,8 +22,10 @@ class SurfaceBlur {
   std::vector<int> neighbors_;
 };
 
-/// match_texture() at `points`. The similarity of an untextured model (below kMinTextureContrast) is that of the
-/// blurred colours, if AppearanceOptions::pattern_radius_m is set. One colour per point, or std::invalid_argument.
+/// match_texture() at `points`. If AppearanceOptions::pattern_radius_m is set, the similarity of an untextured model
+/// (below kMinTextureContrast) is that of the blurred colours relative to the mean of their surroundings, within three
+/// radii: light changes slowly along a surface, most of all in a hollow or glossy one, and is no pattern. One colour
+/// per point, or std::invalid_argument.
 [[nodiscard]] TextureMatch match_surface_texture(std::span<const Eigen::Vector3f> points,
                                                  std::span<const LabColor> model, std::span<const LabColor> expected,
                                                  std::span<const LabColor> seen, const AppearanceOptions& options);

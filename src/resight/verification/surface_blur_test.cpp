@@ -62,6 +62,15 @@ TEST(MatchSurfaceTexture, WideStripesStayAPattern) {
   EXPECT_LT(similarity(model, striped, 0.015), 0.5);
 }
 
+TEST(MatchSurfaceTexture, LightThatChangesSlowlyIsNoPattern) {
+  const auto model = colors(0, 0, 1);
+  auto lit_from_one_side = model;
+  for (int i = 0; i < kSide * kSide; ++i)
+    lit_from_one_side[static_cast<std::size_t>(i)].l = 0.05F * static_cast<float>(i % kSide);
+  EXPECT_LT(similarity(model, lit_from_one_side, std::nullopt), 0.5);
+  EXPECT_GT(similarity(model, lit_from_one_side, 0.015), 0.75);
+}
+
 TEST(MatchSurfaceTexture, TexturedModelsAreComparedInFull) {
   const auto model = colors(8, 0, 1);
   const auto noisy = colors(8, 0.15, 2);
