@@ -23,16 +23,13 @@ using namespace resight;
 
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
-      "  {} score {:.2f} visible {} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} newest {:.2f} matches {} "
-      "| scene "
-      "{:.0f} outlier "
-      "{:.0f} clutter "
-      "{:.0f} plane "
-      "{:.0f} unary "
-      "{:.0f}\n",
-      to_string(e.verdict), e.fit, e.num_visible, e.explained_share, e.appearance.pattern_similarity,
-      e.appearance.shared_texture, e.appearance.texture_contrast, e.appearance.newest_similarity, e.num_correspondences,
-      e.costs.explained_scene, e.costs.outlier, e.costs.clutter, e.costs.plane, e.costs.unary);
+      "  {} fit {:.3f} visible {} of it {:.3f} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} newest "
+      "{:.2f} ",
+      to_string(e.verdict), e.fit, e.num_visible, e.visible_share, e.explained_share, e.appearance.pattern_similarity,
+      e.appearance.shared_texture, e.appearance.texture_contrast, e.appearance.newest_similarity);
+  fmt::print("matches {} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane {:.0f} unary {:.0f}\n",
+             e.num_correspondences, e.costs.explained_scene, e.costs.outlier, e.costs.clutter, e.costs.plane,
+             e.costs.unary);
   if (e.accepted) return;
   fmt::print("    visible and explained per view:");
   for (std::size_t v = 0; v < e.visible_share_per_view.size(); ++v)
@@ -97,8 +94,9 @@ int main(int argc, char** argv) {
       if (uncertainty.is_known())
         errors_in_sigmas.push_back(m.difference.center_distance_m /
                                    std::sqrt(uncertainty.covariance.bottomRightCorner<3, 3>().trace()));
-      fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg", v, truth[m.truth].object,
-                 1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad);
+      fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg score {:.4f}", v, truth[m.truth].object,
+                 1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad,
+                 update.detections[m.detection].score);
       print_evidence(evidence_of(update.detections[m.detection], trace));
     }
     for (const int t : matched.false_negatives) {
@@ -108,7 +106,7 @@ int main(int argc, char** argv) {
     }
     for (const int d : matched.false_positives) {
       const Detection& detection = update.detections[d];
-      fmt::print("view {:2} WRONG  {:16}", v, library.objects[detection.object].name);
+      fmt::print("view {:2} WRONG  {:16} score {:.4f}", v, library.objects[detection.object].name, detection.score);
       print_evidence(evidence_of(detection, trace));
     }
     for (const ObjectEvent& e : update.events)

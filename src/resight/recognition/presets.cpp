@@ -43,6 +43,7 @@ void set_default(RecognizerConfig& config) {
   config.remember_objects = true;
   config.camera.poses.correct = true;
   config.camera.color_offset.correct = true;
+  config.prepare.color_width_m = 0.005;         // As verify.resolution_m.
   config.prepare.normals.window_radius_px = 4;  // At 1 m, normals of objects are off by 6 deg; by 20 with 2.
   config.features.match.shot_neighbors = 3;
   config.features.match.shot_index.num_components = 64;

@@ -73,7 +73,7 @@ class Winners {
     const auto i = static_cast<std::size_t>(pixels_[slot]);
     voxels_.cloud_in_world.points[slot] = point_in_world(world_from_camera_, view_.cloud, i);
     voxels_.cloud_in_world.normals[slot] = world_from_camera_.rotation * view_.cloud.normal(i);
-    voxels_.cloud_in_world.colors[slot] = view_.frame.color[i];
+    voxels_.cloud_in_world.colors[slot] = view_.surface_color()[i];
   }
 
  private:

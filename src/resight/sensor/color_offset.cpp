@@ -153,6 +153,7 @@ ColorOffset ColorOffsetCorrector::correct(PreparedView& view) {
     offset.moved_px[axis] = static_cast<int>(std::copysign(sure_px, offset.offset_px[axis]));
   }
   move_colors(offset.moved_px, view.frame.color);
+  if (!view.averaged_color.empty()) move_colors(offset.moved_px, view.averaged_color);
   return offset;
 }
 

@@ -19,6 +19,7 @@ struct PrepareViewOptions {
   DepthEdgeOptions edges{};
   std::optional<double> min_depth_m = 0.15;
   std::optional<double> max_depth_m{};
+  std::optional<double> color_width_m{};
   int num_threads = 1;  ///< Of all steps (normals.num_threads is not used). Same bits for any value >= 1.
   void check() const { check_options("PrepareViewOptions", *this); }
 };
@@ -37,6 +38,12 @@ inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
       "max_depth_m", o.max_depth_m, positive(),
       "Farther points are dropped from the point cloud. The depth image stays whole: beyond, it is still evidence of "
       "free space. off: all points are kept.");
+  v.field(
+      "color_width_m", o.color_width_m, positive(),
+      "In a noisy image, colours that are compared with those of a model are averaged: over as many pixels as bring "
+      "the "
+      "noise down to one grey level, but over no more than this width on the surface. off: single pixels, as in V4R.",
+      "ours; noise by Immerkaer 1996");
   v.num_threads(o.num_threads);
 }
 
@@ -46,7 +53,13 @@ struct PreparedView {
   OrganizedCloud cloud;  ///< With normals, camera frame.
   /// Distance to the nearest depth discontinuity in pixels, capped (see find_edge_distance()).
   Image<float> edge_distance_px;
-  NoiseImages noise;  ///< Axial and lateral sigma in metres; NaN where there is no point.
+  NoiseImages noise;                ///< Axial and lateral sigma in metres; NaN where there is no point.
+  Image<Rgb8> averaged_color = {};  ///< Over PrepareViewOptions::color_width_m; empty if off.
+
+  /// The colours to compare with those of a model.
+  [[nodiscard]] const Image<Rgb8>& surface_color() const {
+    return averaged_color.empty() ? frame.color : averaged_color;
+  }
 };
 
 /// Divisor of width and height by which prepare_view() reduces views of this camera.

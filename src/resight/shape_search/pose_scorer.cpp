@@ -117,7 +117,7 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
       cy_(static_cast<float>(view.frame.camera.cy) + 0.5F) {
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      lab_[i] = to_lab(view.frame.color[i]);
+      lab_[i] = to_lab(view.surface_color()[i]);
       pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.fx), chroma(lab_[i])};
       const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
       oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
@@ -296,7 +296,7 @@ void PoseScorer::confirm_sample(const SampledModel& model, std::size_t sample, c
     confirmed.pixels.push_back(at);
     if (model.linear_light.empty()) return;
     confirmed.colors.model.push_back(model.linear_light[sample]);
-    confirmed.colors.scene.push_back(to_linear_light(view_.frame.color[at]));
+    confirmed.colors.scene.push_back(to_linear_light(view_.surface_color()[at]));
     confirmed.colors.normals.push_back(normal);
   }
 }

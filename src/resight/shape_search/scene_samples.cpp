@@ -19,7 +19,7 @@ constexpr float kSimilarNormals = 0.3F;  // Cosine; below: the other side of a t
 
 PointCloud near_points(const PreparedView& view, const SampleSceneOptions& options) {
   std::vector<int> pixels;
-  const PointCloud all = to_point_cloud(view.cloud, &view.frame.color, true, &pixels);
+  const PointCloud all = to_point_cloud(view.cloud, &view.surface_color(), true, &pixels);
   std::vector<int> kept;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (all.points[i].z() <= static_cast<float>(options.max_depth_m) &&

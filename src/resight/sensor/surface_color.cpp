@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/sensor/surface_color.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <numeric>
+
+#include "resight/core/check.hpp"
+#include "resight/core/parallel.hpp"
+
+namespace resight {
+namespace {
+
+constexpr std::size_t kRowsPerTask = 16;
+// Grey levels: what cameras leave after their own noise reduction.
+constexpr double kUsualNoise = 1;
+
+constexpr int kCutOff = 8;                  // Grey levels.
+constexpr double kNormalQuartile = 0.6745;  // Median of |x| for x of standard deviation 1.
+constexpr double kGain = 6;                 // Root of the sum of the operator's squared weights.
+
+using Sum = std::array<std::uint32_t, 3>;  // Of at most 2^24 pixels.
+
+// Sums over all pixels above and to the left (Crow 1984), so that a mean costs the same for any radius.
+Image<Sum> make_sums(const Image<Rgb8>& color) {
+  Image<Sum> sums(color.width() + 1, color.height() + 1);
+  for (int v = 0; v < color.height(); ++v) {
+    Sum row{};
+    for (int u = 0; u < color.width(); ++u) {
+      const Rgb8 c = color(u, v);
+      const std::array<std::uint8_t, 3> channels{c.r, c.g, c.b};
+      for (std::size_t k = 0; k < 3; ++k) {
+        row[k] += channels[k];
+        sums(u + 1, v + 1)[k] = sums(u + 1, v)[k] + row[k];
+      }
+    }
+  }
+  return sums;
+}
+
+Rgb8 mean_around(const Image<Sum>& sums, int u, int v, int radius_px) {
+  const int u0 = std::max(u - radius_px, 0);
+  const int v0 = std::max(v - radius_px, 0);
+  const int u1 = std::min(u + radius_px + 1, sums.width() - 1);
+  const int v1 = std::min(v + radius_px + 1, sums.height() - 1);
+  const auto area = static_cast<std::uint32_t>((u1 - u0) * (v1 - v0));
+  const auto mean = [&](std::size_t k) {
+    const std::uint32_t sum = sums(u1, v1)[k] - sums(u0, v1)[k] - sums(u1, v0)[k] + sums(u0, v0)[k];
+    return static_cast<std::uint8_t>((sum + area / 2) / area);
+  };
+  return {mean(0), mean(1), mean(2)};
+}
+
+// Absolute responses of one channel to Immerkaer's operator, in which edges and slopes cancel. Nearly black and nearly
+// white pixels have no noise, because it is cut off.
+void add_responses(const Image<Rgb8>& color, std::uint8_t Rgb8::*channel, std::array<int, 4081>& histogram) {
+  constexpr int kStep = 2;  // A quarter of the pixels is enough.
+  for (int v = 1; v + 1 < color.height(); v += kStep)
+    for (int u = 1; u + 1 < color.width(); u += kStep) {
+      const auto at = [&](int du, int dv) { return static_cast<int>(color(u + du, v + dv).*channel); };
+      if (at(0, 0) <= kCutOff || at(0, 0) >= 255 - kCutOff) continue;
+      const int corners = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1);
+      const int sides = at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1);
+      ++histogram[static_cast<std::size_t>(std::abs(corners - 2 * sides + 4 * at(0, 0)))];
+    }
+}
+
+}  // namespace
+
+double estimate_image_noise(const Image<Rgb8>& color) {
+  std::array<int, 4081> histogram{};  // 16 x 255 + 1
+  for (const auto channel : {&Rgb8::r, &Rgb8::g, &Rgb8::b}) add_responses(color, channel, histogram);
+  const int num_responses = std::accumulate(histogram.begin(), histogram.end(), 0);
+  if (num_responses == 0) return 0;
+  int below = 0;
+  std::size_t median = 0;
+  while (median + 1 < histogram.size() && below + histogram[median] <= num_responses / 2) below += histogram[median++];
+  return static_cast<double>(median) / (kNormalQuartile * kGain);
+}
+
+Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera, const Image<float>& z_m,
+                                 double width_m, int num_threads) {
+  check_positive("average_over_surface: width_m", width_m);
+  require(color.width() == camera.width && color.height() == camera.height && z_m.width() == camera.width &&
+              z_m.height() == camera.height,
+          "average_over_surface: the images have not the camera's size");
+  const double noise = estimate_image_noise(color);
+  if (!(noise > kUsualNoise)) return color;
+  // The mean over a square of n x n pixels has an n-th of the noise.
+  const int max_radius_px = static_cast<int>(std::ceil((noise / kUsualNoise - 1) / 2));
+  const Image<Sum> sums = make_sums(color);
+  const auto half_width_px_m = static_cast<float>(0.5 * width_m * camera.fx);
+  Image<Rgb8> averaged = color;
+  parallel_for_blocks(
+      static_cast<std::size_t>(color.height()), kRowsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
+        for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v)
+          for (int u = 0; u < color.width(); ++u) {
+            const float radius_px = half_width_px_m / z_m(u, v);
+            if (!(radius_px >= 1)) continue;  // NaN: no depth.
+            averaged(u, v) = mean_around(
+                sums, u, v, static_cast<int>(std::min<float>(radius_px, static_cast<float>(max_radius_px))));
+          }
+      });
+  return averaged;
+}
+
+}  // namespace resight
