@@ -14,7 +14,7 @@
 namespace resight {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 16;
+constexpr std::size_t kAveragedRowsPerTask = 16;
 // Grey levels: what cameras leave after their own noise reduction.
 constexpr double kUsualNoise = 1;
 
@@ -94,16 +94,17 @@ Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera,
   const Image<Sum> sums = make_sums(color);
   const auto half_width_px_m = static_cast<float>(0.5 * width_m * camera.fx);
   Image<Rgb8> averaged = color;
-  parallel_for_blocks(
-      static_cast<std::size_t>(color.height()), kRowsPerTask, num_threads, [&](std::size_t begin, std::size_t end) {
-        for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v)
-          for (int u = 0; u < color.width(); ++u) {
-            const float radius_px = half_width_px_m / z_m(u, v);
-            if (!(radius_px >= 1)) continue;  // NaN: no depth.
-            averaged(u, v) = mean_around(
-                sums, u, v, static_cast<int>(std::min<float>(radius_px, static_cast<float>(max_radius_px))));
-          }
-      });
+  parallel_for_blocks(static_cast<std::size_t>(color.height()), kAveragedRowsPerTask, num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v)
+                          for (int u = 0; u < color.width(); ++u) {
+                            const float radius_px = half_width_px_m / z_m(u, v);
+                            if (!(radius_px >= 1)) continue;  // NaN: no depth.
+                            averaged(u, v) = mean_around(
+                                sums, u, v,
+                                static_cast<int>(std::min<float>(radius_px, static_cast<float>(max_radius_px))));
+                          }
+                      });
   return averaged;
 }
 
