@@ -15,14 +15,13 @@ namespace resight {
 namespace {
 
 constexpr std::size_t kAveragedRowsPerTask = 16;
-// Grey levels: what cameras leave after their own noise reduction.
-constexpr double kUsualNoise = 1;
-
-constexpr int kCutOff = 8;                  // Grey levels.
+constexpr double kUsualNoise = 1;           // Grey levels: what cameras leave after their own noise reduction.
+constexpr int kCutOff = 8;                  // Grey levels from black and from white.
 constexpr double kNormalQuartile = 0.6745;  // Median of |x| for x of standard deviation 1.
 constexpr double kGain = 6;                 // Root of the sum of the operator's squared weights.
 
-using Sum = std::array<std::uint32_t, 3>;  // Of at most 2^24 pixels.
+using Sum = std::array<std::uint32_t, 3>;              // Per channel. May wrap: differences do not notice.
+using ResponseCounts = std::array<int, 16 * 255 + 1>;  // By absolute response to the operator.
 
 // Sums over all pixels above and to the left (Crow 1984), so that a mean costs the same for any radius.
 Image<Sum> make_sums(const Image<Rgb8>& color) {
@@ -56,7 +55,7 @@ Rgb8 mean_around(const Image<Sum>& sums, int u, int v, int radius_px) {
 
 // Absolute responses of one channel to Immerkaer's operator, in which edges and slopes cancel. Nearly black and nearly
 // white pixels have no noise, because it is cut off.
-void add_responses(const Image<Rgb8>& color, std::uint8_t Rgb8::*channel, std::array<int, 4081>& histogram) {
+void add_responses(const Image<Rgb8>& color, std::uint8_t Rgb8::*channel, ResponseCounts& counts) {
   constexpr int kStep = 2;  // A quarter of the pixels is enough.
   for (int v = 1; v + 1 < color.height(); v += kStep)
     for (int u = 1; u + 1 < color.width(); u += kStep) {
@@ -64,20 +63,20 @@ void add_responses(const Image<Rgb8>& color, std::uint8_t Rgb8::*channel, std::a
       if (at(0, 0) <= kCutOff || at(0, 0) >= 255 - kCutOff) continue;
       const int corners = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1);
       const int sides = at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1);
-      ++histogram[static_cast<std::size_t>(std::abs(corners - 2 * sides + 4 * at(0, 0)))];
+      ++counts[static_cast<std::size_t>(std::abs(corners - 2 * sides + 4 * at(0, 0)))];
     }
 }
 
 }  // namespace
 
 double estimate_image_noise(const Image<Rgb8>& color) {
-  std::array<int, 4081> histogram{};  // 16 x 255 + 1
-  for (const auto channel : {&Rgb8::r, &Rgb8::g, &Rgb8::b}) add_responses(color, channel, histogram);
-  const int num_responses = std::accumulate(histogram.begin(), histogram.end(), 0);
+  ResponseCounts counts{};
+  for (const auto channel : {&Rgb8::r, &Rgb8::g, &Rgb8::b}) add_responses(color, channel, counts);
+  const int num_responses = std::accumulate(counts.begin(), counts.end(), 0);
   if (num_responses == 0) return 0;
   int below = 0;
   std::size_t median = 0;
-  while (median + 1 < histogram.size() && below + histogram[median] <= num_responses / 2) below += histogram[median++];
+  while (below + counts[median] <= num_responses / 2) below += counts[median++];
   return static_cast<double>(median) / (kNormalQuartile * kGain);
 }
 
