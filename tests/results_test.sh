@@ -127,7 +127,7 @@ expect_refused() { # expect_refused WHAT SED_EXPRESSION
   check_pages "${written[0]}" "$work/edited.md" && fail "the check accepts: $1"
 }
 expect_refused "another number" 's/^| 7 | 0.73/| 7 | 0.72/'
-expect_refused "another machine" '0,/ cores/s// cores or so/'
+expect_refused "another machine" '/^Commit /s/ cores\.$/ cores or so./'
 expect_refused "a row less" '/^| 7 | 0.73/d'
 expect_refused "another commit in the marker" '0,/, commit [^,]*,/s//, commit 000000000000,/'
 expect_refused "another name" 's/table: paper,/table: papers,/'

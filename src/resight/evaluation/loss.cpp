@@ -2,6 +2,7 @@
 #include "resight/evaluation/loss.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "resight/core/check.hpp"
@@ -122,15 +123,27 @@ Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, 
     if (nearest.index >= 0) loss.best = nearest.difference;
     return loss;
   };
-  // Accepted hypotheses belong to other ground-truth objects, because this one was missed.
+  const auto refined = [&](Candidate c) {
+    c.world_from_object = trace.evidence[static_cast<std::size_t>(c.index)].world_from_object;
+    return c;
+  };
+  const auto is_accepted = [&](const Candidate& c) {
+    return trace.evidence[static_cast<std::size_t>(c.index)].accepted;
+  };
+  // What was accepted at a right pose belongs to another ground-truth object, because this one was missed.
   std::vector<Candidate> verified = candidates_of(trace.verified, object);
-  std::erase_if(verified, [&](const Candidate& c) { return trace.evidence[c.index].accepted; });
-  std::vector<Candidate> refined = verified;
-  for (Candidate& c : refined) c.world_from_object = trace.evidence[c.index].world_from_object;
-  const Nearest judged = nearest_of(refined);
+  std::erase_if(verified,
+                [&](const Candidate& c) { return is_accepted(c) && nearest_of(std::array{refined(c)}).is_right; });
+  std::vector<Candidate> rejected;
+  for (const Candidate& c : verified)
+    if (!is_accepted(c)) rejected.push_back(refined(c));
+  const Nearest judged = nearest_of(rejected);
   if (judged.index >= 0) loss.evidence = trace.evidence[judged.index];
   if (judged.is_right) return lost_at(LossStage::kRejected, judged);
-  if (nearest_of(verified).is_right) return lost_at(LossStage::kRefinedAway, judged);
+  if (const Nearest start = nearest_of(verified); start.is_right) {
+    loss.evidence = trace.evidence[start.index];
+    return lost_at(LossStage::kRefinedAway, nearest_of(std::array{refined({start.index, {}})}));
+  }
   loss.evidence.reset();
   if (const Nearest clustered = nearest_of(candidates_of(trace.clustered, object)); clustered.is_right)
     return lost_at(LossStage::kCalledAbsent, clustered);

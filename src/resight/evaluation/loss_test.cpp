@@ -134,6 +134,16 @@ TEST_F(LossTest, WhatWasAcceptedIsAnotherObjects) {
   EXPECT_EQ(loss().evidence->explained_share, 0.01);
 }
 
+TEST_F(LossTest, WhatWasAcceptedAtAWrongPoseIsRefinedAway) {
+  add_verified(0.3, 0.02);
+  trace_.evidence.back().world_from_object.translation.x() += 1;
+  add_verified(0.03, 0.09, true);
+  trace_.clustered = trace_.merged = trace_.verified;
+  EXPECT_EQ(loss().stage, LossStage::kRefinedAway);
+  EXPECT_NEAR(loss().best->center_distance_m, 0.09, 1e-9);
+  EXPECT_TRUE(loss().evidence->accepted);
+}
+
 TEST_F(LossTest, AnObjectThatIsNotInTheLibraryIsRefused) {
   truth_.object = "teapot";
   EXPECT_THROW((void)loss(), std::invalid_argument);
