@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMinRadius_px = 2;
 constexpr int kMaxGap_px = 2;     // Within a region: the pixels of one view do not cover all of another's.
-constexpr int kMinAroundGap = 6;  // Of the 25 pixels around: a quarter, as many as remain at half the distance.
+constexpr int kMinAroundGap = 6;  // Of 25 pixels: a quarter. So many are met if the camera comes twice as near.
 
 /// What a view and an earlier one say about each other.
 struct PairEvidence {

@@ -10,15 +10,15 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 
 namespace resight {
 namespace {
 
 constexpr std::size_t kAveragedRowsPerTask = 16;
-constexpr double kUsualNoise = 1;           // Grey levels: what cameras leave after their own noise reduction.
-constexpr int kCutOff = 8;                  // Grey levels from black and from white.
-constexpr double kNormalQuartile = 0.6745;  // Median of |x| for x of standard deviation 1.
-constexpr double kGain = 6;                 // Root of the sum of the operator's squared weights.
+constexpr double kUsualNoise = 1;  // Grey levels: what cameras leave after their own noise reduction.
+constexpr int kCutOff = 8;         // Grey levels from black and from white.
+constexpr double kGain = 6;        // Root of the sum of the operator's squared weights.
 
 using Sum = std::array<std::uint32_t, 3>;              // Per channel. May wrap: differences do not notice.
 using ResponseCounts = std::array<int, 16 * 255 + 1>;  // By absolute response to the operator.
@@ -77,7 +77,7 @@ double estimate_image_noise(const Image<Rgb8>& color) {
   int below = 0;
   std::size_t median = 0;
   while (below + counts[median] <= num_responses / 2) below += counts[median++];
-  return static_cast<double>(median) / (kNormalQuartile * kGain);
+  return kNormalizedMad * static_cast<double>(median) / kGain;
 }
 
 Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera, const Image<float>& z_m,
@@ -87,7 +87,7 @@ Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera,
               z_m.height() == camera.height,
           "average_over_surface: the images have not the camera's size");
   const double noise = estimate_image_noise(color);
-  if (!(noise > kUsualNoise)) return color;
+  if (!(noise > kUsualNoise)) return {};
   // The mean over a square of n x n pixels has an n-th of the noise.
   const int max_radius_px = static_cast<int>(std::ceil((noise / kUsualNoise - 1) / 2));
   const Image<Sum> sums = make_sums(color);

@@ -62,8 +62,12 @@ TEST(SurfaceColor, NoiseIsAveragedToAboutOneGreyLevel) {
 }
 
 TEST(SurfaceColor, AnImageWithLittleNoiseStaysAsItIs) {
-  const Image<Rgb8> image = noisy_image(0.6);
-  EXPECT_EQ(average_over_surface(image, kCamera, at_depth(0.3F), 0.005), image);
+  const RgbdFrame frame{"view", kCamera, noisy_image(0.6), at_depth(0.3F), {}};
+  EXPECT_TRUE(average_over_surface(frame.color, kCamera, frame.depth_m, 0.005).empty());
+  PrepareViewOptions averaging;
+  averaging.color_width_m = 0.005;
+  const PreparedView view = prepare_view(frame, averaging);
+  EXPECT_EQ(&view.surface_color(), &view.frame.color);
 }
 
 TEST(SurfaceColor, NoMoreThanTheWidthOnTheSurfaceIsAveraged) {

@@ -115,9 +115,10 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
       fy_(static_cast<float>(view.frame.camera.fy)),
       cx_(static_cast<float>(view.frame.camera.cx) + 0.5F),
       cy_(static_cast<float>(view.frame.camera.cy) + 0.5F) {
+  const Image<Rgb8>& colors = view.surface_color();
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      lab_[i] = to_lab(view.surface_color()[i]);
+      lab_[i] = to_lab(colors[i]);
       pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.fx), chroma(lab_[i])};
       const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
       oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
