@@ -18,9 +18,8 @@ constexpr int kMinAroundGap = 6;  // Of 25 pixels: a quarter. So many are met if
 
 /// What a view and an earlier one say about each other.
 struct PairEvidence {
-  Image<Evidence> of_view;     ///< What the earlier view says about the pixels of the view.
-  Image<Evidence> of_earlier;  ///< The reverse.
-  Image<int> earlier_in_view;  ///< Pixel of the view to which each one of the earlier view projects; -1: none.
+  ViewComparison of_view;     ///< What the earlier view says about the surfaces of the view.
+  ViewComparison of_earlier;  ///< The reverse.
   double noise_scale = 1;
 };
 
@@ -36,11 +35,26 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
                                int num_threads) {
   PairEvidence pair;
   pair.noise_scale = estimate_noise_scale(view, earlier);
-  const CompareViewsOptions compare{options.sigmas,
-                                    comparison_radius_px(view, earlier, pair.noise_scale, options.sigmas), num_threads};
+  const CompareViewsOptions compare{
+      .sigmas = options.sigmas,
+      .recolored_sigmas = options.recolored_sigmas,
+      .window_radius_px = comparison_radius_px(view, earlier, pair.noise_scale, options.sigmas),
+      .num_threads = num_threads};
   pair.of_view = compare_views(view, earlier, pair.noise_scale, compare);
-  pair.of_earlier = compare_views(earlier, view, pair.noise_scale, compare, &pair.earlier_in_view);
+  pair.of_earlier = compare_views(earlier, view, pair.noise_scale, compare);
   return pair;
+}
+
+/// By how many times the least difference that counts a view contradicts the surfaces at these pixels.
+std::vector<float> measure_excess(const PreparedView& surfaces, const PreparedView& view,
+                                  const ViewComparison& comparison, std::span<const int> pixels, double noise_scale,
+                                  const DepthTestOptions& options) {
+  std::vector<float> excess = measure_contradiction(surfaces, view, pixels, noise_scale);
+  for (std::size_t k = 0; k < excess.size(); ++k) {
+    const bool is_recolored = comparison.recolored[static_cast<std::size_t>(pixels[k])] != 0;
+    excess[k] /= static_cast<float>(is_recolored ? options.recolored_sigmas.value_or(options.sigmas) : options.sigmas);
+  }
+  return excess;
 }
 
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
@@ -49,8 +63,8 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
   Image<std::uint8_t> explained(novel);
   for (const PairEvidence& pair : pairs)
     for (std::size_t i = 0; i < novel.size(); ++i) {
-      if (pair.of_view[i] == Evidence::kPresent) explained[i] = 1;
-      if (pair.of_view[i] == Evidence::kSeenThrough) novel[i] = 1;
+      if (pair.of_view.evidence[i] == Evidence::kPresent) explained[i] = 1;
+      if (pair.of_view.evidence[i] == Evidence::kSeenThrough) novel[i] = 1;
     }
   for (std::size_t i = 0; i < novel.size(); ++i) {
     num_explained += explained[i];
@@ -59,18 +73,21 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
   return novel;
 }
 
-/// Mean over the earlier views that see through a novel surface, in standard deviations; 0 at other pixels.
+/// Mean of measure_excess() over the earlier views that see through a novel surface; 0 at other pixels.
 Image<float> measure_novel(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
-                           std::span<const PairEvidence> pairs, const Image<std::uint8_t>& novel) {
+                           std::span<const PairEvidence> pairs, const DepthTestOptions& options,
+                           const Image<std::uint8_t>& novel) {
   Image<float> sum(novel.width(), novel.height());
   Image<std::uint16_t> num(novel.width(), novel.height());
   for (std::size_t e = 0; e < pairs.size(); ++e) {
     std::vector<int> pixels;
     for (std::size_t i = 0; i < novel.size(); ++i)
-      if (novel[i] != 0 && pairs[e].of_view[i] == Evidence::kSeenThrough) pixels.push_back(static_cast<int>(i));
-    const std::vector<float> sigmas = measure_contradiction(view, *earlier_views[e], pixels, pairs[e].noise_scale);
+      if (novel[i] != 0 && pairs[e].of_view.evidence[i] == Evidence::kSeenThrough)
+        pixels.push_back(static_cast<int>(i));
+    const std::vector<float> excess =
+        measure_excess(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
-      sum[static_cast<std::size_t>(pixels[k])] += sigmas[k];
+      sum[static_cast<std::size_t>(pixels[k])] += excess[k];
       ++num[static_cast<std::size_t>(pixels[k])];
     }
   }
@@ -81,11 +98,11 @@ Image<float> measure_novel(const PreparedView& view, std::span<const PreparedVie
 
 /// Neighbouring errors of depth are alike. A region of noise may therefore have many pixels that are off by little, but
 /// not many that are off by much.
-void drop_weak_regions(const Image<float>& sigmas, const DepthTestOptions& options, Image<std::uint8_t>& mask) {
+void drop_weak_regions(const Image<float>& excess, int min_region_px, Image<std::uint8_t>& mask) {
   for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px)) {
     double mass = 0;
-    for (const int i : region) mass += std::clamp(sigmas[static_cast<std::size_t>(i)] / options.sigmas - 1, 0.0, 1.0);
-    if (mass < options.min_region_px)
+    for (const int i : region) mass += std::clamp(excess[static_cast<std::size_t>(i)] - 1, 0.0F, 1.0F);
+    if (mass < min_region_px)
       for (const int i : region) mask[static_cast<std::size_t>(i)] = 0;
   }
 }
@@ -100,20 +117,21 @@ struct GonePixels {
 /// saw a place decides: had the surface of an older one left before, it would have been cleared then.
 class RemovedSurface {
  public:
-  explicit RemovedSurface(const PreparedView& view)
+  RemovedSurface(const PreparedView& view, const DepthTestOptions& options)
       : view_(view),
+        options_(options),
         met_(view.cloud.width(), view.cloud.height()),
         decided_(met_),
         removed_(decided_),
-        sigmas_(view.cloud.width(), view.cloud.height()) {}
+        excess_(view.cloud.width(), view.cloud.height()) {}
 
   [[nodiscard]] GonePixels add(const PreparedView& earlier, const PairEvidence& pair) {
-    const Image<Evidence>& evidence = pair.of_earlier;
+    const Image<Evidence>& evidence = pair.of_earlier.evidence;
     GonePixels gone;
     std::vector<std::size_t> present;
     for (std::size_t i = 0; i < evidence.size(); ++i) {
-      if (pair.earlier_in_view[i] < 0) continue;
-      const auto at = static_cast<std::size_t>(pair.earlier_in_view[i]);
+      if (pair.of_earlier.pixels[i] < 0) continue;
+      const auto at = static_cast<std::size_t>(pair.of_earlier.pixels[i]);
       met_[at] = 1;
       if (!is_observed(evidence[i])) continue;
       if (evidence[i] == Evidence::kPresent) present.push_back(at);
@@ -123,25 +141,27 @@ class RemovedSurface {
       gone.in_view.push_back(static_cast<int>(at));
     }
     for (const std::size_t at : present) decided_[at] = 1;
-    const std::vector<float> sigmas = measure_contradiction(earlier, view_, gone.in_earlier, pair.noise_scale);
-    for (std::size_t k = 0; k < sigmas.size(); ++k) {
-      float& strongest = sigmas_[static_cast<std::size_t>(gone.in_view[k])];
-      strongest = std::max(strongest, sigmas[k]);
+    const std::vector<float> excess =
+        measure_excess(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
+    for (std::size_t k = 0; k < excess.size(); ++k) {
+      float& largest = excess_[static_cast<std::size_t>(gone.in_view[k])];
+      largest = std::max(largest, excess[k]);
     }
     return gone;
   }
   Image<std::uint8_t>& mask() { return removed_; }
   /// A pixel that no earlier view projects to is removed if most of those around it are.
   void fill_gaps();
-  /// Of the removed pixels, in standard deviations.
-  [[nodiscard]] const Image<float>& sigmas() const { return sigmas_; }
+  /// Largest measure_excess() of the removed pixels.
+  [[nodiscard]] const Image<float>& excess() const { return excess_; }
 
  private:
   const PreparedView& view_;
+  const DepthTestOptions& options_;
   Image<std::uint8_t> met_;  // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
-  Image<float> sigmas_;
+  Image<float> excess_;
 };
 
 /// Calls `visit` with each pixel that is at most kMaxGap_px rows and columns away.
@@ -182,16 +202,17 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
   parallel_for(pairs.size(), num_threads,
                [&](std::size_t e) { pairs[e] = compare_both_ways(view, *earlier_views[e], options, num_threads); });
   changes.novel = find_novel(view, pairs, changes.num_explained);
-  drop_weak_regions(measure_novel(view, earlier_views, pairs, changes.novel), options, changes.novel);
+  drop_weak_regions(measure_novel(view, earlier_views, pairs, options, changes.novel), options.min_region_px,
+                    changes.novel);
 
-  RemovedSurface removed(view);
+  RemovedSurface removed(view, options);
   std::vector<GonePixels> gone(pairs.size());
   for (std::size_t e = pairs.size(); e-- > 0;) {
-    for (const Evidence evidence : pairs[e].of_earlier.data())
+    for (const Evidence evidence : pairs[e].of_earlier.evidence.data())
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
     gone[e] = removed.add(*earlier_views[e], pairs[e]);
   }
-  drop_weak_regions(removed.sigmas(), options, removed.mask());
+  drop_weak_regions(removed.excess(), options.min_region_px, removed.mask());
   for (const GonePixels& pixels : gone) {
     std::vector<int>& kept = changes.gone_pixels.emplace_back();
     for (std::size_t i = 0; i < pixels.in_view.size(); ++i)

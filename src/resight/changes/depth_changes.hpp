@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace resight {
 /// The statistical test of changes: depth against depth.
 struct DepthTestOptions {
   double sigmas = 2.5;
+  std::optional<double> recolored_sigmas = 1.5;
   int min_region_px = 40;
 };
 
@@ -20,10 +22,14 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "A surface has changed if it differs from what another view measured by more than this many standard "
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
+  v.field("recolored_sigmas", o.recolored_sigmas, positive(),
+          "The same for pixels whose colour, relative to its surroundings, has changed, too: thin things. off: colours "
+          "do not count.",
+          "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
-      "Smaller connected regions are noise. A pixel counts in full from twice `sigmas` on, and less the nearer it is "
-      "to `sigmas`.",
+      "Smaller connected regions are noise. A pixel counts in full from twice the standard deviations above on, and "
+      "less the nearer it is to these.",
       "ours; cluster mass of Bullmore et al. 1999");
 }
 
@@ -40,7 +46,8 @@ struct DepthChanges {
 ///
 /// Novel: no earlier view has the surface, and at least one saw free space there. Removed: the view sees through the
 /// surface of an earlier view. Both need neighbours, because neighbouring errors of depth are alike: a region is noise
-/// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). The noise is scaled to
+/// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). Where colours have
+/// changed, too (find_color_changes()), less of a difference is enough. The noise is scaled to
 /// what the two views show of it (estimate_noise_scale()). If the camera moved, the errors of its poses and its lens
 /// are as large as the contours of both views show (estimate_misregistration_px()). Views must not be null.
 [[nodiscard]] DepthChanges find_depth_changes(const PreparedView& view,

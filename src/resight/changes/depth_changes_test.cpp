@@ -164,6 +164,42 @@ TEST(DepthChanges, ThinThingsAreFoundDespiteNoise) {
   EXPECT_GT(count_at(thin, removed.removed_in_world, 0.01), 100);
 }
 
+// Flat on the table: 9 mm high, and as wide as five pixels.
+const Box kPen{{0, 0, 0.0045}, {0.08, 0.011, 0.0045}};
+
+/// With noise, and the box in another colour than the table.
+PreparedView see_colored(const Scene& scene, const Rigid3& world_from_camera, std::uint64_t seed) {
+  PreparedView view = see_with_noise(scene, world_from_camera, seed);
+  const Image<float> depth_m = render_depth(scene, view.frame.camera, world_from_camera);
+  const Image<float> table_m = render_depth(table(), view.frame.camera, world_from_camera);
+  for (std::size_t i = 0; i < depth_m.size(); ++i)
+    if (depth_m[i] != table_m[i]) view.frame.color[i] = {30, 30, 120};
+  return view;
+}
+
+TEST(DepthChanges, ColourTellsThinThingsFromNoise) {
+  const auto see_bare = [](std::uint64_t seed) { return see_colored(table(), usual_pose(), seed); };
+  const auto see_pen = [](std::uint64_t seed) { return see_colored(scene_with({kPen}), usual_pose(), seed); };
+  const ChangeResult added = detect(see_bare(1), see_pen(2));
+  EXPECT_GT(count(added.novel_mask), 60);
+  EXPECT_GT(count_at(kPen, added.novel_in_world, 0.012), static_cast<int>(added.novel_in_world.size()) * 9 / 10);
+  const ChangeResult removed = detect(see_pen(3), see_bare(4));
+  EXPECT_GT(count(removed.removed_mask), 60);
+  EXPECT_EQ(count(removed.novel_mask), 0);
+  const auto see_pale_pen = [](std::uint64_t seed) { return see_with_noise(scene_with({kPen}), usual_pose(), seed); };
+  EXPECT_EQ(count(detect(see_bare(1), see_pale_pen(2)).novel_mask), 0);
+}
+
+TEST(DepthChanges, ColourAloneIsNoChange) {
+  const PreparedView before = see_colored(table(), usual_pose(), 5);
+  PreparedView after = see_colored(table(), usual_pose(), 6);
+  for (int v = 110; v < 120; ++v)
+    for (int u = 100; u < 200; ++u) after.frame.color(u, v) = {30, 30, 120};  // A print, or a hard shadow.
+  const ChangeResult changes = detect(before, after);
+  EXPECT_EQ(count(changes.novel_mask), 0);
+  EXPECT_EQ(count(changes.removed_mask), 0);
+}
+
 TEST(DepthChanges, WhatIsHiddenIsKept) {
   const Box front{{0, -0.3, 0.12}, {0.2, 0.02, 0.12}};
   const Rigid3 low = look_at({0, -0.9, 0.3}, {0, 0, 0.05});

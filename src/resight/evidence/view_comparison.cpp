@@ -12,6 +12,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/statistics.hpp"
+#include "resight/evidence/color_change.hpp"
 #include "resight/sensor/occluding_contour.hpp"
 
 namespace resight {
@@ -96,9 +97,9 @@ struct PosedRow {
   std::vector<int> u, v;
 };
 
-class ViewComparison {
+class SurfaceComparison {
  public:
-  ViewComparison(const PreparedView& surfaces, const PreparedView& view, float sigmas)
+  SurfaceComparison(const PreparedView& surfaces, const PreparedView& view, float sigmas)
       : surfaces_(surfaces),
         view_(view),
         reprojection_(view.frame.world_from_camera.inverse() * surfaces.frame.world_from_camera, view.frame.camera),
@@ -122,6 +123,11 @@ class ViewComparison {
     const Evidence center = compare(surface, view_.frame.depth_m.index(surface.u, surface.v));
     if (center == Evidence::kPresent) return center;
     return agree_in_window(surface, radius_px, center);
+  }
+
+  /// Whether the measurement where the surface projects to lies behind it. The surface must be visible.
+  [[nodiscard]] bool sees_through(const SurfaceInView& surface) const {
+    return compare(surface, view_.frame.depth_m.index(surface.u, surface.v)) == Evidence::kSeenThrough;
   }
 
   /// The smallest window around the pixel that the surface projects to with a measurement that agrees with it, in rows
@@ -218,29 +224,61 @@ void check_view(const PreparedView& view) {
           "compare_views: a view is not prepared (its images have not its camera's size)");
 }
 
+/// `recolored` receives what is seen through by a distance that counts where colours differ; null: nothing.
+ViewComparison compare_depths(const SurfaceComparison& by_depth, const SurfaceComparison* with_color,
+                              const OrganizedCloud& surfaces, const CompareViewsOptions& options) {
+  ViewComparison result{Image<Evidence>(surfaces.width(), surfaces.height(), Evidence::kUnobserved),
+                        Image<int>(surfaces.width(), surfaces.height()),
+                        Image<std::uint8_t>(surfaces.width(), surfaces.height())};
+  parallel_for_blocks(static_cast<std::size_t>(surfaces.height()), kComparedRows, options.num_threads,
+                      [&](std::size_t begin, std::size_t end) {
+                        PosedRow posed(surfaces.width());
+                        for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+                          by_depth.pose_row(v, posed);
+                          for (int u = 0; u < surfaces.width(); ++u) {
+                            const Evidence evidence = by_depth.classify(posed[u], options.window_radius_px);
+                            result.evidence(u, v) = evidence;
+                            result.pixels(u, v) = by_depth.index(posed[u]);
+                            if (with_color != nullptr && is_observed(evidence) && with_color->sees_through(posed[u]))
+                              result.recolored(u, v) = 1;
+                          }
+                        }
+                      });
+  return result;
+}
+
+/// Keeps `recolored` where colours differ, and lets it decide there.
+void compare_colors(const PreparedView& surfaces, const PreparedView& view, const SurfaceComparison& with_color,
+                    const CompareViewsOptions& options, ViewComparison& result) {
+  std::vector<int> candidates;
+  for (std::size_t i = 0; i < result.recolored.size(); ++i)
+    if (std::exchange(result.recolored[i], 0) != 0) candidates.push_back(static_cast<int>(i));
+  // A still camera's colours may lie a pixel beside each other: it interpolates them.
+  const int radius_px = std::max(options.window_radius_px, 1);
+  for (const int i : find_color_changes(surfaces, view, result.pixels, candidates, radius_px)) {
+    const auto at = static_cast<std::size_t>(i);
+    const Evidence evidence = with_color.classify(with_color.pose(at), options.window_radius_px);
+    if (evidence != Evidence::kSeenThrough) continue;
+    result.evidence[at] = evidence;
+    result.recolored[at] = 1;
+  }
+}
+
 }  // namespace
 
-Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
-                              const CompareViewsOptions& options, Image<int>* pixels) {
+ViewComparison compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
+                             const CompareViewsOptions& options) {
   options.check();
   check_positive("noise_scale", noise_scale);
   check_view(surfaces);
   check_view(view);
-  const ViewComparison comparison(surfaces, view, static_cast<float>(options.sigmas * noise_scale));
-  Image<Evidence> evidence(surfaces.cloud.width(), surfaces.cloud.height(), Evidence::kUnobserved);
-  if (pixels != nullptr) *pixels = Image<int>(evidence.width(), evidence.height());
-  parallel_for_blocks(static_cast<std::size_t>(evidence.height()), kComparedRows, options.num_threads,
-                      [&](std::size_t begin, std::size_t end) {
-                        PosedRow posed(evidence.width());
-                        for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-                          comparison.pose_row(v, posed);
-                          for (int u = 0; u < evidence.width(); ++u)
-                            evidence(u, v) = comparison.classify(posed[u], options.window_radius_px);
-                          if (pixels == nullptr) continue;
-                          for (int u = 0; u < evidence.width(); ++u) (*pixels)(u, v) = comparison.index(posed[u]);
-                        }
-                      });
-  return evidence;
+  const SurfaceComparison by_depth(surfaces, view, static_cast<float>(options.sigmas * noise_scale));
+  if (!options.recolored_sigmas) return compare_depths(by_depth, nullptr, surfaces.cloud, options);
+  const double recolored_sigmas = std::min(*options.recolored_sigmas, options.sigmas);
+  const SurfaceComparison with_color(surfaces, view, static_cast<float>(recolored_sigmas * noise_scale));
+  ViewComparison result = compare_depths(by_depth, &with_color, surfaces.cloud, options);
+  compare_colors(surfaces, view, with_color, options, result);
+  return result;
 }
 
 std::vector<float> measure_contradiction(const PreparedView& surfaces, const PreparedView& view,
@@ -248,7 +286,7 @@ std::vector<float> measure_contradiction(const PreparedView& surfaces, const Pre
   check_positive("noise_scale", noise_scale);
   check_view(surfaces);
   check_view(view);
-  const ViewComparison comparison(surfaces, view, 1);
+  const SurfaceComparison comparison(surfaces, view, 1);
   std::vector<float> sigmas;
   for (const int i : pixels)
     sigmas.push_back(comparison.normalized_distance(comparison.pose(static_cast<std::size_t>(i)),
@@ -260,7 +298,7 @@ std::vector<float> measure_contradiction(const PreparedView& surfaces, const Pre
 double estimate_noise_scale(const PreparedView& surfaces, const PreparedView& view) {
   check_view(surfaces);
   check_view(view);
-  const ViewComparison comparison(surfaces, view, 1);
+  const SurfaceComparison comparison(surfaces, view, 1);
   std::vector<float> distances;
   PosedRow posed(surfaces.cloud.width());
   for (int v = 0; v < surfaces.cloud.height(); v += kScaleStep_px) {
@@ -279,7 +317,7 @@ int estimate_misregistration_px(const PreparedView& surfaces, const PreparedView
   check_positive("noise_scale", noise_scale);
   check_view(surfaces);
   check_view(view);
-  const ViewComparison comparison(surfaces, view, static_cast<float>(sigmas * noise_scale));
+  const SurfaceComparison comparison(surfaces, view, static_cast<float>(sigmas * noise_scale));
   std::array<int, kMaxMisregistration_px + 1> num_at_radius{};
   int num_explained = 0;
   for (int v = 0; v < surfaces.cloud.height(); ++v)

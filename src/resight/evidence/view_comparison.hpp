@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,7 @@ namespace resight {
 
 struct CompareViewsOptions {
   double sigmas = 3;
+  std::optional<double> recolored_sigmas{};
   int window_radius_px = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("CompareViewsOptions", *this); }
@@ -21,19 +24,29 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
           "Surfaces differ if they lie farther apart, along the normal, than this many standard deviations of the "
           "noise of both views.",
           "Nguyen et al. 2012 (noise of the sensor)");
+  v.field("recolored_sigmas", o.recolored_sigmas, positive(),
+          "The same where the colours differ, too. off: colours do not count.", "ours");
   v.field("window_radius_px", o.window_radius_px, between(0, 100),
           "A measurement within this many rows and columns may explain a surface, and must not contradict free space.");
   v.num_threads(o.num_threads);
 }
 
-/// What a view says about the surfaces that another view measured, pixel by pixel of that other view. The test is
-/// statistical: the distance between the surface and the measurement, along the normal of the surface, is compared
-/// with the noise of both views, which depends on range and angle (NoiseImages::normal_m). `noise_scale` multiplies
-/// it; see estimate_noise_scale(). Pixels without depth in either view are kUnobserved, and so is what projects between
-/// the measurements of a depth edge. Both poses must be in one world frame. `pixels`, if given, receives the index of
-/// the pixel of `view` that each surface projects to; -1: none.
-[[nodiscard]] Image<Evidence> compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
-                                            const CompareViewsOptions& options = {}, Image<int>* pixels = nullptr);
+/// What a view says about the surfaces that another view measured, pixel by pixel of that other view.
+struct ViewComparison {
+  Image<Evidence> evidence;
+  Image<int> pixels;  ///< Index of the pixel of the view that the surface projects to; -1: none, or at too grazing an
+                      ///< angle.
+  Image<std::uint8_t> recolored;  ///< Non-zero where CompareViewsOptions::recolored_sigmas decided.
+};
+
+/// Compares the surfaces of one view with another view. The test is statistical: the distance between the surface and
+/// the measurement, along the normal of the surface, is compared with the noise of both views, which depends on range
+/// and angle (NoiseImages::normal_m). `noise_scale` multiplies it; see estimate_noise_scale(). Pixels without depth in
+/// either view are kUnobserved, and so is what projects between the measurements of a depth edge. What the view sees
+/// through needs less distance where the colours differ, too (find_color_changes()). Both poses must be in one world
+/// frame.
+[[nodiscard]] ViewComparison compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
+                                           const CompareViewsOptions& options = {});
 
 /// By how many standard deviations a view contradicts the surfaces at these pixels: the distances of compare_views(),
 /// divided by the noise and by `noise_scale`. Positive if the view sees through the surface, negative if it sees

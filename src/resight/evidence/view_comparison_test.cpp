@@ -52,28 +52,28 @@ std::optional<Evidence> in_the_middle(const Image<Evidence>& evidence) {
 TEST(CompareViews, DepthBeyondTheNoiseContradicts) {
   const PreparedView surface = see_wall(1.0);
   // Both views have a sigma of 1.9 mm: the limit is 3 * sqrt(2) * 1.9 = 8 mm.
-  EXPECT_EQ(count(compare_views(surface, see_wall(1.006), 1), Evidence::kPresent), kNumPixels);
-  EXPECT_EQ(in_the_middle(compare_views(surface, see_wall(1.010), 1)), Evidence::kSeenThrough);
-  EXPECT_EQ(in_the_middle(compare_views(surface, see_wall(0.990), 1)), Evidence::kOccluded);
-  EXPECT_EQ(count(compare_views(surface, see_wall(1.010), 2), Evidence::kPresent), kNumPixels);
+  EXPECT_EQ(count(compare_views(surface, see_wall(1.006), 1).evidence, Evidence::kPresent), kNumPixels);
+  EXPECT_EQ(in_the_middle(compare_views(surface, see_wall(1.010), 1).evidence), Evidence::kSeenThrough);
+  EXPECT_EQ(in_the_middle(compare_views(surface, see_wall(0.990), 1).evidence), Evidence::kOccluded);
+  EXPECT_EQ(count(compare_views(surface, see_wall(1.010), 2).evidence, Evidence::kPresent), kNumPixels);
 }
 
 TEST(CompareViews, TheLimitGrowsWithTheRange) {
-  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.02), 1), Evidence::kPresent), kNumPixels);
-  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.10), 1), Evidence::kSeenThrough), kNumPixels);
+  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.02), 1).evidence, Evidence::kPresent), kNumPixels);
+  EXPECT_EQ(count(compare_views(see_wall(3.0), see_wall(3.10), 1).evidence, Evidence::kSeenThrough), kNumPixels);
 }
 
 TEST(CompareViews, DistancesAreAlongTheNormal) {
   // At 56 deg, 12 mm along the ray are 7 mm between the surfaces.
-  EXPECT_EQ(in_the_middle(compare_views(see_wall(1.0), see_wall(1.012), 1)), Evidence::kSeenThrough);
-  EXPECT_EQ(in_the_middle(compare_views(see_wall(1.0, 1.5), see_wall(1.012, 1.5), 1)), Evidence::kPresent);
+  EXPECT_EQ(in_the_middle(compare_views(see_wall(1.0), see_wall(1.012), 1).evidence), Evidence::kSeenThrough);
+  EXPECT_EQ(in_the_middle(compare_views(see_wall(1.0, 1.5), see_wall(1.012, 1.5), 1).evidence), Evidence::kPresent);
 }
 
 TEST(CompareViews, AMovedCameraSeesTheSameSurface) {
   Rigid3 beside = Rigid3::identity();
   beside.translation.x() = 14.0 / kTwoViewCamera.fx;  // 14 px
   const PreparedView surface = see_wall(1.0);
-  const Image<Evidence> evidence = compare_views(surface, see_wall(1.0, 0, 0, 1, beside), 1);
+  const Image<Evidence> evidence = compare_views(surface, see_wall(1.0, 0, 0, 1, beside), 1).evidence;
   EXPECT_EQ(count(evidence, Evidence::kPresent) + count(evidence, Evidence::kUnobserved), kNumPixels);
   EXPECT_NEAR(count(evidence, Evidence::kUnobserved), 14 * kTwoViewCamera.height, 2 * kTwoViewCamera.height);
 }
@@ -84,8 +84,7 @@ TEST(CompareViews, TellsWhereSurfacesAreInTheOtherView) {
   moved.translation = {0.11, -0.07, 0.2};
   moved.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   const PreparedView view = see_wall(1.0, 0.4, 0, 1, moved);
-  Image<int> pixels;
-  (void)compare_views(surface, view, 1, {}, &pixels);
+  const Image<int> pixels = compare_views(surface, view, 1).pixels;
   ASSERT_EQ(pixels.size(), surface.cloud.z.size());
   int num_visible = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -105,22 +104,22 @@ TEST(CompareViews, ANeighborExplainsAndContradicts) {
   PreparedView view = see_wall(1.5);
   view.frame.depth_m(80, 60) = 1.0F;
   const PreparedView surface = see_wall(1.0);
-  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 0})(81, 60), Evidence::kSeenThrough);
-  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1})(81, 60), Evidence::kPresent);
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 0}).evidence(81, 60), Evidence::kSeenThrough);
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1}).evidence(81, 60), Evidence::kPresent);
   view.frame.depth_m(80, 60) = 0.7F;  // The edge of something in front: no evidence beside it.
-  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1})(81, 60), Evidence::kUnobserved);
+  EXPECT_EQ(compare_views(surface, view, 1, {.window_radius_px = 1}).evidence(81, 60), Evidence::kUnobserved);
 }
 
 TEST(CompareViews, NoReturnIsNoEvidence) {
   PreparedView view = see_wall(1.5);
   std::ranges::fill(view.frame.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
-  EXPECT_EQ(count(compare_views(see_wall(1.0), view, 1), Evidence::kUnobserved), kNumPixels);
+  EXPECT_EQ(count(compare_views(see_wall(1.0), view, 1).evidence, Evidence::kUnobserved), kNumPixels);
 }
 
 TEST(CompareViews, SerialIsParallel) {
   const PreparedView surface = see_wall(1.0, 0.3, 1, 1);
   const PreparedView view = see_wall(1.005, 0.3, 1, 2);
-  EXPECT_EQ(compare_views(surface, view, 1, {.num_threads = 3}), compare_views(surface, view, 1));
+  EXPECT_EQ(compare_views(surface, view, 1, {.num_threads = 3}).evidence, compare_views(surface, view, 1).evidence);
 }
 
 // 10 mm, of which sqrt(2) * 1.9 mm are one standard deviation.

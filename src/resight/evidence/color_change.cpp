@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/evidence/color_change.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "resight/core/check.hpp"
+#include "resight/core/statistics.hpp"
+
+namespace resight {
+namespace {
+
+constexpr int kSurroundingsPerWidth = 32;  // 20 px of 640: some 4 cm at 1 m.
+constexpr int kSampleStep_px = 16;         // One pixel in 256 is enough for a median.
+constexpr float kMaxGain = 4;              // Beyond, one of the images is black.
+constexpr float kMinContrast = 32;         // In grey levels: light on uneven surfaces causes less.
+constexpr float kMedians = 3;              // Noise of three channels exceeds 2.6 medians in one pixel of a thousand.
+
+using Channels = Eigen::Array3f;
+
+Channels channels_of(Rgb8 color) { return {float(color.r), float(color.g), float(color.b)}; }
+
+/// The factor per channel by which the exposure differs: a median over the image.
+Channels estimate_gain(const Image<Rgb8>& colors, const Image<Rgb8>& others, const Image<int>& pixels) {
+  std::array<std::vector<float>, 3> ratios;
+  for (int v = 0; v < pixels.height(); v += kSampleStep_px)
+    for (int u = 0; u < pixels.width(); u += kSampleStep_px) {
+      if (pixels(u, v) < 0) continue;
+      const Channels other = channels_of(others[static_cast<std::size_t>(pixels(u, v))]);
+      const Channels ratio = (channels_of(colors(u, v)) + 1) / (other + 1);  // Of black pixels, too.
+      for (int c = 0; c < 3; ++c) ratios[static_cast<std::size_t>(c)].push_back(ratio[c]);
+    }
+  Channels gain = Channels::Ones();
+  for (int c = 0; c < 3; ++c)
+    if (auto& of_channel = ratios[static_cast<std::size_t>(c)]; !of_channel.empty())
+      gain[c] = std::clamp(upper_median(std::move(of_channel)), 1 / kMaxGain, kMaxGain);
+  return gain;
+}
+
+/// Sums of the differences of colours over squares, from one pixel in four.
+class SquareSums {
+ public:
+  static constexpr int kStep_px = 2;
+  static constexpr float kMaxLevel = 255;  // No sum overflows below 33 megapixels.
+
+  SquareSums(const Image<Rgb8>& colors, const Image<Rgb8>& others, const Image<int>& pixels, const Channels& gain)
+      : width_((colors.width() + kStep_px - 1) / kStep_px),
+        height_((colors.height() + kStep_px - 1) / kStep_px),
+        sums_((static_cast<std::size_t>(width_) + 1) * (static_cast<std::size_t>(height_) + 1),
+              Eigen::Vector4i::Zero()) {
+    for (int v = 0; v < height_; ++v) {
+      Eigen::Vector4i row = Eigen::Vector4i::Zero();
+      for (int u = 0; u < width_; ++u) {
+        const std::size_t i = colors.index(u * kStep_px, v * kStep_px);
+        if (pixels[i] >= 0) {
+          const Channels d = channels_of(colors[i]) - gain * channels_of(others[static_cast<std::size_t>(pixels[i])]);
+          row.head<3>() += d.max(-kMaxLevel).min(kMaxLevel).cast<int>().matrix();
+          ++row[3];
+        }
+        sums_[index(u + 1, v + 1)] = sums_[index(u + 1, v)] + row;
+      }
+    }
+  }
+
+  /// Over the square around a pixel; zero without any pair of colours in it.
+  [[nodiscard]] Channels mean(int u, int v, int radius_px) const {
+    const int left = std::max((u - radius_px) / kStep_px, 0);
+    const int top = std::max((v - radius_px) / kStep_px, 0);
+    const int right = std::min((u + radius_px) / kStep_px + 1, width_);
+    const int bottom = std::min((v + radius_px) / kStep_px + 1, height_);
+    const Eigen::Vector4i sum =
+        sums_[index(right, bottom)] - sums_[index(left, bottom)] - sums_[index(right, top)] + sums_[index(left, top)];
+    return sum.head<3>().cast<float>().array() / static_cast<float>(std::max(sum[3], 1));
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * (static_cast<std::size_t>(width_) + 1) + static_cast<std::size_t>(u);
+  }
+  int width_;
+  int height_;
+  std::vector<Eigen::Vector4i> sums_;
+};
+
+class ColorComparison {
+ public:
+  ColorComparison(const PreparedView& surfaces, const PreparedView& view, const Image<int>& view_pixels, int radius_px)
+      : colors_(surfaces.surface_color()),
+        others_(view.surface_color()),
+        pixels_(view_pixels),
+        radius_px_(radius_px),
+        gain_(estimate_gain(colors_, others_, view_pixels)),
+        sums_(colors_, others_, view_pixels, gain_) {}
+
+  /// Grey levels between the colour and the most similar one in the other view: as they are, or after the mean
+  /// difference around the pixel is taken off, whichever is less. Without the first, what lies beside a change would
+  /// seem changed. What is at most `enough` may be returned too large. The pixel must have one in the other view.
+  [[nodiscard]] float deviation(int u, int v, float enough) const {
+    const Channels color = channels_of(colors_(u, v));
+    const Channels even = color - sums_.mean(u, v, pixels_.width() / kSurroundingsPerWidth);
+    const auto squared = [&](std::size_t other) {
+      const Channels expected = gain_ * channels_of(others_[other]);
+      return std::min((color - expected).square().sum(), (even - expected).square().sum());
+    };
+    const int center = pixels_(u, v);
+    float least = squared(static_cast<std::size_t>(center));
+    const int center_u = center % others_.width();
+    const int center_v = center / others_.width();
+    for (int y = std::max(center_v - radius_px_, 0); y <= std::min(center_v + radius_px_, others_.height() - 1); ++y)
+      for (int x = std::max(center_u - radius_px_, 0); x <= std::min(center_u + radius_px_, others_.width() - 1); ++x) {
+        if (least <= enough * enough) return std::sqrt(least);
+        least = std::min(least, squared(others_.index(x, y)));
+      }
+    return std::sqrt(least);
+  }
+
+  /// The least deviation() of a change.
+  [[nodiscard]] float find_limit() const {
+    std::vector<float> sample;
+    for (int v = 0; v < pixels_.height(); v += kSampleStep_px)
+      for (int u = 0; u < pixels_.width(); u += kSampleStep_px)
+        if (pixels_(u, v) >= 0) sample.push_back(deviation(u, v, 0));
+    return kMinContrast + (sample.empty() ? 0 : kMedians * upper_median(std::move(sample)));
+  }
+
+ private:
+  const Image<Rgb8>& colors_;
+  const Image<Rgb8>& others_;
+  const Image<int>& pixels_;
+  int radius_px_;
+  Channels gain_;
+  SquareSums sums_;
+};
+
+}  // namespace
+
+std::vector<int> find_color_changes(const PreparedView& surfaces, const PreparedView& view,
+                                    const Image<int>& view_pixels, std::span<const int> candidates, int radius_px) {
+  require(view_pixels.size() == surfaces.cloud.z.size(), "find_color_changes: the pixels are not those of the view");
+  if (surfaces.surface_color().size() != view_pixels.size() || view.surface_color().size() != view.cloud.z.size())
+    return {};
+  const ColorComparison comparison(surfaces, view, view_pixels, radius_px);
+  const float limit = comparison.find_limit();
+  std::vector<int> changed;
+  for (const int i : candidates) {
+    if (view_pixels[static_cast<std::size_t>(i)] < 0) continue;
+    if (comparison.deviation(i % view_pixels.width(), i / view_pixels.width(), limit) > limit) changed.push_back(i);
+  }
+  return changed;
+}
+
+}  // namespace resight
