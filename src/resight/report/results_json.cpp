@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/core/check.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/report/internal/json_values.hpp"
 #include "resight/report/results.hpp"
 
@@ -130,7 +131,7 @@ std::string format_view_line(const ViewRecord& view, const ModelLibrary& library
   Json json = view_json(view, library);
   json["events"] = Json::array();
   for (const ObjectEvent& event : view.update.events) json["events"].push_back(event_json(event, library));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return to_json_text(json);
 }
 
 std::string format_changes_json(const ReportRun& run, const ModelLibrary& library) {
