@@ -271,6 +271,9 @@ const std::string kRecognizeLongName = "recognize --models " + kLongName + " --s
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 const std::string kTrainToLongName = "train meshes --out " + kLongName;
 constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
+constexpr const char* kEventOfView9 = R"({"events": [{"view": 9, "kind": "added", "object": "cube", "known": true}]})";
+constexpr const char* kEventOfHostileName =
+    R"({"events": [{"view": 1, "kind": "added", "object": "../../x", "known": true}]})";
 constexpr const char* kUnorganizedPcd =
     "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
     "0 0 0\n.1 0 0\n0 .1 0\n0 0 .1\n";
@@ -651,6 +654,14 @@ const Row kRows[] = {
      "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
     {"ConvertBrokenEvents", write("tuw.events.json", "{"), "convert tuw out --to bop", 2,
      "tuw\\.events\\.json: is not"},
+    {"ConvertEventsOfASetWithManyViews", both(move("tuw", "set/test/tuw"), write("set/events.json", kEventOfView9)),
+     "convert set/test/tuw out --to bop", 2, "set/events\\.json: events\\[0\\]: view: 9, but the sequence has 3 views"},
+    {"EvaluateEventsOfASetWithAHostileName",
+     both(move("views", "set/test/views"), write("set/events.json", kEventOfHostileName)),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2,
+     "set/events\\.json: events\\[0\\]: object: the name of an object '\\.\\./\\.\\./x' has"},
+    {"EvaluateAPipeAsEventsOfASet", both(move("views", "set/test/views"), pipe("set/events.json")),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
     {"EvaluateChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"),
      "evaluate --models models.resight --dataset tuw -k 0 --out out", 2,
      "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
