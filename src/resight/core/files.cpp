@@ -12,6 +12,7 @@
 #include "resight/core/internal/file_transfer.hpp"
 #include "resight/core/internal/pending_place.hpp"
 #include "resight/core/internal/write_all.hpp"
+#include "resight/core/output_file.hpp"
 
 namespace resight {
 namespace {
@@ -109,19 +110,39 @@ Result<void> write_file(const fs::path& file, std::string_view bytes) {
 }
 
 Result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  for (const std::string_view bytes : parts)
+    if (auto written = out->append(bytes); !written) return written;
+  return out->commit();
+}
+
+Result<OutputFile> OutputFile::create(const fs::path& file) {
   constexpr double kWait_s = 10;  // Another process that writes the same file is soon done.
   const fs::path target = clean_path(file);
-  const auto fail = [&](const std::string& why) { return file_error(file, "cannot be written (" + why + ")"); };
-  const auto fail_with = [&](int code) { return fail(std::generic_category().message(code)); };
-  const auto place =
+  auto place =
       PendingPlace::create(target.parent_path(), target.filename().string(), PendingPlace::Kind::kFile, kWait_s);
-  if (!place) return fail(place.error().message);
-  for (const std::string_view bytes : parts)
-    if (const int code = write_all((*place)->descriptor(), bytes); code != 0) return fail_with(code);
-  // The content must be on the disk before the name is: after a power failure, the old or the new file is there.
-  if (::fsync((*place)->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
-  return (*place)->finish([&]() -> Result<void> {
-    if (std::rename((*place)->path().c_str(), target.c_str()) != 0) return fail_with(errno);
+  if (!place) return file_error(file, "cannot be written (" + place.error().message + ")");
+  return OutputFile(file, std::move(*place));
+}
+
+OutputFile::OutputFile(fs::path file, std::unique_ptr<PendingPlace> place)
+    : file_(std::move(file)), place_(std::move(place)) {}
+OutputFile::OutputFile(OutputFile&& other) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Error OutputFile::fail_with(int code) const { return file_error(file_, reason_of({code, std::generic_category()})); }
+
+Result<void> OutputFile::append(std::string_view bytes) {
+  if (const int code = write_all(place_->descriptor(), bytes); code != 0) return fail_with(code);
+  return {};
+}
+
+Result<void> OutputFile::commit() {
+  if (::fsync(place_->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
+  return place_->finish([&]() -> Result<void> {
+    if (std::rename(place_->path().c_str(), clean_path(file_).c_str()) != 0) return fail_with(errno);
     return {};
   });
 }

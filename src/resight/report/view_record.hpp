@@ -32,6 +32,7 @@ struct ViewRecord {
   std::vector<DetectionMark> marks;          ///< One per detection.
   std::optional<ViewEvaluation> evaluation;  ///< If there is ground truth.
   std::vector<std::uint8_t> picture_jpeg;    ///< Overlay; empty = none.
+  std::string picture_file;  ///< Its name beside the pages of the report, if it is a file (store_picture()).
 };
 
 /// One recognition run over a sequence: the content of the results files and of one column of the report.
