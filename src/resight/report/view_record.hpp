@@ -26,7 +26,7 @@ struct ViewEvaluation {
 struct ViewRecord {
   int scene_id = 0;    ///< BOP scene, or 0.
   int image_id = 0;    ///< BOP image, or the number of the view.
-  SceneUpdate update;  ///< Without the clouds and the mask of `changes`.
+  SceneUpdate update;  ///< Without the clouds and masks of `changes`.
   std::size_t num_novel_points = 0;
   std::size_t num_removed_points = 0;
   std::vector<DetectionMark> marks;          ///< One per detection.
