@@ -4,8 +4,8 @@
 #include "reader.hpp"
 #include "resight/annotation/annotation_project.hpp"
 #include "resight/cameras/track_journal.hpp"
-#include "resight/evaluation/change_truth.hpp"
 #include "resight/evaluation/evaluated_run.hpp"
+#include "resight/io/event_file.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/io/settings_file.hpp"
 #include "resight/models/internal/library_payload.hpp"
@@ -195,7 +195,7 @@ std::vector<FuzzReader> stored_readers() {
       {"results", make_result_seeds,
        [](std::string_view bytes) { (void)read_recognition_results(write_bundle(bytes, kResultFiles)); }, 2000},
       {"events", make_event_seeds,
-       [](std::string_view bytes) { (void)read_true_changes(write_scratch("events.json", bytes)); }, 2000},
+       [](std::string_view bytes) { (void)read_event_file(write_scratch("events.json", bytes), 4); }, 2000},
   };
 }
 

@@ -6,15 +6,18 @@
 # run of the fuzz targets under AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
-#   scripts/test.sh --long  all of these, and the tests of all modules under AddressSanitizer: before a release
+#   scripts/test.sh --long  all of these, and the tests of all modules under all sanitizers: before a release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
 asan_modules=(core recordings io models evaluation report annotation viewer)  # They read files of others.
+tsan_modules=(core)
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
-    --long) mapfile -t asan_modules < <(ls src/resight/*/*_test.cpp | cut -d/ -f3 | uniq) ;;
+    --long)
+      mapfile -t asan_modules < <(ls src/resight/*/*_test.cpp | cut -d/ -f3 | uniq)
+      tsan_modules=("${asan_modules[@]}") ;;
     *) echo "test.sh: unknown option '$option' (expected --fast or --long)" >&2; exit 2 ;;
   esac
 done
@@ -71,25 +74,30 @@ build_consumer() {
       -DCMAKE_PREFIX_PATH="$PWD/build/install" &&
     cmake --build build/consumer && build/consumer/consumer
 }
+test_targets() { printf 'resight_%s_test ' "$@"; }  # test_targets MODULE...
+run_modules() {  # run_modules PRESET MODULE...
+  local preset=$1
+  shift
+  printf "build/$preset/src/resight/%s\n" "$@" | sed 's|[^/]*$|&/resight_&_test|' |
+    xargs -P "$num_jobs" -n 1 sh -c '"$0" --gtest_brief=1'
+}
 build_asan() {
-  local tests=("${asan_modules[@]/%/_test}")
+  # shellcheck disable=SC2046
   cmake --preset asan-ubsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_app resight_fuzz "${tests[@]/#/resight_}"
+    cmake --build build/asan-ubsan -j "$num_jobs" --target resight_app resight_fuzz $(test_targets "${asan_modules[@]}")
 }
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  local module
-  for module in "${asan_modules[@]}"; do echo "build/asan-ubsan/src/resight/$module/resight_${module}_test"; done |
-    xargs -P "$num_jobs" -n 1 sh -c '"$0" --gtest_brief=1' &&
-    tests/threads_test.sh build/asan-ubsan/apps/resight/resight
+  run_modules asan-ubsan "${asan_modules[@]}" && tests/threads_test.sh build/asan-ubsan/apps/resight/resight
 }
 build_tsan() {
+  # shellcheck disable=SC2046
   cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/tsan -j "$num_jobs" --target resight_app resight_core_test
+    cmake --build build/tsan -j "$num_jobs" --target resight_app $(test_targets "${tsan_modules[@]}")
 }
 run_tsan() {
   export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/tsan_suppressions.txt"
-  build/tsan/src/resight/core/resight_core_test --gtest_brief=1 && tests/threads_test.sh build/tsan/apps/resight/resight
+  run_modules tsan "${tsan_modules[@]}" && tests/threads_test.sh build/tsan/apps/resight/resight
 }
 
 step "format" check_format
@@ -107,6 +115,6 @@ if ((!fast)); then
   step "tests and program with ASan and UBSan" run_asan
   step "readers with mutated files" scripts/fuzz.sh --short
   step "build with TSan" build_tsan
-  step "program with TSan" run_tsan
+  step "tests and program with TSan" run_tsan
 fi
 count_tests

@@ -11,12 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 
 {
   write_scene 3 -110 -70 false
-  cat <<'CHANGE'
-[[change]]
-view = 1
-kind = "remove"
-object = "tea_box"
-CHANGE
+  remove_tea 1
 } >"$work/scene.toml"
 
 "$resight" simulate "$work/scene.toml" --out "$work/data" --format bop --seed 1 >/dev/null 2>&1 || fail "simulate failed"

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Each command that writes is disturbed: killed or interrupted at a random moment, by a limit on the size of files, by a
 # read-only folder, by a full disk. Called again, it must end with the bytes of a run that was not disturbed (times
-# excepted), and nothing else may be left. The moments follow from a fixed seed, and from the speed of the machine.
+# excepted), and nothing else may be left. "Again": the folder holds results of a run before. The moments follow from a
+# fixed seed, and from the speed of the machine.
 # Usage: faults_test.sh PATH_OF_RESIGHT [ROUNDS per command] [COMMAND...]
 set -uo pipefail
 resight=$(realpath "$1")
@@ -25,7 +26,9 @@ declare -A arguments=(
   [evaluate]="--models ../models.resight --dataset ../data --presets mvr -k 0,1 --out out"
   [model]="--sequence ../recording/side_1 --out out"
 )
-commands=(simulate convert convert_models train recognize changes track evaluate)
+arguments[recognize_again]=${arguments[recognize]}
+arguments[changes_again]=${arguments[changes]}
+commands=(simulate convert convert_models train recognize recognize_again changes changes_again track evaluate)
 ((rounds >= 5)) && commands+=(convert_rendered model) # these take up to half a minute per round
 ((${#chosen[@]} > 0)) && commands=("${chosen[@]}")
 faults=(kill interrupt file_limit read_only full_disk)
@@ -107,10 +110,20 @@ disturb() { # disturb COMMAND FAULT: in the folder `round`; returns the status o
   esac
 }
 
+check_mixture() { # check_mixture COMMAND: a folder into which files were being moved is not read
+  [[ -e round/out/.resight-unfinished ]] || return
+  num_mixtures=$((num_mixtures + 1))
+  "$resight" view round/out --no-open >log 2>&1 && fail "$1, $what: the mixture was read"
+  grep -q 'is not finished' log || fail "$1, $what: of a mixture it is said: $(tail -1 log)"
+}
+
 check_after_fault() { # check_after_fault COMMAND FAULT STATUS: of what the first run has left
-  [[ $2 == kill ]] && return
+  if [[ $2 == kill ]]; then
+    check_mixture "$1"
+    return
+  fi
   local left
-  left=$(find round -name '*.resight-partial')
+  left=$(find round -name '*.resight-*')
   [[ -z $left ]] || fail "$1, $what: left $left"
   ((${3} < 120)) || [[ $2 == interrupt ]] || fail "$1, $what: ended with status $3"
   [[ $2 == interrupt ]] && return
@@ -118,6 +131,7 @@ check_after_fault() { # check_after_fault COMMAND FAULT STATUS: of what the firs
 }
 
 declare -A duration_ms largest_kb total_kb num_disturbed
+num_mixtures=0
 for command in "${commands[@]}"; do
   mkdir "$command"
   begin=$(date +%s%N)
@@ -133,6 +147,7 @@ for ((i = 0; i < ${#commands[@]}; ++i)); do
   for ((round = 0; round < rounds; ++round)); do
     fault=${faults[(i + round) % ${#faults[@]}]}
     rm -rf round && mkdir round
+    [[ $command == *_again ]] && cp -a "$command/." round
     what=""
     disturb "$command" "$fault"
     status=$?
@@ -155,5 +170,6 @@ for command in "${commands[@]}"; do
   for fault in "${faults[@]}"; do counts+=" $fault ${num_disturbed[$command.$fault]:-0}"; done
   echo "$command (${duration_ms[$command]} ms), disturbed:$counts"
 done
+echo "killed while files were moved: $num_mixtures"
 ((failures == 0)) && echo "faults: all as expected"
 exit $((failures > 0))

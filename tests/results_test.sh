@@ -19,7 +19,7 @@ cp README.md "$pages/"
 cp docs/results.md "$pages/docs/"
 {
   write_scene 3 -110 -70 false
-  printf '[[change]]\nview = 1\nkind = "remove"\nobject = "tea_box"\n'
+  remove_tea 1
 } >"$work/scene.toml"
 # The programs: resight, but for the benchmark, which is this small scene, and stand-ins for those of bench/.
 cat >"$work/build/apps/resight/resight" <<PROGRAM

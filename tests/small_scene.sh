@@ -42,22 +42,19 @@ x_m = 0.15
 SCENE
 }
 
+move_cereals() { # move_cereals VIEW: before this view
+  printf '[[change]]\nview = %d\nkind = "move"\nobject = "cereal_blue"\non = "table"\n' "$1"
+  printf 'x_m = -0.05\ny_m = 0.12\nyaw_deg = 10\n'
+}
+
+remove_tea() { # remove_tea VIEW
+  printf '[[change]]\nview = %d\nkind = "remove"\nobject = "tea_box"\n' "$1"
+}
+
 write_changing_scene() { # five views: the cereals move in the third, the tea is gone in the fourth
   write_scene 5 -110 -70 true
-  cat <<'CHANGES'
-[[change]]
-view = 2
-kind = "move"
-object = "cereal_blue"
-on = "table"
-x_m = -0.05
-y_m = 0.12
-yaw_deg = 10
-[[change]]
-view = 3
-kind = "remove"
-object = "tea_box"
-CHANGES
+  move_cereals 2
+  remove_tea 3
 }
 
 run() { # run COMMAND ARGUMENTS...: ends the test if the command of $resight fails

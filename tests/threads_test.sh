@@ -13,12 +13,7 @@ run_threaded() { # run_threaded COMMAND ARGUMENT...
 
 {
   write_scene 3 -110 -80 true
-  cat <<'CHANGE'
-[[change]]
-view = 1
-kind = "remove"
-object = "tea_box"
-CHANGE
+  remove_tea 1
 } >scene.toml
 run_threaded simulate scene.toml --out data --format bop
 run_threaded train data/models --out models.resight

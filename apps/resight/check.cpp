@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "output_paths.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/inspection/find_faults.hpp"
 #include "resight/io/images.hpp"
 #include "sequence_input.hpp"
@@ -40,7 +41,7 @@ void print_json(const CheckArguments& arguments, const std::vector<Finding>& fin
                     {"inspected_views", measured.views.size()}, {"matched_pairs", measured.pairs.size()},
                     {"findings", CheckJson::array()},           {"facts", list_facts(measured)}};
   for (const Finding& f : findings) json["findings"].push_back(to_json(f, sequence, arguments.out.has_value()));
-  print_text(json.dump(1, ' ', false, CheckJson::error_handler_t::replace) + "\n");
+  print_text(to_json_text(json, kIndentedJson) + "\n");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequen
   std::vector<std::string> views;
   for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
   ChangeFiles changes = find_change_files(*folder, views);
-  if (!changes.events.empty()) value_or_throw(read_true_changes(changes.events));
+  if (!changes.events.empty()) value_or_throw(read_true_changes(changes.events, sequence.num_views()));
   return changes;
 }
 

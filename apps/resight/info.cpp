@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recordings/recording.hpp"
@@ -204,7 +205,7 @@ void run_info(const InfoArguments& arguments) {
   if (arguments.as_json) {
     Json json = {{"path", arguments.path.string()}, {"kind", described.kind}};
     json.update(described.content);
-    print_text(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    print_text(to_json_text(json, kIndentedJson) + "\n");
     return;
   }
   print("{}: {}\n", arguments.path.string(), described.kind);

@@ -41,7 +41,7 @@ void warn_about_names(const SequenceTruth& truth, const std::string& sequence) {
 }
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                          int num_threads, const std::function<void(const ViewRecord&)>& on_view) {
+                          int num_threads, const std::function<void(ViewRecord&)>& on_view) {
   const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
   warn_about_names(truth, "ground truth");
   ReportRun run;

@@ -20,9 +20,9 @@ namespace resight::app {
 void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 
 /// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth. `on_view`
-/// gets each view as it is recognised; later views may change its events.
+/// gets each view as it is recognised; later views may change its events. It may store its picture.
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
                                         const RecognizerConfig& config, int num_threads,
-                                        const std::function<void(const ViewRecord&)>& on_view = {});
+                                        const std::function<void(ViewRecord&)>& on_view = {});
 
 }  // namespace resight::app

@@ -35,6 +35,7 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
 
 void run_recognize(const RecognizeArguments& arguments) {
   check_output_folder(arguments.out, {arguments.sequence, arguments.models}, kResultFiles);
+  value_or_throw(check_writable_folder(arguments.out / kReportPages, ExistingFolder::kFill));
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   if (arguments.seed) config.set_seed(*arguments.seed);
@@ -63,8 +64,9 @@ void run_recognize(const RecognizeArguments& arguments) {
   std::optional<LiveViewer> viewer;
   if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
   FinishedViews finished(arguments.out);
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](const ViewRecord& view) {
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](ViewRecord& view) {
     if (viewer) viewer->add_view(view);
+    if (sequence.num_views() > kViewsPerPage) value_or_throw(store_picture(view, folder.path()));
     const std::string line = format_view_line(view, library) + "\n";
     finished.add(line);
     if (!arguments.stream) return;
@@ -78,6 +80,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
   value_or_throw(folder.commit());
+  remove_old_pages(arguments.out, sequence.num_views());
   finished.remove();
   if (!arguments.stream) print_summary(run, arguments.out);
   if (viewer) viewer->finish(run);

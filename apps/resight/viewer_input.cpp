@@ -5,6 +5,7 @@
 
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/models/library_file.hpp"
 
@@ -95,6 +96,7 @@ ViewerScene open_views_or_models(const ViewArguments& arguments) {
   const fs::path& input = arguments.inputs.front();
   std::error_code error;
   if (!fs::exists(input, error)) throw InputError(file_error(input, "no such file or directory").message);
+  value_or_throw(check_finished(input));
   if (has_recognition_results(input)) return open_results(arguments);
   if (arguments.inputs.size() > 1)
     throw InputError(input.string() + ": holds no results of 'resight recognize' to compare with the others");

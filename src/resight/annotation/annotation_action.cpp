@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "resight/annotation/annotation_json.hpp"
+#include "resight/core/json_text.hpp"
 
 namespace resight {
 
@@ -192,7 +193,7 @@ std::string format_action(const AnnotationAction& action) {
   for (const AnnotationChange& change : edit.changes)
     changes.push_back(std::visit([](const auto& one) { return annotation::change_to_json(one); }, change));
   const json line = {{"title", edit.title}, {"changes", std::move(changes)}};
-  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+  return to_json_text(line);
 }
 
 Result<AnnotationAction> parse_action(std::string_view text) {

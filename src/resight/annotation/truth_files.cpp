@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/annotation/annotation_json.hpp"
+#include "resight/core/json_text.hpp"
 
 namespace resight::annotation {
 namespace {
@@ -49,7 +50,7 @@ std::string format_events(const std::vector<AnnotatedEvent>& events, const Model
   Json ids = Json::object();
   for (const ObjectModel& model : library.objects) ids[model.name] = model.bop_id;
   const Json json{{"scene", scene}, {"num_views", num_views}, {"obj_ids", ids}, {"events", list}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return to_json_text(json, kIndentedJson) + "\n";
 }
 
 std::string format_mask_info(const std::vector<std::vector<ObjectMask>>& masks, const std::vector<std::string>& names) {

@@ -10,6 +10,7 @@
 
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/json_text.hpp"
 
 namespace resight {
 namespace {
@@ -17,9 +18,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "resight track journal 1";
-
-/// Names of files need not be UTF-8, and JSON must be.
-std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
 
 template <typename Matrix>
 ordered_json to_json(const Matrix& m) {
@@ -60,7 +58,7 @@ std::string to_line(const TrackerStep& step) {
                           {"overlap", v.overlap},
                           {"sigma", to_json(v.sigma)},
                           {"edges", edges}};
-  return dump(line) + "\n";
+  return to_json_text(line) + "\n";
 }
 
 // Reads one step. Edges may lead from earlier views only. None if the line is damaged.
@@ -90,11 +88,13 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
   }
 }
 
-std::string head_line(const std::string& job) { return dump({{"format", kFormat}, {"job", job}}) + "\n"; }
+std::string head_line(const std::string& job) {
+  return to_json_text(ordered_json{{"format", kFormat}, {"job", job}}) + "\n";
+}
 
 // Whether the first line is the head of any journal. A head that was cut off while it was written counts.
 bool is_journal(std::string_view text) {
-  const std::string head = ordered_json{{"format", kFormat}}.dump();
+  const std::string head = to_json_text(ordered_json{{"format", kFormat}});
   const std::string_view begin = std::string_view(head).substr(0, head.size() - 1);  // Without the brace.
   return text.starts_with(begin) || begin.starts_with(text);
 }

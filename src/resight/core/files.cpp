@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <system_error>
 #include <utility>
-#include <vector>
 
+#include "resight/core/internal/file_transfer.hpp"
 #include "resight/core/internal/pending_place.hpp"
+#include "resight/core/internal/write_all.hpp"
+#include "resight/core/output_file.hpp"
 
 namespace resight {
 namespace {
@@ -43,75 +45,6 @@ bool is_filled(const fs::path& folder, const fs::path& hidden) {
   return static_cast<bool>(error);
 }
 
-/// Moves files into an existing folder. All or none: if one cannot be moved, the others are moved back.
-class FileTransfer {
- public:
-  FileTransfer(fs::path from, fs::path to)
-      : from_(std::move(from)), to_(std::move(to)), replaced_(from_ / ".replaced") {}
-
-  Result<void> run() {
-    if (auto listed = list(); !listed) return listed;
-    std::error_code error;
-    for (const fs::path& folder : folders_)
-      if (!error) fs::create_directories(to_ / folder, error);
-    if (!error) fs::create_directory(replaced_, error);
-    if (error) return file_error(to_, reason_of(error));
-    for (std::size_t i = 0; i < files_.size(); ++i)
-      if (error = move(i); error) {
-        while (i-- > 0) move_back(i);
-        return file_error(to_ / files_[i], reason_of(error));
-      }
-    fs::remove_all(from_, error);
-    return {};
-  }
-
- private:
-  /// Checks before anything is moved that no file takes the place of a folder, nor a folder that of a file.
-  Result<void> list() {
-    std::error_code error;
-    for (fs::recursive_directory_iterator it(from_, error), end; !error && it != end; it.increment(error)) {
-      const fs::path name = it->path().lexically_relative(from_);
-      const fs::file_status there = fs::status(to_ / name, error);
-      error.clear();
-      const bool is_folder = fs::is_directory(it->symlink_status());
-      if (is_folder && fs::exists(there) && !fs::is_directory(there))
-        return file_error(to_ / name, "is a file where a folder is to be written");
-      if (!is_folder && fs::is_directory(there))
-        return file_error(to_ / name, "is a folder where a file is to be written");
-      (is_folder ? folders_ : files_).push_back(name);
-    }
-    if (error) return file_error(from_, "cannot be read (" + error.message() + ")");
-    return {};
-  }
-
-  [[nodiscard]] fs::path replaced(std::size_t i) const { return replaced_ / std::to_string(i); }
-
-  std::error_code move(std::size_t i) {
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(to_ / files_[i], error)))
-      fs::rename(to_ / files_[i], replaced(i), error);
-    else
-      error.clear();
-    if (error) return error;
-    fs::rename(from_ / files_[i], to_ / files_[i], error);
-    std::error_code ignored;
-    if (error && fs::exists(replaced(i), ignored)) fs::rename(replaced(i), to_ / files_[i], ignored);
-    return error;
-  }
-
-  void move_back(std::size_t i) const {
-    std::error_code ignored;
-    fs::rename(to_ / files_[i], from_ / files_[i], ignored);
-    if (fs::exists(fs::symlink_status(replaced(i), ignored))) fs::rename(replaced(i), to_ / files_[i], ignored);
-  }
-
-  fs::path from_;
-  fs::path to_;
-  fs::path replaced_;  ///< Holds the files that are replaced, until all are.
-  std::vector<fs::path> folders_;
-  std::vector<fs::path> files_;
-};
-
 /// Moves a complete folder to its final place, which is new or empty.
 Result<void> move_to_new(const fs::path& pending, const fs::path& target) {
   const Error filled = file_error(target, "was filled by another program meanwhile; choose another folder");
@@ -122,7 +55,8 @@ Result<void> move_to_new(const fs::path& pending, const fs::path& target) {
   return file_error(target, reason_of({errno, std::generic_category()}));
 }
 
-/// 0, or the error number.
+}  // namespace
+
 int write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -132,8 +66,6 @@ int write_all(int descriptor, std::string_view bytes) {
   }
   return 0;
 }
-
-}  // namespace
 
 Error file_error(const fs::path& file, std::string_view what) {
   return Error{file.string() + ": " + std::string(what)};
@@ -167,6 +99,7 @@ Result<void> check_writable_folder(const fs::path& path, ExistingFolder existing
   std::error_code error;
   if (!fs::exists(target, error)) return {};
   if (!fs::is_directory(target, error)) return file_error(path, "exists already and is not a folder");
+  if (auto undone = FileTransfer::undo(target); !undone) return undone;
   if (existing == ExistingFolder::kRefuse && is_filled(target, PendingPlace::name_for(target.filename().string())))
     return file_error(path, "exists already; choose another folder or delete it first");
   return {};
@@ -177,19 +110,39 @@ Result<void> write_file(const fs::path& file, std::string_view bytes) {
 }
 
 Result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  for (const std::string_view bytes : parts)
+    if (auto written = out->append(bytes); !written) return written;
+  return out->commit();
+}
+
+Result<OutputFile> OutputFile::create(const fs::path& file) {
   constexpr double kWait_s = 10;  // Another process that writes the same file is soon done.
   const fs::path target = clean_path(file);
-  const auto fail = [&](const std::string& why) { return file_error(file, "cannot be written (" + why + ")"); };
-  const auto fail_with = [&](int code) { return fail(std::generic_category().message(code)); };
-  const auto place =
+  auto place =
       PendingPlace::create(target.parent_path(), target.filename().string(), PendingPlace::Kind::kFile, kWait_s);
-  if (!place) return fail(place.error().message);
-  for (const std::string_view bytes : parts)
-    if (const int code = write_all((*place)->descriptor(), bytes); code != 0) return fail_with(code);
-  // The content must be on the disk before the name is: after a power failure, the old or the new file is there.
-  if (::fsync((*place)->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
-  return (*place)->finish([&]() -> Result<void> {
-    if (std::rename((*place)->path().c_str(), target.c_str()) != 0) return fail_with(errno);
+  if (!place) return file_error(file, "cannot be written (" + place.error().message + ")");
+  return OutputFile(file, std::move(*place));
+}
+
+OutputFile::OutputFile(fs::path file, std::unique_ptr<PendingPlace> place)
+    : file_(std::move(file)), place_(std::move(place)) {}
+OutputFile::OutputFile(OutputFile&& other) noexcept = default;
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept = default;
+OutputFile::~OutputFile() = default;
+
+Error OutputFile::fail_with(int code) const { return file_error(file_, reason_of({code, std::generic_category()})); }
+
+Result<void> OutputFile::append(std::string_view bytes) {
+  if (const int code = write_all(place_->descriptor(), bytes); code != 0) return fail_with(code);
+  return {};
+}
+
+Result<void> OutputFile::commit() {
+  if (::fsync(place_->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
+  return place_->finish([&]() -> Result<void> {
+    if (std::rename(place_->path().c_str(), clean_path(file_).c_str()) != 0) return fail_with(errno);
     return {};
   });
 }

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <functional>
 
+#include "resight/core/output_file.hpp"
+
 namespace resight {
 namespace {
 
@@ -49,6 +51,23 @@ TEST_F(FilesTest, AFileIsWrittenWholeWithItsFolder) {
   ASSERT_TRUE(write_file(folder_ / "a/b.txt", "three").ok()) << "must replace an older file";
   EXPECT_EQ(read(folder_ / "a/b.txt"), "three");
   EXPECT_THAT(entries(), ElementsAre("a", "a/b.txt"));
+}
+
+TEST_F(FilesTest, AFileInPartsAppearsWhenItIsComplete) {
+  write(folder_ / "a.txt", "old");
+  {
+    auto out = OutputFile::create(folder_ / "a.txt");
+    ASSERT_TRUE(out.ok());
+    ASSERT_TRUE(out->append("one ").ok());
+    EXPECT_EQ(read(folder_ / "a.txt"), "old");
+  }
+  EXPECT_THAT(entries(), ElementsAre("a.txt")) << "a discarded file must leave nothing";
+  auto out = OutputFile::create(folder_ / "a.txt");
+  for (const char* part : {"one ", "", "two"}) ASSERT_TRUE(out->append(part).ok());
+  ASSERT_TRUE(out->commit().ok());
+  EXPECT_EQ(read(folder_ / "a.txt"), "one two");
+  EXPECT_THAT(entries(), ElementsAre("a.txt"));
+  EXPECT_THAT(OutputFile::create(folder_ / "a.txt/b").error().message, HasSubstr("b: cannot be written"));
 }
 
 // Whoever can write into the folder could make us write through a link at the temporary name.

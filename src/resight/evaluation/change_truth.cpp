@@ -3,60 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "resight/core/input_file.hpp"
 #include "resight/evaluation/placement_changes.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
+#include "resight/io/event_file.hpp"
 #include "resight/io/model_source.hpp"
 
 namespace resight {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr std::int64_t kMaxView = 10'000'000;
 constexpr double kUnknownSamplesPerSqM = 2.5e5;  // 2 mm apart.
 
-std::optional<ObjectEventKind> kind_from(const std::string& text) {
-  for (const ObjectEventKind kind : {ObjectEventKind::kAdded, ObjectEventKind::kMoved, ObjectEventKind::kRemoved})
-    if (to_string(kind) == text) return kind;
-  return std::nullopt;
-}
-
-// 16 numbers row by row, or null.
-std::optional<Rigid3> pose_from_json(const json& value) {
-  if (value.is_null()) return std::nullopt;
-  if (!value.is_array() || value.size() != 16) throw std::runtime_error("a pose must be 16 numbers or null");
-  Rigid3 pose;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) pose.rotation(r, c) = value.at(static_cast<std::size_t>(4 * r + c)).get<double>();
-    pose.translation[r] = value.at(static_cast<std::size_t>(4 * r + 3)).get<double>();
-  }
-  if (!pose.is_rigid()) throw std::runtime_error("a pose is not a rigid motion");
-  return pose;
-}
-
-TrueChange change_from(const json& value) {
-  TrueChange change;
-  const auto kind = kind_from(value.at("kind").get<std::string>());
-  if (!kind) throw std::runtime_error("kind must be added, moved or removed");
-  change.kind = *kind;
-  const auto view = value.at("view").get<std::int64_t>();
-  if (view < 0 || view > kMaxView) throw std::runtime_error("view is out of range");
-  change.view = static_cast<int>(view);
-  change.object = value.at("object").get<std::string>();
-  change.known = value.at("known").get<bool>();
-  change.world_from_object_before = pose_from_json(value.at("world_from_object_before"));
-  change.world_from_object_after = pose_from_json(value.at("world_from_object_after"));
-  if (change.world_from_object_before.has_value() != (*kind != ObjectEventKind::kAdded) ||
-      change.world_from_object_after.has_value() != (*kind != ObjectEventKind::kRemoved))
-    throw std::runtime_error("the poses do not match the kind");
-  return change;
+ObjectEventKind kind_from(const std::string& text) {
+  if (text == to_string(ObjectEventKind::kAdded)) return ObjectEventKind::kAdded;
+  return text == to_string(ObjectEventKind::kMoved) ? ObjectEventKind::kMoved : ObjectEventKind::kRemoved;
 }
 
 Result<std::map<std::string, PointCloud>> read_unknown_surfaces(const fs::path& folder) {
@@ -129,9 +93,9 @@ Names check_names(const ModelLibrary& library, SequenceTruth& truth) {
   return names;
 }
 
-Result<void> add_events(const fs::path& events, const fs::path& unknown_models, const ModelLibrary& library,
-                        const Names& new_names, SequenceTruth& truth) {
-  auto changes = read_true_changes(events);
+Result<void> add_events(const fs::path& events, int num_views, const fs::path& unknown_models,
+                        const ModelLibrary& library, const Names& new_names, SequenceTruth& truth) {
+  auto changes = read_true_changes(events, num_views);
   if (!changes) return changes.error();
   for (TrueChange& change : *changes) rename_object(new_names, change.object);
   truth.changes = std::move(*changes);
@@ -163,17 +127,18 @@ Result<void> add_chains(const fs::path& file, const Sequence& sequence, const Mo
 
 }  // namespace
 
-Result<std::vector<TrueChange>> read_true_changes(const fs::path& file) {
-  try {
-    const auto text = read_file(file);
-    if (!text) return text.error();
-    std::vector<TrueChange> changes;
-    const json document = json::parse(*text);
-    for (const json& event : document.at("events")) changes.push_back(change_from(event));
-    return changes;
-  } catch (const std::exception& error) {
-    return Error{file.string() + ": is not a list of events as written by 'resight simulate': " + error.what()};
-  }
+Result<std::vector<TrueChange>> read_true_changes(const fs::path& file, int num_views) {
+  auto events = read_event_file(file, num_views);
+  if (!events) return events.error();
+  std::vector<TrueChange> changes;
+  for (RecordedEvent& event : *events)
+    changes.push_back({.view = event.view,
+                       .kind = kind_from(event.kind),
+                       .object = std::move(event.object),
+                       .known = event.known,
+                       .world_from_object_before = event.world_from_object_before,
+                       .world_from_object_after = event.world_from_object_after});
+  return changes;
 }
 
 std::vector<FormerPlace> former_places_of(const std::vector<TrueChange>& changes, const ModelLibrary& library) {
@@ -196,7 +161,7 @@ Result<SequenceTruth> read_sequence_truth(const Sequence& sequence, const ModelL
   }
   Result<void> done;
   if (!files.events.empty()) {
-    done = add_events(files.events, unknown_models, library, new_names, truth);
+    done = add_events(files.events, sequence.num_views(), unknown_models, library, new_names, truth);
   } else if (!files.changes.empty() && sequence.has_ground_truth()) {
     done = add_chains(files.changes, sequence, library, new_names, truth);
   } else {

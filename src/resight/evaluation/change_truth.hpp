@@ -25,8 +25,8 @@ struct TrueChange {
   std::optional<Rigid3> world_from_object_after;   ///< Absent for kRemoved.
 };
 
-/// Reads the events written by `resight simulate` (docs/formats.md). Errors name the file and the rule.
-[[nodiscard]] Result<std::vector<TrueChange>> read_true_changes(const std::filesystem::path& file);
+/// Reads the events of a sequence that has `num_views` views (read_event_file()).
+[[nodiscard]] Result<std::vector<TrueChange>> read_true_changes(const std::filesystem::path& file, int num_views);
 
 /// Former places of library objects according to the true changes. Unlike find_former_places(), an object that leaves
 /// the camera's view has not left its place.

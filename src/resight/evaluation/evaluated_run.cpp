@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/json_text.hpp"
 
 namespace resight {
 namespace {
@@ -152,22 +153,21 @@ int EvaluatedRun::num_ghosts() const {
 std::string format_run(const EvaluatedRun& run) {
   Json views = Json::array();
   for (const EvaluatedView& view : run.views) views.push_back(view_json(view));
-  return Json{{"sequence", run.sequence},
-              {"preset", run.preset},
-              {"num_previous_views", run.num_previous_views},
-              {"is_clustered", run.is_clustered},
-              {"fingerprint", run.fingerprint},
-              {"num_threads", run.num_threads},
-              {"num_former_places", run.num_former_places},
-              {"num_published_places", run.num_published_places},
-              {"has_changes", run.has_changes},
-              {"events", score_json(run.events.events)},
-              {"departures", score_json(run.events.departures)},
-              {"arrivals", score_json(run.events.arrivals)},
-              {"delays_views", run.events.delays},
-              {"views", views}}
-             .dump(-1, ' ', false, Json::error_handler_t::replace) +  // names of folders need not be UTF-8
-         "\n";
+  const Json json{{"sequence", run.sequence},
+                  {"preset", run.preset},
+                  {"num_previous_views", run.num_previous_views},
+                  {"is_clustered", run.is_clustered},
+                  {"fingerprint", run.fingerprint},
+                  {"num_threads", run.num_threads},
+                  {"num_former_places", run.num_former_places},
+                  {"num_published_places", run.num_published_places},
+                  {"has_changes", run.has_changes},
+                  {"events", score_json(run.events.events)},
+                  {"departures", score_json(run.events.departures)},
+                  {"arrivals", score_json(run.events.arrivals)},
+                  {"delays_views", run.events.delays},
+                  {"views", views}};
+  return to_json_text(json) + "\n";
 }
 
 Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {

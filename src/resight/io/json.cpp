@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "resight/core/json_text.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
 
@@ -99,7 +100,7 @@ Result<nlohmann::json> read_json(const fs::path& file) {
 }
 
 Result<void> write_json(const fs::path& file, const nlohmann::json& json) {
-  return write_file(file, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  return write_file(file, to_json_text(json, kIndentedJson) + "\n");
 }
 
 const nlohmann::json& member(const nlohmann::json& json, std::string_view key) {

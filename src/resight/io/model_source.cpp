@@ -8,6 +8,7 @@
 #include <map>
 
 #include "resight/core/names.hpp"
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/text.hpp"
@@ -175,6 +176,7 @@ Result<ModelSource> read_mesh_model(const ModelLocation& location, double metres
 Result<Locations> find_models(const std::vector<path>& paths) {
   Locations all;
   for (const path& where : paths) {
+    if (const auto finished = check_finished(where); !finished) return finished.error();
     auto found = find_under(where);
     if (!found) return found;
     all.insert(all.end(), found->begin(), found->end());

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "resight/core/names.hpp"
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/pose_text.hpp"
 
@@ -226,6 +227,7 @@ Result<void> add_inputs(const std::filesystem::path& file, RecognitionResults& r
 bool has_recognition_results(const std::filesystem::path& folder) { return io::is_file(folder / kDetectionsFile); }
 
 Result<RecognitionResults> read_recognition_results(const std::filesystem::path& folder) {
+  if (const auto finished = check_finished(folder); !finished) return finished.error();
   auto results = parse_detections(folder / kDetectionsFile);
   if (!results) return results;
   if (const auto added = add_changes(folder / kChangesFile, *results); !added) return added.error();

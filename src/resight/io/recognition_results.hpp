@@ -70,7 +70,8 @@ struct RecognitionResults {
 [[nodiscard]] bool has_recognition_results(const std::filesystem::path& folder);
 
 /// Reads detections.json, changes.json and, if it exists, summary.json of a folder. Fails for files that do not agree,
-/// numbers that are not finite, poses that are not rigid, and names that check_object_name() refuses.
+/// numbers that are not finite, poses that are not rigid, names that check_object_name() refuses, and a folder that is
+/// not finished (check_finished()).
 [[nodiscard]] Result<RecognitionResults> read_recognition_results(const std::filesystem::path& folder);
 
 }  // namespace resight

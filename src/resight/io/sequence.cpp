@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
@@ -93,6 +94,7 @@ Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const Ope
       return io::file_error(directory, done.error().message);
     return single;
   }
+  if (const auto finished = check_finished(directory); !finished) return finished.error();
   const auto folder = find_sequence_folder(directory);
   if (!folder) return folder.error();
   if (find_format(*folder) == nullptr) return io::open_recording_sequence(*folder, options);

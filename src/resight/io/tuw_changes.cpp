@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/tuw_names.hpp"
@@ -102,6 +103,7 @@ Result<std::vector<ChangeChain>> parse_changes(std::string_view text, std::strin
     for (const std::string_view word : io::split_tokens(io::cut_line(text))) {
       auto entry = parse_entry(word);
       if (!entry) return fail("expected names like cloud_03_mug_0.txt");
+      if (const auto valid = check_object_name(entry->object); !valid) return fail(valid.error().message);
       if (!chain.entries.empty() && chain.entries.back().object != entry->object)
         return fail("a chain of two different objects");
       if (!chain.entries.empty() && chain.entries.back().view_number >= entry->view_number)

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/tuw_names.hpp"
@@ -129,6 +130,7 @@ Result<std::vector<GroundTruthObject>> parse_tuw_anno(std::string_view text, std
     const auto share = io::parse_number(line.substr(open + 1, close - open - 1));
     if (words.size() != 1 || !share || *share < -1e-6 || *share > 1 + 1e-6)
       return Error{where + ": expected '<name> (<visible share>): <16 numbers>'"};
+    if (const auto valid = check_object_name(words[0]); !valid) return Error{where + ": " + valid.error().message};
     const auto pose = parse_pose(line.substr(colon + 1), where);
     if (!pose) return pose.error();
     GroundTruthObject object;
@@ -149,6 +151,8 @@ Result<std::vector<GroundTruthObject>> read_tuw_annotation(const TuwViewAnnotati
   }
   std::vector<GroundTruthObject> objects;
   for (const auto& file : annotation.poses) {
+    if (const auto valid = check_object_name(file.object); !valid)
+      return io::file_error(file.pose, valid.error().message);
     const auto pose = read_pose(file.pose);
     if (!pose) return pose.error();
     const auto share = read_visible_share(file.occlusion);

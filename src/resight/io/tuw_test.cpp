@@ -81,6 +81,20 @@ TEST(TuwSequence, BadTruthNamesItsFile) {
               HasSubstr("00000_occlusion_mug_0.txt: "));
 }
 
+TEST(TuwSequence, NamesThatCannotBeThoseOfObjectsAreRefused) {
+  for (const char* name : {"\x1b[31mmug", "a\nresight: done", "\\x", ".."}) {
+    io::TestDirectory directory;
+    write_views(directory.path(), {"00000"});
+    io::write_text(directory / ("00000_" + std::string(name) + "_0.txt"), kPose);
+    const auto truth = (*open_sequence(directory.path()))->read_ground_truth(0);
+    ASSERT_FALSE(truth.ok()) << name;
+    EXPECT_THAT(truth.error().message, HasSubstr("control characters or slashes"));
+    EXPECT_THAT(truth.error().message, HasSubstr("00000_"));
+  }
+  EXPECT_THAT(parse_tuw_anno("../../x (1): " + kPose, "f.anno").error().message, HasSubstr("f.anno: line 1: the name"));
+  EXPECT_THAT(parse_tuw_anno(std::string(1000, 'a') + " (1): " + kPose, "f").error().message, HasSubstr("1000 bytes"));
+}
+
 TEST(TuwSequence, WriterKeepsViewsAndTruth) {
   io::TestDirectory directory;
   const auto writer = create_sequence(directory / "out", DatasetFormat::kTuw);
@@ -164,6 +178,7 @@ TEST(Changes, BadLines) {
   EXPECT_THAT(message("cloud_01_mug_0.txt\ncloud_1_mug_0.txt"),
               HasSubstr("line 2: an annotation that another chain has"));
   EXPECT_THAT(message("mug.txt"), HasSubstr("expected names"));
+  EXPECT_THAT(message("cloud_00_../../x_0.txt"), HasSubstr("line 1: the name of an object '../../x' has"));
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
+#include <vector>
 
+#include "resight/report/html_report.hpp"
 #include "resight/report/internal/html.hpp"
 
 namespace resight::report {
@@ -50,31 +53,41 @@ struct Timeline {
   }
 };
 
-Timeline make_timeline(const ReportRun& run) {
+Timeline make_timeline(const ReportRun& run, std::span<const int> views) {
+  const std::set<int> shown(views.begin(), views.end());
   Timeline timeline;
-  for (const ViewRecord& view : run.views) {
-    for (const ObjectEvent& event : view.update.events) timeline.add(event);
-  }
+  for (const ViewRecord& view : run.views)
+    if (shown.contains(view.update.view))
+      for (const ObjectEvent& event : view.update.events) timeline.add(event);
   return timeline;
+}
+
+/// Whether an event makes a view worth showing among thousands.
+bool is_news(ObjectEventKind kind) { return is_change(kind) || kind == ObjectEventKind::kFound; }
+
+/// The rows of objects for which something happened in the views.
+void keep_news(Timeline& timeline) {
+  std::erase_if(timeline.rows, [](const auto& row) {
+    return std::ranges::none_of(row.second.events, [](const auto& event) { return is_news(event.second); });
+  });
 }
 
 std::string cell(const CellStyle& style, const std::string& title) {
   return fmt::format("<span class=\"cell {}\" title=\"{}\">{}</span>", style.css_class, title, style.glyph);
 }
 
-std::string timeline_table(const ReportRun& run, const Timeline& timeline, const ModelLibrary& library) {
+std::string timeline_table(const Timeline& timeline, std::span<const int> views, const ModelLibrary& library) {
   std::string html = "<table class=\"history\"><thead><tr><th class=\"name\">Object</th>";
-  for (const ViewRecord& view : run.views) html += fmt::format("<th>{}</th>", view.update.view);
+  for (const int view : views) html += fmt::format("<th>{}</th>", view);
   html += "</tr></thead><tbody>\n";
   for (const auto& [track, row] : timeline.rows) {
     html += fmt::format("<tr><th class=\"name\">{} <span class=\"soft\">#{}</span></th>",
                         object_tag(row.object, library), track);
-    for (const ViewRecord& view : run.views) {
-      const auto event = row.events.find(view.update.view);
+    for (const int view : views) {
+      const auto event = row.events.find(view);
       html += "<td>";
       if (event != row.events.end()) {
-        html +=
-            cell(style_of_event(event->second), fmt::format("view {}: {}", view.update.view, to_string(event->second)));
+        html += cell(style_of_event(event->second), fmt::format("view {}: {}", view, to_string(event->second)));
       } else {
         html += "<span class=\"cell none\"></span>";
       }
@@ -97,18 +110,55 @@ std::string legend() {
   return html + "</p>\n";
 }
 
+std::string timeline_card(const ReportRun& run, const Timeline& timeline, std::span<const int> views,
+                          const ModelLibrary& library) {
+  return "<section class=\"card\" style=\"margin-bottom:12px\"><h3>" + escape(run.preset) + "</h3>\n" +
+         timeline_table(timeline, views, library) + "</section>\n";
+}
+
+std::vector<int> views_in(const ReportRun& run, const ViewRange& range) {
+  std::vector<int> views;
+  for (const ViewRecord& view : run.views)
+    if (range.contains(view.update.view)) views.push_back(view.update.view);
+  return views;
+}
+
+std::vector<int> views_with_news(const ReportRun& run) {
+  std::vector<int> views;
+  for (const ViewRecord& view : run.views)
+    if (std::ranges::any_of(view.update.events, is_news, &ObjectEvent::kind)) views.push_back(view.update.view);
+  return views;
+}
+
 }  // namespace
 
-std::string history_section(std::span<const ReportRun> runs, const ModelLibrary& library) {
+std::string history_section(std::span<const ReportRun> runs, const ModelLibrary& library, const ViewRange& range) {
   std::string tables;
   for (const ReportRun& run : runs) {
-    const Timeline timeline = make_timeline(run);
-    if (timeline.rows.empty()) continue;
-    tables += "<section class=\"card\" style=\"margin-bottom:12px\"><h3>" + escape(run.preset) + "</h3>\n" +
-              timeline_table(run, timeline, library) + "</section>\n";
+    const std::vector<int> views = views_in(run, range);
+    const Timeline timeline = make_timeline(run, views);
+    if (!timeline.rows.empty()) tables += timeline_card(run, timeline, views, library);
   }
   if (tables.empty()) return "";
   return "<h2 id=\"history\">Object history</h2>\n" + legend() + tables;
+}
+
+std::string changes_section(std::span<const ReportRun> runs, const ModelLibrary& library) {
+  std::string tables;
+  for (const ReportRun& run : runs) {
+    std::vector<int> views = views_with_news(run);
+    const std::size_t num_views = views.size();
+    if (num_views == 0) continue;
+    views.resize(std::min<std::size_t>(num_views, kViewsPerPage));
+    Timeline timeline = make_timeline(run, views);
+    keep_news(timeline);
+    if (views.size() < num_views)
+      tables += fmt::format("<p class=\"soft\">The first {} of {} views in which an object was found or changed.</p>\n",
+                            views.size(), num_views);
+    tables += timeline_card(run, timeline, views, library);
+  }
+  if (tables.empty()) return "";
+  return "<h2 id=\"history\">Changes of objects</h2>\n" + legend() + tables;
 }
 
 }  // namespace resight::report

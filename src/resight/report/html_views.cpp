@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -100,13 +101,18 @@ std::string details(const ViewRecord& view) {
   return html + "</tbody></table></details>\n";
 }
 
+std::string picture(const ReportRun& run, const ViewRecord& view) {
+  if (view.picture_file.empty() && view.picture_jpeg.empty()) return "";
+  const std::string source =
+      view.picture_file.empty() ? "data:image/jpeg;base64," + base64(view.picture_jpeg) : view.picture_file;
+  return fmt::format("<img loading=\"lazy\" alt=\"View {}, {}: recognised objects\" src=\"{}\">\n", view.update.view,
+                     escape(run.preset), source);
+}
+
 std::string view_column(const ReportRun& run, const ViewRecord& view, const ModelLibrary& library, bool name_run) {
   std::string html = "<div>";
   if (name_run) html += "<h3>" + escape(run.preset) + "</h3>\n";
-  if (!view.picture_jpeg.empty()) {
-    html += fmt::format("<img alt=\"View {}, {}: recognised objects\" src=\"data:image/jpeg;base64,{}\">\n",
-                        view.update.view, escape(run.preset), base64(view.picture_jpeg));
-  }
+  html += picture(run, view);
   return html + events_list(view.update.events, library) + detections_table(view, library) + missed_line(view) +
          details(view) + "</div>\n";
 }
@@ -119,10 +125,18 @@ std::string picture_legend() {
 
 }  // namespace
 
-std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& library) {
+ViewRange range_of(std::span<const ReportRun> runs) {
+  ViewRange range;
+  for (const ReportRun& run : runs)
+    for (const ViewRecord& view : run.views) range.end = std::max(range.end, view.update.view + 1);
+  return range;
+}
+
+std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& library, const ViewRange& range) {
   std::map<int, std::vector<std::pair<const ReportRun*, const ViewRecord*>>> by_view;
   for (const ReportRun& run : runs) {
-    for (const ViewRecord& view : run.views) by_view[view.update.view].emplace_back(&run, &view);
+    for (const ViewRecord& view : run.views)
+      if (range.contains(view.update.view)) by_view[view.update.view].emplace_back(&run, &view);
   }
   if (by_view.empty()) return "";
   std::string html = "<h2 id=\"views\">Views</h2>\n" + picture_legend();

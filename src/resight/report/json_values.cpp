@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/report/internal/json_values.hpp"
 
+#include "resight/core/json_text.hpp"
+
 namespace resight::report {
 
 using Json = nlohmann::ordered_json;
@@ -24,6 +26,6 @@ Json pose_json(const Rigid3& pose) {
           {"translation_m", {pose.translation.x(), pose.translation.y(), pose.translation.z()}}};
 }
 
-std::string to_text(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string to_text(const Json& json) { return to_json_text(json, kIndentedJson) + "\n"; }
 
 }  // namespace resight::report

@@ -104,6 +104,7 @@ inline std::vector<SceneUpdate> make_updates(const RgbdFrame& frame) {
   updates[1].changes.novel_in_world = transform(world(new_ball), make_ball(0.05));
   updates[1].changes.novel_mask = Image<std::uint8_t>(frame.camera.width, frame.camera.height, 0);
   for (int u = 90; u < 120; ++u) updates[1].changes.novel_mask(u, 200) = 1;
+  updates[1].changes.removed_mask = updates[1].changes.novel_mask;
   updates[1].changes.changed_share = 0.125;
   return updates;
 }

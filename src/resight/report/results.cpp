@@ -4,20 +4,52 @@
 #include <utility>
 
 #include "resight/core/files.hpp"
+#include "resight/core/output_file.hpp"
+#include "resight/report/internal/results_text.hpp"
 
 namespace resight {
+namespace {
+
+using PutText = void (*)(const ReportRun& run, const ModelLibrary& library, const report::TextSink& sink);
+
+std::string text_of(PutText put, const ReportRun& run, const ModelLibrary& library) {
+  std::string text;
+  put(run, library, [&text](std::string_view part) { text += part; });
+  return text;
+}
+
+Result<void> write_text_of(PutText put, const std::filesystem::path& file, const ReportRun& run,
+                           const ModelLibrary& library) {
+  auto out = OutputFile::create(file);
+  if (!out) return out.error();
+  Result<void> written;
+  put(run, library, [&](std::string_view part) {
+    if (written) written = out->append(part);
+  });
+  return written ? out->commit() : written;
+}
+
+}  // namespace
+
+std::string format_detections_csv(const ReportRun& run, const ModelLibrary& library) {
+  return text_of(report::put_detections_csv, run, library);
+}
+
+std::string format_detections_json(const ReportRun& run, const ModelLibrary& library) {
+  return text_of(report::put_detections_json, run, library);
+}
+
+std::string format_changes_json(const ReportRun& run, const ModelLibrary& library) {
+  return text_of(report::put_changes_json, run, library);
+}
 
 Result<void> write_results(const std::filesystem::path& directory, const ReportRun& run, const ModelLibrary& library) {
-  // All texts are formatted before the first is written, so that an error in one leaves no partial set.
-  const std::pair<const char*, std::string> files[] = {{"detections.csv", format_detections_csv(run, library)},
-                                                       {"detections.json", format_detections_json(run, library)},
-                                                       {"changes.json", format_changes_json(run, library)},
-                                                       {"summary.json", format_summary_json(run)}};
-  for (const auto& [name, text] : files) {
-    const Result<void> written = write_file(directory / name, text);
-    if (!written.ok()) return written;
-  }
-  return {};
+  const std::pair<const char*, PutText> files[] = {{"detections.csv", report::put_detections_csv},
+                                                   {"detections.json", report::put_detections_json},
+                                                   {"changes.json", report::put_changes_json}};
+  for (const auto& [name, put] : files)
+    if (auto written = write_text_of(put, directory / name, run, library); !written) return written;
+  return write_file(directory / "summary.json", format_summary_json(run));
 }
 
 }  // namespace resight

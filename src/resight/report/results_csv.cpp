@@ -4,13 +4,14 @@
 #include <iterator>
 
 #include "resight/core/check.hpp"
-#include "resight/report/results.hpp"
+#include "resight/report/internal/results_text.hpp"
 
 namespace resight {
 
-std::string format_detections_csv(const ReportRun& run, const ModelLibrary& library) {
-  std::string csv = "scene_id,im_id,obj_id,score,R,t,time\n";
+void report::put_detections_csv(const ReportRun& run, const ModelLibrary& library, const TextSink& sink) {
+  sink("scene_id,im_id,obj_id,score,R,t,time\n");
   for (const ViewRecord& view : run.views) {
+    std::string csv;
     const double time_s = view.update.times.total_wall_s();
     const Rigid3 camera_from_world = view.update.world_from_camera.inverse();
     for (const Detection& detection : view.update.detections) {
@@ -24,8 +25,8 @@ std::string format_detections_csv(const ReportRun& run, const ModelLibrary& libr
                      r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2), t_mm.x(),
                      t_mm.y(), t_mm.z(), time_s);
     }
+    sink(csv);
   }
-  return csv;
 }
 
 }  // namespace resight

@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/core/check.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/report/internal/json_values.hpp"
+#include "resight/report/internal/results_text.hpp"
 #include "resight/report/results.hpp"
 
 namespace resight {
@@ -118,37 +120,37 @@ Json header(const ReportRun& run) {
 
 }  // namespace
 
-std::string format_detections_json(const ReportRun& run, const ModelLibrary& library) {
-  Json views = Json::array();
-  for (const ViewRecord& view : run.views) views.push_back(view_json(view, library));
-  Json json = header(run);
-  json["views"] = views;
-  return to_text(json);
-}
-
 std::string format_view_line(const ViewRecord& view, const ModelLibrary& library) {
   Json json = view_json(view, library);
   json["events"] = Json::array();
   for (const ObjectEvent& event : view.update.events) json["events"].push_back(event_json(event, library));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return to_json_text(json);
 }
 
-std::string format_changes_json(const ReportRun& run, const ModelLibrary& library) {
-  Json events = Json::array();
-  Json views = Json::array();
-  for (const ViewRecord& view : run.views) {
-    for (const ObjectEvent& event : view.update.events) events.push_back(event_json(event, library));
-    views.push_back({{"view", view.update.view},
-                     {"name", view.update.view_name},
-                     {"novel_points", view.num_novel_points},
-                     {"removed_points", view.num_removed_points},
-                     {"changed_share", view.update.changes.changed_share},
-                     {"pose_suspect", view.update.changes.pose_suspect}});
-  }
-  Json json = header(run);
-  json["events"] = events;
-  json["views"] = views;
-  return to_text(json);
+void report::put_detections_json(const ReportRun& run, const ModelLibrary& library, const TextSink& sink) {
+  JsonLists lists(header(run), sink);
+  lists.begin("views");
+  for (const ViewRecord& view : run.views) lists.add(view_json(view, library));
+  lists.end();
+  lists.finish();
+}
+
+void report::put_changes_json(const ReportRun& run, const ModelLibrary& library, const TextSink& sink) {
+  JsonLists lists(header(run), sink);
+  lists.begin("events");
+  for (const ViewRecord& view : run.views)
+    for (const ObjectEvent& event : view.update.events) lists.add(event_json(event, library));
+  lists.end();
+  lists.begin("views");
+  for (const ViewRecord& view : run.views)
+    lists.add({{"view", view.update.view},
+               {"name", view.update.view_name},
+               {"novel_points", view.num_novel_points},
+               {"removed_points", view.num_removed_points},
+               {"changed_share", view.update.changes.changed_share},
+               {"pose_suspect", view.update.changes.pose_suspect}});
+  lists.end();
+  lists.finish();
 }
 
 std::string format_summary_json(const ReportRun& run) {

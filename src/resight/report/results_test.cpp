@@ -197,6 +197,18 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
                                                       "num_views": 7, "moved_px": [2, -1]})"));
 }
 
+// The lists are never in memory as a whole. The layout is the one of the JSON library all the same.
+TEST(FormatResults, ListsInPartsHaveTheLayoutOfTheWhole) {
+  ReportRun named = make_run();
+  named.views[0].update.view_name = "line\n  \"break\"\xff";
+  ReportRun empty = make_run();
+  empty.views.clear();
+  for (const ReportRun& run : {named, empty})
+    for (const std::string& text :
+         {format_detections_json(run, make_library()), format_changes_json(run, make_library())})
+      EXPECT_EQ(text, nlohmann::ordered_json::parse(text).dump(1) + "\n");
+}
+
 TEST(FormatResults, RefusesObjectsThatAreNotInTheLibrary) {
   ReportRun run = make_run();
   run.views[0].update.detections[0].object = 99;

@@ -94,6 +94,7 @@ ViewRecord make_view_record(const RgbdFrame& frame, const ModelLibrary& library,
   update.changes.novel_in_world = {};
   update.changes.removed_in_world = {};
   update.changes.novel_mask = {};
+  update.changes.removed_mask = {};
   record.update = std::move(update);
   record.evaluation = std::move(evaluation);
   return record;

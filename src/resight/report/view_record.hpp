@@ -26,12 +26,13 @@ struct ViewEvaluation {
 struct ViewRecord {
   int scene_id = 0;    ///< BOP scene, or 0.
   int image_id = 0;    ///< BOP image, or the number of the view.
-  SceneUpdate update;  ///< Without the clouds and the mask of `changes`.
+  SceneUpdate update;  ///< Without the clouds and masks of `changes`.
   std::size_t num_novel_points = 0;
   std::size_t num_removed_points = 0;
   std::vector<DetectionMark> marks;          ///< One per detection.
   std::optional<ViewEvaluation> evaluation;  ///< If there is ground truth.
   std::vector<std::uint8_t> picture_jpeg;    ///< Overlay; empty = none.
+  std::string picture_file;  ///< Its name beside the pages of the report, if it is a file (store_picture()).
 };
 
 /// One recognition run over a sequence: the content of the results files and of one column of the report.

@@ -43,6 +43,7 @@ TEST(MakeViewRecord, KeepsCountsAndDropsClouds) {
   EXPECT_TRUE(record.update.changes.removed_in_world.empty());
   EXPECT_TRUE(record.update.changes.novel_in_world.empty());
   EXPECT_TRUE(record.update.changes.novel_mask.empty());
+  EXPECT_TRUE(record.update.changes.removed_mask.empty());
   EXPECT_EQ(record.update.changes.changed_share, 0.125);
   EXPECT_EQ(record.image_id, 1);
   EXPECT_GT(record.picture_jpeg.size(), 1000U);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "resight/core/files.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/core/random.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/tuw_models.hpp"
@@ -44,7 +45,7 @@ Result<void> write_events(const Simulation& simulation, const fs::path& file) {
                           {"num_views", simulation.num_views()},
                           {"obj_ids", objects},
                           {"events", events}};
-  return write_file(file, json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  return write_file(file, to_json_text(json, kIndentedJson) + "\n");
 }
 
 void report(const WriteSimulationOptions& options, const std::string& what) {

@@ -10,6 +10,7 @@
 #include "resight/annotation/export_annotation.hpp"
 #include "resight/annotation/place_by_click.hpp"
 #include "resight/annotation/refine_over_views.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/viewer/internal/annotation_state_json.hpp"
 #include "resight/viewer/internal/parse_number.hpp"
@@ -97,7 +98,7 @@ HttpResponse answer_state(const AnnotationTask& task) {
 HttpResponse answer_action(AnnotationTask& task, const json& body) {
   if (!body.contains("revision") || !body["revision"].is_number_integer() || !body.contains("action"))
     return refuse("expected a revision and an action");
-  auto action = parse_action(body["action"].dump(-1, ' ', false, json::error_handler_t::replace));
+  auto action = parse_action(to_json_text(body["action"]));
   if (!action) return refuse(action.error().message);
   const auto revision = body["revision"].get<std::int64_t>();
   const bool is_number = revision >= 0 && revision < std::numeric_limits<int>::max();
@@ -211,8 +212,7 @@ HttpResponse AnnotationService::answer(const HttpRequest& request, const std::ve
   if (parts[0] == "place") return answer_place(task, state_->views, body);
   if (parts[0] != "export") return nothing_here();
   if (const auto done = save(); !done) return make_text_response(500, done.error().message);
-  return json_response(nlohmann::ordered_json{{"folder", task.export_folder.string()}}.dump(
-      -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return json_response(to_json_text(nlohmann::ordered_json{{"folder", task.export_folder.string()}}));
 }
 
 Result<void> AnnotationService::save() {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/viewer/internal/view_json.hpp"
 
+#include "resight/core/json_text.hpp"
+
 namespace resight::viewer {
 
-std::string to_text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string to_text(const Json& json) { return to_json_text(json); }
 
 Json matrix_json(const Rigid3& pose) {
   const Eigen::Matrix4d matrix = pose.matrix();  // stored column by column

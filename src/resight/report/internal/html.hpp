@@ -10,6 +10,15 @@
 
 namespace resight::report {
 
+/// Views by their numbers in the sequence.
+struct ViewRange {
+  int first = 0;
+  int end = 0;  ///< Behind the last one.
+  [[nodiscard]] bool contains(int view) const { return view >= first && view < end; }
+};
+/// All views of the runs.
+[[nodiscard]] ViewRange range_of(std::span<const ReportRun> runs);
+
 /// Style sheet of the page.
 [[nodiscard]] std::string_view page_style();
 
@@ -32,9 +41,13 @@ namespace resight::report {
 
 /// Sections of the page as HTML.
 [[nodiscard]] std::string summary_section(std::span<const ReportRun> runs);
-[[nodiscard]] std::string history_section(std::span<const ReportRun> runs, const ModelLibrary& library);
+[[nodiscard]] std::string history_section(std::span<const ReportRun> runs, const ModelLibrary& library,
+                                          const ViewRange& range);
 [[nodiscard]] std::string time_section(std::span<const ReportRun> runs);
-[[nodiscard]] std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& library);
+[[nodiscard]] std::string views_section(std::span<const ReportRun> runs, const ModelLibrary& library,
+                                        const ViewRange& range);
+/// The history of a long run, as far as it is one of changes, up to kViewsPerPage views with changes.
+[[nodiscard]] std::string changes_section(std::span<const ReportRun> runs, const ModelLibrary& library);
 [[nodiscard]] std::string settings_section(std::span<const ReportRun> runs);
 
 }  // namespace resight::report

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Valid data, mistakes on the command line, and settings files.
+#include "cli.hpp"
+
+namespace resight::cli_test {
+namespace {
+
+const Row kRows[] = {
+    // The valid data are accepted, so the other rows fail because of what they damage.
+    {"Version", kNothing, "--version", 0, ""},
+    {"Help", kNothing, "recognize --help", 0, ""},
+    {"Recognize", kNothing, kRecognize, 0, "", "out/report.html"},
+    {"RecognizeTuw", kNothing, kRecognizeTuw, 0, "", "out/detections.csv"},
+    {"Changes", kNothing, kChanges, 0, "", "out/000002.ply"},
+    {"ChangesTuw", kNothing, kChangesTuw, 0, "", "out/cloud_02.png"},
+    {"ChangesTum", kNothing, kChangesTum, 0, "", "out"},
+    {"Convert", kNothing, kConvert, 0, "", "out"},
+    {"Evaluate", kNothing, "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out", 0, "",
+     "out/results.json"},
+    {"Train", kNothing, kTrain, 0, "", "new.resight"},
+
+    // The command line.
+    {"NoCommand", kNothing, "", 2, "no command was given .*recognize"},
+    {"UnknownCommand", kNothing, "nonsense", 2, "unknown command 'nonsense' .*recognize"},
+    {"UnknownOptionBeforeTheCommand", kNothing, "--nonsense", 2, "unknown option '--nonsense'"},
+    {"UnknownOption", kNothing, "changes --sequence views --out out --nonsense", 2, "changes: .*--nonsense"},
+    {"MissingOption", kNothing, "changes --sequence views", 2, "changes: --out is required"},
+    {"OptionWithoutValue", kNothing, "changes --sequence views --out", 2, "changes: --out"},
+    {"UnknownPreset", kNothing, "changes --sequence views --out out --preset best", 2, "best .*mvr-chd"},
+    {"NegativeK", kNothing, "changes --sequence views --out out -k -1", 2, "-1 .*0"},
+    {"BrokenK", kNothing, "changes --sequence views --out out -k 1.5", 2, "1\\.5"},
+    {"KThatIsAWord", kNothing, "changes --sequence views --out out -k all", 2, "all"},
+    {"NoThreads", kNothing, "changes --sequence views --out out -j 0", 2, "0 .*1"},
+    {"NegativeSeed", kNothing, "recognize --models models.resight --sequence views --out out --seed -1", 2, "seed"},
+    {"NegativeDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms -1", 2,
+     "deadline-ms: -1 is not a number above 0"},
+    {"DeadlineThatIsNoNumber", kNothing,
+     "recognize --models models.resight --sequence views --out out --deadline-ms nan", 2,
+     "nan is not a number above 0"},
+    {"NameWithEscapeSequences", kNothing,
+     "changes --sequence \"$(printf 'no\\033[31mwhere\\nresight: done')\" --out out", 2,
+     "no\\\\x1b\\[31mwhere\\\\x0aresight: done: no such"},
+    {"ZeroDeadline", kNothing, "recognize --models models.resight --sequence views --out out --deadline-ms 0", 2,
+     "deadline-ms"},
+    {"SeedThatIsTooLarge", kNothing, "demo --out out --seed 99999999999999999999", 2, "seed"},
+    {"UnknownFormat", kNothing, "convert views out --to png", 2, "png .*bop"},
+    {"UnknownScene", kNothing, "simulate --preset nonsense --out out", 2, "nonsense"},
+    {"TrackWithoutSequence", kNothing, "track --out poses.txt", 2, "--sequence"},
+    {"TrackOfMissingSequence", kNothing, "track --sequence nowhere --out poses.txt", 2, "nowhere"},
+    {"TrackByAnUnknownWay", kNothing, "track --sequence views --out poses.txt --poses guess", 2, "guess .*refine"},
+    {"TrackOverData", kNothing, "track --sequence views --out poses.txt --write-sequence full", 2,
+     "full: exists already"},
+    {"TrackWithoutLibrary", kNothing, "track --sequence views --out poses.txt --models no.resight", 2, "no\\.resight"},
+    {"TrackWithACloudThatIsAPicture", kNothing, "track --sequence views --out poses.txt --fused cloud.png", 2,
+     "cloud\\.png: .*\\.ply"},
+    {"TrackOfTinyViews", kNothing, "track --sequence views --out poses.txt", 1, "no two views could be joined"},
+    {"RecognizePosesByAnUnknownWay", kNothing, "recognize --models models.resight --sequence views --out out --poses x",
+     2, "x .*auto"},
+    {"ModelWithoutSequence", kNothing, "model --out out", 2, "--sequence"},
+    {"ModelOfMissingSequence", kNothing, "model --sequence nowhere --out out", 2, "nowhere"},
+    {"ModelOverData", kNothing, "model --sequence tuw --out full", 2, "full: exists already"},
+    {"ModelOntoNothing", kNothing, "model --sequence tuw --onto nowhere --out out", 2, "nowhere"},
+    {"ModelOntoASequence", kNothing, "model --sequence tuw --onto tuw --out out", 2, "tuw"},
+    {"ModelOfTinyViews", kNothing, "model --sequence tuw --out out", 1, "tuw: .*is 64 columns wide"},
+    {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
+     "nonsense"},
+    {"ObjectOfAScene", kNothing, "simulate --preset demo --object mug --out out", 2, "--object"},
+    {"NoScene", kNothing, "simulate --out out", 2, "neither"},
+    {"TwoScenes", kNothing, "simulate scene.toml --preset demo --out out", 2, "simulate: .*excludes"},
+
+    {"UnknownPresets", kNothing, "evaluate --models models.resight --dataset views --presets mvr,best --out out", 2,
+     "--presets: .*best"},
+    {"NoPresets", kNothing, "evaluate --models models.resight --dataset views --presets '' --out out", 2,
+     "--presets: ''"},
+    {"BrokenRangeOfK", kNothing, "evaluate --models models.resight --dataset views -k 3-1 --out out", 2,
+     "--previous-views: '3-1'"},
+    {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
+     "--shard: '3/2'"},
+
+    // Settings files.
+    {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
+    {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
+    {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
+     "c\\.toml: line 1"},
+    {"UnknownSetting", write("c.toml", "[changes]\nspeed = 1\n"), "changes --sequence views --out out --config c.toml",
+     2, "c\\.toml: unknown key changes\\.speed"},
+    {"SettingOutOfRange", write("c.toml", "[changes]\nvoxel_m = -0.01\n"),
+     "changes --sequence views --out out --config c.toml", 2, "c\\.toml: .*voxel_m = -0\\.01"},
+
+    {"PipeAsConfig", pipe("c.toml"), "changes --sequence views --out out --config c.toml", 2,
+     "c\\.toml: is not a file"},
+    {"EndlessConfig", kNothing, "changes --sequence views --out out --config /dev/zero", 2, "/dev/zero: is not a file"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Arguments, CommandLine, testing::ValuesIn(kRows), name_of_row);
+
+}  // namespace
+}  // namespace resight::cli_test

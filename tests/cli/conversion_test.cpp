@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Conversion, the viewer, and generated scenes.
+#include "cli.hpp"
+
+namespace resight::cli_test {
+namespace {
+
+constexpr const char* kEventOfView9 = R"({"events": [{"view": 9, "kind": "added", "object": "cube", "known": true}]})";
+constexpr const char* kEventOfHostileName =
+    R"({"events": [{"view": 1, "kind": "added", "object": "../../x", "known": true}]})";
+
+const Row kRows[] = {
+    // Conversion and scenes.
+    {"ConvertMissing", kNothing, "convert nowhere out --to bop", 2, "nowhere: no such file or folder"},
+    {"ConvertNothing", kNothing, "convert empty out --to bop", 2, "empty: "},
+    {"ConvertABrokenView", cut("views/depth/000002.png", 0.5), kConvert, 2, "000002\\.png: "},
+    {"ConvertChangesOfOtherViews", write("tuw.changes", "cloud_07_cube_0.txt\n"), "convert tuw out --to bop", 2,
+     "tuw\\.changes: cloud_07_cube_0\\.txt: the sequence has no such view"},
+    {"ConvertChanges", write("tuw/any.changes", "cloud_00_cube_0"), "convert tuw out --to tuw", 0, "",
+     "out/out.changes"},
+    {"ConvertChangesWithoutGroundTruth", both(remove_texts("tuw"), write("tuw/any.changes", "cloud_00_cube_0.txt\n")),
+     "convert tuw out --to bop", 0, "", "out"},
+    {"ConvertChangesWithoutNames", write("tuw/any.changes", "nan\n"), "convert tuw out --to tuw", 2,
+     "any\\.changes: line 1: expected names like"},
+    {"ConvertChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"), "convert tuw out --to bop", 2,
+     "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
+    {"ConvertBrokenEvents", write("tuw.events.json", "{"), "convert tuw out --to bop", 2,
+     "tuw\\.events\\.json: is not"},
+    {"ConvertEventsOfASetWithManyViews", both(move("tuw", "set/test/tuw"), write("set/events.json", kEventOfView9)),
+     "convert set/test/tuw out --to bop", 2, "set/events\\.json: events\\[0\\]: view: 9, but the sequence has 3 views"},
+    {"EvaluateEventsOfASetWithAHostileName",
+     both(move("views", "set/test/views"), write("set/events.json", kEventOfHostileName)),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2,
+     "set/events\\.json: events\\[0\\]: object: the name of an object '\\.\\./\\.\\./x' has"},
+    {"EvaluateAPipeAsEventsOfASet", both(move("views", "set/test/views"), pipe("set/events.json")),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
+    {"EvaluateChangesWithoutAnnotation", write("tuw.changes", "cloud_00_cube_3.txt\n"),
+     "evaluate --models models.resight --dataset tuw -k 0 --out out", 2,
+     "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
+    {"ConvertABrokenMesh", cut("meshes/cube.ply", 0.9), "convert meshes out --to bop", 2, "cube\\.ply: "},
+    {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
+    {"ViewNothing", kNothing, "view", 2, "view: inputs is required"},
+    {"ViewMissing", kNothing, "view nowhere --no-open", 2, "nowhere: no such file or directory"},
+    {"ViewEmpty", kNothing, "view empty --no-open", 2, "empty: is nothing to view \\(expected results"},
+    {"ViewOnAWrongPort", kNothing, "view views --no-open --port 65536", 2, "port"},
+    {"ViewWithoutLibrary", kNothing, "view views --no-open --models views", 2, "views: is not a file"},
+    {"ViewBrokenLibrary", cut("models.resight", 0.5), "view models.resight --no-open", 2, "models\\.resight: "},
+    {"ViewBrokenResults", write("res/detections.json", "{"), "view res --no-open", 2,
+     "res/detections\\.json: is not valid JSON"},
+    {"ViewResultsOfUnknownViews",
+     both(write("res/detections.json", R"({"version": "1", "preset": "mvr", "views": []})"),
+          write("res/changes.json", R"({"events": [], "views": []})")),
+     "view res --no-open", 2, "res: the results do not name their sequence \\(pass --sequence\\)"},
+    {"ViewOtherChanges", kNothing, "view views --changes meshes --no-open", 2,
+     "meshes: holds no results of 'resight changes' on these views"},
+    {"ViewChangesOfModels", kNothing, "view models.resight --changes meshes --no-open", 2,
+     "meshes: needs the sequence"},
+    {"ViewSequencesBesideEachOther", kNothing, "view views tuw --no-open", 2, "views: holds no results"},
+    {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
+    {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
+    {"PipeAsScript", pipe("s.toml"), "simulate s.toml --out out", 2, "s\\.toml: is not a file"},
+    {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
+};
+
+INSTANTIATE_TEST_SUITE_P(Conversion, CommandLine, testing::ValuesIn(kRows), name_of_row);
+
+}  // namespace
+}  // namespace resight::cli_test

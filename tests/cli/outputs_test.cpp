@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where results may be written.
+#include "cli.hpp"
+
+namespace resight::cli_test {
+namespace {
+
+const std::string kLongName(300, 'a');
+const std::string kTrainToLongName = "train meshes --out " + kLongName;
+
+const Row kRows[] = {
+    // Output paths.
+    {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
+     "file/out: "},
+    {"RecognizeOntoAFile", kNothing, "recognize --models models.resight --sequence views --out file", 2,
+     "file: exists already and is not a folder"},
+    {"ChangesBelowAFile", kNothing, "changes --sequence views --out file/out", 2, "file/out: "},
+    {"EvaluateBelowAFile", kNothing, "evaluate --models models.resight --dataset views -k 0 --out file/out", 2,
+     "file is not a folder"},
+    {"TrainBelowAFile", kNothing, "train meshes --out file/new.resight", 2, "file is not a folder"},
+    {"TrainOntoAFolder", kNothing, "train meshes --out empty", 2, "empty: is a folder"},
+    {"TrainOverItsInput", kNothing, "train meshes/cube.ply --out meshes/cube.ply", 2, "cube\\.ply: is an input"},
+    {"TrainOverAForeignFile", kNothing, "train meshes --out file", 2, "file: exists already and is no model library"},
+    {"TrainOverALink", link("dangling", "nowhere"), "train meshes --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"TrainOverALibrary", kNothing, "train meshes --out models.resight", 0, "", "models.resight"},
+    {"TrainToALongName", kNothing, kTrainToLongName.c_str(), 2, "name is too long"},
+    {"TrackOverTheSequence", kNothing, "track --sequence views --out views/scene_camera.json", 2,
+     "scene_camera\\.json: exists already"},
+    {"TrackBesideAForeignJournal", write("poses.txt.partial", "notes\n"), "track --sequence views --out poses.txt", 2,
+     "poses\\.txt\\.partial: exists already"},
+    {"TrackWithAPictureOverAnImage", kNothing, "track --sequence views --out poses.txt --fused views/rgb/000000.ply", 2,
+     "000000\\.png: exists already"},
+    {"TrackWithAForeignCloud", write("cloud.ply", "ply\nformat ascii 1.0\n"),
+     "track --sequence views --out poses.txt --fused cloud.ply", 2, "cloud\\.ply: exists already"},
+    {"TrackIntoTheNewSequence", kNothing, "track --sequence views --out new/poses.txt --write-sequence new", 2,
+     "new/poses\\.txt: lies in the folder of --write-sequence"},
+    {"TrackOverForeignObjects", write("poses_objects.txt", "mine\n"),
+     "track --sequence views --out poses.txt --models models.resight", 2, "poses_objects\\.txt: exists already"},
+    {"RecognizeIntoTheSequence", kNothing, "recognize --models models.resight --sequence views --out views", 2,
+     "views: is an input"},
+    {"ChangesOverTheImages", kNothing, "changes --sequence views --out views/rgb", 2,
+     "views/rgb: is a folder of the input"},
+    {"ChangesInANewFolderOfTheSequence", kNothing, "changes --sequence views --out views/changes", 0, "",
+     "views/changes/changes.json"},
+    {"RecognizeToNowhere", kNothing, "recognize --models models.resight --sequence views --out ''", 2,
+     "the name of the output is empty"},
+    {"ChangesToALinkToNowhere", link("dangling", "nowhere"), "changes --sequence views --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"EvaluateToALinkToNowhere", link("dangling", "nowhere"),
+     "evaluate --models models.resight --dataset views -k 0 --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"EvaluateOntoAFile", kNothing, "evaluate --models models.resight --dataset views -k 0 --out file", 2,
+     "file: exists already and is not a folder"},
+    {"EvaluateWithAFileForItsRuns", write("out/runs", ""),
+     "evaluate --models models.resight --dataset views -k 0 --out out", 2,
+     "out/runs: exists already and is not a folder"},
+    {"EvaluateWithoutMeshes", kNothing, "evaluate --models models.resight --dataset views -k 0 --bop --out out", 2,
+     "models: "},
+    {"SimulateToALinkToNowhere", link("dangling", "nowhere"), "simulate --preset demo --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"ModelToALinkToNowhere", link("dangling", "nowhere"), "model --sequence tuw --out dangling", 2,
+     "dangling is a link that leads nowhere"},
+    {"CheckOntoAFile", kNothing, "check views --out file", 2, "file: exists already and is not a folder"},
+    {"RecognizeWithAFolderForAResult", write("out/summary.json/mine", ""), kRecognize, 2,
+     "out/summary\\.json: is a folder"},
+    {"RecognizeWithAFileForItsPages", write("out/report_pages", ""), kRecognize, 2,
+     "out/report_pages: exists already and is not a folder"},
+    {"RecognizeIntoAMixtureOfUnknownOrigin", write("out/.resight-unfinished", "x"), kRecognize, 2,
+     "out: holds a mixture of old and new files"},
+    {"RecognizeAnUnfinishedSequence", write("views/.resight-unfinished", ""), kRecognize, 2, "views: is not finished"},
+    {"EvaluateBelowAnUnfinishedSet", both(move("views", "set/test/views"), write("set/.resight-unfinished", "")),
+     "evaluate --models models.resight --dataset set/test -k 0 --out out", 2, "set: is not finished"},
+    {"TrainFromUnfinishedModels", write("meshes/.resight-unfinished", ""), kTrain, 2, "meshes: is not finished"},
+    {"ViewUnfinishedResults", write("res/.resight-unfinished", ""), "view res --no-open", 2, "res: is not finished"},
+    {"ConvertIntoAnEmptyFolder", kNothing, "convert views empty --to tuw", 0, "", "empty/000001.pcd"},
+    {"ConvertModelsAfterAnInterruption", write(".out.resight-partial/models/a", "cut o"), "convert meshes out --to bop",
+     0, "", "out/models/models_info.json"},
+    {"ConvertBelowAFile", kNothing, "convert views file/out --to tuw", 2, "file is not a folder"},
+    {"ConvertOverData", kNothing, "convert views full --to tuw", 2, "full: exists already"},
+    {"SimulateBelowAFile", kNothing, "simulate --preset demo --out file/out", 2, "file/out: "},
+    {"SimulateOverData", kNothing, "simulate --preset demo --out full", 2, "full: exists already"},
+    {"DemoBelowAFile", kNothing, "demo --out file/out", 2, "file"},
+    {"DemoOverData", kNothing, "demo --out full", 2, "full: "},
+    {"DemoOntoAFile", kNothing, "demo --out file", 2, "file"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Outputs, CommandLine, testing::ValuesIn(kRows), name_of_row);
+
+}  // namespace
+}  // namespace resight::cli_test

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run writes, and what is left of one that fails or is interrupted.
+#include <csignal>
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+
+#include "cli.hpp"
+#include "resight/core/files.hpp"
+
+namespace resight::cli_test {
+namespace {
+
+TEST_F(CommandLineResults, TheReportIsTitledAfterTheSequence) {
+  const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views/ --out out");
+  ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
+  EXPECT_THAT(read_text(folder_ / "out/report.html"), testing::HasSubstr("<title>resight: views</title>"));
+}
+
+TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(run(folder_, "recognize --models models.resight --sequence views --out full").status, 0);
+  EXPECT_EQ(read_text(folder_ / "full/mine.txt"), "mine");
+  EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
+}
+
+TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
+  const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views --out out --stream");
+  ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
+  std::istringstream lines(outcome.output);
+  auto views = nlohmann::json::array();
+  for (std::string line; std::getline(lines, line);) {
+    views.push_back(nlohmann::json::parse(line));
+    EXPECT_TRUE(views.back()["events"].is_array());
+    views.back().erase("events");
+  }
+  EXPECT_EQ(views.size(), static_cast<std::size_t>(kViews));
+  EXPECT_EQ(views, nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"]);
+}
+
+TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
+  const std::string depth = read_text(folder_ / "views/depth/000002.png");
+  write_text(folder_ / "views/depth/000002.png", "cut o");
+  EXPECT_EQ(run(folder_, kRecognize).status, 2);
+  EXPECT_EQ(list(folder_ / "out").size(), 1U) << testing::PrintToString(list(folder_ / "out"));
+  std::istringstream lines(read_text(folder_ / "out/finished_views.jsonl"));
+  auto views = nlohmann::json::array();
+  for (std::string line; std::getline(lines, line);) {
+    views.push_back(nlohmann::json::parse(line));
+    views.back().erase("events");
+  }
+  write_text(folder_ / "views/depth/000002.png", depth);
+  EXPECT_EQ(run(folder_, kRecognize).status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/finished_views.jsonl"));
+  auto all = nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"];
+  all.erase(2);
+  EXPECT_EQ(views, all);
+}
+
+TEST_F(CommandLineResults, AFolderIsWrittenByOneCommandAtATime) {
+  const auto other = PendingDirectory::create(folder_ / "out", ExistingFolder::kFill);
+  ASSERT_TRUE(other.ok());
+  for (const char* command : {kConvert, kRecognize, kChanges}) {
+    const Outcome outcome = run(folder_, command);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_THAT(testing::PrintToString(outcome.errors), testing::HasSubstr("another command is writing it")) << command;
+  }
+  EXPECT_TRUE(fs::is_empty(other->path()));
+}
+
+TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) {
+  const std::string command = "cd " + folder_.string() + " && { " RESIGHT_PROGRAM " " + kRecognize +
+                              " --stream 2>/dev/null; echo $? >status; } | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(read_text(folder_ / "status"), std::to_string(128 + SIGPIPE) + "\n");
+  EXPECT_THAT(list(folder_), testing::Not(testing::Contains(testing::HasSubstr("resight-partial"))));
+  EXPECT_FALSE(fs::exists(folder_ / "out/summary.json"));
+}
+
+TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {
+  write_text(folder_ / "meshes/z.ply", "ply\n");
+  EXPECT_EQ(run(folder_, kTrain).status, 2);
+  EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("train 1/2")));
+}
+
+TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
+  fs::rename(folder_ / "views", folder_ / "v\xff");
+  EXPECT_EQ(
+      run(folder_, "evaluate --models models.resight --dataset v$(printf '\\377') --presets mvr -k 0 --out out").status,
+      0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/worst.md"));
+}
+
+TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {
+  ASSERT_EQ(run(folder_, "recognize --models models.resight --sequence views --out out").status, 0);
+  for (const char* input : {"out", "views", "models.resight", "meshes"}) {
+    // Interrupted only after it has told its address: a busy machine may take seconds to start it.
+    const std::string command = "cd " + folder_.string() + " && rm -f told && { " RESIGHT_PROGRAM " view --no-open " +
+                                std::string(input) +
+                                " >told 2>&1 </dev/null & } && for i in $(seq 600); do grep -q Ctrl-C told && break; "
+                                "sleep 0.1; done; sleep 0.5; kill -INT $!; wait $!";
+    EXPECT_EQ(std::system(command.c_str()), 0) << input;
+    EXPECT_TRUE(std::regex_match(read_text(folder_ / "told"),
+                                 std::regex("http://127\\.0\\.0\\.1:[0-9]+/#token=[0-9a-f]{32}\n.*Ctrl-C.*\n")))
+        << input << ": " << read_text(folder_ / "told");
+  }
+}
+
+}  // namespace
+}  // namespace resight::cli_test
