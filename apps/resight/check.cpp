@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "check_pictures.hpp"
@@ -9,7 +10,10 @@
 #include "resight/core/files.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/inspection/find_faults.hpp"
+#include "resight/inspection/object_scale.hpp"
 #include "resight/io/images.hpp"
+#include "resight/models/library_file.hpp"
+#include "resight/training/training.hpp"
 #include "sequence_input.hpp"
 
 namespace resight::app {
@@ -35,13 +39,64 @@ CheckJson to_json(const Finding& f, const Sequence& sequence, bool has_picture) 
   return json;
 }
 
-void print_json(const CheckArguments& arguments, const std::vector<Finding>& findings,
-                const SequenceMeasurements& measured, const Sequence& sequence) {
-  CheckJson json = {{"path", arguments.sequence.string()},      {"sound", findings.empty()},
-                    {"inspected_views", measured.views.size()}, {"matched_pairs", measured.pairs.size()},
-                    {"findings", CheckJson::array()},           {"facts", list_facts(measured)}};
-  for (const Finding& f : findings) json["findings"].push_back(to_json(f, sequence, arguments.out.has_value()));
+/// Everything that `check` has to say.
+struct CheckReport {
+  SequenceMeasurements measured;
+  std::vector<Finding> findings;
+  std::vector<std::string> facts;
+  std::vector<std::string> unmeasured;
+  [[nodiscard]] bool is_sound() const { return findings.empty() && unmeasured.empty(); }
+};
+
+void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, CheckReport& report) {
+  const ModelLibrary library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
+  if (library.objects.empty()) throw InputError(fmt::format("{}: contains no models", arguments.models->string()));
+  const ObjectScales scales = value_or_throw(measure_object_scales(
+      sequence, library, {.max_views = std::min(12, arguments.max_views), .num_threads = arguments.num_threads}));
+  for (Finding& f : find_scale_faults(scales, library)) report.findings.push_back(std::move(f));
+  (scales.is_measured() ? report.facts : report.unmeasured).push_back(describe_scales(scales));
+}
+
+CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequence) {
+  CheckReport report;
+  report.measured = value_or_throw(
+      measure_sequence(sequence, {.max_views = arguments.max_views, .num_threads = arguments.num_threads}));
+  report.findings = find_faults(report.measured);
+  report.facts = list_facts(report.measured);
+  report.unmeasured = list_unmeasured(report.measured);
+  if (arguments.models) add_model_sizes(arguments, sequence, report);
+  return report;
+}
+
+CheckJson soundness(const CheckReport& report) {
+  if (!report.findings.empty()) return false;
+  return report.unmeasured.empty() ? CheckJson(true) : CheckJson(nullptr);
+}
+
+void print_json(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
+  CheckJson json = {{"path", arguments.sequence.string()},
+                    {"sound", soundness(report)},
+                    {"inspected_views", report.measured.views.size()},
+                    {"matched_pairs", report.measured.pairs.size()},
+                    {"findings", CheckJson::array()},
+                    {"facts", report.facts},
+                    {"not_measured", report.unmeasured}};
+  for (const Finding& f : report.findings) json["findings"].push_back(to_json(f, sequence, arguments.out.has_value()));
   print_text(to_json_text(json, kIndentedJson) + "\n");
+}
+
+void print_lines(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
+  for (const Finding& f : report.findings)
+    print("{}: {}\n  margin {:.2g}, view {}; remedy: {}\n", f.fault, f.message, f.margin, sequence.view_name(f.view),
+          f.remedy);
+  for (const std::string& fact : report.facts) print("fact: {}\n", fact);
+  for (const std::string& what : report.unmeasured) print("not measured: {}\n", what);
+  const std::string verdict = report.is_sound()             ? "sound"
+                              : report.findings.empty()     ? "no fault found in what could be measured"
+                              : report.findings.size() == 1 ? "1 finding"
+                                                            : fmt::format("{} findings", report.findings.size());
+  print("{}: {} of {} views inspected, {} pairs of views matched: {}\n", arguments.sequence.string(),
+        report.measured.views.size(), report.measured.num_views, report.measured.pairs.size(), verdict);
 }
 
 }  // namespace
@@ -49,22 +104,13 @@ void print_json(const CheckArguments& arguments, const std::vector<Finding>& fin
 bool run_check(const CheckArguments& arguments) {
   if (arguments.out) check_output_folder(*arguments.out, {arguments.sequence});
   const auto sequence = open_input(arguments.sequence, arguments.input);
-  const SequenceMeasurements measured = value_or_throw(
-      measure_sequence(*sequence, {.max_views = arguments.max_views, .num_threads = arguments.num_threads}));
-  const std::vector<Finding> findings = find_faults(measured);
-  if (arguments.out && !findings.empty()) write_pictures(arguments, findings, measured, *sequence);
-  if (arguments.as_json) {
-    print_json(arguments, findings, measured, *sequence);
-    return findings.empty();
-  }
-  for (const Finding& f : findings)
-    print("{}: {}\n  margin {:.2g}, view {}; remedy: {}\n", f.fault, f.message, f.margin, sequence->view_name(f.view),
-          f.remedy);
-  for (const std::string& fact : list_facts(measured)) print("fact: {}\n", fact);
-  print("{}: {} of {} views inspected, {} pairs of views matched: {}\n", arguments.sequence.string(),
-        measured.views.size(), measured.num_views, measured.pairs.size(),
-        findings.empty() ? "sound" : fmt::format("{} findings", findings.size()));
-  return findings.empty();
+  const CheckReport report = check_sequence(arguments, *sequence);
+  if (arguments.out && !report.findings.empty()) write_pictures(arguments, report.findings, report.measured, *sequence);
+  if (arguments.as_json)
+    print_json(arguments, report, *sequence);
+  else
+    print_lines(arguments, report, *sequence);
+  return report.findings.empty();
 }
 
 }  // namespace resight::app

@@ -45,9 +45,9 @@ void draw_square(Image<Rgb8>& picture, const Eigen::Vector2d& at_px, Rgb8 color)
     }
 }
 
-Image<Rgb8> draw_matches(const RgbdFrame& frame, const SequenceMeasurements& measured, const Sequence& sequence) {
+Image<Rgb8> draw_matches(const ViewPair& pair, const SequenceMeasurements& measured, const Sequence& sequence) {
+  const RgbdFrame frame = value_or_throw(sequence.read_view(pair.b));
   Image<Rgb8> picture = frame.color;
-  const ViewPair& pair = measured.pairs.front();
   Rigid3 b_from_a = value_or_throw(sequence.read_pose(pair.b)).inverse() * value_or_throw(sequence.read_pose(pair.a));
   b_from_a.translation /= measured.depth_unit_m;
   for (const MatchedPoint& m : pair.matches) {
@@ -64,9 +64,10 @@ Image<Rgb8> draw_finding(const Finding& finding, const SequenceMeasurements& mea
   const RgbdFrame frame = value_or_throw(sequence.read_view(finding.view));
   const std::string& fault = finding.fault;
   if (fault == "no_depth" || fault == "eight_bit_depth") return draw_depth(frame);
-  if (fault == "color_offset" || fault == "unregistered_depth") return draw_contours(frame);
+  if (fault == "color_offset" || fault == "unregistered_depth" || fault == "depth_time") return draw_contours(frame);
+  if (fault == "pose_drift") return draw_matches(measured.far_pairs.front(), measured, sequence);
   const bool is_pose = fault.starts_with("pose_") || fault == "fixed_poses";
-  return is_pose && !measured.pairs.empty() ? draw_matches(frame, measured, sequence) : frame.color;
+  return is_pose && !measured.pairs.empty() ? draw_matches(measured.pairs.front(), measured, sequence) : frame.color;
 }
 
 }  // namespace resight::app

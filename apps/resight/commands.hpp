@@ -47,6 +47,13 @@ struct TrainArguments {
   int num_threads = 1;
 };
 
+/// Views that are still being written.
+struct FollowArguments {
+  bool is_on = false;
+  bool keeps_late = false;               ///< Takes every view; otherwise the newest one.
+  std::optional<double> idle_timeout_s;  ///< Ends when no view has come for so long; none: only with Ctrl-C.
+};
+
 struct RecognizeArguments {
   std::filesystem::path models;
   std::filesystem::path sequence;
@@ -60,6 +67,8 @@ struct RecognizeArguments {
   std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
   bool view = false;                  ///< Show views in a browser as they are recognised, and the results afterwards.
   bool stream = false;                ///< Print each view as one line of JSON as it is recognised, and nothing else.
+  std::string camera;                 ///< "openni2" or "openni2:URI", instead of a sequence.
+  FollowArguments follow;
   int num_threads = 1;
 };
 
@@ -123,7 +132,8 @@ struct InfoArguments {
 struct CheckArguments {
   std::filesystem::path sequence;
   OpenSequenceOptions input;
-  std::optional<std::filesystem::path> out;  ///< Folder for pictures.
+  std::optional<std::filesystem::path> models;  ///< Library whose objects tell the scale.
+  std::optional<std::filesystem::path> out;     ///< Folder for pictures.
   int max_views = 24;
   bool as_json = false;
   int num_threads = 1;

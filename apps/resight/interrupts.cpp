@@ -17,6 +17,8 @@ namespace {
 constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 std::atomic<int> interrupt_number = 0;
+std::atomic<bool> may_stop = false;
+std::atomic<bool> stop_requested = false;
 sem_t has_interrupt;  // Unlike a condition variable, a handler may post it.
 
 /// A handler may not remove folders itself, because few functions are safe in it.
@@ -30,10 +32,17 @@ void post_interrupt(int number) {
   errno = interrupted_errno;
 }
 
+/// Whether the signal is only a request to come to an end.
+bool request_stop(int number) {
+  return may_stop && (number == SIGINT || number == SIGTERM) && !stop_requested.exchange(true);
+}
+
 /// Ends the program as the signal would have done without a handler, so that a shell knows the reason.
 [[noreturn]] void end_by_interrupt() {
-  while (::sem_wait(&has_interrupt) != 0) {
-  }
+  do {
+    while (::sem_wait(&has_interrupt) != 0) {
+    }
+  } while (request_stop(interrupt_number));
   remove_pending_files();
   const int number = interrupt_number;
   std::signal(number, SIG_DFL);
@@ -65,5 +74,9 @@ void clean_up_when_interrupted() {
     ::sigaction(number, &action, nullptr);
   }
 }
+
+void stop_when_interrupted() { may_stop = true; }
+
+bool is_stop_requested() { return stop_requested; }
 
 }  // namespace resight::app

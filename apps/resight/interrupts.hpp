@@ -8,4 +8,9 @@ namespace resight::app {
 /// stay ignored, as under nohup. To be called again after others have handled these signals.
 void clean_up_when_interrupted();
 
+/// From now on, the first Ctrl-C or SIGTERM only makes is_stop_requested() true. The second one ends the program as
+/// described above.
+void stop_when_interrupted();
+[[nodiscard]] bool is_stop_requested();
+
 }  // namespace resight::app

@@ -103,11 +103,48 @@ std::function<void()> add_train(CLI::App& app, TrainArguments& a) {
   return [&a] { run_train(a); };
 }
 
+const CLI::Validator kCameras(
+    [](const std::string& text) {
+      return text == "openni2" || text.starts_with("openni2:") ? std::string()
+                                                               : text + " is not openni2 or openni2:URI";
+    },
+    "openni2[:URI]");
+
+void add_live_options(CLI::App* command, RecognizeArguments& a) {
+  const std::string group = "Live";
+  CLI::Option* follow =
+      command
+          ->add_flag("--follow", a.follow.is_on,
+                     "Take the views of the folder as they are written into it, until Ctrl-C; results are written then")
+          ->excludes("--view")
+          ->group(group);
+  command
+      ->add_option(
+          "--camera", a.camera,
+          "Instead of --sequence: a camera of OpenNI2 that does not move (openni2, or openni2:URI), until Ctrl-C")
+      ->check(kCameras)
+      ->excludes("--view")
+      ->excludes("--sequence")
+      ->excludes(follow)
+      ->group(group);
+  command
+      ->add_option("--idle-timeout-s", a.follow.idle_timeout_s,
+                   "With --follow or --camera: also end when no view has come for so long")
+      ->check(kPositive)
+      ->group(group);
+  command
+      ->add_flag(
+          "--keep-late", a.follow.keeps_late,
+          "With --follow: take every view, in order. Otherwise only the newest one is taken when several wait, and "
+          "the others are counted")
+      ->group(group);
+}
+
 std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   CLI::App* command =
       app.add_subcommand("recognize", "Recognise trained objects in a sequence of views and report what changed");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
-  command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected)")->required();
+  command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected)");
   command->add_option("--out", a.out, "Folder for the results")->required();
   command
       ->add_option("--poses", a.poses,
@@ -129,6 +166,7 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
       ->add_flag("--stream", a.stream,
                  "Print each view as one line of JSON on standard output as it is recognised, and nothing else there")
       ->excludes("--view");
+  add_live_options(command, a);
   add_recognition_options(command, a);
   add_sequence_options(command, a.input);
   return [&a] { run_recognize(a); };
@@ -235,6 +273,8 @@ std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound
   CLI::App* command = app.add_subcommand(
       "check", "Measure what is wrong with a sequence: depth, colours, intrinsics, poses. Exit status 1: something is");
   command->add_option("sequence", a.sequence, "Sequence folder or recording (detected)")->required();
+  command->add_option("--models", a.models,
+                      "Model library: also compare the sizes of its objects with those in the views");
   command->add_option("--out", a.out, "Folder for a picture of each finding");
   command->add_option("--views", a.max_views, "Largest number of inspected views, spread over the sequence")
       ->check(CLI::Range(2, 1000))

@@ -17,8 +17,9 @@ Progress::~Progress() {
 }
 
 void Progress::report(int done, const std::string& detail) {
+  const std::string of_all = num_items_ > 0 ? "/" + std::to_string(num_items_) : "";
   // ESC[K clears the rest of a longer previous line.
-  std::fprintf(stderr, is_terminal_ ? "\r%s %d/%d: %s\x1b[K" : "%s %d/%d: %s\n", what_.c_str(), done, num_items_,
+  std::fprintf(stderr, is_terminal_ ? "\r%s %d%s: %s\x1b[K" : "%s %d%s: %s\n", what_.c_str(), done, of_all.c_str(),
                printable(detail).c_str());
   std::fflush(stderr);
   has_open_line_ = is_terminal_;

@@ -11,7 +11,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Reports that item `done` of num_items is finished; `detail` describes its result.
+  /// Reports that item `done` of num_items is finished; `detail` describes its result. num_items 0: unknown.
   void report(int done, const std::string& detail);
 
  private:

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <utility>
 
 #include "progress.hpp"
@@ -40,24 +41,41 @@ void warn_about_names(const SequenceTruth& truth, const std::string& sequence) {
     print_warning(fmt::format("{}: no true object is in the library, so that nothing can be right", sequence));
 }
 
-ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                          int num_threads, const std::function<void(ViewRecord&)>& on_view) {
-  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
-  warn_about_names(truth, "ground truth");
+namespace {
+
+ReportRun start_run(const RecognizerConfig& config, int num_threads) {
   ReportRun run;
   run.preset = config.preset;
   run.version = RESIGHT_VERSION;
   run.num_threads = num_threads;
   run.settings = config.to_settings();
+  return run;
+}
 
+void report_update(const SceneUpdate& update, Progress& progress) {
+  progress.report(update.view + 1, describe(update));
+  if (!update.left_out.empty())
+    print_warning(
+        fmt::format("{}: skipped to meet the deadline: {}", update.view_name, fmt::join(update.left_out, ", ")));
+}
+
+void finish_run(std::vector<std::vector<ObjectEvent>> final_events, ReportRun& run) {
+  for (std::size_t v = 0; v < run.views.size(); ++v) run.views[v].update.events = std::move(final_events[v]);
+  run.peak_memory_bytes = peak_memory_bytes();
+}
+
+}  // namespace
+
+ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
+                          int num_threads, const std::function<void(ViewRecord&)>& on_view) {
+  const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
+  warn_about_names(truth, "ground truth");
+  ReportRun run = start_run(config, num_threads);
   SceneRecognizer recognizer(library, config);
   Progress progress(config.preset, sequence.num_views());
   auto events = recognize_sequence(recognizer, sequence, [&](const RgbdFrame& frame, SceneUpdate& update) {
     const int v = update.view;
-    progress.report(v + 1, describe(update));
-    if (!update.left_out.empty())
-      print_warning(
-          fmt::format("{}: skipped to meet the deadline: {}", update.view_name, fmt::join(update.left_out, ", ")));
+    report_update(update, progress);
     std::optional<ViewEvaluation> evaluation;
     if (!truth.views.empty())
       evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,
@@ -67,9 +85,30 @@ ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
     run.views.back().image_id = sequence.image_id(v);
     if (on_view) on_view(run.views.back());
   });
-  std::vector<std::vector<ObjectEvent>> final_events = value_or_throw(std::move(events));
-  for (std::size_t v = 0; v < run.views.size(); ++v) run.views[v].update.events = std::move(final_events[v]);
-  run.peak_memory_bytes = peak_memory_bytes();
+  finish_run(value_or_throw(std::move(events)), run);
+  return run;
+}
+
+ReportRun run_live(const ModelLibrary& library, const NextLiveView& next, const RecognizerConfig& config,
+                   int num_threads, const std::function<void(std::span<ViewRecord>)>& on_view) {
+  ReportRun run = start_run(config, num_threads);
+  SceneRecognizer recognizer(library, config);
+  Progress progress(config.preset, 0);
+  FollowedView current;
+  const auto next_frame = [&]() -> Result<std::optional<RgbdFrame>> {
+    std::optional<FollowedView> view = next();
+    if (!view) return std::optional<RgbdFrame>();
+    current = {.frame = {}, .scene_id = view->scene_id, .image_id = view->image_id};
+    return std::optional(std::move(view->frame));
+  };
+  auto events = recognize_views(recognizer, next_frame, [&](const RgbdFrame& frame, SceneUpdate& update) {
+    report_update(update, progress);
+    run.views.push_back(make_view_record(frame, library, std::move(update)));
+    run.views.back().scene_id = current.scene_id;
+    run.views.back().image_id = current.image_id;
+    if (on_view) on_view(run.views);
+  });
+  finish_run(value_or_throw(std::move(events)), run);
   return run;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "commands.hpp"
 #include "resight/evaluation/change_truth.hpp"
+#include "resight/io/follow_sequence.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/report/view_record.hpp"
@@ -24,5 +26,12 @@ void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
                                         const RecognizerConfig& config, int num_threads,
                                         const std::function<void(ViewRecord&)>& on_view = {});
+
+/// The next view of a camera or of a folder that is being written; none at the end.
+using NextLiveView = std::function<std::optional<FollowedView>()>;
+
+/// Same for views that come one by one. Waits in `next`. `on_view` gets all views up to the newest one.
+[[nodiscard]] ReportRun run_live(const ModelLibrary& library, const NextLiveView& next, const RecognizerConfig& config,
+                                 int num_threads, const std::function<void(std::span<ViewRecord>)>& on_view = {});
 
 }  // namespace resight::app

@@ -3,10 +3,12 @@
 
 #include <cstdio>
 #include <optional>
+#include <span>
 
 #include "camera_run.hpp"
 #include "commands.hpp"
 #include "finished_views.hpp"
+#include "follow_views.hpp"
 #include "live_viewer.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
@@ -28,13 +30,67 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
   if (summary.num_scored_views > 0)
     print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
           format_share(summary.score.recall()), summary.num_ghosts);
+  if (run.num_skipped_views.value_or(0) > 0)
+    print("{} views were overtaken by newer ones and skipped\n", *run.num_skipped_views);
   print("report: {}\n", (out / "report.html").string());
+}
+
+/// Keeps a view that is finished, and prints it.
+void report_view(const RecognizeArguments& arguments, const ViewRecord& view, const ModelLibrary& library,
+                 FinishedViews& finished) {
+  const std::string line = format_view_line(view, library) + "\n";
+  finished.add(line);
+  if (!arguments.stream) return;
+  print_text(line);
+  std::fflush(stdout);  // The reader of a pipe gets each view at once.
+}
+
+void write_run(const RecognizeArguments& arguments, ReportRun& run, const ModelLibrary& library,
+               PendingDirectory& folder, FinishedViews& finished) {
+  const bool has_folder = arguments.camera.empty();
+  run.sequence = has_folder ? arguments.sequence.string() : arguments.camera;
+  if (has_folder) run.sequence_path = path_from(arguments.out, arguments.sequence);
+  run.models_path = path_from(arguments.out, arguments.models);
+  const std::string title = "resight: " + (has_folder ? folder_name(arguments.sequence) : arguments.camera);
+  value_or_throw(write_results(folder.path(), run, library));
+  value_or_throw(write_report(folder.path() / "report.html", title, std::span(&run, 1), library));
+  value_or_throw(folder.commit());
+  remove_old_pages(arguments.out, static_cast<int>(run.views.size()));
+  finished.remove();
+  if (!arguments.stream) print_summary(run, arguments.out);
+}
+
+/// Moves pictures to files as soon as the report has pages. `views`: all so far.
+void store_new_pictures(std::span<ViewRecord> views, const std::filesystem::path& folder) {
+  if (views.size() <= kViewsPerPage) return;
+  const std::size_t num_stored = views.size() == kViewsPerPage + 1 ? 0 : views.size() - 1;
+  for (ViewRecord& view : views.subspan(num_stored)) value_or_throw(store_picture(view, folder));
+}
+
+void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const ModelLibrary& library,
+                    const RecognizerConfig& config) {
+  auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
+  FinishedViews finished(arguments.out);
+  ReportRun run = run_live(
+      library, [&] { return views.next(); }, config, arguments.num_threads,
+      [&](std::span<ViewRecord> run_views) {
+        store_new_pictures(run_views, folder.path());
+        report_view(arguments, run_views.back(), library, finished);
+      });
+  run.num_skipped_views = views.num_skipped();
+  write_run(arguments, run, library, folder, finished);
 }
 
 }  // namespace
 
 void run_recognize(const RecognizeArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.sequence, arguments.models}, kResultFiles);
+  const bool is_live = arguments.follow.is_on || !arguments.camera.empty();
+  if (arguments.follow.keeps_late && !arguments.follow.is_on) throw InputError("--keep-late needs --follow");
+  if (arguments.follow.idle_timeout_s && !is_live) throw InputError("--idle-timeout-s needs --follow or --camera");
+  if (arguments.camera.empty() == arguments.sequence.empty()) throw InputError("give either --sequence or --camera");
+  check_output_folder(arguments.out,
+                      {arguments.camera.empty() ? arguments.sequence : arguments.models, arguments.models},
+                      kResultFiles);
   value_or_throw(check_writable_folder(arguments.out / kReportPages, ExistingFolder::kFill));
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
@@ -46,9 +102,20 @@ void run_recognize(const RecognizeArguments& arguments) {
     if (object.sift.size() + object.shot.size() == 0)
       print_warning(fmt::format("{}: model '{}' has no features and will not be recognised", arguments.models.string(),
                                 object.name));
+  if (!arguments.camera.empty()) {
+    if (arguments.poses != "given" && arguments.poses != "fixed")
+      throw InputError("--camera stands still: --poses must be fixed");
+    CameraViews views(arguments.camera, arguments.input, arguments.follow);
+    return recognize_live(views, arguments, library, config);
+  }
   const bool estimated = arguments.poses == "auto" || arguments.poses == "refine";
   OpenSequenceOptions input = arguments.input;
   if (!estimated && arguments.poses != "given") input.poses = arguments.poses;
+  if (arguments.follow.is_on) {
+    if (estimated) throw InputError("--follow needs poses with each view: --poses given, fixed or a file");
+    FolderViews views(arguments.sequence, input, arguments.follow);
+    return recognize_live(views, arguments, library, config);
+  }
   const auto recorded = estimated ? open_input(arguments.sequence, input) : open_posed_input(arguments.sequence, input);
   warn_about_faults(*recorded, arguments.poses != "auto");
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
@@ -67,22 +134,9 @@ void run_recognize(const RecognizeArguments& arguments) {
   ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](ViewRecord& view) {
     if (viewer) viewer->add_view(view);
     if (sequence.num_views() > kViewsPerPage) value_or_throw(store_picture(view, folder.path()));
-    const std::string line = format_view_line(view, library) + "\n";
-    finished.add(line);
-    if (!arguments.stream) return;
-    print_text(line);
-    std::fflush(stdout);  // The reader of a pipe gets each view at once.
+    report_view(arguments, view, library, finished);
   });
-  run.sequence = arguments.sequence.string();
-  run.sequence_path = path_from(arguments.out, arguments.sequence);
-  run.models_path = path_from(arguments.out, arguments.models);
-  value_or_throw(write_results(folder.path(), run, library));
-  value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
-                              std::span(&run, 1), library));
-  value_or_throw(folder.commit());
-  remove_old_pages(arguments.out, sequence.num_views());
-  finished.remove();
-  if (!arguments.stream) print_summary(run, arguments.out);
+  write_run(arguments, run, library, folder, finished);
   if (viewer) viewer->finish(run);
 }
 

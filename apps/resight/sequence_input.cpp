@@ -26,6 +26,12 @@ const std::map<std::string, PoseConvention> kConventions = {{"camera-to-world", 
                                                             {"world-to-camera", PoseConvention::kWorldToCamera},
                                                             {"opengl", PoseConvention::kOpenGl}};
 
+std::vector<std::string> sensor_names() {
+  std::vector<std::string> names;
+  for (const DepthSensor& sensor : depth_sensors()) names.emplace_back(sensor.name);
+  return names;
+}
+
 void add_recording_options(CLI::App* command, RecordingTopics& topics) {
   const std::string group = "Recording (ROS 1 bag, MCAP, ROS 2 bag)";
   command->add_option("--color-topic", topics.color, "Topic of the colour images")->group(group);
@@ -67,6 +73,14 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
           "--pose-convention", [&options](const std::string& name) { options.pose_convention = kConventions.at(name); },
           "Poses in files: camera-to-world, world-to-camera, or opengl (camera to world, y up) [camera-to-world]")
       ->check(CLI::IsMember(kConventions))
+      ->group(group);
+  command
+      ->add_option_function<std::string>(
+          "--sensor", [&options](const std::string& name) { options.sensor = find_depth_sensor(name); },
+          "Kind of depth camera, whose noise is assumed: structured-light (Kinect v1, Xtion), active-stereo (RealSense "
+          "D435), active-stereo-d415, time-of-flight (Azure Kinect) [by the names in a recording, else "
+          "structured-light]")
+      ->check(CLI::IsMember(sensor_names()))
       ->group(group);
   command->add_option("--every", options.views.every, "Takes every n-th view [1]")
       ->check(CLI::Range(1, 1000000))

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
                "usage: bench_losses SEQUENCE LIBRARY [preset] [config.toml|-] [K] [min_visible_share] [strict]\n");
     return 2;
   }
-  const auto sequence = value_or_exit(open_sequence(argv[1]));
+  const auto sequence = open_or_exit(argv[1]);
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   RecognizerConfig config = preset_or_exit(argc > 3 ? argv[3] : "default");
   if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_settings(argv[4], config));

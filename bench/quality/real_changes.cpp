@@ -5,6 +5,7 @@
 // the class pictures, beside a plain depth difference of 12 mm. --pictures: sheets of all misses and false reports.
 //   bench_real_changes static SEQUENCE [preset] [config.toml|-] [K]
 // A camera in a static scene: whatever is reported as changed is false.
+// SEQUENCE@SENSOR assumes the depth noise of that kind of camera (`--sensor`).
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -142,7 +143,7 @@ void print_scores(const std::vector<std::pair<std::string, ChangeScore>>& scores
 }
 
 void run_still(const Arguments& arguments) {
-  const auto sequence = value_or_exit(open_sequence(arguments.positional[1]));
+  const auto sequence = open_or_exit(arguments.positional[1]);
   const std::filesystem::path labels = arguments.positional[2];
   const RecognizerConfig config = read_config(arguments, 3);
   ChangeRun run(config);

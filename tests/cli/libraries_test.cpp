@@ -62,6 +62,8 @@ const Row kRows[] = {
      "obj_000001\\.ply: .*looks like metres"},
     {"MeshOfAnotherUnit", mesh("meshes/cube.ply", [] { return make_cube(1000); }),
      "train meshes --mesh-unit mm --out new.resight", 0, "", "new.resight"},
+    {"MeshUnitOfViewsOnly", write("thing/views/cloud_00.pcd", kUnorganizedPcd),
+     "train thing --mesh-unit mm --out new.resight", 2, "--mesh-unit has no effect: no model is a mesh or a cloud"},
     {"MeshOfAnUnknownUnit", kNothing, "train meshes --mesh-unit furlong --out new.resight", 2, "--mesh-unit: "},
     {"MeshWithNan", mesh("meshes/cube.ply", [] { return make_cube_with(std::numeric_limits<float>::quiet_NaN()); }),
      kTrain, 2, "cube\\.ply: .*not finite"},

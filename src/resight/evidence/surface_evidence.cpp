@@ -62,13 +62,13 @@ Evidence classify_at(std::optional<Pixel> pixel, float z_m, const DepthImage& vi
                      int window_radius_px) {
   if (!pixel) return Evidence::kUnobserved;
   const float measured_m = measured_depth(view.depth_m, *pixel, window_radius_px);
-  return compare_depth(z_m, measured_m, margin.at(z_m, view.camera.fx));
+  return compare_depth(z_m, measured_m, margin.at(z_m, view.camera.noise));
 }
 
 }  // namespace
 
-float DepthMargin::with_noise(float z_m, double focal_px) const {
-  return static_cast<float>(base_m + noise_sigmas * nguyen_noise(z_m, 0, focal_px).axial_m);
+float DepthMargin::with_noise(float z_m, const DepthNoise& noise) const {
+  return static_cast<float>(base_m + noise_sigmas * axial_noise_m(noise, z_m));
 }
 
 float nearest_depth(const Eigen::Vector3f& p_in_camera, const DepthImage& view, int radius_px) {

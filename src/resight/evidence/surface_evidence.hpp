@@ -34,13 +34,13 @@ struct DepthMargin {
   double base_m = 0.015;
   double noise_sigmas = 3;
 
-  /// In metres, for a surface at this depth; `focal_px` as in nguyen_noise().
-  [[nodiscard]] float at(float z_m, double focal_px) const {
-    return noise_sigmas > 0 ? with_noise(z_m, focal_px) : static_cast<float>(base_m);
+  /// In metres, for a surface at this depth.
+  [[nodiscard]] float at(float z_m, const DepthNoise& noise) const {
+    return noise_sigmas > 0 ? with_noise(z_m, noise) : static_cast<float>(base_m);
   }
 
  private:
-  [[nodiscard]] float with_noise(float z_m, double focal_px) const;
+  [[nodiscard]] float with_noise(float z_m, const DepthNoise& noise) const;
 };
 
 inline void declare(OptionVisitor& v, DepthMargin& o) {

@@ -123,7 +123,7 @@ FeatureSet extract_shot(const PreparedView& view, const ShotOptions& options, co
     std::erase_if(indices, [&](int i) { return support.points[i].z() > *options.max_keypoint_depth_m; });
   std::vector<double> noise_variance_sq_m;
   for (const int i : indices) {
-    const double sigma_m = nguyen_noise(support.points[i].z(), 0.0, view.frame.camera.fx).axial_m;
+    const double sigma_m = axial_noise_m(view.frame.camera.noise, support.points[i].z());
     noise_variance_sq_m.push_back(sigma_m * sigma_m);
   }
   return describe(support, select(support, indices), noise_variance_sq_m, options, nullptr);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "resight/geometry/depth_noise.hpp"
+
 namespace resight {
 
 /// Column and row of an image.
@@ -13,7 +15,8 @@ struct Pixel {
   friend bool operator==(const Pixel&, const Pixel&) = default;
 };
 
-/// A pinhole camera without distortion. Pixel centres are at whole numbers. Camera frame: x right, y down, z forward.
+/// A pinhole camera without distortion, and the noise of its depth. Pixel centres are at whole numbers. Camera frame: x
+/// right, y down, z forward.
 struct Camera {
   int width = 0;
   int height = 0;
@@ -21,6 +24,7 @@ struct Camera {
   double fy = 0;  ///< px
   double cx = 0;  ///< px
   double cy = 0;  ///< px
+  DepthNoise noise = {};
 
   /// Whether size and focal lengths are positive and all numbers are finite.
   [[nodiscard]] bool is_valid() const;

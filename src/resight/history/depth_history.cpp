@@ -18,7 +18,8 @@ RgbdFrame downsample(const RgbdFrame& frame, int step_px) {
                   whole.fx / step_px,
                   whole.fy / step_px,
                   whole.cx / step_px,
-                  whole.cy / step_px};
+                  whole.cy / step_px,
+                  whole.noise};
   small.depth_m = Image<float>(small.camera.width, small.camera.height);
   for (int v = 0; v < small.camera.height; ++v)
     for (int u = 0; u < small.camera.width; ++u) small.depth_m(u, v) = frame.depth_m(u * step_px, v * step_px);

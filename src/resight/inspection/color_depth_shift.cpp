@@ -4,51 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "resight/sensor/occluding_contour.hpp"
+#include "resight/inspection/internal/contour_contrast.hpp"
 
 namespace resight {
 namespace {
 
 constexpr int kMinContour_px = 200;
-constexpr double kScaleSigmas = 0.5;          // By which a peak at another scale must be higher.
-constexpr std::size_t kMaxContour_px = 1000;  // Per view.
-constexpr float kMaxEdgeContrast = 40;        // Grey levels; stronger edges count no more.
+constexpr double kScaleSigmas = 0.5;  // By which a peak at another scale must be higher.
 
-float grey_at(const Image<Rgb8>& color, int u, int v) {
-  const Rgb8& c = color(std::clamp(u, 0, color.width() - 1), std::clamp(v, 0, color.height() - 1));
-  return static_cast<float>(c.r + c.g + c.b) / 3;
-}
-
-/// Contrast over three pixels along rows (or columns), with a border of zeros: depth ends within a pixel or two of the
-/// contour.
-Image<float> find_contrast(const Image<Rgb8>& color, int du, int dv) {
+/// With a border of zeros, so that every shift has a value.
+Image<float> add_border(const Image<float>& contrast) {
   constexpr int kBorder = ShiftScores::kReach_px;
-  Image<float> contrast(color.width() + 2 * kBorder, color.height() + 2 * kBorder);
-  for (int v = 0; v < color.height(); ++v)
-    for (int u = 0; u < color.width(); ++u)
-      contrast(u + kBorder, v + kBorder) =
-          std::min(std::abs(grey_at(color, u + du, v + dv) - grey_at(color, u - du, v - dv)), kMaxEdgeContrast);
-  return contrast;
-}
-
-struct ContourPixel {
-  int u, v;
-  bool along_row;
-};
-
-std::vector<ContourPixel> find_contour_pixels(const PreparedView& view) {
-  std::vector<ContourPixel> all;
-  const Image<float>& depth_m = view.frame.depth_m;
-  for (int v = 0; v < depth_m.height(); ++v)
-    for (int u = 0; u < depth_m.width(); ++u) {
-      if (view.edge_distance_px(u, v) > 0 || std::isnan(depth_m(u, v))) continue;
-      for (const PixelStep step : kPixelSteps)
-        if (is_occluding_contour(depth_m, u, v, step)) all.push_back({u, v, step.u != 0});
-    }
-  const std::size_t step = all.size() / kMaxContour_px + 1;
-  std::vector<ContourPixel> some;
-  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
-  return some;
+  Image<float> wide(contrast.width() + 2 * kBorder, contrast.height() + 2 * kBorder);
+  for (int v = 0; v < contrast.height(); ++v)
+    for (int u = 0; u < contrast.width(); ++u) wide(u + kBorder, v + kBorder) = contrast(u, v);
+  return wide;
 }
 
 }  // namespace
@@ -58,11 +28,11 @@ ShiftScores::ShiftScores() {
 }
 
 void ShiftScores::add(const PreparedView& view) {
-  const Image<float> along_row = find_contrast(view.frame.color, 1, 0);
-  const Image<float> along_column = find_contrast(view.frame.color, 0, 1);
+  const Image<float> along_row = add_border(inspection::find_contrast(view.frame.color, true));
+  const Image<float> along_column = add_border(inspection::find_contrast(view.frame.color, false));
   const double middle_u = 0.5 * (view.frame.color.width() - 1);
   const double middle_v = 0.5 * (view.frame.color.height() - 1);
-  for (const ContourPixel& pixel : find_contour_pixels(view)) {
+  for (const inspection::ContourPixel& pixel : inspection::find_contour_pixels(view)) {
     ++num_pixels_;
     for (std::size_t s = 0; s < kScales.size(); ++s) {
       const int u = static_cast<int>(std::lround(middle_u + kScales[s] * (pixel.u - middle_u)));
@@ -105,6 +75,7 @@ std::optional<ColorDepthShift> ShiftScores::peak() const {
     best.shift_px = {index % kNumShifts - kReach_px, index / kNumShifts - kReach_px};
     best.scale = kScales[s];
     best.peak_sigmas = sigmas;
+    best.mean_contrast = static_cast<double>(*at) / num_pixels_;
   }
   best.num_contour_pixels = num_pixels_;
   return best;

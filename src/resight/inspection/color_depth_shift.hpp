@@ -14,7 +14,8 @@ namespace resight {
 struct ColorDepthShift {
   Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
   double scale = 1;
-  double peak_sigmas = 0;  ///< Height of the peak above the scores of all shifts, in their standard deviations.
+  double peak_sigmas = 0;    ///< Height of the peak above the scores of all shifts, in their standard deviations.
+  double mean_contrast = 0;  ///< At the peak, grey levels per pixel of the contours.
   int num_contour_pixels = 0;
 };
 

@@ -22,6 +22,7 @@ constexpr double kMinPeakSigmas = 5;
 constexpr double kSameShift_px = 4;
 constexpr double kSameScale = 0.06;  // A step of ShiftScores::kScales.
 constexpr std::size_t kMinShiftViews = 3;
+constexpr double kMinTimeContrast = 1.15;    // Over the contrast as given.
 constexpr double kMaxRelativeSpread = 0.34;  // A shift that varies is none of the calibration.
 
 /// The faults of all views, once per kind, with the number of views that have it. The middle one stands for them.
@@ -115,6 +116,28 @@ void add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& 
        .view = measured.views.front().view});
 }
 
+/// Depth of another time than the colours. A constant shift that explains the colours better is none of time.
+bool add_depth_time(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
+  if (!measured.depth_time) return false;
+  const DepthTime& time = *measured.depth_time;
+  if (time.views_late == 0 || time.displacement_px <= kMaxFineShift_px || time.gain < kMinTimeContrast) return false;
+  ShiftScores shifts = measured.half_shifts[0];
+  shifts.add(measured.half_shifts[1]);
+  const auto shift = shifts.peak();
+  if (shift && shift->mean_contrast > time.mean_contrast) return false;
+  findings.push_back({.fault = "depth_time",
+                      .message = fmt::format("depth is that of {:.2g} views {} than the colours, {:.0f} px beside them",
+                                             std::abs(time.views_late), time.views_late > 0 ? "later" : "earlier",
+                                             time.displacement_px),
+                      .remedy = "record both streams by one clock; pair the images by their times, not their numbers",
+                      .value = time.views_late,
+                      .unit = "views",
+                      .threshold = 0.25,
+                      .margin = std::min(time.gain / kMinTimeContrast, time.displacement_px / kMaxFineShift_px),
+                      .view = measured.pairs.front().b});
+  return true;
+}
+
 }  // namespace
 
 std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
@@ -124,9 +147,10 @@ std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
   for (Finding& f : join_view_faults(measured)) findings.push_back(std::move(f));
   if (measured.poses) inspection::add_origin_fault(measured.poses->farthest_m, 0, findings);
   add_blur(measured, findings);
-  if (!add_wide_shift(measured, findings)) add_fine_shift(measured, findings);
+  if (!add_depth_time(measured, findings) && !add_wide_shift(measured, findings)) add_fine_shift(measured, findings);
   const bool has_depth_fault = std::ranges::any_of(findings, [](const Finding& f) {
-    return f.fault == "depth_scale" || f.fault == "eight_bit_depth" || f.fault == "unregistered_depth";
+    return f.fault == "depth_scale" || f.fault == "eight_bit_depth" || f.fault == "unregistered_depth" ||
+           f.fault == "depth_time";
   });
   if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, findings);
   return findings;
@@ -137,12 +161,23 @@ std::vector<std::string> list_facts(const SequenceMeasurements& measured) {
   constexpr double kStill_px = 1.5;
   if (!measured.pairs.empty() && measured.pair_shift_px < kStill_px)
     facts.push_back(fmt::format("the camera does not move (views differ by {:.1f} px)", measured.pair_shift_px));
-  if (measured.num_views > 2 && measured.pairs.size() < 3)
-    facts.push_back(fmt::format("{} pairs of views could be matched, so poses and intrinsics were not checked",
-                                measured.pairs.size()));
   if (measured.num_views > 1 && !measured.pairs.empty() && !measured.poses)
     facts.emplace_back("the sequence has no poses; give --poses, or use resight track");
   return facts;
+}
+
+std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured) {
+  std::vector<std::string> unmeasured;
+  if (measured.pairs.size() < inspection::kMinComparedPairs)
+    unmeasured.push_back(
+        fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be "
+                    "matched, at least {} are needed)",
+                    measured.has_poses ? "poses " : "", measured.pairs.size(), measured.num_tried_pairs,
+                    inspection::kMinComparedPairs));
+  ShiftScores shifts = measured.half_shifts[0];
+  shifts.add(measured.half_shifts[1]);
+  if (!shifts.peak()) unmeasured.emplace_back("the registration of depth to colour (the depth has too few contours)");
+  return unmeasured;
 }
 
 }  // namespace resight

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "resight/core/random.hpp"
 #include "resight/inspection/quick_check.hpp"
 #include "resight/inspection/testing/broken_sequence.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
@@ -19,17 +20,23 @@ RgbdFrame sharpen(RgbdFrame frame) {
   return frame;
 }
 
-/// Eight views from a camera that swings around a ball before a wall, with changing speed.
+/// Pose of a camera that swings around a ball before a wall, with changing speed.
+Rigid3 swinging_camera(int view) {
+  const double angle = -0.5 + 0.13 * view + 0.05 * (view % 3);
+  const Eigen::Vector3d eye(1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75 + 0.06 * (view % 2));
+  return test::look_at_point(eye, {0.05 * (view % 2), 0.1, 0.15});
+}
+
+RgbdFrame render_view(const Rigid3& pose, double noise_m, int seed) {
+  RgbdFrame frame = sharpen(test::render_ball_scene({}, pose, noise_m, static_cast<std::uint64_t>(seed)));
+  frame.name = std::to_string(seed);
+  return frame;
+}
+
 const test::MemorySequence& good_sequence() {
   static const test::MemorySequence sequence = [] {
     std::vector<RgbdFrame> frames;
-    for (int v = 0; v < 8; ++v) {
-      const double angle = -0.5 + 0.13 * v + 0.05 * (v % 3);
-      const Eigen::Vector3d eye(1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75 + 0.06 * (v % 2));
-      frames.push_back(sharpen(test::render_ball_scene({}, test::look_at_point(eye, {0.05 * (v % 2), 0.1, 0.15}),
-                                                       0.0015, static_cast<std::uint64_t>(v + 1))));
-      frames.back().name = std::to_string(v);
-    }
+    for (int v = 0; v < 8; ++v) frames.push_back(render_view(swinging_camera(v), 0.0015, v + 1));
     return test::MemorySequence(std::move(frames));
   }();
   return sequence;
@@ -50,6 +57,7 @@ TEST(FindFaults, AGoodSequenceHasNone) {
   EXPECT_GE(measured.pairs.size(), 8U);
   EXPECT_EQ(names_of(find_faults(measured)), "");
   EXPECT_TRUE(list_facts(measured).empty());
+  EXPECT_TRUE(list_unmeasured(measured).empty());
   EXPECT_EQ(names_of(check_quickly(good_sequence(), true)), "");
 }
 
@@ -70,6 +78,77 @@ TEST(FindFaults, ACameraThatStandsIsAFactAndNoFault) {
   EXPECT_EQ(names_of(find_faults(measured)), "");
   ASSERT_EQ(list_facts(measured).size(), 1U);
   EXPECT_NE(list_facts(measured).front().find("does not move"), std::string::npos);
+}
+
+// Their standard errors come from few pairs, and are uncertain themselves. The poses are called what they are: coarse.
+TEST(FindFaults, FewNoisyViewsAreNoWrongUnit) {
+  int num_compared = 0;
+  for (int sequence = 0; sequence < 12; ++sequence) {
+    Rng rng(static_cast<std::uint64_t>(sequence));
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 4; ++v) {
+      frames.push_back(render_view(swinging_camera(v), 0.012, 100 * sequence + v));
+      const Eigen::Vector3d axis(rng.normal(), rng.normal(), rng.normal());
+      const Eigen::Vector3d off_m(0.015 * rng.normal(), 0.015 * rng.normal(), 0.015 * rng.normal());
+      Rigid3& pose = frames.back().world_from_camera;
+      pose = pose * Rigid3{Rigid3::from_axis_angle(axis, 0.015 * rng.normal()).rotation, off_m};
+    }
+    const auto measured = measure_sequence(test::MemorySequence(frames), {.max_views = 24, .num_threads = 1}).value();
+    num_compared += static_cast<int>(measured.pairs.size());
+    for (const Finding& f : find_faults(measured)) EXPECT_EQ(f.fault, "pose_error") << sequence << " " << f.message;
+  }
+  EXPECT_GE(num_compared, 12 * 3);
+}
+
+TEST(FindFaults, WithoutPairsMuchIsNotMeasured) {
+  const test::MemorySequence two({good_sequence().read_view(0).value(), good_sequence().read_view(7).value()});
+  const auto measured = measure_sequence(two, {.max_views = 24, .num_threads = 1}).value();
+  EXPECT_EQ(names_of(find_faults(measured)), "");
+  ASSERT_EQ(list_unmeasured(measured).size(), 1U);
+  EXPECT_NE(list_unmeasured(measured).front().find("intrinsics, poses and the time"), std::string::npos);
+}
+
+/// Views whose depth was measured `late` views after their colours.
+test::MemorySequence sequence_with_late_depth(double late) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 10; ++v) {
+    const auto camera_at = [](double view) {  // To and fro, by up to 0.1 rad a view.
+      const double angle = 0.3 * std::sin(0.35 * view);
+      return test::look_at_point({1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75}, {0.3 * angle, 0.1, 0.15});
+    };
+    frames.push_back(render_view(camera_at(v), 0.0015, v));
+    frames.back().depth_m = render_view(camera_at(v + late), 0.0015, v).depth_m;
+  }
+  return test::MemorySequence(std::move(frames));
+}
+
+TEST(FindFaults, DepthOfAnotherTimeIsFoundWithItsSign) {
+  for (const double late : {-0.75, 0.5, 1.0}) {
+    const auto findings = check(sequence_with_late_depth(late));
+    ASSERT_EQ(findings.size(), 1U) << late << " " << names_of(findings);
+    EXPECT_EQ(findings[0].fault, "depth_time") << late << " " << findings[0].message;
+    EXPECT_NEAR(findings[0].value, late, 0.26);
+  }
+  EXPECT_EQ(names_of(check(sequence_with_late_depth(0))), "");
+}
+
+// Neighbours at video rate hardly differ, but that does not mean that the camera stands, or that its poses are right.
+TEST(FindFaults, ASlowCameraIsCheckedByViewsFarApart) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 60; ++v) {
+    const double angle = -0.3 + 0.01 * v;
+    const Rigid3 pose = test::look_at_point({1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75}, {0, 0.1, 0.15});
+    frames.push_back(render_view(pose, 0.0015, v));
+  }
+  const test::MemorySequence slow(std::move(frames));
+  const auto measured = measure_sequence(slow, {.max_views = 12, .num_threads = 1}).value();
+  EXPECT_GT(measured.pair_shift_px, 5);
+  EXPECT_EQ(names_of(find_faults(measured)), "");
+  EXPECT_TRUE(list_facts(measured).empty());
+  const auto findings = find_faults(
+      measure_sequence(test::BrokenSequence(slow, "focal_x1.3"), {.max_views = 12, .num_threads = 1}).value());
+  ASSERT_EQ(findings.size(), 1U) << names_of(findings);
+  EXPECT_EQ(findings[0].fault, "intrinsics");
 }
 
 TEST(EvaluatePoses, PosesThatReachNoPairExplainNothing) {

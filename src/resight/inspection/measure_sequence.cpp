@@ -33,6 +33,21 @@ std::vector<std::pair<int, int>> choose_pairs(int num_views, int max_views) {
   return pairs;
 }
 
+/// Pairs of the inspected views that are far apart in the sequence, evenly left out so that a few are left. Their error
+/// shows drift, which neighbours do not.
+std::vector<std::pair<int, int>> choose_far_pairs(const std::vector<int>& views, int num_views) {
+  constexpr std::size_t kMaxFarPairs = 24;
+  const int min_distance = std::max(6, num_views / 5);
+  std::vector<std::pair<int, int>> all;
+  for (const int a : views)
+    for (const int b : views)
+      if (b - a >= min_distance) all.emplace_back(a, b);
+  std::vector<std::pair<int, int>> some;
+  const std::size_t step = all.size() / kMaxFarPairs + 1;
+  for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+  return some;
+}
+
 std::vector<int> views_of(const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> views{0};
   for (const auto& [a, b] : pairs) {
@@ -44,7 +59,14 @@ std::vector<int> views_of(const std::vector<std::pair<int, int>>& pairs) {
   return views;
 }
 
-ViewMeasurements measure_view(int number, const RgbdFrame& frame, int num_threads, ShiftScores& scores) {
+/// What matching needs of the inspected views, by their number.
+struct InspectedViews {
+  std::map<int, RgbdFrame> frames;
+  std::map<int, ContourView> contours;  ///< Depths in metres.
+};
+
+ViewMeasurements measure_view(int number, const RgbdFrame& frame, int num_threads, ShiftScores& scores,
+                              InspectedViews& views) {
   ViewMeasurements view;
   view.view = number;
   view.name = frame.name;
@@ -57,6 +79,7 @@ ViewMeasurements measure_view(int number, const RgbdFrame& frame, int num_thread
   options.num_threads = num_threads;
   const PreparedView prepared = prepare_view(frame, options);
   scores.add(prepared);
+  views.contours.emplace(number, find_contour_view(prepared));
   view.fine_shift_px = measure_color_offset(prepared);
   return view;
 }
@@ -65,6 +88,36 @@ double median_shift_px(const ViewPair& pair) {
   std::vector<double> shifts_px;
   for (const MatchedPoint& m : pair.matches) shifts_px.push_back((m.pixel_a - m.pixel_b).norm());
   return upper_median(std::move(shifts_px));
+}
+
+using FeaturesOfViews = std::map<int, ViewFeatures>;
+
+/// Those that can be matched.
+std::vector<ViewPair> match_pairs(const std::vector<std::pair<int, int>>& pairs, const FeaturesOfViews& features,
+                                  const Camera& camera) {
+  std::vector<ViewPair> matched;
+  for (const auto& [a, b] : pairs) {
+    if (!features.contains(a) || !features.contains(b)) continue;
+    ViewPair pair = match_view_pair(a, features.at(a), b, features.at(b), camera);
+    if (!pair.matches.empty()) matched.push_back(std::move(pair));
+  }
+  return matched;
+}
+
+template <typename ValueOf>
+double median_over(const std::vector<ViewPair>& pairs, const ValueOf& value_of) {
+  std::vector<double> values;
+  for (const ViewPair& pair : pairs) values.push_back(value_of(pair));
+  return upper_median(std::move(values));
+}
+
+/// Whether the camera moves so slowly that only views far apart tell of intrinsics and poses, as at video rate.
+bool is_slow(const SequenceMeasurements& all) {
+  constexpr double kSlow_px = 5;
+  constexpr std::size_t kMinFarPairs = 3;
+  const double near_px = median_over(all.pairs, median_shift_px);
+  return near_px < kSlow_px && all.far_pairs.size() >= kMinFarPairs &&
+         median_over(all.far_pairs, median_shift_px) > std::max(kSlow_px, 2 * near_px);
 }
 
 /// Whether features can be found and projected.
@@ -79,36 +132,35 @@ bool is_usable(const SequenceMeasurements& all) {
 Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const MeasureSequenceOptions& options) {
   SequenceMeasurements all;
   all.num_views = sequence.num_views();
+  all.has_poses = sequence.has_poses();
   const auto pairs = choose_pairs(all.num_views, options.max_views);
-  std::map<int, RgbdFrame> frames;
+  const std::vector<int> inspected = views_of(pairs);
+  InspectedViews views;
   std::vector<double> medians_m;
-  for (const int v : views_of(pairs)) {
+  for (const int v : inspected) {
     auto frame = sequence.read_view(v);
     if (!frame.ok()) return frame.error();
     if (all.views.empty()) all.camera = frame->camera;
-    all.views.push_back(measure_view(v, *frame, options.num_threads, all.half_shifts[all.views.size() % 2]));
+    all.views.push_back(measure_view(v, *frame, options.num_threads, all.half_shifts[all.views.size() % 2], views));
     if (!std::isnan(all.views.back().depth.median_m)) medians_m.push_back(all.views.back().depth.median_m);
-    frames.emplace(v, std::move(frame).value());
+    views.frames.emplace(v, std::move(frame).value());
   }
   all.depth_unit_m = upper_median(std::move(medians_m));
   if (!is_usable(all)) return all;
-  std::map<int, ViewFeatures> features;
-  for (auto& [v, frame] : frames)
+  FeaturesOfViews features;
+  for (auto& [v, frame] : views.frames)
     if (frame.camera == all.camera)
       features.emplace(v, extract_view_features(std::move(frame), all.depth_unit_m, options.num_threads));
-  std::vector<double> errors_px, shifts_px;
-  for (const auto& [a, b] : pairs) {
-    if (!features.contains(a) || !features.contains(b)) continue;
-    ++all.num_tried_pairs;
-    ViewPair pair = match_view_pair(a, features.at(a), b, features.at(b), all.camera);
-    if (pair.matches.empty()) continue;
-    errors_px.push_back(pair.error_px);
-    shifts_px.push_back(median_shift_px(pair));
-    all.pairs.push_back(std::move(pair));
-  }
+  all.num_tried_pairs = static_cast<int>(pairs.size());
+  all.pairs = match_pairs(pairs, features, all.camera);
   if (all.pairs.empty()) return all;
-  all.pair_error_px = upper_median(std::move(errors_px));
-  all.pair_shift_px = upper_median(std::move(shifts_px));
+  all.depth_time = measure_depth_time(views.contours, all.pairs, all.camera, all.depth_unit_m);
+  all.far_pairs = match_pairs(choose_far_pairs(inspected, all.num_views), features, all.camera);
+  if (is_slow(all)) all.pairs = std::exchange(all.far_pairs, {});
+  const auto error_of = [](const ViewPair& pair) { return pair.error_px; };
+  all.pair_error_px = median_over(all.pairs, error_of);
+  all.far_pair_error_px = median_over(all.far_pairs, error_of);
+  all.pair_shift_px = median_over(all.pairs, median_shift_px);
   all.intrinsics = fit_intrinsics(all.pairs, all.camera);
   if (!sequence.has_poses()) return all;
   auto poses = measure_poses(sequence, all);

@@ -8,6 +8,7 @@
 #include "resight/core/result.hpp"
 #include "resight/inspection/color_depth_shift.hpp"
 #include "resight/inspection/color_values.hpp"
+#include "resight/inspection/depth_time.hpp"
 #include "resight/inspection/depth_values.hpp"
 #include "resight/inspection/motion_fit.hpp"
 #include "resight/sensor/sequence.hpp"
@@ -42,22 +43,27 @@ struct PoseMeasurements {
   GivenPosesFit given;                 ///< As they are.
   std::vector<TriedReading> readings;  ///< All conventions with their best scale; the first one is as given.
   std::vector<TriedReading> shifted;   ///< In steps of a quarter of a view, as far as they reach half of the pairs.
+  GivenPosesFit far;                   ///< Of the far pairs, with their best scale.
   bool all_equal = false;              ///< The poses say that the camera does not move.
   double farthest_m = 0;               ///< From the origin of the world.
   double extent_m = 0;
 };
 
-/// Everything that is measured on a sequence.
+/// Everything that is measured on a sequence without models.
 struct SequenceMeasurements {
   int num_views = 0;
   Camera camera;  ///< Of the first inspected view.
   std::vector<ViewMeasurements> views;
   std::array<ShiftScores, 2> half_shifts;  ///< Of every second view, and of the others.
   double depth_unit_m = 1;      ///< Median depth of the inspected views: the unit of the pairs' translations.
-  std::vector<ViewPair> pairs;  ///< Those that could be matched.
+  std::vector<ViewPair> pairs;  ///< Those of neighbouring views that could be matched; of a slow camera, the far pairs.
   int num_tried_pairs = 0;
-  double pair_error_px = 0;  ///< Median over the pairs of their own errors.
-  double pair_shift_px = 0;  ///< Median over the pairs of the distance between matched pixels.
+  bool has_poses = false;
+  double pair_error_px = 0;         ///< Median over the pairs of their own errors.
+  double pair_shift_px = 0;         ///< Median over the pairs of the distance between matched pixels.
+  std::vector<ViewPair> far_pairs;  ///< Views far apart in the sequence that could be matched, if they are not `pairs`.
+  double far_pair_error_px = 0;     ///< Median over the far pairs of their own errors.
+  std::optional<DepthTime> depth_time;
   std::optional<IntrinsicsFit> intrinsics;
   std::optional<PoseMeasurements> poses;  ///< None without poses or without matched pairs.
 };

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace resight::inspection {
 namespace {
 
-constexpr std::size_t kMinPosePairs = 3;
 // Beyond this, contours of other surfaces agree by chance (estimate_misregistration_px()).
 constexpr double kMaxPoseError_px = 8;
 constexpr double kMinMotion_px = 5;  // Between views; less says nothing about poses and intrinsics.
@@ -19,7 +19,15 @@ constexpr double kMinTimeGain = 2;   // The same for another time: the poses bet
 constexpr double kMaxLogScale = 0.06;
 constexpr double kMaxLogFocal = 0.08;
 constexpr double kMaxCenter = 0.06;  // Of the image's width.
-constexpr double kSigmas = 4;        // Standard errors, which come from few pairs.
+constexpr std::size_t kMinFarPairs = 3;
+
+/// Standard errors by which an estimate must differ: four, and more for few pairs, whose standard errors are uncertain
+/// themselves (Student's distribution: exceeded as rarely as three standard deviations of a normal one).
+double sure_errors(std::size_t num_pairs, std::size_t num_parameters) {
+  constexpr std::array<double, 9> kOfFew{236, 19.2, 9.22, 6.62, 5.51, 4.90, 4.53, 4.28, 4.09};
+  const std::size_t freedom = std::max(num_pairs, num_parameters + 1) - num_parameters;
+  return freedom <= kOfFew.size() ? kOfFew[freedom - 1] : 4;
+}
 
 struct PoseContext {
   const SequenceMeasurements& all;
@@ -86,7 +94,7 @@ bool add_time(const PoseContext& c) {
 bool add_scale(const PoseContext& c) {
   const GivenPosesFit& fit = c.poses.readings.front().fit;
   const double log_scale = fit.log_scale.value;
-  const double limit = std::max(kMaxLogScale, kSigmas * fit.log_scale.standard_error);
+  const double limit = std::max(kMaxLogScale, sure_errors(fit.pair_errors_px.size(), 1) * fit.log_scale.standard_error);
   if (std::abs(log_scale) < limit || c.excess_px(fit.error_px) > 0.8 * c.excess_px(c.poses.given.error_px))
     return false;
   const double scale = std::exp(log_scale);
@@ -104,9 +112,10 @@ bool add_scale(const PoseContext& c) {
 bool add_intrinsics(const PoseContext& c) {
   if (!c.all.intrinsics) return false;
   const IntrinsicsFit& fit = *c.all.intrinsics;
-  const double focal_limit = std::max(kMaxLogFocal, kSigmas * fit.log_focal.standard_error);
+  const double sigmas = sure_errors(c.all.pairs.size(), 3);
+  const double focal_limit = std::max(kMaxLogFocal, sigmas * fit.log_focal.standard_error);
   const auto margin_of_center = [&](const Estimate& e) {
-    return std::abs(e.value) / std::max(kMaxCenter * c.all.camera.width, kSigmas * e.standard_error);
+    return std::abs(e.value) / std::max(kMaxCenter * c.all.camera.width, sigmas * e.standard_error);
   };
   const double margin = std::max({std::abs(fit.log_focal.value) / focal_limit, margin_of_center(fit.center_x_px),
                                   margin_of_center(fit.center_y_px)});
@@ -120,25 +129,41 @@ bool add_intrinsics(const PoseContext& c) {
   return true;
 }
 
-void add_accuracy(const PoseContext& c) {
+bool add_accuracy(const PoseContext& c) {
   const double error_px = c.excess_px(c.poses.given.error_px);
-  if (error_px <= kMaxPoseError_px) return;
+  if (error_px <= kMaxPoseError_px) return false;
   c.add("pose_error",
         fmt::format("views disagree by {:.0f} px under the given poses: they drift or are coarse", error_px),
         "--poses refine, or resight track", error_px, "px", kMaxPoseError_px, error_px / kMaxPoseError_px);
+  return true;
+}
+
+/// Views that are far apart in the sequence but show the same scene.
+void add_drift(const PoseContext& c) {
+  const GivenPosesFit& far = c.poses.far;
+  if (far.pair_errors_px.size() < kMinFarPairs) return;
+  const double error_px = far.error_px - c.all.far_pair_error_px;
+  if (error_px <= kMaxPoseError_px) return;
+  const PoseContext at_far{c.all, c.poses, c.findings, c.all.far_pairs.front().b};
+  at_far.add("pose_drift",
+             fmt::format("views far apart in the sequence disagree by {:.0f} px under the given poses ({} pairs), and "
+                         "neighbours by {:.1f} px: they drift",
+                         error_px, far.pair_errors_px.size(), c.excess_px(c.poses.given.error_px)),
+             "--poses refine, or resight track, which closes loops", error_px, "px", kMaxPoseError_px,
+             error_px / kMaxPoseError_px);
 }
 
 }  // namespace
 
 void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
-  if (measured.pairs.size() < kMinPosePairs) return;
+  if (measured.pairs.size() < kMinComparedPairs) return;
   const PoseMeasurements none;
   const PoseContext c{measured, measured.poses ? *measured.poses : none, findings, measured.pairs.front().b};
   const bool moves = measured.pair_shift_px > kMinMotion_px;
   if (moves && add_intrinsics(c)) return;
   if (!measured.poses || add_fixed(c)) return;
   if (add_convention(c) || add_scale(c) || add_time(c)) return;
-  add_accuracy(c);
+  if (!add_accuracy(c)) add_drift(c);
 }
 
 }  // namespace resight::inspection

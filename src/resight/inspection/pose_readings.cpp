@@ -56,6 +56,7 @@ Result<PoseMeasurements> measure_poses(const Sequence& sequence, const SequenceM
   const auto motion = [&](const PoseReading& r) { return motion_of(poses, r, measured.depth_unit_m); };
   result.given = evaluate_poses(measured.pairs, measured.camera, motion({}));
   if (result.all_equal) return result;
+  result.far = fit_pose_scale(measured.far_pairs, measured.camera, motion({}));
   for (const bool inverted : {false, true})
     for (const bool opengl : {false, true}) {
       const PoseReading reading{.inverted = inverted, .opengl = opengl, .views_late = 0};

@@ -265,6 +265,8 @@ Result<GlbChunks> split_glb(std::string_view bytes) {
   constexpr std::size_t kChunkHeaderBytes = 8;
   if (!bytes.starts_with("glTF") || bytes.size() < kHeaderBytes + kChunkHeaderBytes)
     return Error{"is not a GLB file (no header)"};
+  if (const std::uint32_t version = number_at(bytes, 4); version != 2)
+    return Error{fmt::format("is GLB of version {}; only version 2 is read (export it again)", version)};
   GlbChunks chunks;
   for (std::size_t at = kHeaderBytes; bytes.size() - at >= kChunkHeaderBytes;) {
     const std::uint32_t length = number_at(bytes, at);

@@ -139,6 +139,9 @@ TEST(GltfFile, ChunksOfABinaryFileLieWithinIt) {
 
   const auto message_of = [](const std::string& bytes) { return io::normalize_glb(bytes).error().message; };
   EXPECT_THAT(message_of(header), HasSubstr("no header"));
+  std::string old = header + text;
+  old[4] = 1;
+  EXPECT_THAT(message_of(old), HasSubstr("version 1; only version 2 is read"));
   EXPECT_THAT(message_of(header + text + glb_chunk("BIN\0", buffer.substr(0, 40))), HasSubstr("beyond the buffer"));
   EXPECT_THAT(message_of(header + "\xf0\xff\xff\xffJSON{}"), HasSubstr("a chunk is longer than the file"));
 }

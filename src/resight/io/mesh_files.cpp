@@ -19,6 +19,12 @@ class MeshStream final : public Assimp::MemoryIOStream {
   std::shared_ptr<const std::string> bytes_;
 };
 
+/// The mark that editors of Windows put before UTF-8. It would hide the first statement.
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 std::string_view trim_start(std::string_view line) {
@@ -29,6 +35,7 @@ std::string_view trim_start(std::string_view line) {
 }  // namespace
 
 Result<void> check_obj(std::string_view text) {
+  text = without_mark(text);
   constexpr int kMaxParts = 4096;
   constexpr std::size_t kMaxCorners = 1024;
   int num_parts = 0;
@@ -52,6 +59,7 @@ Result<void> check_obj(std::string_view text) {
 }
 
 std::string normalize_obj(std::string text) {
+  text.erase(0, text.size() - without_mark(text).size());
   if (text.find(" .") == text.npos && text.find("\t.") == text.npos) return text;
   std::string result;
   result.reserve(text.size() + text.size() / 8);
@@ -68,6 +76,7 @@ std::string normalize_obj(std::string text) {
 }
 
 std::string normalize_mtl(std::string_view text) {
+  text = without_mark(text);
   std::string result = "# materials and their textures\n";  // Assimp refuses files of less than 16 bytes.
   bool has_material = false;
   while (!text.empty()) {

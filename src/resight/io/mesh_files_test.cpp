@@ -65,6 +65,22 @@ TEST(MeshFiles, TexturesBeforeTheFirstMaterialAreSkipped) {
             "# materials and their textures\nnewmtl m\nmap_Kd b c.png\nKd 1 0 0\n");
 }
 
+// Editors of Windows write it; the first statement is the material, or the library of materials.
+TEST(MeshFiles, AByteOrderMarkIsSkipped) {
+  io::TestDirectory directory;
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(io::normalize_mtl(mark + "newmtl m\nKd 1 0 0\n"), io::normalize_mtl("newmtl m\nKd 1 0 0\n"));
+  EXPECT_EQ(io::normalize_obj(mark + "v 0 0 .5\n"), "v 0 0 0.5\n");
+  EXPECT_EQ(io::normalize_obj(mark + "v 0 0 0\n"), "v 0 0 0\n");
+  write_text(directory / "t.obj", mark + "mtllib t.mtl\n" + kTriangleObj);
+  write_text(directory / "t.mtl", mark + "newmtl m\nKd 1 0 0\n");
+  const auto read = read_mesh(directory / "t.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_FALSE(read->mesh.colors.empty());
+  EXPECT_EQ(read->mesh.colors[0].r, 255);
+  EXPECT_EQ(read->mesh.colors[0].g, 0);
+}
+
 TEST(MeshFiles, MaterialsOfPipesAndDevicesAreNotRead) {
   io::TestDirectory directory;
   ASSERT_EQ(::mkfifo((directory / "pipe").c_str(), 0600), 0);

@@ -10,6 +10,7 @@
 #include "resight/io/internal/recording_images.hpp"
 #include "resight/io/internal/recording_poses.hpp"
 #include "resight/io/internal/recording_topics.hpp"
+#include "resight/io/internal/sensor_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/sensor/rectify.hpp"
@@ -75,6 +76,7 @@ class RecordingSequence final : public Sequence {
   [[nodiscard]] Result<RgbdFrame> read_view(int view) const override;
 
   [[nodiscard]] Result<void> prepare(const OpenSequenceOptions& options);
+  [[nodiscard]] const Recording& recording() const { return *recording_; }
 
  private:
   [[nodiscard]] const RecordedTopic& topic(int index) const {
@@ -259,6 +261,23 @@ Result<RgbdFrame> RecordingSequence::read_view(int number) const {
 
 }  // namespace
 
+namespace {
+
+/// By the names of the topics, and by what RealSense's recordings say of the device ("Name": "Intel RealSense D435").
+const DepthSensor* detect_sensor(const Recording& recording) {
+  constexpr std::size_t kMaxInfoBytes = 512;
+  std::string text;
+  for (std::size_t t = 0; t < recording.topics().size(); ++t) {
+    if (recording.topics()[t].type != "diagnostic_msgs/KeyValue") continue;
+    const auto info = read_first_message(recording, static_cast<int>(t), kMaxInfoBytes);
+    if (info.ok() && *info) text += **info + "\n";
+  }
+  for (const RecordedTopic& topic : recording.topics()) text += topic.name + "\n";
+  return detect_depth_sensor(text);
+}
+
+}  // namespace
+
 SequenceResult open_recording_sequence(const fs::path& where, const OpenSequenceOptions& options) {
   auto recording = open_recording(where);
   if (!recording) return recording.error();
@@ -267,7 +286,9 @@ SequenceResult open_recording_sequence(const fs::path& where, const OpenSequence
     const std::string& message = done.error().message;
     return message.starts_with(where.string()) ? done.error() : file_error(where, message);
   }
-  return SequenceResult(std::move(sequence));
+  const DepthSensor* sensor = options.sensor == nullptr ? detect_sensor(sequence->recording()) : nullptr;
+  if (sensor == nullptr || sensor == &depth_sensors().front()) return SequenceResult(std::move(sequence));
+  return with_sensor(std::move(sequence), *sensor, "by the names in the recording; --sensor changes it");
 }
 
 }  // namespace resight::io

@@ -28,7 +28,7 @@ TEST(RecordingSequence, ViewsOfAllContainers) {
     for (int i = 0; i < 4; ++i) {
       const auto frame = (*sequence)->read_view(i);
       ASSERT_TRUE(frame.ok()) << frame.error().message;
-      EXPECT_EQ(frame->camera, (Camera{16, 12, 20, 21, 7.5, 5.5}));
+      EXPECT_EQ(frame->camera, (Camera{16, 12, 20, 21, 7.5, 5.5, find_depth_sensor("active-stereo")->noise}));
       EXPECT_EQ(frame->color(5, 2), (Rgb8{static_cast<std::uint8_t>(50 + i), 30, 100})) << name;
       EXPECT_NEAR(frame->depth_m(5, 2), 1.05 + 0.001 * i, 1e-6) << name;
       EXPECT_TRUE(std::isnan(frame->depth_m(0, 0)));
@@ -84,6 +84,23 @@ TEST(RecordingSequence, DepthOfLibrealsenseIsRegistered) {
   EXPECT_TRUE(std::isnan(frame->depth_m(0, 6)));
   EXPECT_TRUE(std::isnan(frame->depth_m(1, 6)));
   for (int u = 2; u < 16; ++u) EXPECT_NEAR(frame->depth_m(u, 6), 1.0, 1e-6) << u;
+}
+
+TEST(RecordingSequence, TheNoiseIsThatOfTheCameraThatItsNamesTell) {
+  OpenSequenceOptions options;
+  const auto noise_and_note = [&](const std::string& name) {
+    const auto sequence = open_sequence(recorded(name), options);
+    return std::pair((*sequence)->read_view(0)->camera.noise, (*sequence)->notes().back());
+  };
+  const auto [detected, note] = noise_and_note("realsense.bag");
+  EXPECT_EQ(detected, find_depth_sensor("active-stereo")->noise);
+  EXPECT_THAT(note, HasSubstr("depth noise of active-stereo (by the names in the recording; --sensor"));
+  options.sensor = find_depth_sensor("time-of-flight");
+  const auto [given, note_of_given] = noise_and_note("realsense.bag");
+  EXPECT_EQ(given, options.sensor->noise);
+  EXPECT_EQ(note_of_given, "depth noise of time-of-flight (--sensor)");
+  options.sensor = find_depth_sensor("structured-light");
+  EXPECT_EQ(noise_and_note("none.bag").first, DepthNoise{});
 }
 
 TEST(RecordingSequence, BecomesBop) {

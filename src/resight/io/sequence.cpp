@@ -9,6 +9,7 @@
 #include "resight/core/unfinished_folder.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
+#include "resight/io/internal/sensor_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/recordings/recording.hpp"
@@ -86,7 +87,9 @@ Result<path> find_sequence_folder(const path& directory) {
                                                   : fmt::format("no sequence found: {} (docs/your-camera.md)", images));
 }
 
-Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const OpenSequenceOptions& options) {
+namespace {
+
+io::SequenceResult open_as_recorded(const path& directory, const OpenSequenceOptions& options) {
   if (io::is_file(directory) && io::extension_of(directory) == "pcd") {
     auto single = io::open_single_pcd(directory);
     if (!single) return single;
@@ -103,6 +106,14 @@ Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const Ope
   if (const auto done = io::apply_options(**sequence, options); !done)
     return io::file_error(*folder, done.error().message);
   return sequence;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const OpenSequenceOptions& options) {
+  auto sequence = open_as_recorded(directory, options);
+  if (!sequence || options.sensor == nullptr) return sequence;
+  return io::with_sensor(std::move(sequence).value(), *options.sensor, "--sensor");
 }
 
 Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory, const OpenSequenceOptions& options) {

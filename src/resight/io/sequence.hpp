@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "resight/core/result.hpp"
+#include "resight/sensor/depth_sensor.hpp"
 #include "resight/sensor/sequence.hpp"
 
 namespace resight {
@@ -44,6 +45,8 @@ struct OpenSequenceOptions {
   PoseConvention pose_convention = PoseConvention::kCameraToWorld;  ///< Of poses in the folder or in `poses`.
   ViewChoice views;
   RecordingTopics topics;
+  /// Whose noise the depth has. Null: as the names in a recording tell, otherwise structured light.
+  const DepthSensor* sensor = nullptr;
 };
 
 /// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Same errors.

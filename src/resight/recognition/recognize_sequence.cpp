@@ -24,4 +24,20 @@ Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer
   return events;
 }
 
+Result<std::vector<std::vector<ObjectEvent>>> recognize_views(SceneRecognizer& recognizer, const NextView& next,
+                                                              const OnView& on_view) {
+  std::vector<std::vector<ObjectEvent>> events;
+  for (;;) {
+    const Result<std::optional<RgbdFrame>> frame = next();
+    if (!frame) return frame.error();
+    if (!*frame) break;
+    SceneUpdate update = recognizer.add_view(**frame);
+    events.push_back(update.events);
+    if (on_view) on_view(**frame, update);
+  }
+  if (!events.empty()) std::ranges::move(recognizer.finish(), std::back_inserter(events.back()));
+  drop_superseded(events);
+  return events;
+}
+
 }  // namespace resight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "resight/core/result.hpp"
@@ -21,5 +22,14 @@ using OnView = std::function<void(const RgbdFrame& frame, SceneUpdate& update)>;
                                                                                const Sequence& sequence,
                                                                                const OnView& on_view = {},
                                                                                RecognitionTrace* trace = nullptr);
+
+/// The next view of a source whose end is not known, such as a camera; none at its end.
+using NextView = std::function<Result<std::optional<RgbdFrame>>()>;
+
+/// Same for such a source. Events that were waiting for a further view are reported at the last one, but only in the
+/// returned lists. Fails with the error of `next`.
+[[nodiscard]] Result<std::vector<std::vector<ObjectEvent>>> recognize_views(SceneRecognizer& recognizer,
+                                                                            const NextView& next,
+                                                                            const OnView& on_view = {});
 
 }  // namespace resight

@@ -80,6 +80,35 @@ TEST(RecognizeSequence, StopsAtAViewThatCannotBeRead) {
   EXPECT_EQ(num_views, 1);
 }
 
+TEST(RecognizeViews, GivesTheEventsOfTheSequence) {
+  const BoxScene scene;
+  const std::vector<RgbdFrame> frames = frames_of(scene);
+  SceneRecognizer of_sequence(scene.library, scene.config, scene.store);
+  const auto expected = recognize_sequence(of_sequence, MemorySequence(frames));
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  std::size_t next = 0, num_reported = 0;
+  const auto events = recognize_views(
+      recognizer, [&] { return Result(next < frames.size() ? std::optional(frames[next++]) : std::nullopt); },
+      [&](const RgbdFrame&, SceneUpdate& update) { num_reported += update.events.size(); });
+  ASSERT_TRUE(events.ok());
+  ASSERT_EQ(events->size(), frames.size());
+  std::size_t num_events = 0;
+  for (std::size_t v = 0; v < frames.size(); ++v) {
+    EXPECT_EQ((*events)[v].size(), (*expected)[v].size()) << v;
+    num_events += (*events)[v].size();
+  }
+  EXPECT_EQ(num_reported + 1, num_events) << "the removal waits for a view that does not come";
+  EXPECT_EQ(events->back().back().kind, ObjectEventKind::kRemoved);
+}
+
+TEST(RecognizeViews, StopsWithTheErrorOfTheSource) {
+  const BoxScene scene;
+  SceneRecognizer recognizer(scene.library, scene.config, scene.store);
+  const auto events = recognize_views(recognizer, [] { return Result<std::optional<RgbdFrame>>(Error{"no camera"}); });
+  ASSERT_FALSE(events.ok());
+  EXPECT_EQ(events.error().message, "no camera");
+}
+
 TEST(RecognizeSequence, WithoutViewsThereAreNoEvents) {
   const BoxScene scene;
   SceneRecognizer recognizer(scene.library, scene.config, scene.store);

@@ -22,7 +22,7 @@ constexpr DepthMargin kMargin{.base_m = 0.02, .noise_sigmas = 3};  // As in chan
 bool was_measured(const Eigen::Vector3f& p, const Camera& camera, const Image<float>& depth_m) {
   const std::optional<Pixel> pixel = camera.pixel_of(p.cast<double>());
   if (!pixel) return false;
-  const float tolerance_m = kMargin.at(p.z(), camera.fx);
+  const float tolerance_m = kMargin.at(p.z(), camera.noise);
   const auto [u, v] = *pixel;
   for (int dv = -1; dv <= 1; ++dv)
     for (int du = -1; du <= 1; ++du)

@@ -67,7 +67,8 @@ Image<float> box_mean(const Image<float>& image, int radius) {
 
 // Camera of the image whose pixel (u, v) is pixel (2u, 2v) of the finer one.
 Camera subsample(const Camera& camera) {
-  return {camera.width / 2, camera.height / 2, camera.fx / 2, camera.fy / 2, camera.cx / 2, camera.cy / 2};
+  return {camera.width / 2, camera.height / 2, camera.fx / 2, camera.fy / 2,
+          camera.cx / 2,    camera.cy / 2,     camera.noise};
 }
 
 // Depths are never averaged: a mean across an edge lies on no surface.

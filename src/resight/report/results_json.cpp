@@ -168,6 +168,7 @@ std::string format_summary_json(const ReportRun& run) {
   json["median_view_wall_s"] = summary.median_view_wall_s;
   json["stages"] = stage_times_json(summary.times, summary.num_views);
   json["color_offset"] = color_offset_json(run);
+  if (run.num_skipped_views) json["num_skipped_views"] = *run.num_skipped_views;
   json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
   if (summary.num_scored_views > 0) {
     json["evaluation"] = {{"num_views", summary.num_scored_views},

@@ -191,10 +191,13 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
   EXPECT_TRUE(parsed["evaluation"]["score"]["precision"].is_null());
 
   EXPECT_TRUE(parsed.at("color_offset").is_null());
+  EXPECT_FALSE(parsed.contains("num_skipped_views"));
+  run.num_skipped_views = 3;
   run.views.back().update.color_offset = {{2.25, -1.5}, {0.25, 0.5}, 7, {2, -1}};
   parsed = json::parse(format_summary_json(run));
   EXPECT_EQ(parsed.at("color_offset"), json::parse(R"({"offset_px": [2.25, -1.5], "spread_px": [0.25, 0.5],
                                                       "num_views": 7, "moved_px": [2, -1]})"));
+  EXPECT_EQ(parsed.at("num_skipped_views"), 3);
 }
 
 // The lists are never in memory as a whole. The layout is the one of the JSON library all the same.

@@ -47,6 +47,7 @@ struct ReportRun {
   /// Paths of the inputs relative to the folder of the results, for `resight view`. Empty = unknown.
   std::string sequence_path;
   std::string models_path;
+  std::optional<int> num_skipped_views;  ///< That newer ones overtook, where views were taken as they came.
 };
 
 /// Detections of a view in the camera frame, by name, as input of the evaluation.

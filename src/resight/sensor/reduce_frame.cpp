@@ -15,8 +15,8 @@ namespace {
 Camera reduce_camera(const Camera& camera, int divisor) {
   // The centre of the first block is at pixel (divisor - 1) / 2.
   const double shift = 0.5 * (divisor - 1);
-  return {camera.width / divisor, camera.height / divisor,       camera.fx / divisor,
-          camera.fy / divisor,    (camera.cx - shift) / divisor, (camera.cy - shift) / divisor};
+  return {camera.width / divisor,        camera.height / divisor,       camera.fx / divisor, camera.fy / divisor,
+          (camera.cx - shift) / divisor, (camera.cy - shift) / divisor, camera.noise};
 }
 
 Rgb8 mean_color(const Image<Rgb8>& color, int left, int top, int divisor) {

@@ -61,21 +61,21 @@ std::vector<SampleBlock> to_blocks(const std::vector<Eigen::Vector3f>& points,
   return blocks;
 }
 
-bool holds(const ScenePlane& plane, const Eigen::Vector3f& p, const Eigen::Vector3f& n, double focal_px) {
+bool holds(const ScenePlane& plane, const Eigen::Vector3f& p, const Eigen::Vector3f& n, const DepthNoise& noise) {
   if (plane.noise_scale == 0) return plane.holds(p, n, kPlaneDistance_m, kMinPlaneDot);
-  const auto noise_m = static_cast<float>(nguyen_noise(static_cast<double>(p.z()), 0, focal_px).axial_m);
+  const auto noise_m = static_cast<float>(axial_noise_m(noise, static_cast<double>(p.z())));
   return plane.holds(p, n, plane.tolerance_m(noise_m), ScenePlane::kMinNoisyDot);
 }
 
 // The extent of the largest plane that a pixel lies on.
 float plane_extent_at(const OrganizedCloud& cloud, std::size_t pixel, std::span<const ScenePlane> planes,
-                      double focal_px) {
+                      const DepthNoise& noise) {
   float extent_m = 0;
   if (!cloud.has_normal(pixel)) return extent_m;
   const Eigen::Vector3f p = cloud.point(pixel);
   const Eigen::Vector3f n = cloud.normal(pixel);
   for (const ScenePlane& plane : planes)
-    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && holds(plane, p, n, focal_px)) extent_m = plane.extent_m;
+    if (plane.extent_m > std::max(extent_m, kMinPlane_m) && holds(plane, p, n, noise)) extent_m = plane.extent_m;
   return extent_m;
 }
 
@@ -119,7 +119,7 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       lab_[i] = to_lab(colors[i]);
-      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.fx), chroma(lab_[i])};
+      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.noise), chroma(lab_[i])};
       const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
       oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
     }
@@ -144,7 +144,7 @@ int PoseScorer::pixel_of(const Eigen::Vector3f& p) const {
 float PoseScorer::margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
                                    const DepthMargin& margin) const {
   const float z_m = (camera_from_object * model.center).z();
-  return margin.at(std::max(kMinDepth_m, z_m), view_.frame.camera.fx);  // The centre may lie behind the camera.
+  return margin.at(std::max(kMinDepth_m, z_m), view_.frame.camera.noise);  // The centre may lie behind the camera.
 }
 
 // classify_surface() for vector instructions: no branches in its loops, and one margin for all samples of a pose.

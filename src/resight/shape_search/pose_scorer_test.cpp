@@ -111,7 +111,7 @@ TEST(PoseScorer, CountsLikeClassifySurface) {
     const float center_z_m = (Rigid3f(pose) * c.samples.center).z();
     const SurfaceEvidence evidence = classify_surface(
         {c.samples.points, c.samples.normals}, pose, {c.view.frame.camera, c.view.cloud.z},
-        {.margin = {.base_m = options.margin.at(center_z_m, c.view.frame.camera.fx), .noise_sigmas = 0},
+        {.margin = {.base_m = options.margin.at(center_z_m, c.view.frame.camera.noise), .noise_sigmas = 0},
          .min_viewing_cosine = 0.25});
     // One sample may round to another pixel in single precision.
     EXPECT_NEAR(counts.facing, evidence.count[0] + evidence.count[1] + evidence.count[2] + evidence.count[3], 1);

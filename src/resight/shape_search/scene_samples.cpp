@@ -29,15 +29,15 @@ PointCloud near_points(const PreparedView& view, const SampleSceneOptions& optio
 }
 
 // The noise of each point, seen from the front.
-std::vector<float> noise_of(const PointCloud& cloud, double focal_px) {
+std::vector<float> noise_of(const PointCloud& cloud, const DepthNoise& noise) {
   std::vector<float> noise_m;
   noise_m.reserve(cloud.size());
   for (const Eigen::Vector3f& p : cloud.points)
-    noise_m.push_back(static_cast<float>(nguyen_noise(static_cast<double>(p.z()), 0, focal_px).axial_m));
+    noise_m.push_back(static_cast<float>(axial_noise_m(noise, static_cast<double>(p.z()))));
   return noise_m;
 }
 
-SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options, double focal_px) {
+SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOptions& options, const DepthNoise& noise) {
   ScenePlanes planes =
       find_planes_of_downsampled(cloud.points, cloud.normals, options.spacing_m, {.num_threads = options.num_threads});
   std::vector<int> kept;
@@ -49,7 +49,7 @@ SceneSamples without_large_planes(const PointCloud& cloud, const SampleSceneOpti
     kept.push_back(static_cast<int>(i));
     if (plane < 0) off_planes.push_back(static_cast<int>(i));
   }
-  const std::vector<float> noise_m = noise_of(cloud, focal_px);
+  const std::vector<float> noise_m = noise_of(cloud, noise);
   for (ScenePlane& plane : find_noisy_planes(cloud.points, cloud.normals, noise_m, off_planes,
                                              {.min_extent_m = kMaxPlane_m, .seed = options.seed})) {
     std::erase_if(kept, [&](int i) {
@@ -98,7 +98,7 @@ SceneSamples sample_scene(const PreparedView& view, const SampleSceneOptions& op
   options.check();
   PointCloud cloud = near_points(view, options);
   if (!cloud.has_normals()) return {std::move(cloud), {}};
-  return without_large_planes(cloud, options, view.frame.camera.fx);
+  return without_large_planes(cloud, options, view.frame.camera.noise);
 }
 
 PointCloud sample_surface(const PointCloud& surface, double spacing_m, int max_points) {

@@ -31,7 +31,7 @@ float SceneAssociation::largest_depth_noise(std::span<const DepthView> views) co
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (std::ranges::find(visibility.evidence[v], Evidence::kPresent) == visibility.evidence[v].end()) continue;
     const double depth_m = (views[v].world_from_camera.inverse() * center).z();
-    if (depth_m > 0) largest_m = std::max(largest_m, nguyen_noise(depth_m, 0, views[v].camera.fx).axial_m);
+    if (depth_m > 0) largest_m = std::max(largest_m, axial_noise_m(views[v].camera.noise, depth_m));
   }
   return static_cast<float>(largest_m);
 }

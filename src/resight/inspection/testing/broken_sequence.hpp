@@ -18,6 +18,8 @@ struct Breakage {
   std::string name;
   std::vector<std::string> expected;
   bool needs_motion = false;  ///< Without poses of a moving camera it changes nothing that can be seen.
+  /// It takes neighbouring views for one another, which in a sequence of views far apart is no fault of time.
+  bool needs_near_views = false;
 };
 
 inline const std::vector<Breakage>& breakages() {
@@ -44,8 +46,11 @@ inline const std::vector<Breakage>& breakages() {
       {"poses_in_mm", {"pose_unit"}, true},
       {"poses_inverted", {"pose_convention"}, true},
       {"poses_opengl", {"pose_convention"}, true},
+      {"depth_1_view_late", {"depth_time"}, true, true},
+      {"poses_1_view_late", {"pose_time", "pose_error"}, true},
       {"poses_2_views_late", {"pose_time", "pose_error"}, true},
       {"poses_drift", {"pose_error", "depth_scale", "pose_time"}, true},
+      {"poses_drift_slowly", {"pose_drift", "pose_error"}, true},
       {"poses_noisy", {"pose_error", "pose_time"}, true},
       {"poses_fixed", {"fixed_poses"}, true},
       {"poses_100_km_away", {"far_from_origin"}},
@@ -73,6 +78,11 @@ class BrokenSequence : public Sequence {
     break_camera(frame->camera);
     break_depth(view, frame->depth_m);
     break_color(frame->color);
+    if (is("depth_1_view_late") && view + 1 < num_views()) {
+      Result<RgbdFrame> later = original_.read_view(view + 1);
+      if (!later.ok()) return later;
+      frame->depth_m = std::move(later->depth_m);
+    }
     return frame;
   }
 
@@ -93,11 +103,16 @@ class BrokenSequence : public Sequence {
       if (is("poses_in_mm")) pose.translation *= 1000;
       if (is("poses_inverted")) pose = pose.inverse();
       if (is("poses_opengl")) pose = pose * Rigid3::from_rotation(flip);
+      if (is("poses_1_view_late")) pose = good[v < 1 ? 0 : v - 1];
       if (is("poses_2_views_late")) pose = good[v < 2 ? 0 : v - 2];
       if (is("poses_fixed")) pose = good.front();
       if (is("poses_100_km_away")) pose.translation += Eigen::Vector3d(1e5, 0, 0);
       if (is("poses_noisy"))
         pose = pose * Rigid3{Rigid3::from_axis_angle(noise(1), 0.03 * rng.normal()).rotation, noise(0.03)};
+      if (is("poses_drift_slowly")) {  // By 0.1 rad over the sequence, whatever its length: some 50 px in the end.
+        const double share = static_cast<double>(v) / static_cast<double>(poses_.size());
+        pose = pose * Rigid3{Rigid3::from_axis_angle({1, 0, 0}, 0.1 * share).rotation, {0, 0.03 * share, 0}};
+      }
       if (is("poses_drift")) {
         drift = drift * Rigid3{Rigid3::from_axis_angle({0, 1, 0}, 0.015).rotation, {0.02, 0, 0.01}};
         pose = pose * drift;

@@ -13,8 +13,8 @@ namespace resight::io {
 /// square of their number.
 [[nodiscard]] Result<void> check_obj(std::string_view text);
 
-/// The text of an OBJ file as Assimp reads it: a number such as ".5" gets its leading zero, without which Assimp skips
-/// it.
+/// The text of an OBJ file as Assimp reads it: without a byte order mark, and a number such as ".5" gets its leading
+/// zero, without which Assimp skips it.
 [[nodiscard]] std::string normalize_obj(std::string text);
 
 /// The statements of a material library that we use: `newmtl`, and `Kd` and `map_Kd` after it. Assimp crashes on

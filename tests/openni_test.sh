@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# `resight recognize --camera openni2` with a camera that a test driver shows. Usage: openni_test.sh PATH_OF_RESIGHT
+# LIB_OPENNI2 TEST_DRIVER
+set -uo pipefail
+resight=$(realpath "$1")
+library=$(realpath "$2")
+driver=$(realpath "$3")
+source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
+cd "$work" || exit 1
+
+# OpenNI2 looks for drivers beside its library.
+mkdir -p camera/OpenNI2/Drivers none/OpenNI2/Drivers
+for folder in camera none; do cp "$library" $folder/libOpenNI2.so.0; done
+cp "$driver" camera/OpenNI2/Drivers/libSequenceDriver.so.0
+export RESIGHT_TEST_SEQUENCE=$PWD/scene/test/000001
+
+write_scene 3 -90 -90 true >scene.toml
+run simulate scene.toml --out scene --format bop --seed 1
+run train scene/models --out models.resight
+recognize=("$resight" recognize --models models.resight --camera openni2 --stream)
+
+LD_LIBRARY_PATH=camera "${recognize[@]}" --out live >lines 2>err &
+program=$!
+for _ in $(seq 600); do
+  [ "$(wc -l <lines)" -ge 2 ] || ! kill -0 $program 2>/dev/null && break
+  sleep 0.1
+done
+kill -TERM $program  # a shell lets its jobs ignore SIGINT
+wait $program || fail "a stop ends with status $?: $(tail -1 err)"
+[ "$(wc -l <lines)" -ge 2 ] || fail "no views of the camera: $(cat err)"
+grep -q 'focal length 262.5 px' err || fail "the focal length is not that of the field of view: $(cat err)"
+grep -q '"object": *"tea_box"' live/detections.json || fail "the tea is not recognised"
+grep -q '"sequence": *"openni2"' live/summary.json || fail "summary.json does not name the camera"
+
+LD_LIBRARY_PATH=none timeout 60 "${recognize[@]}" --out no >lines 2>err
+[ $? = 2 ] || fail "a missing camera is no bad input: $(cat err)"
+[ "$(wc -l <err)" = 1 ] || fail "expected one line without a camera: $(cat err)"
+[ ! -e no ] || fail "a missing camera leaves results"
+
+[ $failures = 0 ] && echo "all as it should be"
+exit $failures
