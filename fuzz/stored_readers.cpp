@@ -8,6 +8,7 @@
 #include "resight/evaluation/evaluated_run.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/io/settings_file.hpp"
+#include "resight/io/trace_file.hpp"
 #include "resight/models/internal/library_payload.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognizer_config.hpp"
@@ -171,6 +172,27 @@ Seeds make_result_seeds() {
   return {join_files(files)};
 }
 
+constexpr const char* kTraceHead = "{\"format\":\"resight trace 1\"}\n";
+Seeds make_trace_seeds() {
+  const std::string pose = R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]})";
+  const std::string hypothesis =
+      R"({"object":"cup","verdict":"no support","origin_views":[0],"correspondences":7,"start":)" + pose +
+      R"(,"world_from_object":)" + pose + R"(,"test":{"quantity":"explained share","value":0.5,"limit":0.7},)" +
+      R"("suppressed_by":null,"fit":0.5,"visible_share":0.4,"explained_share":0.5,"pattern_similarity":0.1,)" +
+      R"("newest_similarity":1,"shared_texture":0,"texture_contrast":3,"explained_scene":9,"outlier":3,"clutter":0,)" +
+      R"("plane":0,"views":[{"view":0,"visible_share":0.4,"explained_share":null}]})";
+  const std::string loss = R"({"object":"cup","world_from_object":)" + pose +
+                           R"(,"visible_share":1,"stage":"rejected","keypoints":9,"correspondences":8,)" +
+                           R"("right_correspondences":7,"center_error_m":0.01,"rotation_error_rad":null,)" +
+                           R"("hypothesis":0})";
+  return {kTraceHead + std::string(R"({"view":0,"name":"000000","searched":true,"generated":3,"merged":2,)") +
+          R"("clustered":1,"verified":1,"hypotheses":[)" + hypothesis + R"(],"lost":[)" + loss + "]}\n"};
+}
+void read_trace_file(std::string_view bytes) {
+  const auto trace = TraceFile::open(write_scratch("trace.jsonl", bytes), 1);
+  if (trace) (void)trace->read(0, "000000");
+}
+
 Seeds make_event_seeds() {
   const std::string pose = "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]";
   return {R"({"events":[{"view":2,"kind":"moved","object":"cup","known":true,"world_from_object_before":)" + pose +
@@ -194,6 +216,7 @@ std::vector<FuzzReader> stored_readers() {
       {"annotation", make_annotation_seeds, read_annotation, 1000},
       {"results", make_result_seeds,
        [](std::string_view bytes) { (void)read_recognition_results(write_bundle(bytes, kResultFiles)); }, 2000},
+      {"trace", make_trace_seeds, read_trace_file, 2000},
       {"events", make_event_seeds,
        [](std::string_view bytes) { (void)read_true_changes(write_scratch("events.json", bytes)); }, 2000},
   };

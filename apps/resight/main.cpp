@@ -123,6 +123,8 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
                    "no limit]")
       ->check(kPositive);
+  command->add_flag("--trace", a.trace,
+                    "Write what became of each hypothesis, and where missed objects were lost (trace.jsonl), too");
   command->add_flag("--view", a.view,
                     "Show the views in a browser as they are recognised; afterwards, Ctrl-C ends the program");
   command

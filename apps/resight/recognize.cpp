@@ -6,11 +6,12 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
-#include "finished_views.hpp"
+#include "line_file.hpp"
 #include "live_viewer.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
+#include "resight/io/trace_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
@@ -29,6 +30,12 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
     print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
           format_share(summary.score.recall()), summary.num_ghosts);
   print("report: {}\n", (out / "report.html").string());
+}
+
+/// The trace of a run before must not be taken for one of this run.
+void forget_trace(const std::filesystem::path& out) {
+  std::error_code ignored;
+  std::filesystem::remove(out / kTraceFile, ignored);
 }
 
 }  // namespace
@@ -62,25 +69,35 @@ void run_recognize(const RecognizeArguments& arguments) {
   const Sequence& sequence = tracked ? *tracked : *recorded;
   std::optional<LiveViewer> viewer;
   if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
-  FinishedViews finished(arguments.out);
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](const ViewRecord& view) {
+  // For a run that is interrupted or fails; the complete results take its place.
+  LineFile finished(arguments.out / "finished_views.jsonl");
+  LineFile trace(folder.path() / kTraceFile);
+  RunObserver observer;
+  observer.on_view = [&](const ViewRecord& view) {
     if (viewer) viewer->add_view(view);
-    const std::string line = format_view_line(view, library) + "\n";
+    const std::string line = format_view_line(view, library);
     finished.add(line);
     if (!arguments.stream) return;
-    print_text(line);
+    print_text(line + "\n");
     std::fflush(stdout);  // The reader of a pipe gets each view at once.
-  });
+  };
+  if (arguments.trace) observer.on_trace = [&](const std::string& line) { trace.add(line); };
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, observer);
   run.sequence = arguments.sequence.string();
   run.sequence_path = path_from(arguments.out, arguments.sequence);
   run.models_path = path_from(arguments.out, arguments.models);
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", "resight: " + folder_name(arguments.sequence),
                               std::span(&run, 1), library));
+  if (!arguments.trace) forget_trace(arguments.out);
   value_or_throw(folder.commit());
   finished.remove();
   if (!arguments.stream) print_summary(run, arguments.out);
-  if (viewer) viewer->finish(run);
+  if (!viewer) return;
+  std::optional<TraceFile> shown;
+  if (arguments.trace)
+    shown = value_or_throw(TraceFile::open(arguments.out / kTraceFile, static_cast<int>(run.views.size())));
+  viewer->finish(run, std::move(shown));
 }
 
 }  // namespace resight::app

@@ -3,6 +3,7 @@
 import type { Action, Annotation } from "./annotation";
 import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
 import { decodeCloud } from "./protocol";
+import type { Trace } from "./trace";
 
 const kMaxViews = 24;
 const kMaxDetails = 300;
@@ -59,6 +60,7 @@ export interface ViewImages {
 export class Api {
   private readonly images = new Recent<ViewImages>(kMaxViews);
   private readonly details = new Recent<ViewDetails>(kMaxDetails);
+  private readonly traces = new Recent<Trace>(kMaxDetails);
   private readonly clouds = new Recent<Cloud>(kMaxViews);
   private readonly surfaces = new Recent<Cloud>(1000);
 
@@ -106,6 +108,12 @@ export class Api {
       return (await this.ask(`/api/views/${view}${query}`)).json();
     });
   }
+  /** What became of the hypotheses of a view, in a run with has_trace. */
+  trace(view: number, run: number): Promise<Trace> {
+    return this.traces.get(`${view}/${run}`, async () =>
+      (await this.ask(`/api/views/${view}/trace?run=${run}`)).json(),
+    );
+  }
   viewImages(view: number, camera: Camera): Promise<ViewImages> {
     return this.images.get(String(view), async () => {
       const [color, depth] = await Promise.all([
@@ -132,6 +140,7 @@ export class Api {
   /** Forgets what depends on results, which have changed. */
   forgetDetails(): void {
     this.details.clear();
+    this.traces.clear();
   }
 }
 

@@ -163,10 +163,16 @@ export class ImagePanel {
     this.drawPoint(context, 1 / (scale || 1));
   }
 
-  /** Shows the points of an object elsewhere, while it is dragged. */
-  async showMoved(object: number, pose: Pose): Promise<void> {
+  /** Shows the points of an object at another pose: while it is dragged, or of a hypothesis. Null shows none. */
+  async showMoved(shown: { object: number; pose: Pose } | null): Promise<void> {
     const cameraPose = this.pose(this.app.get().view);
-    if (object < 0 || !cameraPose || !this.details) return;
+    if (!shown && !this.moved) return;
+    this.moved = null;
+    if (!shown || !this.app.object(shown.object)?.has_surface || !cameraPose || !this.details) {
+      this.draw();
+      return;
+    }
+    const { object, pose } = shown;
     const { camera } = this.details;
     const { positions } = await this.api.surface(object);
     const cameraFromObject = multiply(inverseRigid(cameraPose), pose);

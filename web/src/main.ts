@@ -112,7 +112,7 @@ class Viewer {
     showRegions();
     gizmo.onDrag = (pose) => {
       this.sceneView.movePoints(this.app.get().track, pose);
-      this.panels[0]?.showMoved(annotator.selected()?.object ?? -1, pose);
+      this.panels[0]?.showMoved({ object: annotator.selected()?.object ?? -1, pose });
     };
     gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move");
     this.app.listen((changed) => {
@@ -174,6 +174,8 @@ class Viewer {
       this.sceneView.update(changed),
       ...panels.map((panel) => (isNew ? panel.update() : panel.draw())),
     ]);
+    const { hypothesis } = this.app.get();
+    if (has("hypothesis", "view", "run")) await this.panels[0]?.showMoved(hypothesis);
     if (has("view", "run", "compare")) this.say("");
     if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
   }

@@ -31,7 +31,7 @@ interface Item {
   object: number;
   track: number;
   pose: Pose;
-  kind: "detection" | "place" | "truth";
+  kind: "detection" | "place" | "truth" | "hypothesis";
 }
 
 export class SceneView {
@@ -63,7 +63,9 @@ export class SceneView {
     await Promise.all([
       has("view", "run", "layers", "cloudColors") ? this.showCloud() : null,
       has("view", "layers") ? this.showChanges() : null,
-      has("view", "run", "layers", "track", "object", "event", "objectColors", "edit") ? this.showItems() : null,
+      has("view", "run", "layers", "track", "object", "event", "objectColors", "edit", "hypothesis")
+        ? this.showItems()
+        : null,
     ]);
   }
 
@@ -193,6 +195,8 @@ export class SceneView {
       const details = await this.api.view(view, this.runNumber());
       for (const { object, pose } of details.truth) items.push({ object, track: -1, pose, kind: "truth" });
     }
+    const { hypothesis } = this.app.get();
+    if (hypothesis) items.push({ object: hypothesis.object, track: -1, pose: hypothesis.pose, kind: "hypothesis" });
     const drawn = await Promise.all(items.map((item) => this.makeItem(item)));
     if (!isCurrent()) return;
     this.pointsOfTrack.clear();
@@ -200,7 +204,7 @@ export class SceneView {
       const points = drawn[index]?.pickables[0]?.points;
       if (item.kind === "detection" && points) this.pointsOfTrack.set(item.track, points);
     });
-    const groups = { detection: "objects", place: "places", truth: "truth" } as const;
+    const groups = { detection: "objects", place: "places", truth: "truth", hypothesis: "hypothesis" } as const;
     for (const [kind, group] of Object.entries(groups)) {
       const parts = drawn.filter((_, index) => items[index]?.kind === kind);
       const lines = kind === "place" ? this.makeMoves() : [];
@@ -239,16 +243,17 @@ export class SceneView {
     const surface = await this.api.surface(item.object);
     const points = new PointSet(surface.positions, await this.surfaceColors(item, surface), surface.normals, {
       sizeM: kSurfaceSizeM,
-      nearerM: item.kind === "detection" ? kObjectNearerM : 0,
+      nearerM: item.kind === "detection" || item.kind === "hypothesis" ? kObjectNearerM : 0,
       isRound: true,
-      opacity: item.kind === "detection" ? 1 : 0.35,
+      opacity: item.kind === "detection" ? 1 : item.kind === "hypothesis" ? 0.6 : 0.35,
     });
     points.matrix = new Matrix4().fromArray(item.pose);
+    const pickable = { points, track: item.track, object: item.object };
     if (item.kind === "place") points.setTint("#e5484d", 0.75);
+    else if (item.kind === "hypothesis") points.setTint("#ffd400", 0.7);
     else if (item.kind === "truth") points.setTint("#ffffff", 0.8);
     else if (this.isSelected(item)) points.setTint(object.color, 0.45);
-    const track = item.kind === "truth" ? -1 : item.track;
-    return { objects: [points, ...axes], pickables: [{ points, track, object: item.object }] };
+    return { objects: [points, ...axes], pickables: item.kind === "hypothesis" ? [] : [pickable] };
   }
 
   private async surfaceColors(item: Item, surface: Cloud): Promise<Uint8Array> {
