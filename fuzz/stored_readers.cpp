@@ -3,6 +3,7 @@
 
 #include "reader.hpp"
 #include "resight/annotation/annotation_project.hpp"
+#include "resight/annotation/proposals_file.hpp"
 #include "resight/cameras/track_journal.hpp"
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/evaluation/evaluated_run.hpp"
@@ -118,7 +119,7 @@ Seeds make_track_journal_seeds() {
           kJournalHead};
 }
 
-constexpr AnnotationLimits kLimits{.num_views = 4, .num_objects = 2, .num_regions = 3};
+constexpr AnnotationLimits kLimits{.num_views = 4, .num_objects = 2};
 
 /// Of a project that has seen each kind of change.
 Seeds make_annotation_seeds() {
@@ -130,9 +131,11 @@ Seeds make_annotation_seeds() {
     object.object = 1;
     object.last_view = 2;
     act(AnnotationEdit{.title = "put", .changes = {PutObject{object}}});
-    act(AnnotationEdit{
-        .title = "judge",
-        .changes = {JudgeRegion{{.region = 2, .verdict = RegionVerdict::kAccepted, .track = 0}}, CheckView{1, true}}});
+    const RegionJudgement judgement{.region = {.view = 1, .kind = RegionKind::kNovel, .center_in_world_m = {1, 2, 3}},
+                                    .verdict = RegionVerdict::kAccepted,
+                                    .track = 0,
+                                    .mask = PixelRuns{{3, 4}, {9, 1}}};
+    act(AnnotationEdit{.title = "judge", .changes = {JudgeRegion{judgement}, CheckView{1, true}}});
     UnknownObjectEvent event;
     event.view = 1;
     event.name = "box";
@@ -153,6 +156,19 @@ void read_annotation(std::string_view bytes) {
   write_scratch("project/annotation.jsonl", bytes);
   (void)AnnotationProject::open(folder, kLimits, "fuzz");
   (void)parse_action(bytes);
+}
+
+Seeds make_proposal_seeds() {
+  ChangeProposal region;
+  region.view = 1;
+  region.kind = RegionKind::kRemoved;
+  region.points_in_world = {{0.5F, 0.25F, 1}, {0.5F, 0.25F, 2}};
+  region.num_points = 31;
+  region.box.size_m = {0.1, 0.2, 0.3};
+  region.pixels = {{3, 4}, {9, 1}};
+  return {bytes_written_by("proposals.json", [&](const fs::path& file) {
+    (void)write_proposals(file, "fuzz", {region, region});
+  })};
 }
 
 constexpr std::array kResultFiles = {"detections.json", "changes.json", "summary.json"};
@@ -214,6 +230,8 @@ std::vector<FuzzReader> stored_readers() {
       {"track_journal", make_track_journal_seeds,
        [](std::string_view bytes) { (void)TrackJournal::open(write_scratch("track.partial", bytes), "fuzz"); }},
       {"annotation", make_annotation_seeds, read_annotation, 1000},
+      {"proposals", make_proposal_seeds,
+       [](std::string_view bytes) { (void)read_proposals(write_scratch("proposals.json", bytes), "fuzz", 4); }, 2000},
       {"results", make_result_seeds,
        [](std::string_view bytes) { (void)read_recognition_results(write_bundle(bytes, kResultFiles)); }, 2000},
       {"trace", make_trace_seeds, read_trace_file, 2000},

@@ -29,6 +29,7 @@ class LiveViewer {
 
  private:
   void stop();
+  void tell_revision();
   const ModelLibrary& library_;
   std::unique_ptr<SceneData> scene_;
   ViewerSession session_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fetches data from the server and keeps what was used last. Data are made once on both sides.
-import type { Action, Annotation } from "./annotation";
+import type { Action, Annotation, RegionPixels } from "./annotation";
 import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
 import { decodeCloud } from "./protocol";
 import type { Trace } from "./trace";
@@ -37,6 +37,14 @@ export class Recent<T> {
   clear(): void {
     this.values.clear();
   }
+}
+
+/** The data of the whole events in a text of server-sent events, and what follows them. */
+export function splitEvents(text: string): { data: string[]; rest: string } {
+  const events = text.split("\n\n");
+  const rest = events.pop() ?? "";
+  const data = events.filter((event) => event.startsWith("data: ")).map((event) => event.slice("data: ".length));
+  return { data, rest };
 }
 
 /** An answer other than success. */
@@ -98,8 +106,24 @@ export class Api {
   async symmetries(object: number): Promise<number[][]> {
     return (await this.ask(`/api/annotation/symmetries/${object}`)).json();
   }
-  async revision(): Promise<number> {
-    return (await this.ask("/api/revision")).json();
+  async regionPixels(region: number): Promise<RegionPixels> {
+    return (await this.ask(`/api/annotation/regions/${region}`)).json();
+  }
+  /** The revision of the scene, at once and whenever it changes, until the server ends the stream. */
+  async *revisions(): AsyncGenerator<number> {
+    const reader = (await this.ask("/api/events")).body?.getReader();
+    if (!reader) return;
+    const decoder = new TextDecoder();
+    let text = "";
+    try {
+      for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        const { data, rest } = splitEvents(text + decoder.decode(part.value, { stream: true }));
+        text = rest;
+        for (const each of data) yield Number(each);
+      }
+    } finally {
+      await reader.cancel();
+    }
   }
   view(view: number, run: number): Promise<ViewDetails> {
     return this.details.get(`${view}/${run}`, async () => {

@@ -265,6 +265,7 @@ function uncertaintyRows(covariance: number[]): Row[] {
   return [
     ["σ position", `${millimetres.join(", ")} mm`],
     ["σ rotation", `${degrees.join(", ")}°`],
+    ["ellipsoid", "3 σ of the centre, 10 times enlarged"],
   ];
 }
 

@@ -10,6 +10,7 @@ import { guessUp, inverseRigid, project, transformPoint, type Vec3 } from "./geo
 import { ImagePanel, type PointedAt } from "./image_panel";
 import { Inspector } from "./inspector";
 import { formatLink, type LinkState, parseLink } from "./link";
+import { MaskEditor } from "./mask_editor";
 import { makePicture } from "./picture";
 import type { Pose } from "./protocol";
 import { SceneView } from "./scene_view";
@@ -17,7 +18,7 @@ import { App } from "./store";
 import { Timeline } from "./timeline";
 import { makeBox, World } from "./world";
 
-const kPollMs = 1000;
+const kReconnectMs = 1000;
 
 /** The whole page. */
 class Viewer {
@@ -87,7 +88,10 @@ class Viewer {
   private startAnnotating(annotator: Annotator): AnnotateKeys {
     document.body.classList.add("annotates");
     annotator.say = (text, isError) => this.say(text, isError);
-    const panel = new AnnotatePanel(byId("inspector"), annotator, this.api);
+    const [imagePanel] = this.panels;
+    if (!imagePanel) throw new Error("there are no views to annotate");
+    const masks = new MaskEditor(annotator, this.api, imagePanel);
+    const panel = new AnnotatePanel(byId("inspector"), annotator, this.api, masks);
     const keys = new AnnotateKeys(annotator, panel, this.world);
     annotator.onChange = () => panel.show();
     const gizmo = this.world.gizmo();
@@ -119,12 +123,11 @@ class Viewer {
       if (["view", "track", "edit"].some((key) => changed.has(key as "view"))) showGizmo();
       if (changed.has("view") || changed.has("edit")) showRegions();
     });
-    for (const imagePanel of this.panels)
-      imagePanel.onPlace = (at) => {
-        if (annotator.placing < 0) return false;
-        annotator.place(...at.pixel);
-        return true;
-      };
+    imagePanel.onPlace = (at) => {
+      if (annotator.placing < 0) return false;
+      annotator.place(...at.pixel);
+      return true;
+    };
     return keys;
   }
   /** Places a model where a point of the 3D view is seen. */
@@ -153,7 +156,7 @@ class Viewer {
     await this.updateAll(all);
     if (state.camera) this.world.setCamera(state.camera);
     else this.world.goHome();
-    if (scene.is_live) this.follow();
+    if (scene.is_live) this.follow().catch((error) => this.report(error));
     if (scene.views.length > 1 && !scene.has_poses)
       this.say("The sequence has no camera poses: each view is drawn in the frame of its own camera.");
     document.body.dataset.ready = "yes";
@@ -341,18 +344,14 @@ class Viewer {
   }
 
   /** Shows views as they are recognised. */
-  private follow(): void {
-    const poll = async () => {
-      try {
-        const { revision } = this.app.scene;
-        if ((await this.api.revision()) !== revision) await this.reload();
-      } catch (error) {
-        this.report(error);
-        return;
+  private async follow(): Promise<void> {
+    while (this.app.scene.is_live) {
+      for await (const revision of this.api.revisions()) {
+        if (revision !== this.app.scene.revision) await this.reload();
+        if (!this.app.scene.is_live) return;
       }
-      if (this.app.scene.is_live) window.setTimeout(poll, kPollMs);
-    };
-    window.setTimeout(poll, kPollMs);
+      await new Promise((resolve) => window.setTimeout(resolve, kReconnectMs));
+    }
   }
 
   private async reload(): Promise<void> {

@@ -37,6 +37,15 @@ HttpResponse respond(const char* type, const SceneData::Content& content) {
   return {200, type, *content};
 }
 
+/// Each event is the revision of the scene.
+HttpResponse start_events(const SceneData& scene) {
+  return {.status = 200,
+          .content_type = "text/event-stream",
+          .body = std::make_shared<const std::string>(std::to_string(scene.revision())),
+          .allowed_methods = "GET",
+          .is_event_stream = true};
+}
+
 /// Addresses below /api/views/.
 HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& parts, const HttpRequest& request) {
   const auto view = parse_number_below(parts[2], scene.num_views());
@@ -55,8 +64,7 @@ HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& 
 HttpResponse answer_data(SceneData& scene, const HttpRequest& request) {
   const auto parts = split_path(request.path);
   if (parts.size() == 2 && parts[1] == "scene") return respond(kJson, scene.index());
-  if (parts.size() == 2 && parts[1] == "revision")
-    return {200, kJson, std::make_shared<const std::string>(std::to_string(scene.revision()))};
+  if (parts.size() == 2 && parts[1] == "events") return start_events(scene);
   if (parts.size() >= 3 && parts[1] == "views") return answer_view(scene, parts, request);
   if (parts.size() == 3 && parts[1] == "surfaces") {
     const auto object = parse_number_below(parts[2], scene.num_objects());

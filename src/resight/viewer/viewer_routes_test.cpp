@@ -119,7 +119,7 @@ TEST_F(ViewerRoutes, ServesThePageWithoutToken) {
 }
 
 TEST_F(ViewerRoutes, NeedsTheTokenAndALoopbackHost) {
-  for (const char* path : {"/api/scene", "/api/revision", "/api/views/0", "/api/views/0/color", "/api/views/0/depth",
+  for (const char* path : {"/api/scene", "/api/events", "/api/views/0", "/api/views/0/color", "/api/views/0/depth",
                            "/api/surfaces/0", "/api/nothing"}) {
     EXPECT_EQ(status_of(get(path, "")), 403) << path;
     EXPECT_EQ(status_of(get(path, kToken + "0")), 403) << path;
@@ -175,7 +175,6 @@ TEST_F(ViewerRoutes, DescribesTheScene) {
   EXPECT_EQ(run["views"][0]["detections"][0]["pose"][12], 0.01) << "column by column";
   EXPECT_EQ(run["views"][2], nullptr) << "not recognised";
   EXPECT_EQ(run["events"][0]["kind"], "moved");
-  EXPECT_EQ(get_json("/api/revision"), 0);
 }
 
 TEST_F(ViewerRoutes, DescribesAView) {
