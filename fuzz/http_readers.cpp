@@ -74,6 +74,8 @@ class Site {
     if (service_->project().revision() > kMaxRevision) begin();
   }
 
+  [[nodiscard]] int revision() const { return service_->project().revision(); }
+
  private:
   void begin() {
     service_.reset();
@@ -109,42 +111,79 @@ std::string make_post(const std::string& path, const std::string& body) {
          "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
 }
 std::string make_action(const std::string& change) {
-  return make_post("actions", R"({"revision":0,"action":{"title":"t","changes":[)" + change + "]}}");
+  return R"({"revision":0,"action":{"title":"t","changes":[)" + change + "]}}";
+}
+
+/// What is posted to the annotation: the last part of the address, a line break, and the body.
+Seeds make_annotation_seeds() {
+  const std::string pose = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]";
+  return {
+      "actions\n" + make_action(R"({"do":"put_object","object":0,"first_view":0,"last_view":1,"pose":)" + pose + "}"),
+      "actions\n" + make_action(R"({"do":"judge_region","region":{"view":1,"kind":"novel","center":[0,0,0]},)"
+                                R"("verdict":"accepted","track":0,"mask":[3,4,9,1]},{"do":"check_view","view":1,)"
+                                R"("is_checked":true})"),
+      "actions\n" + make_action(R"({"do":"put_event","view":1,"kind":"moved","name":"box","before":[0,0,0],)"
+                                R"("after":[1,2,3]},{"do":"drop_event","id":0},{"do":"drop_object","id":0})"),
+      "actions\n"
+      R"({"revision":0,"action":"undo"})",
+      "place\n"
+      R"({"object":0,"view":0,"u":30,"v":20})",
+      "refine\n"
+      R"({"object":0,"first_view":0,"last_view":1,"all_turns":true,"pose":)" +
+          pose + "}",
+      "assess\n"
+      R"({"object":0,"pose":)" +
+          pose + "}",
+      "export\n{}",
+  };
 }
 
 Seeds make_request_seeds() {
-  const std::string pose = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]";
   Seeds seeds;
   for (const char* path :
        {"/", "/viewer.css", "/api/scene", "/api/events", "/api/views/1", "/api/views/0?run=0", "/api/views/0/color",
         "/api/views/0/depth", "/api/views/0/trace?run=0", "/api/surfaces/0", "/api/annotation",
         "/api/annotation/views/1", "/api/annotation/symmetries/0", "/api/annotation/regions/0"})
     seeds.push_back(make_get(path));
-  seeds.push_back(make_action(R"({"do":"put_object","object":0,"first_view":0,"last_view":1,"pose":)" + pose + "}"));
-  seeds.push_back(make_action(R"({"do":"judge_region","region":{"view":1,"kind":"novel","center":[0,0,0]},)"
-                              R"("verdict":"accepted","track":0,"mask":[3,4,9,1]},{"do":"check_view","view":1,)"
-                              R"("is_checked":true})"));
-  seeds.push_back(make_action(R"({"do":"put_event","view":1,"kind":"moved","name":"box","before":[0,0,0],)"
-                              R"("after":[1,2,3]},{"do":"drop_event","id":0},{"do":"drop_object","id":0})"));
-  seeds.push_back(make_post("actions", R"({"revision":0,"action":"undo"})"));
-  seeds.push_back(make_post("place", R"({"object":0,"view":0,"u":30,"v":20})"));
-  seeds.push_back(
-      make_post("refine", R"({"object":0,"first_view":0,"last_view":1,"all_turns":true,"pose":)" + pose + "}"));
-  seeds.push_back(make_post("assess", R"({"object":0,"pose":)" + pose + "}"));
-  seeds.push_back(make_post("export", "{}"));
+  for (const std::string& posted : make_annotation_seeds()) {
+    const std::size_t end = posted.find('\n');
+    seeds.push_back(make_post(posted.substr(0, end), posted.substr(end + 1)));
+  }
   seeds.push_back(
       "POST /api/annotation/export HTTP/1.1\r\nHost: [::1]\r\nX-Resight-Token: 0\r\n"
       "Transfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n");
   return seeds;
 }
 
-void read_request(std::string_view bytes) {
+Site& shared_site() {
   static Site site;
-  if (const auto request = viewer::parse_request(bytes)) site.answer(*request);
+  return site;
+}
+
+void read_request(std::string_view bytes) {
+  if (const auto request = viewer::parse_request(bytes)) shared_site().answer(*request);
+}
+
+/// Posts a body to the annotation. An action on revision 0 becomes one on the current revision, so that it is applied.
+void read_annotation_request(std::string_view bytes) {
+  const std::size_t end = std::min(bytes.find('\n'), bytes.size());
+  HttpRequest request;
+  request.method = "POST";
+  request.path = "/api/annotation/" + std::string(bytes.substr(0, end));
+  request.host = "localhost";
+  request.token = kToken;
+  request.body = std::string(bytes.substr(std::min(end + 1, bytes.size())));
+  constexpr std::string_view kBasedOn = "\"revision\":0";
+  if (const std::size_t at = request.body.find(kBasedOn); at != request.body.npos)
+    request.body.replace(at, kBasedOn.size(), "\"revision\":" + std::to_string(shared_site().revision()));
+  shared_site().answer(request);
 }
 
 }  // namespace
 
-std::vector<FuzzReader> http_readers() { return {{"http_request", make_request_seeds, read_request, 2000}}; }
+std::vector<FuzzReader> http_readers() {
+  return {{"http_request", make_request_seeds, read_request},
+          {"annotation_request", make_annotation_seeds, read_annotation_request, 1000}};
+}
 
 }  // namespace resight::fuzz

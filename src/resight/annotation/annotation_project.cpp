@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kJournalName = "annotation.jsonl";
 
 std::string make_header(const std::string& inputs) {
-  return nlohmann::json{{"format", "resight annotation 1"}, {"inputs", inputs}}.dump();
+  return nlohmann::json{{"format", "resight annotation 2"}, {"inputs", inputs}}.dump();
 }
 
 }  // namespace

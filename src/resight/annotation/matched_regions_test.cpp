@@ -44,11 +44,11 @@ TEST(MatchRegions, TheNearestPairsBelongTogetherAndEachOnce) {
   AnnotationDocument document;
   judge(document, propose(2, RegionKind::kNovel, 0).key(), RegionVerdict::kAccepted);
   judge(document, propose(2, RegionKind::kNovel, 0.02).key(), RegionVerdict::kRejected);
-  const std::vector<ChangeProposal> proposals = {propose(2, RegionKind::kNovel, 0.015),
-                                                 propose(2, RegionKind::kNovel, 0.02)};
+  const std::vector<ChangeProposal> proposals = {propose(2, RegionKind::kNovel, 0.02),
+                                                 propose(2, RegionKind::kNovel, 0)};
   const MatchedRegions matched = match_regions(document, proposals);
-  EXPECT_EQ(matched.of_proposal[0]->verdict, RegionVerdict::kAccepted);
-  EXPECT_EQ(matched.of_proposal[1]->verdict, RegionVerdict::kRejected);
+  EXPECT_EQ(matched.of_proposal[0]->verdict, RegionVerdict::kRejected);
+  EXPECT_EQ(matched.of_proposal[1]->verdict, RegionVerdict::kAccepted);
 }
 
 TEST(MatchRegions, WhatIsNoLongerProposedIsKeptAndListed) {
