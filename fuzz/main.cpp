@@ -16,8 +16,8 @@ namespace {
 
 std::vector<FuzzReader> all_readers() {
   std::vector<FuzzReader> readers;
-  for (auto* const list :
-       {mesh_readers, image_readers, dataset_readers, sequence_readers, stored_readers, recording_readers})
+  for (auto* const list : {mesh_readers, image_readers, dataset_readers, sequence_readers, stored_readers,
+                           recording_readers, http_readers})
     for (FuzzReader& reader : list()) readers.push_back(std::move(reader));
   return readers;
 }

@@ -24,6 +24,7 @@ struct FuzzReader {
 [[nodiscard]] std::vector<FuzzReader> sequence_readers();
 [[nodiscard]] std::vector<FuzzReader> stored_readers();
 [[nodiscard]] std::vector<FuzzReader> recording_readers();
+[[nodiscard]] std::vector<FuzzReader> http_readers();
 
 /// A folder of this process, for readers that take a path. $TMPDIR should be in memory.
 [[nodiscard]] const std::filesystem::path& scratch_folder();

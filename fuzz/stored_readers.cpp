@@ -3,11 +3,13 @@
 
 #include "reader.hpp"
 #include "resight/annotation/annotation_project.hpp"
+#include "resight/annotation/proposals_file.hpp"
 #include "resight/cameras/track_journal.hpp"
 #include "resight/evaluation/evaluated_run.hpp"
 #include "resight/io/event_file.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/io/settings_file.hpp"
+#include "resight/io/trace_file.hpp"
 #include "resight/models/internal/library_payload.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognizer_config.hpp"
@@ -117,7 +119,7 @@ Seeds make_track_journal_seeds() {
           kJournalHead};
 }
 
-constexpr AnnotationLimits kLimits{.num_views = 4, .num_objects = 2, .num_regions = 3};
+constexpr AnnotationLimits kLimits{.num_views = 4, .num_objects = 2};
 
 /// Of a project that has seen each kind of change.
 Seeds make_annotation_seeds() {
@@ -129,9 +131,11 @@ Seeds make_annotation_seeds() {
     object.object = 1;
     object.last_view = 2;
     act(AnnotationEdit{.title = "put", .changes = {PutObject{object}}});
-    act(AnnotationEdit{
-        .title = "judge",
-        .changes = {JudgeRegion{{.region = 2, .verdict = RegionVerdict::kAccepted, .track = 0}}, CheckView{1, true}}});
+    const RegionJudgement judgement{.region = {.view = 1, .kind = RegionKind::kNovel, .center_in_world_m = {1, 2, 3}},
+                                    .verdict = RegionVerdict::kAccepted,
+                                    .track = 0,
+                                    .mask = PixelRuns{{3, 4}, {9, 1}}};
+    act(AnnotationEdit{.title = "judge", .changes = {JudgeRegion{judgement}, CheckView{1, true}}});
     UnknownObjectEvent event;
     event.view = 1;
     event.name = "box";
@@ -154,6 +158,19 @@ void read_annotation(std::string_view bytes) {
   (void)parse_action(bytes);
 }
 
+Seeds make_proposal_seeds() {
+  ChangeProposal region;
+  region.view = 1;
+  region.kind = RegionKind::kRemoved;
+  region.points_in_world = {{0.5F, 0.25F, 1}, {0.5F, 0.25F, 2}};
+  region.num_points = 31;
+  region.box.size_m = {0.1, 0.2, 0.3};
+  region.pixels = {{3, 4}, {9, 1}};
+  return {bytes_written_by("proposals.json", [&](const fs::path& file) {
+    (void)write_proposals(file, "fuzz", {region, region});
+  })};
+}
+
 constexpr std::array kResultFiles = {"detections.json", "changes.json", "summary.json"};
 Seeds make_result_seeds() {
   const std::string pose = R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]})";
@@ -169,6 +186,27 @@ Seeds make_result_seeds() {
           R"("changed_share":0.125,"pose_suspect":false}]})",
       R"({"inputs":{"sequence":"../scene","models":"../models.bin"}})"};
   return {join_files(files)};
+}
+
+constexpr const char* kTraceHead = "{\"format\":\"resight trace 1\"}\n";
+Seeds make_trace_seeds() {
+  const std::string pose = R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]})";
+  const std::string hypothesis =
+      R"({"object":"cup","verdict":"no support","origin_views":[0],"correspondences":7,"start":)" + pose +
+      R"(,"world_from_object":)" + pose + R"(,"test":{"quantity":"explained share","value":0.5,"limit":0.7},)" +
+      R"("suppressed_by":null,"fit":0.5,"visible_share":0.4,"explained_share":0.5,"pattern_similarity":0.1,)" +
+      R"("newest_similarity":1,"shared_texture":0,"texture_contrast":3,"explained_scene":9,"outlier":3,"clutter":0,)" +
+      R"("plane":0,"views":[{"view":0,"visible_share":0.4,"explained_share":null}]})";
+  const std::string loss = R"({"object":"cup","world_from_object":)" + pose +
+                           R"(,"visible_share":1,"stage":"rejected","keypoints":9,"correspondences":8,)" +
+                           R"("right_correspondences":7,"center_error_m":0.01,"rotation_error_rad":null,)" +
+                           R"("hypothesis":0})";
+  return {kTraceHead + std::string(R"({"view":0,"name":"000000","searched":true,"generated":3,"merged":2,)") +
+          R"("clustered":1,"verified":1,"hypotheses":[)" + hypothesis + R"(],"lost":[)" + loss + "]}\n"};
+}
+void read_trace_file(std::string_view bytes) {
+  const auto trace = TraceFile::open(write_scratch("trace.jsonl", bytes), 1);
+  if (trace) (void)trace->read(0, "000000");
 }
 
 Seeds make_event_seeds() {
@@ -192,8 +230,11 @@ std::vector<FuzzReader> stored_readers() {
       {"track_journal", make_track_journal_seeds,
        [](std::string_view bytes) { (void)TrackJournal::open(write_scratch("track.partial", bytes), "fuzz"); }},
       {"annotation", make_annotation_seeds, read_annotation, 1000},
+      {"proposals", make_proposal_seeds,
+       [](std::string_view bytes) { (void)read_proposals(write_scratch("proposals.json", bytes), "fuzz", 4); }, 2000},
       {"results", make_result_seeds,
        [](std::string_view bytes) { (void)read_recognition_results(write_bundle(bytes, kResultFiles)); }, 2000},
+      {"trace", make_trace_seeds, read_trace_file, 2000},
       {"events", make_event_seeds,
        [](std::string_view bytes) { (void)read_event_file(write_scratch("events.json", bytes), 4); }, 2000},
   };

@@ -11,6 +11,7 @@
 #include "resight/annotation/change_proposals.hpp"
 #include "resight/annotation/detections_to_edit.hpp"
 #include "resight/annotation/export_annotation.hpp"
+#include "resight/annotation/proposals_file.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/io/recognition_results.hpp"
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr int kMinRegionPoints = 30;  // Of 5 mm: about 3 cm across.
 
 /// Identifies the views and the models, wherever they are.
-std::string identify(const Sequence& sequence, const ModelLibrary& library, std::size_t num_regions) {
+std::string identify(const Sequence& sequence, const ModelLibrary& library) {
   std::uint64_t views = kHashSeed;
   for (int v = 0; v < sequence.num_views(); ++v) {
     const Rigid3 pose = value_or_throw(sequence.read_pose(v));
@@ -39,16 +40,29 @@ std::string identify(const Sequence& sequence, const ModelLibrary& library, std:
   std::uint64_t models = kHashSeed;
   for (const ObjectModel& model : library.objects)
     models = hash_text(fmt::format("{} {} {}\n", model.name, model.bop_id, model.surface.size()), models);
-  return fmt::format("{} views {:016x}, {} models {:016x}, {} regions", sequence.num_views(), views,
-                     library.objects.size(), models, num_regions);
+  return fmt::format("{} views {:016x}, {} models {:016x}", sequence.num_views(), views, library.objects.size(),
+                     models);
 }
 
+/// What the proposals depend on beside the views. The number of threads is not part of it.
+std::string describe_detector(const RecognizerConfig& config) {
+  std::string text = fmt::format("resight {}, regions of {} points\n", RESIGHT_VERSION, kMinRegionPoints);
+  for (const auto& [name, value] : config.to_settings()) text += fmt::format("{} = {}\n", name, value);
+  return text;
+}
+
+/// The regions that the change detector proposes. They are kept in the project while views and detector stay the same.
 std::vector<ChangeProposal> find_regions(const Sequence& sequence, const AnnotateArguments& arguments) {
   const RecognizerConfig config = make_config("default", std::nullopt, std::nullopt, arguments.num_threads);
+  const fs::path file = arguments.out / "proposals.json";
+  const std::string digest = value_or_throw(digest_inputs(sequence, describe_detector(config)));
+  if (auto known = read_proposals(file, digest, sequence.num_views())) return *std::move(known);
   Progress progress("annotate", sequence.num_views());
-  return value_or_throw(propose_changes(sequence, scene_options(config), kMinRegionPoints, [&](int view) {
+  auto regions = value_or_throw(propose_changes(sequence, scene_options(config), kMinRegionPoints, [&](int view) {
     progress.report(view + 1, sequence.view_name(view) + ": changes");
   }));
+  value_or_throw(write_proposals(file, digest, regions));
+  return regions;
 }
 
 /// A new project starts with what was recognised. A project that has begun stays as it is.
@@ -77,17 +91,16 @@ void run_annotate(const AnnotateArguments& arguments) {
   const std::string name = folder_name(value_or_throw(find_sequence_folder(arguments.sequence)));
   AnnotationTask task{.sequence = sequence,
                       .library = library,
-                      .regions = find_regions(*sequence, arguments),
+                      .regions = {},
                       .project = nullptr,
                       .scene_name = name,
                       .export_folder = export_folder};
   const AnnotationLimits limits{.num_views = sequence->num_views(),
-                                .num_objects = static_cast<int>(library->objects.size()),
-                                .num_regions = static_cast<int>(task.regions.size())};
-  task.project = value_or_throw(
-      AnnotationProject::open(arguments.out, limits, identify(*sequence, *library, task.regions.size())));
+                                .num_objects = static_cast<int>(library->objects.size())};
+  task.project = value_or_throw(AnnotationProject::open(arguments.out, limits, identify(*sequence, *library)));
   if (task.project->was_cut_off()) print_warning("the last action was cut off and is dropped");
   if (arguments.detections) add_detections(*arguments.detections, *sequence, *library, *task.project);
+  task.regions = find_regions(*sequence, arguments);
   AnnotationService service(std::move(task));
 
   ViewerScene shown;

@@ -66,6 +66,7 @@ struct RecognizeArguments {
   std::optional<double> deadline_ms;
   std::optional<std::uint64_t> seed;  ///< Otherwise that of the settings.
   bool view = false;                  ///< Show views in a browser as they are recognised, and the results afterwards.
+  bool trace = false;                 ///< Write what became of each hypothesis, too.
   bool stream = false;                ///< Print each view as one line of JSON as it is recognised, and nothing else.
   std::string camera;                 ///< "openni2" or "openni2:URI", instead of a sequence.
   FollowArguments follow;

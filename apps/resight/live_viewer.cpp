@@ -48,13 +48,17 @@ void LiveViewer::stop() {
 
 void LiveViewer::add_view(const ViewRecord& view) {
   scene_->add_view(to_stored_view(view, library_), to_stored_events(view, library_));
+  tell_revision();
 }
 
-void LiveViewer::finish(const ReportRun& run) {
+void LiveViewer::tell_revision() { session_.server().send_event(std::to_string(scene_->revision())); }
+
+void LiveViewer::finish(const ReportRun& run, std::optional<TraceFile> trace) {
   std::vector<StoredEvent> events;
   for (const ViewRecord& view : run.views)
     std::ranges::move(to_stored_events(view, library_), std::back_inserter(events));
-  scene_->finish(std::move(events));
+  scene_->finish(std::move(events), std::move(trace));
+  tell_revision();
   stop();
   std::fflush(stdout);  // a program that waits for the results may read it through a pipe
   session_.server().run_until_interrupted();

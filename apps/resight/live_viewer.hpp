@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -23,11 +24,12 @@ class LiveViewer {
   LiveViewer& operator=(const LiveViewer&) = delete;
 
   void add_view(const ViewRecord& view);
-  /// Shows the final events, and serves on until the process is interrupted.
-  void finish(const ReportRun& run);
+  /// Shows the final events and the trace, if there is one, and serves on until the process is interrupted.
+  void finish(const ReportRun& run, std::optional<TraceFile> trace);
 
  private:
   void stop();
+  void tell_revision();
   const ModelLibrary& library_;
   std::unique_ptr<SceneData> scene_;
   ViewerSession session_;

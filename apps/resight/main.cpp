@@ -117,6 +117,7 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
           ->add_flag("--follow", a.follow.is_on,
                      "Take the views of the folder as they are written into it, until Ctrl-C; results are written then")
           ->excludes("--view")
+          ->excludes("--trace")
           ->group(group);
   command
       ->add_option(
@@ -124,6 +125,7 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
           "Instead of --sequence: a camera of OpenNI2 that does not move (openni2, or openni2:URI), until Ctrl-C")
       ->check(kCameras)
       ->excludes("--view")
+      ->excludes("--trace")
       ->excludes("--sequence")
       ->excludes(follow)
       ->group(group);
@@ -160,6 +162,8 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
                    "Time limit per view; a view returns its best result so far, which depends on the machine [default: "
                    "no limit]")
       ->check(kPositive);
+  command->add_flag("--trace", a.trace,
+                    "Write what became of each hypothesis, and where missed objects were lost (trace.jsonl), too");
   command->add_flag("--view", a.view,
                     "Show the views in a browser as they are recognised; afterwards, Ctrl-C ends the program");
   command

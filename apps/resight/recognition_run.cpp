@@ -11,6 +11,7 @@
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/io/settings_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
+#include "resight/report/trace_lines.hpp"
 
 namespace resight::app {
 namespace {
@@ -67,24 +68,36 @@ void finish_run(std::vector<std::vector<ObjectEvent>> final_events, ReportRun& r
 }  // namespace
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
-                          int num_threads, const std::function<void(ViewRecord&)>& on_view) {
+                          int num_threads, const RunObserver& observer) {
   const SequenceTruth truth = value_or_throw(read_sequence_truth(sequence, library));
   warn_about_names(truth, "ground truth");
   ReportRun run = start_run(config, num_threads);
   SceneRecognizer recognizer(library, config);
+  RecognitionTrace trace;
+  const bool is_traced = static_cast<bool>(observer.on_trace);
+  if (is_traced) observer.on_trace(format_trace_header(run.preset, run.version));
   Progress progress(config.preset, sequence.num_views());
-  auto events = recognize_sequence(recognizer, sequence, [&](const RgbdFrame& frame, SceneUpdate& update) {
+  const auto on_view = [&](const RgbdFrame& frame, SceneUpdate& update) {
     const int v = update.view;
     report_update(update, progress);
     std::optional<ViewEvaluation> evaluation;
     if (!truth.views.empty())
       evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,
                                  frame.camera, library);
+    if (is_traced) {
+      const TracedView traced{.update = &update,
+                              .trace = &trace,
+                              .missed = evaluation ? std::span<const GroundTruthObject>(evaluation->missed)
+                                                   : std::span<const GroundTruthObject>(),
+                              .acceptance = &config.verify.acceptance};
+      observer.on_trace(format_trace_line(traced, library));
+    }
     run.views.push_back(make_view_record(frame, library, std::move(update), std::move(evaluation)));
     run.views.back().scene_id = sequence.scene_id();
     run.views.back().image_id = sequence.image_id(v);
-    if (on_view) on_view(run.views.back());
-  });
+    if (observer.on_view) observer.on_view(run.views.back());
+  };
+  auto events = recognize_sequence(recognizer, sequence, on_view, is_traced ? &trace : nullptr);
   finish_run(value_or_throw(std::move(events)), run);
   return run;
 }

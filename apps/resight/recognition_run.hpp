@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "commands.hpp"
 #include "resight/evaluation/change_truth.hpp"
@@ -21,11 +22,18 @@ namespace resight::app {
 /// Warns if the library does not have the names of the true objects.
 void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 
-/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth. `on_view`
-/// gets each view as it is recognised; later views may change its events. It may store its picture.
+/// Receives what happens during a run.
+struct RunObserver {
+  /// Each view as it is recognised; later views may change its events. Its picture may be stored.
+  std::function<void(ViewRecord&)> on_view;
+  /// The lines of trace.jsonl, each before its view; empty = nothing is traced.
+  std::function<void(const std::string& line)> on_trace;
+};
+
+/// Recognises every view of a sequence, with progress. Scores the views if the sequence has ground truth.
 [[nodiscard]] ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
                                         const RecognizerConfig& config, int num_threads,
-                                        const std::function<void(ViewRecord&)>& on_view = {});
+                                        const RunObserver& observer = {});
 
 /// The next view of a camera or of a folder that is being written; none at the end.
 using NextLiveView = std::function<std::optional<FollowedView>()>;

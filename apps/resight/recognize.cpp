@@ -7,12 +7,13 @@
 
 #include "camera_run.hpp"
 #include "commands.hpp"
-#include "finished_views.hpp"
 #include "follow_views.hpp"
+#include "line_file.hpp"
 #include "live_viewer.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
+#include "resight/io/trace_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
@@ -35,18 +36,27 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
   print("report: {}\n", (out / "report.html").string());
 }
 
+// For a run that is interrupted or fails; the complete results take its place.
+constexpr const char* kFinishedViews = "finished_views.jsonl";
+
+/// The trace of a run before must not be taken for one of this run.
+void forget_trace(const std::filesystem::path& out) {
+  std::error_code ignored;
+  std::filesystem::remove(out / kTraceFile, ignored);
+}
+
 /// Keeps a view that is finished, and prints it.
 void report_view(const RecognizeArguments& arguments, const ViewRecord& view, const ModelLibrary& library,
-                 FinishedViews& finished) {
-  const std::string line = format_view_line(view, library) + "\n";
+                 LineFile& finished) {
+  const std::string line = format_view_line(view, library);
   finished.add(line);
   if (!arguments.stream) return;
-  print_text(line);
+  print_text(line + "\n");
   std::fflush(stdout);  // The reader of a pipe gets each view at once.
 }
 
 void write_run(const RecognizeArguments& arguments, ReportRun& run, const ModelLibrary& library,
-               PendingDirectory& folder, FinishedViews& finished) {
+               PendingDirectory& folder, LineFile& finished) {
   const bool has_folder = arguments.camera.empty();
   run.sequence = has_folder ? arguments.sequence.string() : arguments.camera;
   if (has_folder) run.sequence_path = path_from(arguments.out, arguments.sequence);
@@ -54,6 +64,7 @@ void write_run(const RecognizeArguments& arguments, ReportRun& run, const ModelL
   const std::string title = "resight: " + (has_folder ? folder_name(arguments.sequence) : arguments.camera);
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", title, std::span(&run, 1), library));
+  if (!arguments.trace) forget_trace(arguments.out);
   value_or_throw(folder.commit());
   remove_old_pages(arguments.out, static_cast<int>(run.views.size()));
   finished.remove();
@@ -70,7 +81,7 @@ void store_new_pictures(std::span<ViewRecord> views, const std::filesystem::path
 void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const ModelLibrary& library,
                     const RecognizerConfig& config) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  FinishedViews finished(arguments.out);
+  LineFile finished(arguments.out / kFinishedViews);
   ReportRun run = run_live(
       library, [&] { return views.next(); }, config, arguments.num_threads,
       [&](std::span<ViewRecord> run_views) {
@@ -130,14 +141,22 @@ void run_recognize(const RecognizeArguments& arguments) {
   const Sequence& sequence = tracked ? *tracked : *recorded;
   std::optional<LiveViewer> viewer;
   if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
-  FinishedViews finished(arguments.out);
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, [&](ViewRecord& view) {
+  LineFile finished(arguments.out / kFinishedViews);
+  LineFile trace(folder.path() / kTraceFile);
+  RunObserver observer;
+  observer.on_view = [&](ViewRecord& view) {
     if (viewer) viewer->add_view(view);
     if (sequence.num_views() > kViewsPerPage) value_or_throw(store_picture(view, folder.path()));
     report_view(arguments, view, library, finished);
-  });
+  };
+  if (arguments.trace) observer.on_trace = [&](const std::string& line) { trace.add(line); };
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, observer);
   write_run(arguments, run, library, folder, finished);
-  if (viewer) viewer->finish(run);
+  if (!viewer) return;
+  std::optional<TraceFile> shown;
+  if (arguments.trace)
+    shown = value_or_throw(TraceFile::open(arguments.out / kTraceFile, static_cast<int>(run.views.size())));
+  viewer->finish(run, std::move(shown));
 }
 
 }  // namespace resight::app

@@ -38,6 +38,25 @@ TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   EXPECT_EQ(views, nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"]);
 }
 
+TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {
+  const auto detections = [&] {
+    EXPECT_EQ(run(folder_, kRecognize).status, 0);
+    return read_text(folder_ / "out/detections.json");
+  };
+  const std::string without = detections();
+  ASSERT_EQ(run(folder_, "recognize --models models.resight --sequence views --out out --trace").status, 0);
+  EXPECT_EQ(read_text(folder_ / "out/detections.json"), without);
+  std::istringstream lines(read_text(folder_ / "out/trace.jsonl"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["format"], "resight trace 1");
+  int num_views = 0;
+  for (; std::getline(lines, line); ++num_views) EXPECT_EQ(nlohmann::json::parse(line)["view"], num_views);
+  EXPECT_EQ(num_views, kViews);
+  EXPECT_EQ(detections(), without);
+  EXPECT_FALSE(fs::exists(folder_ / "out/trace.jsonl")) << "it would be taken for one of the new run";
+}
+
 TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
   const std::string depth = read_text(folder_ / "views/depth/000002.png");
   write_text(folder_ / "views/depth/000002.png", "cut o");

@@ -8,9 +8,6 @@ namespace {
 const std::string kLongName(300, 'a');
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
-constexpr const char* kUnorganizedPcd =
-    "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
-    "0 0 0\n.1 0 0\n0 .1 0\n0 0 .1\n";
 
 const Row kRows[] = {
     // What the user says about a sequence.

@@ -162,6 +162,107 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
   await again.stop();
 });
 
+interface Regions extends Shown {
+  regions: { view: number; kind: string; verdict: string; is_corrected: boolean; pose: number[] }[];
+  unknown_events: { kind: string; before: number[] | null; after: number[] | null }[];
+}
+
+test("annotate: masks of regions, and a move of a thing without model", async () => {
+  const project = `${setting("PROJECT")}_regions`;
+  const begin = () =>
+    serve(["--models", setting("MODELS"), "--sequence", setting("SEQUENCE"), "--out", project], command);
+  const { address, stop } = await begin();
+  const page = await open(address);
+  const regions = async () => (await annotation(address)) as Regions;
+  const ask = async (path: string) => {
+    const { origin, hash } = new URL(address);
+    const token = new URLSearchParams(hash.slice(1)).get("token") ?? "";
+    return (await fetch(`${origin}/api/annotation/${path}`, { headers: { "X-Resight-Token": token } })).json();
+  };
+  const sum = (runs: number[]) => runs.filter((_, i) => i % 2 === 1).reduce((total, each) => total + each, 0);
+  const found = (await regions()).regions;
+  const came = found.findIndex((each) => each.kind === "novel" && each.view === 2);
+  const left = found.findIndex((each) => each.kind === "removed" && each.view === 2);
+  assert.ok(came >= 0 && left >= 0, JSON.stringify(found));
+
+  // Add with the brush, remove with the lasso; each stroke can be undone.
+  const row = page.locator(".to-do", { hasText: "view 3: something came" }).first();
+  await row.getByText("Mask", { exact: true }).click();
+  await waitForView(page, 2);
+  await page.waitForSelector("#inspector h2:text('Mask of what came before view 3')");
+  const image = page.locator("figure canvas").first();
+  const box = await image.boundingBox();
+  assert.ok(box);
+  const drag = async (points: [number, number][]) => {
+    const at = ([u, v]: [number, number]): [number, number] => [
+      box.x + ((u + 0.5) / 320) * box.width,
+      box.y + ((v + 0.5) / 240) * box.height,
+    ];
+    const [first, ...rest] = points.map(at);
+    assert.ok(first);
+    await page.mouse.move(...first);
+    await page.mouse.down();
+    for (const point of rest) await page.mouse.move(...point, { steps: 4 });
+    await page.mouse.up();
+  };
+  const proposed = sum((await ask(`regions/${came}`)).proposed);
+  await drag([
+    [20, 20],
+    [60, 20],
+  ]);
+  await waitForRevision(page, 1);
+  const painted = sum((await ask(`regions/${came}`)).corrected);
+  assert.ok(painted > proposed + 400 && painted < proposed + 1000, `${proposed} pixels, then ${painted}`);
+  await page.waitForTimeout(200);
+  await picture(page, "annotate_mask");
+  await click(page, "Lasso −");
+  await drag([
+    [0, 0],
+    [319, 0],
+    [319, 40],
+    [0, 40],
+    [0, 0],
+  ]);
+  await waitForRevision(page, 2);
+  assert.ok(sum((await ask(`regions/${came}`)).corrected) <= proposed);
+  await page.keyboard.press("Control+z");
+  await waitForRevision(page, 3);
+  assert.equal(sum((await ask(`regions/${came}`)).corrected), painted);
+  await click(page, "As proposed");
+  await waitForRevision(page, 4);
+  assert.equal((await ask(`regions/${came}`)).corrected, null);
+  await page.keyboard.press("Control+z");
+  await waitForRevision(page, 5);
+  await page.keyboard.press("Escape");
+
+  // A thing without model moved: one region is where it was, the other one where it is.
+  await row.getByText("Moved", { exact: true }).click();
+  assert.match((await page.locator("#status").textContent()) ?? "", /Press Moved at the place that it left/);
+  await page
+    .locator(".to-do", { hasText: "view 3: something left" })
+    .first()
+    .getByText("Moved", { exact: true })
+    .click();
+  await waitForRevision(page, 6);
+  const moved = await regions();
+  assert.equal(moved.unknown_events[0]?.kind, "moved");
+  assert.deepEqual(moved.unknown_events[0]?.after, found[came]?.pose.slice(12, 15));
+  assert.deepEqual(moved.unknown_events[0]?.before, found[left]?.pose.slice(12, 15));
+  assert.equal(moved.regions[came]?.verdict, "accepted");
+  assert.equal(moved.regions[came]?.is_corrected, true, "the verdict keeps the mask");
+  assert.match(await inspector(page), /unknown moved[\s\S]*Regions of this view[\s\S]*mask corrected/);
+  await picture(page, "annotate_unknown_moved");
+  await page.close();
+  assert.equal(await stop(), 0);
+  const exported = JSON.parse(await readFile(`${project}/export/regions/regions.json`, "utf8")).regions;
+  assert.equal(exported.length, 2);
+
+  // The next start finds the regions in the project.
+  const again = await begin();
+  assert.equal(((await annotation(again.address)) as Regions).regions[came]?.is_corrected, true);
+  assert.equal(await again.stop(), 0);
+});
+
 test("annotate: wrong requests are refused", async () => {
   const { address, stop } = await serve(inputs(), command);
   const { origin, hash } = new URL(address);

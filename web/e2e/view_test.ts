@@ -2,6 +2,7 @@
 // The viewer in a real browser, against the real program. tests/viewer_test.sh makes the data and calls it:
 //   RESIGHT          the program
 //   RESULTS, OTHER   two folders of results on the same views, of which one is removed and one has moved
+//   STRICT           results that miss everything; this one and RESULTS have a trace
 //   MODELS           the model library
 //   SEQUENCE         the views
 //   CHANGES          results of 'resight changes' on them
@@ -91,6 +92,53 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   assert.match((await download).suggestedFilename(), /-view\d+\.png$/);
   await page.close();
   assert.equal(await stop(), 0, "Ctrl-C ends it well");
+});
+
+test("why something was found, or was not", async () => {
+  const { address, stop } = await serve([setting("RESULTS"), setting("STRICT")]);
+  const page = await open(address);
+
+  // A click on an object tells which hypotheses were there; one of them is shown with its evidence.
+  await clickOn(page, ".labels3d span", "cereal_blue");
+  const accepted = page.locator(".why button", { hasText: "accepted" }).first();
+  await accepted.click();
+  await page.waitForSelector(".why button[aria-expanded=true]");
+  assert.match(await inspector(page), /Why: hypotheses here[\s\S]*cereal_blue[\s\S]*from views[\s\S]*explained/);
+  assert.match(await inspector(page), /ellipsoid/);
+  await page.locator(".why dl").scrollIntoViewIfNeeded();
+  await waitForDrawing(page, 100);
+  await picture(page, "why");
+  await page.keyboard.press("Escape");
+
+  // Missed objects have the stage at which they were lost, and the number that decided it.
+  await page.getByLabel("Run", { exact: true }).selectOption("1");
+  const missed = page.getByRole("button", { name: "tea_box, lost at: rejected" });
+  await missed.click();
+  await page.waitForSelector(".why button[aria-expanded=true]");
+  assert.match(
+    await inspector(page),
+    /lost at\s+rejected[\s\S]*best hypothesis[\s\S]*too few visible[\s\S]*visible share 0\.\d\d, needs 0\.95/,
+  );
+  await page.locator(".why dl").scrollIntoViewIfNeeded();
+  await waitForDrawing(page, 100);
+  await picture(page, "why_missed");
+
+  // A place that is clicked has hypotheses, or there is none.
+  await page.keyboard.press("Escape");
+  await page
+    .locator("figure canvas")
+    .first()
+    .click({ position: { x: 6, y: 6 } });
+  await page.waitForSelector("#inspector h2:text('Place')");
+  assert.match(await inspector(page), /Why: hypotheses here\s+There is none\./);
+
+  // The objects of the run beside it are shown, too.
+  await page.getByLabel("Compare with").selectOption("0");
+  await page.waitForSelector("body.compares");
+  await waitForDrawing(page, 100);
+  await picture(page, "compare_objects");
+  await page.close();
+  assert.equal(await stop(), 0);
 });
 
 test("places have coordinates, and distances are measured", async () => {

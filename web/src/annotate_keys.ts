@@ -68,6 +68,7 @@ export class AnnotateKeys {
       Tab: () => this.selectNext(event.shiftKey ? -1 : 1),
       Escape: () => {
         annotator.placing = -1;
+        panel.masks.end();
         annotator.app.selectNothing();
         panel.show();
       },

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls of the annotation, in place of the details of a detection.
-import type { Placement, ToDo, ViewResidual } from "./annotation";
+import type { Placement, ViewResidual } from "./annotation";
 import type { Annotator } from "./annotator";
 import type { Api } from "./api";
 import { parseColor } from "./colors";
 import { button, element, percent } from "./dom";
 import type { Vec3 } from "./geometry";
+import type { MaskEditor } from "./mask_editor";
 import { type Axes, fromNumbers, toNumbers } from "./pose_edit";
+import { RegionList } from "./region_list";
 import { drawThumbnail } from "./thumbnail";
 
 const kNumberNames = ["x mm", "y mm", "z mm", "rx °", "ry °", "rz °"];
-const kMaxToDos = 60;
 
 export interface GizmoState {
   mode: "translate" | "rotate";
@@ -22,18 +23,12 @@ export class AnnotatePanel {
   private readonly toolbar = element("div", { class: "tools" });
   private readonly selection = element("div", { class: "selection" });
   private readonly models = element("div", { class: "models-list" });
-  private readonly toDos = element("div", { class: "to-dos" });
   private readonly search = element("input", {
     type: "search",
     placeholder: "Search models",
     "aria-label": "Search models",
   });
-  private readonly unknownName = element("input", {
-    value: "unknown",
-    maxlength: 60,
-    "aria-label": "Name of things without model",
-    title: "Name of things without model, for Unknown",
-  });
+  private readonly regions: RegionList;
   private symmetriesOf = -1;
   private symmetries: number[][] = [];
   private symmetryIndex = 0;
@@ -43,14 +38,16 @@ export class AnnotatePanel {
     root: HTMLElement,
     private readonly annotator: Annotator,
     private readonly api: Api,
+    readonly masks: MaskEditor,
   ) {
+    this.regions = new RegionList(annotator);
+    this.regions.onCorrect = (region) => masks.begin(region);
+    masks.onChange = () => this.show();
     this.search.addEventListener("input", () => this.filterModels());
     root.replaceChildren(
       this.toolbar,
       this.selection,
-      element("h2", {}, "To do"),
-      this.unknownName,
-      this.toDos,
+      ...this.regions.parts(),
       element("h2", {}, "Place a model"),
       this.search,
       this.models,
@@ -65,7 +62,7 @@ export class AnnotatePanel {
   show(): void {
     this.showTools();
     this.showSelection();
-    this.showToDos();
+    this.regions.show();
     this.filterModels();
   }
 
@@ -101,6 +98,10 @@ export class AnnotatePanel {
   }
 
   private showSelection(): void {
+    if (this.masks.region >= 0) {
+      this.selection.replaceChildren(...this.masks.controls());
+      return;
+    }
     const placement = this.annotator.selected();
     if (!placement) {
       const hint =
@@ -245,46 +246,6 @@ export class AnnotatePanel {
       ...cells.map((text) => element("td", {}, text)),
     );
     row.addEventListener("click", () => this.annotator.app.goTo(each.view));
-    return row;
-  }
-
-  private showToDos(): void {
-    const { to_dos, unknown_events } = this.annotator.annotation;
-    this.unknownName.hidden = !to_dos.some((each) => each.region >= 0);
-    const rows = to_dos.slice(0, kMaxToDos).map((toDo) => this.makeToDo(toDo));
-    if (to_dos.length > kMaxToDos) rows.push(element("p", {}, `… and ${to_dos.length - kMaxToDos} more`));
-    const events = unknown_events.map((event) =>
-      element(
-        "div",
-        { class: "to-do done" },
-        button(`view ${event.view + 1}: ${event.name} ${event.kind}`, "Go to the view", () =>
-          this.annotator.app.goTo(event.view),
-        ),
-        button("Delete", "Delete the event", () => this.annotator.dropEvent(event.id)),
-      ),
-    );
-    if (rows.length + events.length === 0) rows.push(element("p", { class: "hint" }, "Nothing is open."));
-    this.toDos.replaceChildren(...rows, ...events);
-  }
-  private makeToDo(toDo: ToDo): HTMLElement {
-    const { annotator } = this;
-    const go = button(toDo.text, "Show it", () => {
-      annotator.app.goTo(toDo.view);
-      const region = annotator.annotation.regions[toDo.region];
-      if (toDo.track >= 0) annotator.app.selectTrack(toDo.track);
-      else if (region) annotator.app.set({ point: region.pose.slice(12, 15) as Vec3, track: -1 });
-    });
-    const row = element("div", { class: `to-do ${toDo.kind}` }, go);
-    if (toDo.region < 0) return row;
-    row.append(
-      button("Unknown", "A thing without model came or left", () =>
-        annotator.addUnknown(toDo.region, this.unknownName.value),
-      ),
-      button("Accept", "A change of the selected track, or of none", () =>
-        annotator.judge(toDo.region, "accepted", annotator.selected()?.track ?? -1),
-      ),
-      button("Reject", "Nothing has changed here", () => annotator.judge(toDo.region, "rejected")),
-    );
     return row;
   }
 

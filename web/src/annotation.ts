@@ -13,7 +13,15 @@ export interface Placement {
   pose: Pose;
 }
 
+/** A region as decisions name it: not by a number, so that they survive another detection. */
+export interface RegionKey {
+  view: number;
+  kind: "novel" | "removed";
+  center: Vec3;
+}
+
 export interface Region {
+  key: RegionKey;
   view: number;
   kind: "novel" | "removed";
   num_points: number;
@@ -22,7 +30,15 @@ export interface Region {
   size_m: Vec3;
   verdict: "open" | "accepted" | "rejected";
   track: number;
+  /** Its mask was corrected by hand. */
+  is_corrected: boolean;
   is_explained: boolean;
+}
+
+/** Pixels of a region: first pixel and number of pixels of each run in turn. */
+export interface RegionPixels {
+  proposed: number[];
+  corrected: number[] | null;
 }
 
 export interface UnknownEvent {
@@ -40,6 +56,8 @@ export interface ToDo {
   track: number;
   region: number;
   text: string;
+  /** A region that was judged, but is no longer proposed. */
+  lost: RegionKey | null;
 }
 
 export interface Annotation {

@@ -8,6 +8,7 @@ import {
   placementAt,
   presentInterval,
   putObject,
+  type RegionKey,
   toRun,
   type ViewResidual,
 } from "./annotation";
@@ -238,24 +239,49 @@ export class Annotator {
   }
 
   judge(region: number, verdict: "open" | "accepted" | "rejected", track = -1): Promise<void> {
-    return this.edit(`Region ${verdict}`, [{ do: "judge_region", region, verdict, track }]);
+    const key = this.annotation.regions[region]?.key;
+    if (!key) return Promise.resolve();
+    return this.edit(`Region ${verdict}`, [{ do: "judge_region", region: key, verdict, track }]);
+  }
+  /** Drops a decision about a region that is no longer proposed. */
+  forget(region: RegionKey): Promise<void> {
+    return this.edit("Forget a region", [{ do: "judge_region", region, verdict: "open", track: -1, mask: null }]);
+  }
+  /** `runs`: null takes the mask that was proposed. */
+  correctMask(region: number, runs: number[] | null): Promise<void> {
+    const found = this.annotation.regions[region];
+    if (!found) return Promise.resolve();
+    const { key, verdict, track } = found;
+    return this.edit("Mask", [{ do: "judge_region", region: key, verdict, track, mask: runs }]);
   }
   /** An event of a thing without model where a region came or left. */
   addUnknown(region: number, name: string): Promise<void> {
     const found = this.annotation.regions[region];
     if (!found) return Promise.resolve();
-    const place = found.pose.slice(12, 15);
     const isNovel = found.kind === "novel";
+    const { key } = found;
     return this.edit(`Unknown thing ${isNovel ? "came" : "left"}`, [
       {
         do: "put_event",
-        view: found.view,
+        view: key.view,
         kind: isNovel ? "added" : "removed",
         name,
-        before: isNovel ? null : place,
-        after: isNovel ? place : null,
+        before: isNovel ? null : key.center,
+        after: isNovel ? key.center : null,
       },
-      { do: "judge_region", region, verdict: "accepted", track: -1 },
+      { do: "judge_region", region: key, verdict: "accepted", track: -1 },
+    ]);
+  }
+  /** A thing without model moved from one region to the other, before the earlier of their views. */
+  moveUnknown(one: number, other: number, name: string): Promise<void> {
+    const found = [this.annotation.regions[one]?.key, this.annotation.regions[other]?.key];
+    const from = found.find((key) => key?.kind === "removed");
+    const to = found.find((key) => key?.kind === "novel");
+    if (!from || !to) return Promise.resolve();
+    const view = Math.min(from.view, to.view);
+    return this.edit("Unknown thing moved", [
+      { do: "put_event", view, kind: "moved", name, before: from.center, after: to.center },
+      ...[from, to].map((region) => ({ do: "judge_region", region, verdict: "accepted", track: -1 })),
     ]);
   }
   dropEvent(id: number): Promise<void> {

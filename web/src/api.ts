@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fetches data from the server and keeps what was used last. Data are made once on both sides.
-import type { Action, Annotation } from "./annotation";
+import type { Action, Annotation, RegionPixels } from "./annotation";
 import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
 import { decodeCloud } from "./protocol";
+import type { Trace } from "./trace";
 
 const kMaxViews = 24;
 const kMaxDetails = 300;
@@ -38,6 +39,14 @@ export class Recent<T> {
   }
 }
 
+/** The data of the whole events in a text of server-sent events, and what follows them. */
+export function splitEvents(text: string): { data: string[]; rest: string } {
+  const events = text.split("\n\n");
+  const rest = events.pop() ?? "";
+  const data = events.filter((event) => event.startsWith("data: ")).map((event) => event.slice("data: ".length));
+  return { data, rest };
+}
+
 /** An answer other than success. */
 export class StatusError extends Error {
   constructor(
@@ -59,6 +68,7 @@ export interface ViewImages {
 export class Api {
   private readonly images = new Recent<ViewImages>(kMaxViews);
   private readonly details = new Recent<ViewDetails>(kMaxDetails);
+  private readonly traces = new Recent<Trace>(kMaxDetails);
   private readonly clouds = new Recent<Cloud>(kMaxViews);
   private readonly surfaces = new Recent<Cloud>(1000);
 
@@ -96,8 +106,24 @@ export class Api {
   async symmetries(object: number): Promise<number[][]> {
     return (await this.ask(`/api/annotation/symmetries/${object}`)).json();
   }
-  async revision(): Promise<number> {
-    return (await this.ask("/api/revision")).json();
+  async regionPixels(region: number): Promise<RegionPixels> {
+    return (await this.ask(`/api/annotation/regions/${region}`)).json();
+  }
+  /** The revision of the scene, at once and whenever it changes, until the server ends the stream. */
+  async *revisions(): AsyncGenerator<number> {
+    const reader = (await this.ask("/api/events")).body?.getReader();
+    if (!reader) return;
+    const decoder = new TextDecoder();
+    let text = "";
+    try {
+      for (let part = await reader.read(); !part.done; part = await reader.read()) {
+        const { data, rest } = splitEvents(text + decoder.decode(part.value, { stream: true }));
+        text = rest;
+        for (const each of data) yield Number(each);
+      }
+    } finally {
+      await reader.cancel();
+    }
   }
   view(view: number, run: number): Promise<ViewDetails> {
     return this.details.get(`${view}/${run}`, async () => {
@@ -105,6 +131,12 @@ export class Api {
       const query = run >= 0 ? `?run=${run}` : "";
       return (await this.ask(`/api/views/${view}${query}`)).json();
     });
+  }
+  /** What became of the hypotheses of a view, in a run with has_trace. */
+  trace(view: number, run: number): Promise<Trace> {
+    return this.traces.get(`${view}/${run}`, async () =>
+      (await this.ask(`/api/views/${view}/trace?run=${run}`)).json(),
+    );
   }
   viewImages(view: number, camera: Camera): Promise<ViewImages> {
     return this.images.get(String(view), async () => {
@@ -132,6 +164,7 @@ export class Api {
   /** Forgets what depends on results, which have changed. */
   forgetDetails(): void {
     this.details.clear();
+    this.traces.clear();
   }
 }
 

@@ -29,6 +29,15 @@ export function button(
   return made;
 }
 
+export type Row = [string, string | Node];
+
+/** Names beside their values. */
+export function table(rows: Row[]): HTMLElement {
+  const list = element("dl");
+  for (const [name, value] of rows) list.append(element("dt", {}, name), element("dd", {}, value));
+  return list;
+}
+
 export function byId(id: string): HTMLElement {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no part '${id}'`);

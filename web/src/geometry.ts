@@ -47,6 +47,20 @@ export function rotationAngleDeg(a: Pose, b: Pose): number {
   return (Math.atan2(0.5 * Math.sqrt(dot(skew, skew)), 0.5 * (trace - 1)) * 180) / Math.PI;
 }
 
+/** The lower triangle L of C = L L' as a matrix, column by column, for the 3x3 block of the translation in a covariance
+ * of 6x6 numbers, row by row. It maps the unit sphere to the surface of one standard deviation. */
+export function translationDeviations(covariance: ArrayLike<number>): number[] {
+  const c = (i: number, k: number) => at(covariance, 6 * (3 + i) + 3 + k);
+  const root = (value: number) => Math.sqrt(Math.max(0, value));
+  const over = (value: number, divisor: number) => (divisor > 0 ? value / divisor : 0);
+  const l00 = root(c(0, 0));
+  const [l10, l20] = [over(c(1, 0), l00), over(c(2, 0), l00)];
+  const l11 = root(c(1, 1) - l10 * l10);
+  const l21 = over(c(2, 1) - l20 * l10, l11);
+  const l22 = root(c(2, 2) - l20 * l20 - l21 * l21);
+  return [l00, l10, l20, 0, l11, l21, 0, 0, l22];
+}
+
 export function unproject(camera: Camera, u: number, v: number, depth: number): Vec3 {
   return [((u - camera.cx) / camera.fx) * depth, ((v - camera.cy) / camera.fy) * depth, depth];
 }

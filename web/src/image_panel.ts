@@ -3,7 +3,8 @@
 import type { Api, ViewImages } from "./api";
 import { element } from "./dom";
 import { inverseRigid, multiply, project, transformPoint, unproject, type Vec3 } from "./geometry";
-import type { Detection, Outline, Pose, ViewDetails } from "./protocol";
+import type { Point } from "./mask";
+import type { Camera, Detection, Outline, Pose, ViewDetails } from "./protocol";
 import type { App } from "./store";
 
 interface Shape {
@@ -44,6 +45,13 @@ export interface PointedAt {
   position: Vec3 | null;
 }
 
+/** Takes the pointer as long as it is used; positions are pixels. */
+export interface PointerTool {
+  press: (at: Point) => void;
+  drag: (at: Point) => void;
+  release: () => void;
+}
+
 export class ImagePanel {
   readonly root: HTMLElement;
   private readonly canvas: HTMLCanvasElement;
@@ -56,6 +64,9 @@ export class ImagePanel {
   onPick: (at: PointedAt) => void = () => {};
   /** Takes a click before anything else; false: it does not want it. */
   onPlace: (at: PointedAt) => boolean = () => false;
+  tool: PointerTool | null = null;
+  /** Draws over the image, in pixels of it; `pixel` is one of the screen. */
+  overlay: (context: CanvasRenderingContext2D, pixel: number) => void = () => {};
   private moved: Path2D | null = null;
 
   /** `run`: which run it shows; -1 for none. */
@@ -70,7 +81,24 @@ export class ImagePanel {
     this.canvas.addEventListener("pointermove", (event) => this.onPoint(this.locate(event)));
     this.canvas.addEventListener("pointerleave", () => this.onPoint(null));
     this.canvas.addEventListener("click", (event) => this.pick(event));
+    this.listenToTool();
     new ResizeObserver(() => this.draw()).observe(this.root);
+  }
+
+  private listenToTool(): void {
+    const { canvas } = this;
+    canvas.addEventListener("pointerdown", (event) => {
+      if (!this.tool || !this.details || event.button !== 0) return;
+      canvas.setPointerCapture(event.pointerId);
+      this.tool.press(this.position(event, this.details.camera));
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.tool && this.details && canvas.hasPointerCapture(event.pointerId))
+        this.tool.drag(this.position(event, this.details.camera));
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      if (this.tool && canvas.hasPointerCapture(event.pointerId)) this.tool.release();
+    });
   }
 
   /** Loads what the state asks for; what is shown stays until that is there. */
@@ -160,13 +188,20 @@ export class ImagePanel {
       context.fillStyle = "rgba(255, 212, 0, 0.55)";
       context.fill(this.moved);
     }
+    this.overlay(context, 1 / (scale || 1));
     this.drawPoint(context, 1 / (scale || 1));
   }
 
-  /** Shows the points of an object elsewhere, while it is dragged. */
-  async showMoved(object: number, pose: Pose): Promise<void> {
+  /** Shows the points of an object at another pose: while it is dragged, or of a hypothesis. Null shows none. */
+  async showMoved(shown: { object: number; pose: Pose } | null): Promise<void> {
     const cameraPose = this.pose(this.app.get().view);
-    if (object < 0 || !cameraPose || !this.details) return;
+    if (!shown && !this.moved) return;
+    this.moved = null;
+    if (!shown || !this.app.object(shown.object)?.has_surface || !cameraPose || !this.details) {
+      this.draw();
+      return;
+    }
+    const { object, pose } = shown;
     const { camera } = this.details;
     const { positions } = await this.api.surface(object);
     const cameraFromObject = multiply(inverseRigid(cameraPose), pose);
@@ -262,12 +297,19 @@ export class ImagePanel {
     return this.app.runView(this.runOf(), view)?.pose ?? this.app.cameraPose(view);
   }
 
+  /** In pixels, whose centres are whole numbers. */
+  private position(event: MouseEvent, camera: Camera): Point {
+    const box = this.canvas.getBoundingClientRect();
+    return [
+      ((event.clientX - box.left) / box.width) * camera.width - 0.5,
+      ((event.clientY - box.top) / box.height) * camera.height - 0.5,
+    ];
+  }
+
   private locate(event: MouseEvent): PointedAt | null {
     if (!this.details || !this.images) return null;
     const { camera } = this.details;
-    const box = this.canvas.getBoundingClientRect();
-    const u = Math.floor(((event.clientX - box.left) / box.width) * camera.width);
-    const v = Math.floor(((event.clientY - box.top) / box.height) * camera.height);
+    const [u, v] = this.position(event, camera).map(Math.round) as [number, number];
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) return null;
     const depth = this.images.depth[v * camera.width + u] ?? Number.NaN;
     const pose = this.pose(this.app.get().view);
@@ -277,7 +319,7 @@ export class ImagePanel {
 
   private pick(event: MouseEvent): void {
     const at = this.locate(event);
-    if (!at) return;
+    if (!at || this.tool) return;
     if (this.onPlace(at)) return;
     if (this.app.get().isMeasuring) {
       this.onPick(at);

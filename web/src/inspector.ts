@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything that is known of the selected object, in numbers; without a selection, what happened in the run.
 import type { Api } from "./api";
-import { button, coordinates, element, metres, percent } from "./dom";
+import { button, coordinates, element, metres, percent, type Row, table } from "./dom";
 import { distance, rotationAngleDeg, translationOf } from "./geometry";
 import { isChange, kEventMarks, kEventNames } from "./history";
 import type { Detection, DetectionDetails, ObjectEvent, SceneObject, TrueObject, ViewDetails } from "./protocol";
 import type { App } from "./store";
-
-type Row = [string, string | Node];
-
-function table(rows: Row[]): HTMLElement {
-  const list = element("dl");
-  for (const [name, value] of rows) list.append(element("dt", {}, name), element("dd", {}, value));
-  return list;
-}
+import { Why } from "./why";
 
 const heading = (text: string, color?: string): HTMLElement =>
   element("h2", color ? { style: `--object-color: ${color}`, class: "object" } : {}, text);
@@ -21,6 +14,7 @@ const heading = (text: string, color?: string): HTMLElement =>
 export class Inspector {
   private details: ViewDetails | null = null;
   private wanted = "";
+  private readonly why: Why;
   onError: (error: unknown) => void = () => {};
 
   constructor(
@@ -28,9 +22,16 @@ export class Inspector {
     private readonly app: App,
     private readonly api: Api,
   ) {
+    this.why = new Why(app, api);
+    this.why.onLoad = () => this.show();
+    this.why.onError = (error) => this.onError(error);
     app.listen((changed) => {
       if (changed.has("view") || changed.has("run")) this.load();
-      else if (["track", "object", "event", "measured", "compare"].some((key) => changed.has(key as "track")))
+      else if (
+        ["track", "object", "point", "event", "measured", "compare", "hypothesis"].some((key) =>
+          changed.has(key as "track"),
+        )
+      )
         this.show();
     });
     this.load();
@@ -39,6 +40,7 @@ export class Inspector {
   /** Details of the view; they are shown when they are there. */
   private load(): void {
     this.details = null;
+    this.why.load();
     const { view, run } = this.app.get();
     this.show();
     if (this.app.scene.views.length === 0) return;
@@ -52,9 +54,11 @@ export class Inspector {
   }
 
   private show(): void {
-    const { track, object, measured } = this.app.get();
+    const { track, object, measured, point } = this.app.get();
     const parts: Node[] = [];
     if (measured.length > 0) parts.push(...this.showMeasured());
+    else if (point)
+      parts.push(heading("Place"), table([["position", coordinates(point)]]), ...this.why.showPlace(point));
     if (track >= 0) parts.push(...this.showTrack(track));
     else if (object >= 0) parts.push(...this.showObject(object));
     else parts.push(...this.showOverview());
@@ -80,6 +84,11 @@ export class Inspector {
     if (!detection) rows.push(["this view", "not detected"]);
     const parts: Node[] = [heading(object.name, object.color), table(rows)];
     if (detection) parts.push(...this.showDetection(detection));
+    parts.push(
+      ...(detection
+        ? this.why.showPlace(this.why.centerOf(known.object, detection.pose))
+        : this.why.showObject(known.object)),
+    );
     parts.push(element("h3", {}, "History"), this.eventList(known.events, false));
     return parts;
   }
@@ -134,7 +143,7 @@ export class Inspector {
     const rows = objectRows(object);
     for (const each of truth)
       rows.push(["true position", coordinates(translationOf(each.pose))], ["visible", percent(each.visible_share)]);
-    const parts = [heading(object.name, object.color), table(rows)];
+    const parts = [heading(object.name, object.color), table(rows), ...this.why.showObject(number)];
     if (this.app.scene.views.length > 0) return parts;
     return [...parts, button("All models", "Show all models (Esc)", () => this.app.selectNothing())];
   }
@@ -172,7 +181,8 @@ export class Inspector {
       if (view.pose_suspect) rows.push(["camera pose", "suspect: no change was reported"]);
     }
     const changes = this.app.changes();
-    const parts: Node[] = [heading(run.name), table(rows), element("h3", {}, `Changes (${changes.length})`)];
+    const parts: Node[] = [heading(run.name), table(rows), ...this.why.showMissed()];
+    parts.push(element("h3", {}, `Changes (${changes.length})`));
     parts.push(
       changes.length > 0 ? this.eventList(changes, true) : element("p", { class: "hint" }, "Nothing changed."),
     );
@@ -255,6 +265,7 @@ function uncertaintyRows(covariance: number[]): Row[] {
   return [
     ["σ position", `${millimetres.join(", ")} mm`],
     ["σ rotation", `${degrees.join(", ")}°`],
+    ["ellipsoid", "3 σ of the centre, 10 times enlarged"],
   ];
 }
 

@@ -10,6 +10,7 @@ import { guessUp, inverseRigid, project, transformPoint, type Vec3 } from "./geo
 import { ImagePanel, type PointedAt } from "./image_panel";
 import { Inspector } from "./inspector";
 import { formatLink, type LinkState, parseLink } from "./link";
+import { MaskEditor } from "./mask_editor";
 import { makePicture } from "./picture";
 import type { Pose } from "./protocol";
 import { SceneView } from "./scene_view";
@@ -17,7 +18,7 @@ import { App } from "./store";
 import { Timeline } from "./timeline";
 import { makeBox, World } from "./world";
 
-const kPollMs = 1000;
+const kReconnectMs = 1000;
 
 /** The whole page. */
 class Viewer {
@@ -87,7 +88,10 @@ class Viewer {
   private startAnnotating(annotator: Annotator): AnnotateKeys {
     document.body.classList.add("annotates");
     annotator.say = (text, isError) => this.say(text, isError);
-    const panel = new AnnotatePanel(byId("inspector"), annotator, this.api);
+    const [imagePanel] = this.panels;
+    if (!imagePanel) throw new Error("there are no views to annotate");
+    const masks = new MaskEditor(annotator, this.api, imagePanel);
+    const panel = new AnnotatePanel(byId("inspector"), annotator, this.api, masks);
     const keys = new AnnotateKeys(annotator, panel, this.world);
     annotator.onChange = () => panel.show();
     const gizmo = this.world.gizmo();
@@ -112,19 +116,18 @@ class Viewer {
     showRegions();
     gizmo.onDrag = (pose) => {
       this.sceneView.movePoints(this.app.get().track, pose);
-      this.panels[0]?.showMoved(annotator.selected()?.object ?? -1, pose);
+      this.panels[0]?.showMoved({ object: annotator.selected()?.object ?? -1, pose });
     };
     gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move");
     this.app.listen((changed) => {
       if (["view", "track", "edit"].some((key) => changed.has(key as "view"))) showGizmo();
       if (changed.has("view") || changed.has("edit")) showRegions();
     });
-    for (const imagePanel of this.panels)
-      imagePanel.onPlace = (at) => {
-        if (annotator.placing < 0) return false;
-        annotator.place(...at.pixel);
-        return true;
-      };
+    imagePanel.onPlace = (at) => {
+      if (annotator.placing < 0) return false;
+      annotator.place(...at.pixel);
+      return true;
+    };
     return keys;
   }
   /** Places a model where a point of the 3D view is seen. */
@@ -153,7 +156,7 @@ class Viewer {
     await this.updateAll(all);
     if (state.camera) this.world.setCamera(state.camera);
     else this.world.goHome();
-    if (scene.is_live) this.follow();
+    if (scene.is_live) this.follow().catch((error) => this.report(error));
     if (scene.views.length > 1 && !scene.has_poses)
       this.say("The sequence has no camera poses: each view is drawn in the frame of its own camera.");
     document.body.dataset.ready = "yes";
@@ -174,6 +177,8 @@ class Viewer {
       this.sceneView.update(changed),
       ...panels.map((panel) => (isNew ? panel.update() : panel.draw())),
     ]);
+    const { hypothesis } = this.app.get();
+    if (has("hypothesis", "view", "run")) await this.panels[0]?.showMoved(hypothesis);
     if (has("view", "run", "compare")) this.say("");
     if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
   }
@@ -339,18 +344,14 @@ class Viewer {
   }
 
   /** Shows views as they are recognised. */
-  private follow(): void {
-    const poll = async () => {
-      try {
-        const { revision } = this.app.scene;
-        if ((await this.api.revision()) !== revision) await this.reload();
-      } catch (error) {
-        this.report(error);
-        return;
+  private async follow(): Promise<void> {
+    while (this.app.scene.is_live) {
+      for await (const revision of this.api.revisions()) {
+        if (revision !== this.app.scene.revision) await this.reload();
+        if (!this.app.scene.is_live) return;
       }
-      if (this.app.scene.is_live) window.setTimeout(poll, kPollMs);
-    };
-    window.setTimeout(poll, kPollMs);
+      await new Promise((resolve) => window.setTimeout(resolve, kReconnectMs));
+    }
   }
 
   private async reload(): Promise<void> {

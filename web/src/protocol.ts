@@ -51,6 +51,8 @@ export interface Run {
   name: string;
   preset: string;
   version: string;
+  /** What became of each hypothesis is known (trace.ts). */
+  has_trace?: boolean;
   views: (RunView | null)[];
   events: ObjectEvent[];
 }

@@ -9,6 +9,7 @@ import {
   inverseRigid,
   multiply,
   transformPoint,
+  translationDeviations,
   translationOf,
   type Vec3,
 } from "./geometry";
@@ -16,7 +17,7 @@ import { isChange } from "./history";
 import { PointSet } from "./points";
 import type { Camera, Cloud, Pose } from "./protocol";
 import type { App } from "./store";
-import { type Label, makeAxes, makeCameras, makeSegments, type Pickable, type World } from "./world";
+import { type Label, makeAxes, makeCameras, makeEllipsoid, makeSegments, type Pickable, type World } from "./world";
 
 const kNumPrevious = 5;
 const kMaxCloudPoints = 320000;
@@ -25,14 +26,32 @@ const kReconstructionSizeM = 0.006;
 const kSurfaceSizeM = 0.0042;
 const kEvidenceMarginM = 0.015;
 const kObjectNearerM = 0.012;
+/** Three standard deviations, ten times enlarged: they are about a millimetre. */
+const kShownDeviations = 30;
 const kEvidenceRgb = kEvidenceColors.map(parseColor);
 
 interface Item {
   object: number;
   track: number;
   pose: Pose;
-  kind: "detection" | "place" | "truth";
+  kind: "detection" | "other" | "place" | "truth" | "hypothesis";
 }
+
+/** Those above a half are drawn before the points of the view. */
+const kOpacities: Record<Item["kind"], number> = {
+  detection: 1,
+  other: 0.6,
+  hypothesis: 0.6,
+  place: 0.35,
+  truth: 0.35,
+};
+/** How the points of an item are drawn beside the detections of the run. */
+const kTints: Partial<Record<Item["kind"], [string, number]>> = {
+  other: ["#b68cff", 0.75],
+  place: ["#e5484d", 0.75],
+  truth: ["#ffffff", 0.8],
+  hypothesis: ["#ffd400", 0.7],
+};
 
 export class SceneView {
   private camera: Camera | null = null;
@@ -63,7 +82,9 @@ export class SceneView {
     await Promise.all([
       has("view", "run", "layers", "cloudColors") ? this.showCloud() : null,
       has("view", "layers") ? this.showChanges() : null,
-      has("view", "run", "layers", "track", "object", "event", "objectColors", "edit") ? this.showItems() : null,
+      has("view", "run", "layers", "track", "object", "event", "objectColors", "edit", "hypothesis", "compare")
+        ? this.showItems()
+        : null,
     ]);
   }
 
@@ -104,6 +125,8 @@ export class SceneView {
     const { layers } = this.app.get();
     for (const name of ["cloud", "previous", "objects", "places", "truth", "cameras", "changes"] as const)
       this.world.setVisible(name, layers.has(name));
+    this.world.setVisible("other", layers.has("objects"));
+    this.world.setVisible("uncertainty", layers.has("objects"));
     this.world.setLabels(layers.has("labels") && (layers.has("objects") || !this.app.run()) ? this.labels : []);
   }
 
@@ -193,14 +216,26 @@ export class SceneView {
       const details = await this.api.view(view, this.runNumber());
       for (const { object, pose } of details.truth) items.push({ object, track: -1, pose, kind: "truth" });
     }
+    const { hypothesis, compare } = this.app.get();
+    // Numbers of tracks mean the same within a run only.
+    for (const { object, pose } of this.app.runView(compare)?.detections ?? [])
+      items.push({ object, track: -1, pose, kind: "other" });
+    if (hypothesis) items.push({ object: hypothesis.object, track: -1, pose: hypothesis.pose, kind: "hypothesis" });
     const drawn = await Promise.all(items.map((item) => this.makeItem(item)));
+    const uncertainty = await this.makeUncertainty();
     if (!isCurrent()) return;
     this.pointsOfTrack.clear();
     items.forEach((item, index) => {
       const points = drawn[index]?.pickables[0]?.points;
       if (item.kind === "detection" && points) this.pointsOfTrack.set(item.track, points);
     });
-    const groups = { detection: "objects", place: "places", truth: "truth" } as const;
+    const groups = {
+      detection: "objects",
+      place: "places",
+      truth: "truth",
+      hypothesis: "hypothesis",
+      other: "other",
+    } as const;
     for (const [kind, group] of Object.entries(groups)) {
       const parts = drawn.filter((_, index) => items[index]?.kind === kind);
       const lines = kind === "place" ? this.makeMoves() : [];
@@ -210,6 +245,7 @@ export class SceneView {
         parts.flatMap((part) => part.pickables),
       );
     }
+    this.world.setGroup("uncertainty", uncertainty);
     const named = this.app.run() ? "detection" : "truth";
     this.labels = items.filter((item) => item.kind === named).map((item) => this.makeLabel(item));
     this.showLayers();
@@ -239,16 +275,29 @@ export class SceneView {
     const surface = await this.api.surface(item.object);
     const points = new PointSet(surface.positions, await this.surfaceColors(item, surface), surface.normals, {
       sizeM: kSurfaceSizeM,
-      nearerM: item.kind === "detection" ? kObjectNearerM : 0,
+      nearerM: kOpacities[item.kind] > 0.5 ? kObjectNearerM : 0,
       isRound: true,
-      opacity: item.kind === "detection" ? 1 : 0.35,
+      opacity: kOpacities[item.kind],
     });
     points.matrix = new Matrix4().fromArray(item.pose);
-    if (item.kind === "place") points.setTint("#e5484d", 0.75);
-    else if (item.kind === "truth") points.setTint("#ffffff", 0.8);
+    const pickable = { points, track: item.track, object: item.object };
+    const tint = kTints[item.kind];
+    if (tint) points.setTint(...tint);
     else if (this.isSelected(item)) points.setTint(object.color, 0.45);
-    const track = item.kind === "truth" ? -1 : item.track;
-    return { objects: [points, ...axes], pickables: [{ points, track, object: item.object }] };
+    return { objects: [points, ...axes], pickables: item.kind === "hypothesis" ? [] : [pickable] };
+  }
+
+  /** The ellipsoid in which the centre of the selected object is, enlarged. */
+  private async makeUncertainty(): Promise<Object3D[]> {
+    const detection = this.app.selectedDetection();
+    const index = detection ? (this.app.runView()?.detections.indexOf(detection) ?? -1) : -1;
+    if (!detection || index < 0) return [];
+    const details = await this.api.view(this.app.get().view, this.runNumber());
+    const covariance = details.detections[index]?.covariance;
+    if (!covariance) return [];
+    const object = this.app.object(detection.object);
+    const axes = translationDeviations(covariance).map((value) => kShownDeviations * value);
+    return makeEllipsoid(transformPoint(detection.pose, object?.center ?? [0, 0, 0]), axes, "#ffd400");
   }
 
   private async surfaceColors(item: Item, surface: Cloud): Promise<Uint8Array> {

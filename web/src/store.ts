@@ -4,11 +4,14 @@ import type { Vec3 } from "./geometry";
 import { findChanges, findTracks, type Track } from "./history";
 import { kDefaultState, type LinkState } from "./link";
 import type { Detection, ObjectEvent, Run, RunView, Scene, SceneObject } from "./protocol";
+import type { Hypothesis } from "./trace";
 
 export interface Store extends LinkState {
   /** A place that was picked without an object, or under the pointer. */
   point: Vec3 | null;
   event: ObjectEvent | null;
+  /** The hypothesis of the view that is looked at. */
+  hypothesis: Hypothesis | null;
   /** The view that is wholly on the screen; -1 while one is loading. */
   shownView: number;
   isPlaying: boolean;
@@ -25,6 +28,7 @@ export class App {
     ...kDefaultState,
     point: null,
     event: null,
+    hypothesis: null,
     shownView: -1,
     isPlaying: false,
     isMeasuring: false,
@@ -40,7 +44,12 @@ export class App {
   get(): Readonly<Store> {
     return this.state;
   }
-  set(change: Change): void {
+  set(asked: Change): void {
+    // What is looked at belongs to the view and to what is selected there.
+    const isElsewhere = (["view", "run", "track", "object", "point"] as const).some(
+      (key) => key in asked && asked[key] !== this.state[key],
+    );
+    const change: Change = isElsewhere ? { hypothesis: null, ...asked } : asked;
     const changed = new Set<keyof Store>();
     for (const key of Object.keys(change) as (keyof Store)[]) if (change[key] !== this.state[key]) changed.add(key);
     if (changed.size === 0) return;

@@ -357,6 +357,21 @@ export function makeBox(pose: Pose, size: Vec3, color: string): LineSegments {
   return makeSegments(points, color);
 }
 
+/** An ellipsoid around a place, before everything else. `axes`: a 3x3 matrix, column by column, that the unit sphere is
+ * multiplied with. */
+export function makeEllipsoid(center: Vec3, axes: readonly number[], color: string): Object3D[] {
+  const column = (c: number) => [axes[3 * c] ?? 0, axes[3 * c + 1] ?? 0, axes[3 * c + 2] ?? 0, 0];
+  const matrix = new Matrix4().fromArray([...column(0), ...column(1), ...column(2), ...center, 1]);
+  return [0.25, 0.6].map((opacity, index) => {
+    const style = { color, opacity, transparent: true, depthTest: false, wireframe: index === 1 };
+    const mesh = new Mesh(new SphereGeometry(1, 16, 10), new MeshBasicMaterial(style));
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix = matrix;
+    mesh.renderOrder = 1;
+    return mesh;
+  });
+}
+
 export function makeAxes(pose: Pose, length: number): LineSegments[] {
   const origin = transformPoint(pose, [0, 0, 0]);
   return [

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Recent } from "../src/api";
+import { Recent, splitEvents } from "../src/api";
 import { distanceColors, parseColor, plainColors } from "../src/colors";
 import { decodeCloud } from "../src/protocol";
 
@@ -54,4 +54,9 @@ test("colours are bytes", () => {
   const [near, far, beyond] = [0, 3, 6].map((i) => distanceColors(new Float32Array([1, 2, 9]), 1, 2).slice(i, i + 3));
   assert.notDeepEqual(near, far);
   assert.deepEqual(far, beyond);
+});
+
+test("events are split where they are whole", () => {
+  assert.deepEqual(splitEvents("data: 1\n\n:\n\ndata: 2\n\ndata: 3"), { data: ["1", "2"], rest: "data: 3" });
+  assert.deepEqual(splitEvents(""), { data: [], rest: "" });
 });

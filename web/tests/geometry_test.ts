@@ -12,6 +12,7 @@ import {
   project,
   rotationAngleDeg,
   transformPoint,
+  translationDeviations,
   unproject,
   type Vec3,
 } from "../src/geometry";
@@ -32,6 +33,22 @@ function assertNear(a: readonly number[], b: readonly number[]): void {
     assert.ok(Math.abs(value - (b[i] ?? Number.NaN)) < 1e-9, `${a} is not ${b}`);
   });
 }
+
+test("deviations of a translation map the unit sphere to its covariance", () => {
+  const block = [4, 2, -1, 2, 5, 0.5, -1, 0.5, 3];
+  const covariance = Array.from({ length: 36 }, (_, i) => {
+    const [row, column] = [Math.floor(i / 6) - 3, (i % 6) - 3];
+    return row >= 0 && column >= 0 ? (block[3 * row + column] ?? 0) : 77;
+  });
+  const l = translationDeviations(covariance);
+  const at = (row: number, column: number) => l[3 * column + row] ?? 0;
+  for (let row = 0; row < 3; ++row)
+    for (let column = 0; column < 3; ++column) {
+      const sum = [0, 1, 2].reduce((total, k) => total + at(row, k) * at(column, k), 0);
+      assert.ok(Math.abs(sum - (block[3 * row + column] ?? 0)) < 1e-12);
+    }
+  assert.deepEqual(translationDeviations(new Array(36).fill(0)), new Array(9).fill(0), "no uncertainty");
+});
 
 test("a motion and its inverse cancel", () => {
   const a = pose(30, [1, 2, 3]);

@@ -23,6 +23,8 @@ constexpr std::size_t kMaxTitleBytes = 200;
 
 constexpr std::array<std::pair<RegionVerdict, std::string_view>, 3> kVerdicts{
     {{RegionVerdict::kOpen, "open"}, {RegionVerdict::kAccepted, "accepted"}, {RegionVerdict::kRejected, "rejected"}}};
+constexpr std::array<std::pair<RegionKind, std::string_view>, 2> kRegionKinds{
+    {{RegionKind::kNovel, "novel"}, {RegionKind::kRemoved, "removed"}}};
 constexpr std::array<std::pair<AnnotatedEventKind, std::string_view>, 3> kKinds{
     {{AnnotatedEventKind::kAdded, "added"},
      {AnnotatedEventKind::kMoved, "moved"},
@@ -66,6 +68,19 @@ class Reader {
     }
     return point;
   }
+  RegionKey region(const char* key) {
+    Reader inside(find(key));
+    const RegionKey region{.view = inside.integer("view"),
+                           .kind = inside.choice("kind", kRegionKinds),
+                           .center_in_world_m = inside.point("center").value_or(Eigen::Vector3d::Constant(NAN))};
+    return inside.is_valid() && region.center_in_world_m.allFinite() ? region : fail(region);
+  }
+  std::optional<PixelRuns> runs(const char* key) {
+    const json& numbers = find(key);
+    if (numbers.is_null()) return std::nullopt;
+    auto runs = runs_from_json(numbers);
+    return runs ? runs : fail(runs);
+  }
   template <typename Enum, std::size_t kCount>
   Enum choice(const char* key, const std::array<std::pair<Enum, std::string_view>, kCount>& names) {
     const std::string name = text(key);
@@ -103,7 +118,13 @@ json change_to_json(const PutObject& change) {
 json change_to_json(const DropObject& change) { return {{"do", "drop_object"}, {"id", change.id}}; }
 json change_to_json(const JudgeRegion& change) {
   const RegionJudgement& j = change.judgement;
-  return {{"do", "judge_region"}, {"region", j.region}, {"verdict", to_text(j.verdict)}, {"track", j.track}};
+  json mask = nullptr;
+  if (j.mask) mask = runs_to_json(*j.mask);
+  return {{"do", "judge_region"},
+          {"region", region_to_json(j.region)},
+          {"verdict", to_text(j.verdict)},
+          {"track", j.track},
+          {"mask", std::move(mask)}};
 }
 json change_to_json(const CheckView& change) {
   return {{"do", "check_view"}, {"view", change.view}, {"is_checked", change.is_checked}};
@@ -134,9 +155,11 @@ std::optional<AnnotationChange> change_from_json(const json& text) {
   } else if (what == "drop_object") {
     change = DropObject{read.integer("id")};
   } else if (what == "judge_region") {
-    change = JudgeRegion{{.region = read.integer("region"),
+    change = JudgeRegion{{.region = read.region("region"),
                           .verdict = read.choice("verdict", kVerdicts),
-                          .track = read.integer("track", -1)}};
+                          .track = read.integer("track", -1),
+                          .mask = read.runs("mask")},
+                         !text.contains("mask")};
   } else if (what == "check_view") {
     change = CheckView{read.integer("view"), read.boolean("is_checked")};
   } else if (what == "put_event") {
@@ -164,6 +187,34 @@ json pose_to_json(const Rigid3& pose) {
 json point_to_json(const std::optional<Eigen::Vector3d>& point_m) {
   if (!point_m) return nullptr;
   return {point_m->x(), point_m->y(), point_m->z()};
+}
+
+json region_to_json(const RegionKey& region) {
+  return {{"view", region.view}, {"kind", to_string(region.kind)}, {"center", point_to_json(region.center_in_world_m)}};
+}
+
+json runs_to_json(const PixelRuns& runs) {
+  json numbers = json::array();
+  for (const PixelRun& run : runs) {
+    numbers.push_back(run.first);
+    numbers.push_back(run.count);
+  }
+  return numbers;
+}
+
+std::optional<PixelRuns> runs_from_json(const json& numbers) {
+  if (!numbers.is_array() || numbers.size() % 2 != 0) return std::nullopt;
+  PixelRuns runs;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    const auto pixel = [&](const json& number) {
+      return number.is_number_unsigned() && number.get<std::uint64_t>() <= std::numeric_limits<int>::max()
+                 ? number.get<int>()
+                 : -1;
+    };
+    runs.push_back({pixel(numbers[i]), pixel(numbers[i + 1])});
+  }
+  if (!check_runs(runs)) return std::nullopt;
+  return runs;
 }
 
 std::optional<Rigid3> pose_from_json(const json& numbers) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "resight/annotation/annotated_events.hpp"
+#include "resight/annotation/matched_regions.hpp"
 #include "resight/models/pose_distance.hpp"
 
 namespace resight {
@@ -16,6 +17,24 @@ using ToDoKind = AnnotationToDo::Kind;
 constexpr float kNearSurface_m = 0.02F;
 constexpr double kMinExplainedShare = 0.5;
 constexpr std::size_t kMaxSurfacePoints = 1500;
+
+AnnotationToDo make_to_do(ToDoKind kind, int view, int track, int region, std::string text) {
+  return {.kind = kind, .view = view, .track = track, .region = region, .text = std::move(text), .lost = std::nullopt};
+}
+
+const char* what_it_did(RegionKind kind) { return kind == RegionKind::kNovel ? "came" : "left"; }
+
+const char* what_was_said(RegionVerdict verdict) {
+  switch (verdict) {
+    case RegionVerdict::kAccepted:
+      return "accepted";
+    case RegionVerdict::kRejected:
+      return "rejected";
+    case RegionVerdict::kOpen:
+      break;
+  }
+  return "corrected the mask of what shows";
+}
 
 const ObjectModel& model_of(const ModelLibrary& library, const AnnotatedObject& object) {
   return library.objects[static_cast<std::size_t>(object.object)];
@@ -46,11 +65,12 @@ void check_track(const std::vector<AnnotatedObject>& placements, const ModelLibr
     const AnnotatedObject& next = placements[i];
     const std::string& name = model_of(library, next).name;
     if (next.first_view <= previous.last_view)
-      to_dos.push_back({ToDoKind::kTwoPlaces, next.first_view, next.track, -1,
-                        fmt::format("{} is at two places in view {}", name, next.first_view + 1)});
+      to_dos.push_back(make_to_do(ToDoKind::kTwoPlaces, next.first_view, next.track, -1,
+                                  fmt::format("{} is at two places in view {}", name, next.first_view + 1)));
     else if (next.first_view > previous.last_view + 1)
-      to_dos.push_back({ToDoKind::kGap, previous.last_view + 1, next.track, -1,
-                        fmt::format("{} is nowhere in views {} to {}", name, previous.last_view + 2, next.first_view)});
+      to_dos.push_back(
+          make_to_do(ToDoKind::kGap, previous.last_view + 1, next.track, -1,
+                     fmt::format("{} is nowhere in views {} to {}", name, previous.last_view + 2, next.first_view)));
   }
 }
 
@@ -66,8 +86,8 @@ void check_same_places(const AnnotationDocument& document, const ModelLibrary& l
       if (one.track == other.track ||
           center_distance_m(model, one.world_from_object, other.world_from_object) > 0.25 * model.diameter_m)
         continue;
-      to_dos.push_back({ToDoKind::kSamePlace, view, other.track, -1,
-                        fmt::format("{} is there twice in view {}", model.name, view + 1)});
+      to_dos.push_back(make_to_do(ToDoKind::kSamePlace, view, other.track, -1,
+                                  fmt::format("{} is there twice in view {}", model.name, view + 1)));
     }
   }
 }
@@ -94,11 +114,22 @@ std::vector<AnnotationToDo> find_to_dos(const AnnotationDocument& document, cons
   for (const int track : tracks) check_track(placements_of_track(document, track), library, to_dos);
   check_same_places(document, library, to_dos);
   std::ranges::stable_sort(to_dos, {}, &AnnotationToDo::view);
+  const MatchedRegions matched = match_regions(document, regions);
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    if (document.regions.contains(static_cast<int>(r)) || is_region_explained(document, library, regions[r])) continue;
-    to_dos.push_back({ToDoKind::kUnexplained, regions[r].view, -1, static_cast<int>(r),
-                      fmt::format("view {}: something {}", regions[r].view + 1,
-                                  regions[r].kind == RegionKind::kNovel ? "came" : "left")});
+    const RegionJudgement* judgement = matched.of_proposal[r];
+    if (judgement != nullptr && judgement->verdict != RegionVerdict::kOpen) continue;
+    if (is_region_explained(document, library, regions[r])) continue;
+    to_dos.push_back(
+        make_to_do(ToDoKind::kUnexplained, regions[r].view, -1, static_cast<int>(r),
+                   fmt::format("view {}: something {}", regions[r].view + 1, what_it_did(regions[r].kind))));
+  }
+  for (const RegionJudgement* judgement : matched.unmatched) {
+    const RegionKey& region = judgement->region;
+    to_dos.push_back(
+        make_to_do(ToDoKind::kLostRegion, region.view, judgement->track, -1,
+                   fmt::format("view {}: you {} that something {}, but this is no longer proposed", region.view + 1,
+                               what_was_said(judgement->verdict), what_it_did(region.kind))));
+    to_dos.back().lost = region;
   }
   return to_dos;
 }

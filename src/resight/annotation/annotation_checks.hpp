@@ -17,12 +17,14 @@ struct AnnotationToDo {
     kGap,          ///< A track is nowhere for some views in between.
     kSamePlace,    ///< Two placements of one model are at the same place in one view.
     kUnexplained,  ///< No track explains a region that came or left, and nobody has judged it.
+    kLostRegion,   ///< A region that somebody has judged is no longer proposed.
   };
   Kind kind = Kind::kTwoPlaces;
-  int view = 0;      ///< Where it shows.
-  int track = -1;    ///< -1: none.
-  int region = -1;   ///< -1: none.
-  std::string text;  ///< For the user.
+  int view = 0;                   ///< Where it shows.
+  int track = -1;                 ///< -1: none.
+  int region = -1;                ///< Index into the proposals; -1: none.
+  std::string text;               ///< For the user.
+  std::optional<RegionKey> lost;  ///< The region that is no longer proposed.
 };
 
 /// Whether the placements explain a region: one that begins at the region's view or before (novel), or ended before it

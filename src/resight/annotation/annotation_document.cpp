@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "resight/core/names.hpp"
 
 namespace resight {
@@ -56,14 +58,20 @@ Undo apply_one(AnnotationDocument& document, DropObject& change, const Annotatio
 }
 
 Undo apply_one(AnnotationDocument& document, JudgeRegion& change, const AnnotationLimits& limits) {
-  const RegionJudgement& judgement = change.judgement;
-  if (!is_below(judgement.region, limits.num_regions))
-    return Error{fmt::format("there is no region {}", judgement.region)};
+  RegionJudgement& judgement = change.judgement;
+  if (!is_below(judgement.region.view, limits.num_views))
+    return Error{fmt::format("there is no view {}", judgement.region.view)};
+  if (!is_near(judgement.region.center_in_world_m)) return Error{"the region is not within 10 km"};
   if (judgement.track < -1 || judgement.track > kMaxNumber) return Error{"the track is out of range"};
+  if (const auto valid = check_runs(judgement.mask.value_or(PixelRuns())); !valid) return valid.error();
   const auto old = document.regions.find(judgement.region);
-  const RegionJudgement before =
-      old == document.regions.end() ? RegionJudgement{judgement.region, RegionVerdict::kOpen, -1} : old->second;
-  if (judgement.verdict == RegionVerdict::kOpen)
+  const RegionJudgement before = old == document.regions.end() ? RegionJudgement{.region = judgement.region,
+                                                                                 .verdict = RegionVerdict::kOpen,
+                                                                                 .track = -1,
+                                                                                 .mask = std::nullopt}
+                                                               : old->second;
+  if (std::exchange(change.keeps_mask, false)) judgement.mask = before.mask;
+  if (judgement.verdict == RegionVerdict::kOpen && !judgement.mask)
     document.regions.erase(judgement.region);
   else
     document.regions[judgement.region] = judgement;

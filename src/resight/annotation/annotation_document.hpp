@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "resight/annotation/pixel_runs.hpp"
+#include "resight/annotation/region_key.hpp"
 #include "resight/core/result.hpp"
 #include "resight/geometry/rigid3.hpp"
 
@@ -29,9 +31,10 @@ struct AnnotatedObject {
 enum class RegionVerdict { kOpen, kAccepted, kRejected };
 
 struct RegionJudgement {
-  int region = -1;  ///< Index into the proposals.
+  RegionKey region;
   RegionVerdict verdict = RegionVerdict::kOpen;
-  int track = -1;  ///< The thing that came or left; -1: none of the known ones.
+  int track = -1;                 ///< The thing that came or left; -1: none of the known ones.
+  std::optional<PixelRuns> mask;  ///< As corrected by hand, in the recorded image of its view; none: as proposed.
 };
 
 enum class AnnotatedEventKind { kAdded, kMoved, kRemoved };
@@ -50,13 +53,12 @@ struct UnknownObjectEvent {
 struct AnnotationLimits {
   int num_views = 0;
   int num_objects = 0;
-  int num_regions = 0;
 };
 
 /// All that has been annotated.
 struct AnnotationDocument {
-  std::map<int, AnnotatedObject> objects;  ///< By id.
-  std::map<int, RegionJudgement> regions;  ///< By region; the others are open.
+  std::map<int, AnnotatedObject> objects;        ///< By id.
+  std::map<RegionKey, RegionJudgement> regions;  ///< Those that somebody has decided about or corrected.
   std::map<int, UnknownObjectEvent> unknown_events;
   std::set<int> checked_views;
   int next_id = 0;
@@ -72,6 +74,7 @@ struct DropObject {
 };
 struct JudgeRegion {
   RegionJudgement judgement;
+  bool keeps_mask = false;  ///< The mask stays what it is, whatever the judgement says.
 };
 struct CheckView {
   int view = 0;
@@ -85,10 +88,11 @@ struct DropUnknownEvent {
 };
 using AnnotationChange = std::variant<PutObject, DropObject, JudgeRegion, CheckView, PutUnknownEvent, DropUnknownEvent>;
 
-/// Applies a change and returns the one that undoes it. Numbers of -1 become the next free ones, also in `change`, so
-/// that it has the same effect when it is applied again. Fails, and changes nothing, for numbers beyond the limits,
-/// placements that end before they begin, poses that are not rigid or far away, and what is to be dropped but not
-/// there.
+/// Applies a change and returns the one that undoes it. Numbers of -1 become the next free ones, and a mask that
+/// is kept is filled in, also in `change`, so that it has the same effect when it is applied again. A region that is
+/// open and not corrected is forgotten. Fails, and changes nothing, for numbers beyond the limits, placements that end
+/// before they begin, poses that are not rigid or far away, masks that check_runs() refuses, and what is to be dropped
+/// but not there.
 [[nodiscard]] Result<AnnotationChange> apply_change(AnnotationDocument& document, AnnotationChange& change,
                                                     const AnnotationLimits& limits);
 

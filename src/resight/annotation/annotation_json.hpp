@@ -12,6 +12,12 @@ namespace resight::annotation {
 [[nodiscard]] nlohmann::json pose_to_json(const Rigid3& pose);
 [[nodiscard]] nlohmann::json point_to_json(const std::optional<Eigen::Vector3d>& point_m);
 
+[[nodiscard]] nlohmann::json region_to_json(const RegionKey& region);
+/// First pixel and number of pixels of each run in turn.
+[[nodiscard]] nlohmann::json runs_to_json(const PixelRuns& runs);
+/// None unless check_runs() accepts them.
+[[nodiscard]] std::optional<PixelRuns> runs_from_json(const nlohmann::json& json);
+
 /// None unless it is a pose of 16 finite numbers that can be repaired.
 [[nodiscard]] std::optional<Rigid3> pose_from_json(const nlohmann::json& json);
 

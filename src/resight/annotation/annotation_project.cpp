@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <cassert>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kJournalName = "annotation.jsonl";
 
 std::string make_header(const std::string& inputs) {
-  return nlohmann::json{{"format", "resight annotation 1"}, {"inputs", inputs}}.dump();
+  return nlohmann::json{{"format", "resight annotation 2"}, {"inputs", inputs}}.dump();
 }
 
 }  // namespace
@@ -38,9 +38,10 @@ Result<std::unique_ptr<AnnotationProject>> AnnotationProject::open(const std::fi
 
 Result<void> AnnotationProject::replay(const std::vector<std::string>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    auto action = parse_action(lines[i]);
+    const auto action = parse_action(lines[i]);
     if (!action) return action.error();
-    if (const auto done = apply(*action); !done) return Error{fmt::format("line {}: {}", i + 2, done.error().message)};
+    const ActionOutcome outcome = apply(*action, [](const AnnotationAction&) { return Result<void>(); });
+    if (outcome.kind != ActionOutcome::Kind::kApplied) return Error{fmt::format("line {}: {}", i + 2, outcome.message)};
     ++revision_;
   }
   return {};
@@ -49,59 +50,70 @@ Result<void> AnnotationProject::replay(const std::vector<std::string>& lines) {
 std::string AnnotationProject::undo_title() const { return done_.empty() ? "" : done_.back().edit.title; }
 std::string AnnotationProject::redo_title() const { return undone_.empty() ? "" : undone_.back().title; }
 
-Result<AnnotationProject::Step> AnnotationProject::apply_edit(AnnotationDocument& document, AnnotationEdit edit) const {
-  Step step;
+Result<AnnotationProject::Step> AnnotationProject::apply_edit(AnnotationEdit edit) {
+  Step step{.edit = {}, .undo = {}, .next_id = document_.next_id, .next_track = document_.next_track};
   for (AnnotationChange& change : edit.changes) {
-    auto undo = apply_change(document, change, limits_);
-    if (!undo) return undo.error();
+    auto undo = apply_change(document_, change, limits_);
+    if (!undo) {
+      revert(step);
+      return undo.error();
+    }
     step.undo.insert(step.undo.begin(), *std::move(undo));
   }
   step.edit = std::move(edit);
   return step;
 }
 
-Result<void> AnnotationProject::apply(AnnotationAction& action) {
-  AnnotationDocument next = document_;
-  if (std::holds_alternative<UndoEdit>(action)) {
-    if (done_.empty()) return Error{"there is nothing to undo"};
-    for (AnnotationChange& change : done_.back().undo)
-      if (auto undone = apply_change(next, change, limits_); !undone) return undone.error();
-    undone_.push_back(std::move(done_.back().edit));
-    done_.pop_back();
-  } else if (std::holds_alternative<RedoEdit>(action)) {
-    if (undone_.empty()) return Error{"there is nothing to redo"};
-    auto step = apply_edit(next, undone_.back());
-    if (!step) return step.error();
-    undone_.pop_back();
-    done_.push_back(*std::move(step));
-  } else {
-    auto step = apply_edit(next, std::get<AnnotationEdit>(std::move(action)));
-    if (!step) return step.error();
-    action = step->edit;  // with the numbers that were given
-    done_.push_back(*std::move(step));
-    undone_.clear();
+void AnnotationProject::take_back(Step& step) {
+  for (AnnotationChange& change : step.undo) {
+    [[maybe_unused]] const auto undone = apply_change(document_, change, limits_);
+    assert(undone.ok());
   }
-  document_ = std::move(next);
+}
+
+void AnnotationProject::revert(Step& step) {
+  take_back(step);
+  document_.next_id = step.next_id;
+  document_.next_track = step.next_track;
+}
+
+ActionOutcome AnnotationProject::undo(const Append& append) {
+  if (done_.empty()) return {ActionOutcome::Kind::kInvalid, "there is nothing to undo"};
+  if (const auto written = append(UndoEdit{}); !written)
+    return {ActionOutcome::Kind::kNotWritten, written.error().message};
+  take_back(done_.back());
+  undone_.push_back(std::move(done_.back().edit));
+  done_.pop_back();
   return {};
 }
 
-ActionOutcome AnnotationProject::act(AnnotationAction action, int based_on) {
-  using Kind = ActionOutcome::Kind;
-  if (based_on != revision_)
-    return {Kind::kStale, fmt::format("the annotation has changed: revision {} is not {}", based_on, revision_)};
-  // Kept until the journal is written, because an action that is not written must not count.
-  AnnotationDocument old_document = document_;
-  auto old_done = done_;
-  auto old_undone = undone_;
-  if (const auto done = apply(action); !done) return {Kind::kInvalid, done.error().message};
-  if (const auto written = journal_.append(format_action(action)); !written) {
-    document_ = std::move(old_document);
-    done_ = std::move(old_done);
-    undone_ = std::move(old_undone);
-    return {Kind::kNotWritten, written.error().message};
+ActionOutcome AnnotationProject::apply(const AnnotationAction& action, const Append& append) {
+  if (std::holds_alternative<UndoEdit>(action)) return undo(append);
+  const bool is_redo = std::holds_alternative<RedoEdit>(action);
+  if (is_redo && undone_.empty()) return {ActionOutcome::Kind::kInvalid, "there is nothing to redo"};
+  auto step = apply_edit(is_redo ? undone_.back() : std::get<AnnotationEdit>(action));
+  if (!step) return {ActionOutcome::Kind::kInvalid, step.error().message};
+  // The step has the numbers that were given, and an action that is not written must not count.
+  if (const auto written = append(is_redo ? action : AnnotationAction(step->edit)); !written) {
+    revert(*step);
+    return {ActionOutcome::Kind::kNotWritten, written.error().message};
   }
-  ++revision_;
+  if (is_redo)
+    undone_.pop_back();
+  else
+    undone_.clear();
+  done_.push_back(*std::move(step));
   return {};
+}
+
+ActionOutcome AnnotationProject::act(const AnnotationAction& action, int based_on) {
+  if (based_on != revision_)
+    return {ActionOutcome::Kind::kStale,
+            fmt::format("the annotation has changed: revision {} is not {}", based_on, revision_)};
+  ActionOutcome outcome =
+      apply(action, [this](const AnnotationAction& done) { return journal_.append(format_action(done)); });
+  if (outcome.kind == ActionOutcome::Kind::kApplied) ++revision_;
+  return outcome;
 }
 
 }  // namespace resight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,19 +43,27 @@ class AnnotationProject {
   [[nodiscard]] bool was_cut_off() const { return was_cut_off_; }
 
   /// Applies an action to revision `based_on`.
-  [[nodiscard]] ActionOutcome act(AnnotationAction action, int based_on);
+  [[nodiscard]] ActionOutcome act(const AnnotationAction& action, int based_on);
 
  private:
   /// An edit as applied, with the changes that undo it, last first.
   struct Step {
     AnnotationEdit edit;
     std::vector<AnnotationChange> undo;
+    int next_id = 0;  ///< Of the document before.
+    int next_track = 0;
   };
+  /// Writes an action before it counts.
+  using Append = std::function<Result<void>(const AnnotationAction&)>;
   AnnotationProject(AnnotationJournal journal, const AnnotationLimits& limits)
       : journal_(std::move(journal)), limits_(limits) {}
   [[nodiscard]] Result<void> replay(const std::vector<std::string>& lines);
-  [[nodiscard]] Result<Step> apply_edit(AnnotationDocument& document, AnnotationEdit edit) const;
-  [[nodiscard]] Result<void> apply(AnnotationAction& action);
+  [[nodiscard]] ActionOutcome apply(const AnnotationAction& action, const Append& append);
+  [[nodiscard]] ActionOutcome undo(const Append& append);
+  /// All changes of an edit, or none.
+  [[nodiscard]] Result<Step> apply_edit(AnnotationEdit edit);
+  void take_back(Step& step);
+  void revert(Step& step);  ///< Same, as if it had never been done: its numbers are free again.
 
   AnnotationJournal journal_;
   AnnotationLimits limits_;

@@ -2,6 +2,7 @@
 #include "resight/annotation/annotation_project.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = ActionOutcome::Kind;
 
-constexpr AnnotationLimits kLimits{.num_views = 10, .num_objects = 3, .num_regions = 2};
+constexpr AnnotationLimits kLimits{.num_views = 10, .num_objects = 3};
 
 class AnnotationProjectTest : public testing::Test {
  protected:
@@ -41,6 +42,10 @@ AnnotatedObject make_object(double x_m, int first = 0, int last = 9) {
           .first_view = first,
           .last_view = last,
           .world_from_object = Rigid3::from_translation({x_m, 0, 1})};
+}
+AnnotationChange judge(double x_m, RegionVerdict verdict, std::optional<PixelRuns> mask = std::nullopt) {
+  const RegionKey region{.view = 3, .kind = RegionKind::kRemoved, .center_in_world_m = Eigen::Vector3d(x_m, 0.1, 2)};
+  return JudgeRegion{{.region = region, .verdict = verdict, .track = -1, .mask = std::move(mask)}};
 }
 AnnotationEdit put(const AnnotatedObject& object) { return {.title = "Place", .changes = {PutObject{object}}}; }
 
@@ -69,15 +74,14 @@ TEST_F(AnnotationProjectTest, ActionsSurviveAndCanBeUndone) {
 TEST_F(AnnotationProjectTest, UndoOfEveryKindOfChangeRestoresTheDocument) {
   const auto project = open();
   ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
-  const AnnotationEdit edit{
-      .title = "All",
-      .changes = {DropObject{0}, JudgeRegion{{1, RegionVerdict::kRejected, -1}}, CheckView{3, true},
-                  PutUnknownEvent{{.id = -1,
-                                   .view = 2,
-                                   .kind = AnnotatedEventKind::kAdded,
-                                   .name = "cup",
-                                   .before_in_world_m = std::nullopt,
-                                   .after_in_world_m = Eigen::Vector3d(1, 2, 3)}}}};
+  const AnnotationEdit edit{.title = "All",
+                            .changes = {DropObject{0}, judge(1, RegionVerdict::kRejected), CheckView{3, true},
+                                        PutUnknownEvent{{.id = -1,
+                                                         .view = 2,
+                                                         .kind = AnnotatedEventKind::kAdded,
+                                                         .name = "cup",
+                                                         .before_in_world_m = std::nullopt,
+                                                         .after_in_world_m = Eigen::Vector3d(1, 2, 3)}}}};
   ASSERT_EQ(project->act(edit, 1).kind, Kind::kApplied);
   EXPECT_TRUE(project->document().objects.empty());
   EXPECT_EQ(project->document().unknown_events.size(), 1U);
@@ -105,6 +109,70 @@ TEST_F(AnnotationProjectTest, WrongActionsAreRefusedAsAWhole) {
   EXPECT_EQ(project->act(put(make_object(1e9)), 0).kind, Kind::kInvalid);
   EXPECT_TRUE(project->document().objects.empty());
   EXPECT_EQ(project->revision(), 0);
+}
+
+TEST_F(AnnotationProjectTest, AFailedEditTakesNoNumbers) {
+  const auto project = open();
+  AnnotationEdit edit = put(make_object(0.1));
+  edit.changes.emplace_back(DropObject{7});
+  EXPECT_EQ(project->act(edit, 0).kind, Kind::kInvalid);
+  EXPECT_EQ(project->document().next_id, 0);
+  EXPECT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+  EXPECT_TRUE(project->document().objects.contains(0));
+}
+
+TEST_F(AnnotationProjectTest, WhatCannotBeWrittenDoesNotCount) {
+  const auto project = open();
+  ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+  ASSERT_EQ(project->act(put(make_object(0.2)), 1).kind, Kind::kApplied);
+  ASSERT_EQ(project->act(UndoEdit{}, 2).kind, Kind::kApplied);
+  const std::string before = *read_file(journal());
+  rlimit old{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
+  const rlimit full{.rlim_cur = before.size() + 3, .rlim_max = old.rlim_max};
+  const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  const ActionOutcome edit = project->act(put(make_object(0.3)), 3);
+  const ActionOutcome undo = project->act(UndoEdit{}, 3);
+  const ActionOutcome redo = project->act(RedoEdit{}, 3);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old), 0);
+  ::signal(SIGXFSZ, old_handler);
+  for (const ActionOutcome& outcome : {edit, undo, redo}) EXPECT_EQ(outcome.kind, Kind::kNotWritten) << outcome.message;
+  EXPECT_EQ(*read_file(journal()), before);
+  EXPECT_EQ(project->revision(), 3);
+  EXPECT_EQ(project->document().objects.size(), 1U);
+  EXPECT_EQ(project->undo_title(), "Place");
+  EXPECT_EQ(project->act(RedoEdit{}, 3).kind, Kind::kApplied) << "there is room again";
+  EXPECT_DOUBLE_EQ(x_of(*project, 1), 0.2);
+}
+
+TEST_F(AnnotationProjectTest, CorrectedMasksSurviveAndCanBeUndone) {
+  const PixelRuns runs{{5, 3}, {10, 1}};
+  const auto mask_of = [](const AnnotationProject& project) { return project.document().regions.begin()->second.mask; };
+  {
+    const auto project = open();
+    ASSERT_EQ(project->act(AnnotationEdit{"Mask", {judge(1, RegionVerdict::kOpen, runs)}}, 0).kind, Kind::kApplied);
+    ASSERT_EQ(project->act(AnnotationEdit{"Mask", {judge(1, RegionVerdict::kOpen, PixelRuns{})}}, 1).kind,
+              Kind::kApplied);
+    EXPECT_EQ(mask_of(*project), PixelRuns{}) << "everything was erased";
+    ASSERT_EQ(project->act(UndoEdit{}, 2).kind, Kind::kApplied);
+  }
+  const auto project = open();
+  EXPECT_EQ(mask_of(*project), runs);
+  ASSERT_EQ(project->act(UndoEdit{}, 3).kind, Kind::kApplied);
+  EXPECT_TRUE(project->document().regions.empty());
+  // A verdict of which the mask is not told keeps it, also when it is read again.
+  const auto verdict = parse_action(
+      R"({"title":"v","changes":[{"do":"judge_region","region":{"view":3,"kind":"removed","center":[1,0.1,2]},)"
+      R"("verdict":"rejected"}]})");
+  ASSERT_TRUE(verdict.ok()) << verdict.error().message;
+  ASSERT_EQ(project->act(AnnotationEdit{"Mask", {judge(1, RegionVerdict::kOpen, runs)}}, 4).kind, Kind::kApplied);
+  ASSERT_EQ(project->act(*verdict, 5).kind, Kind::kApplied);
+  EXPECT_EQ(mask_of(*project), runs);
+  EXPECT_NE(read_file(journal())->rfind("\"mask\":[5,3,10,1]"), std::string::npos);
+  const PixelRuns overlapping{{5, 3}, {7, 1}};
+  EXPECT_EQ(project->act(AnnotationEdit{"Mask", {judge(1, RegionVerdict::kOpen, overlapping)}}, 6).kind,
+            Kind::kInvalid);
 }
 
 TEST_F(AnnotationProjectTest, ACutOffLastLineIsDropped) {
@@ -180,6 +248,11 @@ TEST(ParseAction, ReadsWhatIsWritten) {
   const auto read = parse_action(format_action(action));
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(format_action(*read), format_action(action));
+  const AnnotationAction judgement =
+      AnnotationEdit{"Mask", {judge(0.1 + 0.2, RegionVerdict::kAccepted, PixelRuns{{3, 4}, {100, 1}})}};
+  const auto judged = parse_action(format_action(judgement));
+  ASSERT_TRUE(judged.ok()) << judged.error().message;
+  EXPECT_EQ(format_action(*judged), format_action(judgement)) << "the place to the last digit";
 }
 
 TEST(ParseAction, RefusesWhatIsNoAction) {
@@ -189,11 +262,18 @@ TEST(ParseAction, RefusesWhatIsNoAction) {
     return edit(R"({"do":"put_object","object":0,"first_view":0,"last_view":1,"pose":)" + numbers + "}");
   };
   EXPECT_TRUE(parse_action(object(pose)).ok());
-  for (const std::string& text :
-       {std::string(""), std::string("7"), std::string("{}"), edit(""), edit("{}"), edit(R"({"do":"drop_object"})"),
-        edit(R"({"do":"format_disk"})"), object("[1,2]"), object("[2,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
-        object("[1,0,0,0,0,1,0,0,0,0,1,0,1e999,0,1,1]"), object("[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
-        edit(R"({"do":"drop_object","id":1e300})"), edit(R"({"do":"drop_object","id":99999999999999})")})
+  for (
+      const std::string& text :
+      {std::string(""), std::string("7"), std::string("{}"), edit(""), edit("{}"), edit(R"({"do":"drop_object"})"),
+       edit(R"({"do":"format_disk"})"), object("[1,2]"), object("[2,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
+       object("[1,0,0,0,0,1,0,0,0,0,1,0,1e999,0,1,1]"), object("[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]"),
+       edit(R"({"do":"judge_region","region":3,"verdict":"accepted"})"),
+       edit(R"({"do":"judge_region","region":{"view":3,"kind":"novel"},"verdict":"accepted"})"),
+       edit(R"({"do":"judge_region","region":{"view":3,"kind":"new","center":[0,0,0]},"verdict":"accepted"})"),
+       edit(R"({"do":"judge_region","region":{"view":3,"kind":"novel","center":[0,0,0]},"verdict":"open","mask":[1]})"),
+       edit(
+           R"({"do":"judge_region","region":{"view":3,"kind":"novel","center":[0,0,0]},"verdict":"open","mask":[-1,2]})"),
+       edit(R"({"do":"drop_object","id":1e300})"), edit(R"({"do":"drop_object","id":99999999999999})")})
     EXPECT_FALSE(parse_action(text).ok()) << text;
 }
 

@@ -3,8 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "resight/annotation/pixel_runs.hpp"
+#include "resight/annotation/region_key.hpp"
 #include "resight/annotation/view_store.hpp"
-#include "resight/changes/change_regions.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
 
 namespace resight {
@@ -16,6 +17,10 @@ struct ChangeProposal {
   std::vector<Eigen::Vector3f> points_in_world;  ///< At most 400 of them, evenly.
   int num_points = 0;                            ///< Before that.
   OrientedBox box;
+  PixelRuns pixels;  ///< Of the recorded image: those that show the region, or see through it.
+  [[nodiscard]] RegionKey key() const {
+    return {.view = view, .kind = kind, .center_in_world_m = box.world_from_box.translation};
+  }
 };
 
 /// Compares each view with those before it and returns all regions of at least `min_points` points, in the order of the

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "resight/annotation/internal/region_files.hpp"
 #include "resight/annotation/internal/truth_files.hpp"
 #include "resight/core/files.hpp"
 #include "resight/io/images.hpp"
@@ -116,7 +117,8 @@ Result<void> check_export_folder(const fs::path& folder) {
 }
 
 Result<ExportSummary> export_annotation(const AnnotationDocument& document, const ModelLibrary& library,
-                                        ViewStore& views, const std::string& scene, const fs::path& folder) {
+                                        std::span<const ChangeProposal> proposals, ViewStore& views,
+                                        const std::string& scene, const fs::path& folder) {
   auto pending = PendingDirectory::create(folder, ExistingFolder::kFill);
   if (!pending) return pending.error();
   const fs::path bop = pending->path() / "bop" / scene;
@@ -140,6 +142,9 @@ Result<ExportSummary> export_annotation(const AnnotationDocument& document, cons
   if (const auto done = write_file(bop / "scene_gt_info.json", info); !done) return done.error();
   if (const auto done = move_masks(masks, bop); !done) return done.error();
   if (const auto done = write_changes(pending->path() / "tuw" / (scene + ".changes"), truth.chains()); !done)
+    return done.error();
+  if (const auto done = annotation::write_regions(document, proposals, library, views, pending->path() / "regions");
+      !done)
     return done.error();
   if (const auto done = write_file(pending->path() / kMark, "may be replaced\n"); !done) return done.error();
   // The hidden folder lies inside an existing one, so it is moved out before that one is removed.

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/annotated_scene_test.hpp"
 #include "resight/annotation/annotation_checks.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/io/change_files.hpp"
 #include "resight/io/images.hpp"
@@ -26,10 +28,12 @@ class ExportAnnotationTest : public testing::Test {
   ~ExportAnnotationTest() override { fs::remove_all(folder_); }
   void write() {
     ViewStore views(scene_);
-    const auto summary = export_annotation(scene_->document, scene_->library, views, "small", folder_ / "export");
+    const auto summary =
+        export_annotation(scene_->document, scene_->library, proposals_, views, "small", folder_ / "export");
     ASSERT_TRUE(summary.ok()) << summary.error().message;
   }
   std::shared_ptr<test::AnnotatedScene> scene_ = std::make_shared<test::AnnotatedScene>();
+  std::vector<ChangeProposal> proposals_;
   fs::path folder_;
 };
 
@@ -85,8 +89,39 @@ TEST_F(ExportAnnotationTest, AnExportReplacesAnEarlierOneAndNothingElse) {
   fs::create_directories(folder_ / "export");
   std::ofstream(folder_ / "export" / "thesis.tex") << "text";
   ViewStore views(scene_);
-  EXPECT_FALSE(export_annotation(scene_->document, scene_->library, views, "small", folder_ / "export").ok());
+  EXPECT_FALSE(
+      export_annotation(scene_->document, scene_->library, proposals_, views, "small", folder_ / "export").ok());
   EXPECT_TRUE(fs::exists(folder_ / "export" / "thesis.tex"));
+}
+
+TEST_F(ExportAnnotationTest, AcceptedRegionsHaveTheirMasks) {
+  const AnnotatedObject& first = scene_->document.objects.begin()->second;
+  const auto judge = [&](const RegionKey& region, RegionVerdict verdict, std::optional<PixelRuns> mask) {
+    scene_->document.regions[region] = {
+        .region = region, .verdict = verdict, .track = first.track, .mask = std::move(mask)};
+  };
+  for (int i = 0; i < 3; ++i) {
+    ChangeProposal proposal;
+    proposal.view = 3;
+    proposal.box.world_from_box = Rigid3::from_translation({0.5 * i, 0, 0});
+    proposal.pixels = {{100 * i, 7}};
+    proposals_.push_back(proposal);
+  }
+  judge(proposals_[0].key(), RegionVerdict::kAccepted, std::nullopt);
+  judge(proposals_[1].key(), RegionVerdict::kRejected, std::nullopt);
+  judge(proposals_[2].key(), RegionVerdict::kAccepted, PixelRuns{{40, 2}, {321, 5}});
+  write();
+  const fs::path regions = folder_ / "export" / "regions";
+  const auto list = nlohmann::json::parse(*read_file(regions / "regions.json"))["regions"];
+  ASSERT_EQ(list.size(), 2U) << "the rejected one is none";
+  EXPECT_EQ(list[0]["corrected"], false);
+  EXPECT_EQ(list[1]["corrected"], true);
+  EXPECT_EQ(list[1]["object"], scene_->library.objects[static_cast<std::size_t>(first.object)].name);
+  const auto proposed = read_mask(regions / list[0]["mask"].get<std::string>());
+  const auto corrected = read_mask(regions / list[1]["mask"].get<std::string>());
+  ASSERT_TRUE(proposed.ok() && corrected.ok());
+  EXPECT_EQ(find_runs(*proposed), (PixelRuns{{0, 7}}));
+  EXPECT_EQ(find_runs(*corrected), (PixelRuns{{40, 2}, {321, 5}}));
 }
 
 TEST_F(ExportAnnotationTest, ChecksNameWhatDoesNotFit) {

@@ -137,14 +137,18 @@ Loss find_loss(const GroundTruthObject& truth, const Rigid3& world_from_camera, 
   std::vector<Candidate> rejected;
   for (const Candidate& c : verified)
     if (!is_accepted(c)) rejected.push_back(refined(c));
-  const Nearest judged = nearest_of(rejected);
-  if (judged.index >= 0) loss.evidence = trace.evidence[judged.index];
-  if (judged.is_right) return lost_at(LossStage::kRejected, judged);
+  const auto keep_evidence_of = [&](int index) {
+    loss.verified = index;
+    loss.evidence = trace.evidence[static_cast<std::size_t>(index)];
+  };
+  if (const Nearest judged = nearest_of(rejected); judged.is_right) {
+    keep_evidence_of(judged.index);
+    return lost_at(LossStage::kRejected, judged);
+  }
   if (const Nearest start = nearest_of(verified); start.is_right) {
-    loss.evidence = trace.evidence[start.index];
+    keep_evidence_of(start.index);
     return lost_at(LossStage::kRefinedAway, nearest_of(std::array{refined({start.index, {}})}));
   }
-  loss.evidence.reset();
   if (const Nearest clustered = nearest_of(candidates_of(trace.clustered, object)); clustered.is_right)
     return lost_at(LossStage::kCalledAbsent, clustered);
   const Nearest merged = nearest_of(candidates_of(trace.merged, object));

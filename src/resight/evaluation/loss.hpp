@@ -37,6 +37,7 @@ struct Loss {
   std::optional<PoseDifference> best;
   /// Of the best refined hypothesis; for kRejected and kRefinedAway only.
   std::optional<HypothesisEvidence> evidence;
+  int verified = -1;  ///< Index of that hypothesis in RecognitionTrace::verified; -1: none.
 };
 
 struct FindLossOptions {

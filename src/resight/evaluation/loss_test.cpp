@@ -70,6 +70,7 @@ TEST_F(LossTest, NothingSeenIsNoKeypoints) {
   EXPECT_EQ(loss().stage, LossStage::kNoKeypoints);
   EXPECT_FALSE(loss().best.has_value());
   EXPECT_FALSE(loss().evidence.has_value());
+  EXPECT_EQ(loss().verified, -1);
 }
 
 TEST_F(LossTest, KeypointsAwayFromTheSurfaceDoNotCount) {
@@ -118,6 +119,7 @@ TEST_F(LossTest, ARightHypothesisIsLostWhereItIsSeenLast) {
   EXPECT_EQ(loss().stage, LossStage::kRejected);
   EXPECT_NEAR(loss().best->center_distance_m, 0.005, 1e-9);
   EXPECT_EQ(loss().evidence->explained_share, 0.04);
+  EXPECT_EQ(loss().verified, 1);
 }
 
 TEST_F(LossTest, RefinementMayBringARightOneThatWasNone) {

@@ -4,119 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
-#include "resight/core/names.hpp"
 #include "resight/core/unfinished_folder.hpp"
-#include "resight/io/internal/json.hpp"
-#include "resight/io/pose_text.hpp"
+#include "resight/io/internal/member_reader.hpp"
 
 namespace resight {
 namespace {
 
-using io::as_integer;
 using io::as_numbers;
 using io::as_text;
+using io::Faults;
 using io::member;
+using io::MemberReader;
 using nlohmann::json;
 
 constexpr const char* kDetectionsFile = "detections.json";
 constexpr const char* kChangesFile = "changes.json";
 constexpr const char* kSummaryFile = "summary.json";
-
-/// The first thing that is wrong in a file. Readers go on with defaults after it.
-class Faults {
- public:
-  explicit Faults(std::filesystem::path file) : file_(std::move(file)) {}
-  void add(const std::string& where, const std::string& what) {
-    if (!first_) first_ = file_error(file_, where + ": " + what);
-  }
-  [[nodiscard]] const std::optional<Error>& first() const { return first_; }
-
- private:
-  std::filesystem::path file_;
-  std::optional<Error> first_;
-};
-
-/// Reads the members of one object of a file. `where` names the object in messages.
-class MemberReader {
- public:
-  MemberReader(const json& object, std::string where, Faults& faults)
-      : object_(object), where_(std::move(where)), faults_(faults) {}
-
-  [[nodiscard]] int integer(const char* key) const {
-    const auto value = as_integer(member(object_, key));
-    if (!value) fault(key, "expected a whole number");
-    return value.value_or(0);
-  }
-  [[nodiscard]] int count(const char* key) const {
-    const int value = integer(key);
-    if (value < 0) fault(key, "expected a number of 0 or more");
-    return std::max(0, value);
-  }
-  [[nodiscard]] bool flag(const char* key) const {
-    const json& value = member(object_, key);
-    if (!value.is_boolean()) fault(key, "expected true or false");
-    return value.is_boolean() && value.get<bool>();
-  }
-  /// In [0, 1]; null is NaN.
-  [[nodiscard]] double share(const char* key) const {
-    const json& value = member(object_, key);
-    if (value.is_null() && object_.contains(key)) return std::numeric_limits<double>::quiet_NaN();
-    const auto number = io::as_number(value);
-    if (!number || *number < 0 || *number > 1) fault(key, "expected a number in [0, 1]");
-    return number.value_or(0);
-  }
-  [[nodiscard]] std::string text(const char* key) const {
-    const auto value = as_text(member(object_, key));
-    if (!value) fault(key, "expected a text");
-    return value.value_or("");
-  }
-  /// Name of an object.
-  [[nodiscard]] std::string name(const char* key) const {
-    const std::string value = text(key);
-    if (const auto valid = check_object_name(value); !valid) fault(key, valid.error().message);
-    return value;
-  }
-  [[nodiscard]] Rigid3 pose(const char* key) const {
-    const json& value = member(object_, key);
-    const auto r = as_numbers(member(value, "rotation"));
-    const auto t = as_numbers(member(value, "translation_m"));
-    if (!r || r->size() != 9 || !t || t->size() != 3) {
-      fault(key, "expected a rotation of 9 numbers and a translation_m of 3");
-      return {};
-    }
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) matrix(row, column) = (*r)[3 * row + column];
-      matrix(row, 3) = (*t)[row];
-    }
-    const auto pose = rigid_from_matrix(matrix, key);
-    if (!pose) faults_.add(where_, pose.error().message);
-    return pose ? *pose : Rigid3();
-  }
-  [[nodiscard]] std::optional<Rigid3> optional_pose(const char* key) const {
-    if (member(object_, key).is_null()) return std::nullopt;
-    return pose(key);
-  }
-  /// Calls `read` with each element of an array and its place.
-  template <typename Read>
-  void each(const char* key, const Read& read) const {
-    const json& items = member(object_, key);
-    if (!items.is_array()) fault(key, "expected a list");
-    int index = 0;
-    if (items.is_array())
-      for (const json& item : items) read(MemberReader(item, fmt::format("{}{}[{}]", prefix(), key, index++), faults_));
-  }
-  [[nodiscard]] const json& operator[](const char* key) const { return member(object_, key); }
-  void fault(const char* key, const std::string& what) const { faults_.add(prefix() + key, what); }
-
- private:
-  [[nodiscard]] std::string prefix() const { return where_.empty() ? "" : where_ + "."; }
-  const json& object_;
-  std::string where_;
-  Faults& faults_;
-};
 
 std::optional<std::array<double, 36>> read_covariance(const MemberReader& reader) {
   const json& uncertainty = reader["uncertainty"];
@@ -231,8 +135,13 @@ Result<RecognitionResults> read_recognition_results(const std::filesystem::path&
   auto results = parse_detections(folder / kDetectionsFile);
   if (!results) return results;
   if (const auto added = add_changes(folder / kChangesFile, *results); !added) return added.error();
-  if (!io::is_file(folder / kSummaryFile)) return results;
-  if (const auto added = add_inputs(folder / kSummaryFile, *results); !added) return added.error();
+  if (io::is_file(folder / kSummaryFile))
+    if (const auto added = add_inputs(folder / kSummaryFile, *results); !added) return added.error();
+  if (io::is_file(folder / kTraceFile)) {
+    auto trace = TraceFile::open(folder / kTraceFile, static_cast<int>(results->views.size()));
+    if (!trace) return trace.error();
+    results->trace = *std::move(trace);
+  }
   return results;
 }
 

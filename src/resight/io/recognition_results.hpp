@@ -8,6 +8,7 @@
 
 #include "resight/core/result.hpp"
 #include "resight/geometry/rigid3.hpp"
+#include "resight/io/trace_file.hpp"
 
 namespace resight {
 
@@ -64,14 +65,15 @@ struct RecognitionResults {
   /// Inputs of the run as summary.json names them: paths, below the results if they are relative. Empty: unknown.
   std::filesystem::path sequence;
   std::filesystem::path models;
+  std::optional<TraceFile> trace;  ///< With `--trace`.
 };
 
 /// Whether the folder holds results of `resight recognize`.
 [[nodiscard]] bool has_recognition_results(const std::filesystem::path& folder);
 
-/// Reads detections.json, changes.json and, if it exists, summary.json of a folder. Fails for files that do not agree,
-/// numbers that are not finite, poses that are not rigid, names that check_object_name() refuses, and a folder that is
-/// not finished (check_finished()).
+/// Reads detections.json and changes.json of a folder and, where they exist, summary.json and trace.jsonl (the latter
+/// view by view, when it is asked for). Fails for files that do not agree, numbers that are not finite, poses that are
+/// not rigid, names that check_object_name() refuses, and a folder that is not finished (check_finished()).
 [[nodiscard]] Result<RecognitionResults> read_recognition_results(const std::filesystem::path& folder);
 
 }  // namespace resight

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "resight/appearance/appearance_match.hpp"
+#include "resight/verification/failed_test.hpp"
 #include "resight/verification/selection_cost.hpp"
 
 namespace resight {
@@ -22,30 +23,63 @@ double min_explained_share(const HypothesisEvidence& evidence, const AcceptanceO
                    untextured_degree(evidence, *options.untextured));
 }
 
-bool has_different_appearance(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (evidence.appearance.texture_contrast >= kMinTextureContrast &&
-      evidence.appearance.shared_texture < options.min_shared_texture * evidence.appearance.texture_contrast)
-    return true;
-  return (options.min_pattern_similarity && evidence.appearance.pattern_similarity < *options.min_pattern_similarity) ||
-         (options.min_newest_similarity && evidence.appearance.newest_similarity < *options.min_newest_similarity);
+double min_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  if (!options.require_unary_gain || !options.untextured) return 0;
+  return untextured_degree(evidence, *options.untextured) * options.untextured->min_gain *
+         evidence.costs.explained_scene;
+}
+
+/// The tests of one hypothesis, in their order; remembers the first that fails.
+class Tests {
+ public:
+  void at_least(Verdict verdict, const char* quantity, double value, double limit) {
+    if (!failed_ && value < limit)
+      failed_ = FailedTest{.verdict = verdict, .quantity = quantity, .value = value, .limit = limit};
+  }
+  [[nodiscard]] const std::optional<FailedTest>& failed() const { return failed_; }
+
+ private:
+  std::optional<FailedTest> failed_;
+};
+
+std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  const AppearanceEvidence& appearance = evidence.appearance;
+  Tests tests;
+  tests.at_least(Verdict::kTooFewVisible, "visible points", evidence.num_visible, kMinVisiblePoints);
+  tests.at_least(Verdict::kTooFewVisible, "visible share", evidence.visible_share, options.min_visible_share);
+  tests.at_least(Verdict::kNoSupport, "explained points", evidence.num_explained, 1);
+  tests.at_least(Verdict::kNoSupport, "explained share", evidence.explained_share,
+                 min_explained_share(evidence, options));
+  if (appearance.texture_contrast >= kMinTextureContrast)
+    tests.at_least(Verdict::kDifferentAppearance, "shared texture", appearance.shared_texture,
+                   options.min_shared_texture * appearance.texture_contrast);
+  if (options.min_pattern_similarity)
+    tests.at_least(Verdict::kDifferentAppearance, "pattern similarity", appearance.pattern_similarity,
+                   *options.min_pattern_similarity);
+  if (options.min_newest_similarity)
+    tests.at_least(Verdict::kDifferentAppearance, "newest similarity", appearance.newest_similarity,
+                   *options.min_newest_similarity);
+  return tests.failed();
 }
 
 }  // namespace
 
 Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (evidence.num_visible < kMinVisiblePoints || evidence.visible_share < options.min_visible_share)
-    return Verdict::kTooFewVisible;
-  if (evidence.num_explained == 0 || evidence.explained_share < min_explained_share(evidence, options))
-    return Verdict::kNoSupport;
-  return has_different_appearance(evidence, options) ? Verdict::kDifferentAppearance : Verdict::kCost;
+  const auto failed = test_evidence(evidence, options);
+  return failed ? failed->verdict : Verdict::kCost;
 }
 
 bool has_unary_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   if (evidence.verdict != Verdict::kCost) return false;
-  if (!options.require_unary_gain) return true;
-  const double min_gain =
-      options.untextured ? untextured_degree(evidence, *options.untextured) * options.untextured->min_gain : 0;
-  return unary_cost(evidence) < -(min_gain * evidence.costs.explained_scene);
+  return !options.require_unary_gain || unary_cost(evidence) < -min_gain(evidence, options);
+}
+
+std::optional<FailedTest> find_failed_test(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  if (auto failed = test_evidence(evidence, options)) return failed;
+  const double limit = min_gain(evidence, options);
+  const double gain = -unary_cost(evidence);
+  if (gain > limit) return std::nullopt;
+  return FailedTest{.verdict = Verdict::kCost, .quantity = "gain", .value = gain, .limit = limit};
 }
 
 }  // namespace resight

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "resight/verification/failed_test.hpp"
+
 namespace resight {
 namespace {
 
@@ -102,6 +104,31 @@ TEST(Acceptance, WithoutUntexturedOptionsNothingMoreIsNeeded) {
   EXPECT_EQ(assess_evidence(e, o), Verdict::kCost);
   e.costs.clutter = 445;
   EXPECT_TRUE(has_unary_gain(e, o));
+}
+
+TEST(FindFailedTest, NamesTheFirstTestWithItsNumbers) {
+  EXPECT_FALSE(find_failed_test(good_evidence(), options()).has_value());
+  HypothesisEvidence e = good_evidence();
+  e.explained_share = 0.55;
+  e.appearance.pattern_similarity = 0.1;  // fails as well, but is tested later
+  const auto failed = find_failed_test(e, options());
+  ASSERT_TRUE(failed.has_value());
+  EXPECT_EQ(failed->verdict, Verdict::kNoSupport);
+  EXPECT_STREQ(failed->quantity, "explained share");
+  EXPECT_DOUBLE_EQ(failed->value, 0.55);
+  EXPECT_DOUBLE_EQ(failed->limit, 0.6);
+}
+
+TEST(FindFailedTest, NamesTheGainThatIsTooSmall) {
+  HypothesisEvidence e = good_evidence();
+  e.appearance.shared_texture = 0;
+  e.costs.clutter = 400;  // gains 500 - 50 - 400
+  const auto failed = find_failed_test(e, options());
+  ASSERT_TRUE(failed.has_value());
+  EXPECT_EQ(failed->verdict, Verdict::kCost);
+  EXPECT_DOUBLE_EQ(failed->value, 50);
+  EXPECT_DOUBLE_EQ(failed->limit, 100);
+  EXPECT_FALSE(has_unary_gain(e, options()));
 }
 
 }  // namespace

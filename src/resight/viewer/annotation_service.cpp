@@ -8,6 +8,7 @@
 #include "resight/annotation/annotation_json.hpp"
 #include "resight/annotation/color_symmetry.hpp"
 #include "resight/annotation/export_annotation.hpp"
+#include "resight/annotation/matched_regions.hpp"
 #include "resight/annotation/place_by_click.hpp"
 #include "resight/annotation/refine_over_views.hpp"
 #include "resight/core/json_text.hpp"
@@ -179,6 +180,16 @@ HttpResponse answer_view(const AnnotationTask& task, ViewStore& store, int view)
   return json_response(viewer::format_annotated_view(task.project->document(), *task.library, **frame, view));
 }
 
+/// The pixels of a region: as proposed, and as corrected by hand (null: not).
+HttpResponse answer_region(const AnnotationTask& task, std::size_t region) {
+  const RegionJudgement* judgement = match_regions(task.project->document(), task.regions).of_proposal[region];
+  const bool is_corrected = judgement != nullptr && judgement->mask;
+  nlohmann::ordered_json answer = {{"proposed", annotation::runs_to_json(task.regions[region].pixels)},
+                                   {"corrected", nullptr}};
+  if (is_corrected) answer["corrected"] = annotation::runs_to_json(*judgement->mask);
+  return json_response(answer.dump());
+}
+
 HttpResponse nothing_here() { return make_text_response(404, "there is nothing under this address"); }
 
 }  // namespace
@@ -196,12 +207,19 @@ HttpResponse AnnotationService::answer(const HttpRequest& request, const std::ve
   if (request.method == "GET") {
     if (parts.empty()) return answer_state(task);
     if (parts.size() != 2) return nothing_here();
-    const bool is_view = parts[0] == "views";
-    const int count = is_view ? state_->views.num_views() : static_cast<int>(task.library->objects.size());
-    const auto number = viewer::parse_number_below(parts[1], count);
-    if (!number || (!is_view && parts[0] != "symmetries")) return nothing_here();
-    return is_view ? answer_view(task, state_->views, *number)
-                   : answer_symmetries(task.library->objects[static_cast<std::size_t>(*number)]);
+    const auto number_below = [&](std::size_t count) {
+      return viewer::parse_number_below(parts[1], static_cast<int>(count));
+    };
+    if (parts[0] == "views") {
+      const auto view = number_below(static_cast<std::size_t>(state_->views.num_views()));
+      return view ? answer_view(task, state_->views, *view) : nothing_here();
+    }
+    if (parts[0] == "symmetries") {
+      const auto object = number_below(task.library->objects.size());
+      return object ? answer_symmetries(task.library->objects[static_cast<std::size_t>(*object)]) : nothing_here();
+    }
+    const auto region = parts[0] == "regions" ? number_below(task.regions.size()) : std::nullopt;
+    return region ? answer_region(task, static_cast<std::size_t>(*region)) : nothing_here();
   }
   if (parts.size() != 1) return nothing_here();
   const json body = parse_body(request);
@@ -218,8 +236,8 @@ HttpResponse AnnotationService::answer(const HttpRequest& request, const std::ve
 Result<void> AnnotationService::save() {
   const AnnotationTask& task = state_->task;
   if (state_->exported_revision == task.project->revision()) return {};
-  const auto summary =
-      export_annotation(task.project->document(), *task.library, state_->views, task.scene_name, task.export_folder);
+  const auto summary = export_annotation(task.project->document(), *task.library, task.regions, state_->views,
+                                         task.scene_name, task.export_folder);
   if (!summary) return summary.error();
   state_->exported_revision = task.project->revision();
   return {};

@@ -4,6 +4,7 @@
 #include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/annotation_checks.hpp"
 #include "resight/annotation/annotation_json.hpp"
+#include "resight/annotation/matched_regions.hpp"
 #include "resight/report/outline.hpp"
 #include "resight/viewer/internal/view_json.hpp"
 
@@ -20,6 +21,8 @@ const char* name_of(AnnotationToDo::Kind kind) {
       return "gap";
     case AnnotationToDo::Kind::kSamePlace:
       return "same_place";
+    case AnnotationToDo::Kind::kLostRegion:
+      return "lost_region";
     case AnnotationToDo::Kind::kUnexplained:
       break;
   }
@@ -41,17 +44,20 @@ Json objects_json(const AnnotationDocument& document) {
 Json regions_json(const AnnotationDocument& document, const ModelLibrary& library,
                   std::span<const ChangeProposal> regions) {
   Json list = Json::array();
+  const MatchedRegions matched = match_regions(document, regions);
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    const auto judged = document.regions.find(static_cast<int>(r));
-    const bool is_judged = judged != document.regions.end();
+    const RegionJudgement* judged = matched.of_proposal[r];
+    const bool is_judged = judged != nullptr;
     const ChangeProposal& region = regions[r];
-    list.push_back({{"view", region.view},
+    list.push_back({{"key", annotation::region_to_json(is_judged ? judged->region : region.key())},
+                    {"view", region.view},
                     {"kind", to_string(region.kind)},
                     {"num_points", region.num_points},
                     {"pose", matrix_json(region.box.world_from_box)},
                     {"size_m", {region.box.size_m.x(), region.box.size_m.y(), region.box.size_m.z()}},
-                    {"verdict", to_text(is_judged ? judged->second.verdict : RegionVerdict::kOpen)},
-                    {"track", is_judged ? judged->second.track : -1},
+                    {"verdict", to_text(is_judged ? judged->verdict : RegionVerdict::kOpen)},
+                    {"track", is_judged ? judged->track : -1},
+                    {"is_corrected", is_judged && judged->mask},
                     {"is_explained", is_region_explained(document, library, region)}});
   }
   return list;
@@ -90,7 +96,8 @@ Json to_dos_json(const AnnotationDocument& document, const ModelLibrary& library
                     {"view", to_do.view},
                     {"track", to_do.track},
                     {"region", to_do.region},
-                    {"text", to_do.text}});
+                    {"text", to_do.text},
+                    {"lost", to_do.lost ? Json(annotation::region_to_json(*to_do.lost)) : Json(nullptr)}});
   return list;
 }
 

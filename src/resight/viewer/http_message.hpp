@@ -23,6 +23,8 @@ struct HttpResponse {
   std::string content_type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;
   std::string allowed_methods = "GET";  ///< Sent with status 405.
+  /// The connection stays open for server-sent events: `body` is the first one, HttpServer::send_event() sends more.
+  bool is_event_stream = false;
 };
 
 /// A short text with a status.

@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <chrono>
@@ -12,8 +13,9 @@
 #include <exception>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "resight/viewer/internal/parse_query.hpp"
+#include "resight/viewer/internal/http_parser.hpp"
 
 namespace resight {
 namespace {
@@ -39,12 +41,27 @@ constexpr const char* kContentSecurityPolicy =
 
 using SharedBody = http::span_body<const char>;
 
+void set_headers(const HttpResponse& content, http::response<SharedBody>& response) {
+  response.set(http::field::content_type, content.content_type);
+  response.set(http::field::cache_control, "no-store");
+  response.set("Content-Security-Policy", kContentSecurityPolicy);
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  if (content.status == 405) response.set(http::field::allow, content.allowed_methods);
+}
+
+class Connection;
+
 /// What the connections of a server share.
 struct ServerState {
   HttpHandler handler;
   HttpLimits limits;
   int num_connections = 0;
+  std::vector<std::weak_ptr<Connection>> streams;  ///< Those that get events.
 };
+
+std::string format_event(const std::string& data) { return "data: " + data + "\n\n"; }
 
 /// One connection: reads a request, answers it, and so on, until either side ends it or a limit is exceeded.
 class Connection : public std::enable_shared_from_this<Connection> {
@@ -59,6 +76,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void start() { read(); }
   void refuse(int status, std::string text) { answer(make_text_response(status, std::move(text)), false); }
+  /// For a stream.
+  void send_event(const std::string& event) {
+    if (is_writing_)
+      waiting_event_ = event;
+    else
+      write_event(event);
+  }
 
  private:
   void set_deadline(double seconds) {
@@ -74,8 +98,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void read() {
     parser_.emplace();
-    parser_->header_limit(server_->limits.max_header_bytes);
-    parser_->body_limit(server_->limits.max_body_bytes);
+    viewer::set_limits(server_->limits, *parser_);
     set_deadline(server_->limits.request_time_s);
     http::async_read(socket_, buffer_, *parser_, [self = shared_from_this()](ErrorCode error, std::size_t) {
       self->timer_.cancel();
@@ -96,16 +119,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   [[nodiscard]] HttpResponse call_handler() const {
-    const auto& message = parser_->get();
-    HttpRequest request;
-    request.method = std::string(message.method_string());
-    const auto target = message.target();
-    split_target({target.data(), target.size()}, request.path, request.query);
-    request.host = std::string(message[http::field::host]);
-    request.token = std::string(message["X-Resight-Token"]);
-    request.body = message.body();
     try {
-      return server_->handler(request);
+      return server_->handler(viewer::to_request(parser_->get()));
     } catch (const std::exception& failure) {
       return make_text_response(500, std::string("failed: ") + failure.what());
     }
@@ -115,13 +130,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     content_ = std::move(content.body);
     if (!content_) content_ = std::make_shared<const std::string>();
     response_ = http::response<SharedBody>(static_cast<http::status>(content.status), 11);
-    response_.set(http::field::content_type, content.content_type);
-    response_.set(http::field::cache_control, "no-store");
-    response_.set("Content-Security-Policy", kContentSecurityPolicy);
-    response_.set("Cross-Origin-Resource-Policy", "same-origin");
-    response_.set("X-Content-Type-Options", "nosniff");
-    response_.set("Referrer-Policy", "no-referrer");
-    if (content.status == 405) response_.set(http::field::allow, content.allowed_methods);
+    set_headers(content, response_);
+    if (content.is_event_stream) return start_stream();
     response_.body() = {content_->data(), content_->size()};
     response_.keep_alive(keep_alive);
     response_.prepare_payload();
@@ -132,6 +142,43 @@ class Connection : public std::enable_shared_from_this<Connection> {
       if (keep_alive) return self->read();
       self->drain();
     });
+  }
+
+  /// The answer has no length: it ends with the connection.
+  void start_stream() {
+    server_->streams.push_back(weak_from_this());
+    response_.keep_alive(false);
+    serializer_.emplace(response_);
+    is_writing_ = true;
+    set_deadline(server_->limits.response_time_s);
+    http::async_write_header(socket_, *serializer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+      self->is_writing_ = false;
+      if (error) return self->close();
+      self->write_event(format_event(*self->content_));
+      self->watch_stream();
+    });
+  }
+  void write_event(std::string event) {
+    is_writing_ = true;
+    event_ = std::move(event);
+    set_deadline(server_->limits.response_time_s);
+    asio::async_write(socket_, asio::buffer(event_), [self = shared_from_this()](ErrorCode error, std::size_t) {
+      self->is_writing_ = false;
+      if (error) return self->close();
+      if (self->waiting_event_) return self->write_event(*std::exchange(self->waiting_event_, std::nullopt));
+      self->wait_for_event();
+    });
+  }
+  void wait_for_event() {
+    timer_.expires_after(to_duration(server_->limits.heartbeat_s));
+    timer_.async_wait([self = shared_from_this()](ErrorCode error) {
+      if (!error && !self->is_writing_) self->write_event(":\n\n");
+    });
+  }
+  /// A client that says anything more, or leaves, ends its stream.
+  void watch_stream() {
+    buffer_.clear();
+    socket_.async_read_some(buffer_.prepare(1), [self = shared_from_this()](ErrorCode, std::size_t) { self->close(); });
   }
 
   void drain() {
@@ -159,9 +206,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
   asio::steady_timer timer_;
   std::shared_ptr<ServerState> server_;
   beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;
+  std::optional<viewer::HttpParser> parser_;
   std::shared_ptr<const std::string> content_;
   http::response<SharedBody> response_;
+  std::optional<http::response_serializer<SharedBody>> serializer_;  ///< Of the header of a stream.
+  std::string event_;                                                ///< That is being written.
+  std::optional<std::string> waiting_event_;
+  bool is_writing_ = false;
   bool is_late_ = false;
 };
 
@@ -170,7 +221,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 class HttpServer::Impl {
  public:
   Impl(HttpHandler handler, const HttpLimits& limits)
-      : state_(std::make_shared<ServerState>(ServerState{std::move(handler), limits, 0})), acceptor_(context_) {}
+      : state_(std::make_shared<ServerState>(ServerState{std::move(handler), limits, 0, {}})), acceptor_(context_) {}
 
   Result<void> listen(std::uint16_t port) {
     const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
@@ -200,6 +251,12 @@ class HttpServer::Impl {
   }
   void stop() {
     asio::post(context_, [this] { context_.stop(); });
+  }
+  void send_event(std::string data) {
+    asio::post(context_, [this, event = format_event(data)] {
+      std::erase_if(state_->streams, [](const auto& stream) { return stream.expired(); });
+      for (const auto& stream : state_->streams) stream.lock()->send_event(event);
+    });
   }
 
  private:
@@ -248,5 +305,6 @@ int HttpServer::num_connections() const { return impl_->num_connections(); }
 void HttpServer::run() { impl_->run(); }
 void HttpServer::run_until_interrupted() { impl_->run_until_interrupted(); }
 void HttpServer::stop() { impl_->stop(); }
+void HttpServer::send_event(std::string data) { impl_->send_event(std::move(data)); }
 
 }  // namespace resight

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "resight/core/result.hpp"
 #include "resight/viewer/http_message.hpp"
@@ -16,6 +17,7 @@ struct HttpLimits {
   int max_connections = 64;                  ///< Beyond: status 503.
   double request_time_s = 15;   ///< For a request to arrive, from the end of the last one. Beyond: status 408.
   double response_time_s = 60;  ///< For an answer to be taken. Beyond: the connection is closed.
+  double heartbeat_s = 15;      ///< A stream of events without any gets a sign of life, which tells whether it is open.
 };
 
 /// An HTTP/1.1 server on 127.0.0.1. All requests are answered in turn by one thread, the one that calls run().
@@ -38,6 +40,9 @@ class HttpServer {
   void run_until_interrupted();
   /// May be called from any thread.
   void stop();
+  /// Sends an event to all streams (HttpResponse::is_event_stream). A client that has not taken the last event yet gets
+  /// only the newest one afterwards. `data` has one line. May be called from any thread.
+  void send_event(std::string data);
 
  private:
   class Impl;

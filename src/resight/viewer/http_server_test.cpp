@@ -9,6 +9,7 @@
 
 #include "resight/viewer/http_test_client.hpp"
 #include "resight/viewer/internal/parse_query.hpp"
+#include "resight/viewer/internal/parse_request.hpp"
 
 namespace resight {
 namespace {
@@ -22,6 +23,11 @@ using testing::HasSubstr;
 constexpr const char* kAsk = "GET /x HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 HttpResponse echo(const HttpRequest& request) {
+  if (request.path == "/events") {
+    HttpResponse stream = make_text_response(200, "first");
+    stream.is_event_stream = true;
+    return stream;
+  }
   if (request.path == "/throw") throw std::runtime_error("out of order");
   return make_text_response(200, request.method + " " + request.path + " " + request.host + " " + request.token + " " +
                                      std::to_string(request.body.size()));
@@ -134,6 +140,43 @@ TEST(HttpServer, RefusesFurtherConnectionsWithAStatus) {
   EXPECT_EQ(status, 200);
 }
 
+TEST(HttpServer, StreamsEventsUntilTheClientLeaves) {
+  HttpLimits limits = small_limits();
+  limits.heartbeat_s = 0.05;
+  RunningServer server(echo, limits);
+  {
+    const RawConnection stream = server.connect();
+    stream.send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    std::string received = stream.receive_until("data: first\n\n");
+    EXPECT_EQ(status_of(received), 200);
+    EXPECT_THAT(received, testing::Not(HasSubstr("Content-Length")));
+    EXPECT_THAT(received, HasSubstr("Content-Security-Policy"));
+    EXPECT_THAT(stream.receive_until(":\n\n"), HasSubstr(":\n\n")) << "a sign of life";
+    server.send_event("second");
+    EXPECT_THAT(stream.receive_until("data: second\n\n"), HasSubstr("data: second\n\n"));
+    EXPECT_EQ(status_of(server.ask(kAsk)), 200) << "others are answered meanwhile";
+  }
+  for (int i = 0; i < 20; ++i) {
+    server.send_event(std::to_string(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  server.stop();
+  EXPECT_LE(server.server().num_connections(), 1) << "the stream has ended; the last request may still be open";
+}
+
+TEST(HttpServer, ASlowStreamGetsTheNewestEvent) {
+  RunningServer server(echo);
+  const RawConnection stream = server.connect();
+  stream.send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  (void)stream.receive_until("data: first\n\n");
+  // Far more than the buffers of a connection hold, while the client reads nothing.
+  const std::string large(1 << 20, 'x');
+  for (int i = 0; i < 50; ++i) server.send_event(large + std::to_string(i));
+  const std::string received = stream.receive_until("x49\n\n");
+  EXPECT_TRUE(received.ends_with("x49\n\n"));
+  EXPECT_LT(received.size(), 40U << 20) << "those in between are left out";
+}
+
 TEST(HttpServer, ReportsFailuresOfTheHandler) {
   const RunningServer server(echo);
   const std::string answer = server.ask("GET /throw HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -147,6 +190,26 @@ TEST(HttpServer, ListensOnLoopbackOnly) {
   const auto second = HttpServer::listen(taken->port(), echo);
   ASSERT_FALSE(second.ok());
   EXPECT_THAT(second.error().message, HasSubstr("of 127.0.0.1: "));
+}
+
+TEST(ParseRequest, ReadsWhatTheServerReads) {
+  using viewer::parse_request;
+  const auto request =
+      parse_request("POST /a?b=1 HTTP/1.1\r\nHost: h\r\nX-Resight-Token: t\r\nContent-Length: 3\r\n\r\nxyz");
+  ASSERT_TRUE(request.has_value());
+  EXPECT_EQ(request->method, "POST");
+  EXPECT_EQ(request->path, "/a");
+  EXPECT_EQ(request->query.at("b"), "1");
+  EXPECT_EQ(request->host, "h");
+  EXPECT_EQ(request->token, "t");
+  EXPECT_EQ(request->body, "xyz");
+  const auto chunked = parse_request("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n");
+  ASSERT_TRUE(chunked.has_value());
+  EXPECT_EQ(chunked->body, "{}");
+  for (const char* bytes : {"", "GET", "GET / HTTP/9.9\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: 3\r\n\r\nxy",
+                            "POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", "\r\n\r\n\r\n"})
+    EXPECT_FALSE(parse_request(bytes).has_value()) << bytes;
+  EXPECT_FALSE(parse_request("GET / HTTP/1.1\r\nX: " + std::string(9000, 'x') + "\r\n\r\n").has_value());
 }
 
 TEST(SplitTarget, SeparatesPathAndQuery) {

@@ -56,6 +56,19 @@ class RawConnection {
     }
     return bytes;
   }
+  /// Reads until the bytes end with `end`, the connection ends, or ten seconds pass without any.
+  [[nodiscard]] std::string receive_until(std::string_view end) const {
+    std::string bytes;
+    while (!bytes.ends_with(end)) {
+      pollfd waiting{socket_, POLLIN, 0};
+      if (::poll(&waiting, 1, 10000) != 1) return bytes;
+      char buffer[1 << 16];
+      const ssize_t count = ::recv(socket_, buffer, sizeof(buffer), 0);
+      if (count <= 0) return bytes;
+      bytes.append(buffer, static_cast<std::size_t>(count));
+    }
+    return bytes;
+  }
   [[nodiscard]] std::string ask(std::string_view request) const {
     send(request);
     return receive();
@@ -93,6 +106,7 @@ class RunningServer {
   [[nodiscard]] std::string ask(std::string_view request) const { return connect().ask(request); }
   [[nodiscard]] std::uint16_t port() const { return server_.port(); }
   [[nodiscard]] const HttpServer& server() const { return server_; }
+  void send_event(const std::string& data) { server_.send_event(data); }
   void stop() {
     if (!thread_.joinable()) return;
     server_.stop();

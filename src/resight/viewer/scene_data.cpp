@@ -11,6 +11,7 @@
 #include "resight/report/overlay.hpp"
 #include "resight/viewer/binary_content.hpp"
 #include "resight/viewer/internal/scene_json.hpp"
+#include "resight/viewer/internal/trace_json.hpp"
 
 namespace resight {
 namespace {
@@ -123,6 +124,17 @@ SceneData::Content SceneData::view(int view, int run) {
   });
 }
 
+SceneData::Content SceneData::trace(int view, int run) {
+  return cached(fmt::format("trace/{}/{}", view, run), [&]() -> Result<std::string> {
+    const RecognitionResults& results = scene_.runs[static_cast<std::size_t>(run)].results;
+    const int number = stored_views_[static_cast<std::size_t>(run)][static_cast<std::size_t>(view)];
+    if (!results.trace || number < 0) return viewer::format_trace({}, objects_);
+    const auto trace = results.trace->read(number, results.views[static_cast<std::size_t>(number)].name);
+    if (!trace) return trace.error();
+    return viewer::format_trace(*trace, objects_);
+  });
+}
+
 SceneData::Content SceneData::color(int view) {
   return cached(fmt::format("color/{}", view), [&]() -> Result<std::string> {
     const auto shown = frame(view);
@@ -177,10 +189,11 @@ void SceneData::add_view(StoredView view, std::vector<StoredEvent> events) {
   ++revision_;
 }
 
-void SceneData::finish(std::vector<StoredEvent> events) {
+void SceneData::finish(std::vector<StoredEvent> events, std::optional<TraceFile> trace) {
   const std::scoped_lock lock(mutex_);
   require(scene_.runs.size() == 1, "SceneData::finish: expected one run");
   scene_.runs.front().results.events = std::move(events);
+  scene_.runs.front().results.trace = std::move(trace);
   scene_.is_live = false;
   cache_.clear();
   ++revision_;

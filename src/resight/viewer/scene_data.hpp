@@ -3,6 +3,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,19 +31,20 @@ class SceneData {
   [[nodiscard]] bool has_changes() const;
 
   // Numbers must be in range.
-  [[nodiscard]] Content index();                  ///< JSON: views, objects, detections and events of all runs.
-  [[nodiscard]] Content view(int view, int run);  ///< JSON: camera, outlines and details; `run` -1: without results.
-  [[nodiscard]] Content color(int view);          ///< JPEG.
-  [[nodiscard]] Content depth(int view);          ///< encode_depth()
-  [[nodiscard]] Content surface(int object);      ///< encode_cloud()
-  [[nodiscard]] Content changes(int view);        ///< encode_cloud(): reconstruction, removed and novel points.
+  [[nodiscard]] Content index();                   ///< JSON: views, objects, detections and events of all runs.
+  [[nodiscard]] Content view(int view, int run);   ///< JSON: camera, outlines and details; `run` -1: without results.
+  [[nodiscard]] Content color(int view);           ///< JPEG.
+  [[nodiscard]] Content depth(int view);           ///< encode_depth()
+  [[nodiscard]] Content trace(int view, int run);  ///< JSON: hypotheses and lost objects; empty lists without a trace.
+  [[nodiscard]] Content surface(int object);       ///< encode_cloud()
+  [[nodiscard]] Content changes(int view);         ///< encode_cloud(): reconstruction, removed and novel points.
   /// Counts the changes of the index, so that a client need not fetch it in vain.
   [[nodiscard]] int revision() const;
 
   /// Adds a view to the only run, while views are being recognised.
   void add_view(StoredView view, std::vector<StoredEvent> events);
-  /// Replaces the events by the final ones: no view follows.
-  void finish(std::vector<StoredEvent> events);
+  /// Replaces the events by the final ones: no view follows. Adds the trace of the run, if there is one.
+  void finish(std::vector<StoredEvent> events, std::optional<TraceFile> trace = std::nullopt);
 
  private:
   explicit SceneData(ViewerScene scene);

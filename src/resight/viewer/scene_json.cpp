@@ -74,6 +74,7 @@ Json run_json(const ViewerRun& run, const std::vector<int>& stored_views, const 
   return {{"name", run.name},
           {"preset", run.results.preset},
           {"version", run.results.version},
+          {"has_trace", run.results.trace.has_value()},
           {"views", views},
           {"events", events}};
 }

@@ -37,16 +37,24 @@ HttpResponse respond(const char* type, const SceneData::Content& content) {
   return {200, type, *content};
 }
 
+/// Each event is the revision of the scene.
+HttpResponse start_events(const SceneData& scene) {
+  return {.status = 200,
+          .content_type = "text/event-stream",
+          .body = std::make_shared<const std::string>(std::to_string(scene.revision())),
+          .allowed_methods = "GET",
+          .is_event_stream = true};
+}
+
 /// Addresses below /api/views/.
 HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& parts, const HttpRequest& request) {
   const auto view = parse_number_below(parts[2], scene.num_views());
   if (!view) return not_found();
-  if (parts.size() == 3) {
-    const auto asked = request.query.find("run");
-    if (asked == request.query.end()) return respond(kJson, scene.view(*view, -1));
-    const auto run = parse_number_below(asked->second, scene.num_runs());
-    return run ? respond(kJson, scene.view(*view, *run)) : not_found();
-  }
+  const auto asked = request.query.find("run");
+  const auto run = asked == request.query.end() ? std::nullopt : parse_number_below(asked->second, scene.num_runs());
+  if (asked != request.query.end() && !run) return not_found();
+  if (parts.size() == 3) return respond(kJson, scene.view(*view, run.value_or(-1)));
+  if (parts.size() == 4 && parts[3] == "trace" && run) return respond(kJson, scene.trace(*view, *run));
   if (parts.size() == 4 && parts[3] == "color") return respond("image/jpeg", scene.color(*view));
   if (parts.size() == 4 && parts[3] == "depth") return respond(kBinary, scene.depth(*view));
   if (parts.size() == 4 && parts[3] == "changes" && scene.has_changes()) return respond(kBinary, scene.changes(*view));
@@ -56,8 +64,7 @@ HttpResponse answer_view(SceneData& scene, const std::vector<std::string_view>& 
 HttpResponse answer_data(SceneData& scene, const HttpRequest& request) {
   const auto parts = split_path(request.path);
   if (parts.size() == 2 && parts[1] == "scene") return respond(kJson, scene.index());
-  if (parts.size() == 2 && parts[1] == "revision")
-    return {200, kJson, std::make_shared<const std::string>(std::to_string(scene.revision()))};
+  if (parts.size() == 2 && parts[1] == "events") return start_events(scene);
   if (parts.size() >= 3 && parts[1] == "views") return answer_view(scene, parts, request);
   if (parts.size() == 3 && parts[1] == "surfaces") {
     const auto object = parse_number_below(parts[2], scene.num_objects());

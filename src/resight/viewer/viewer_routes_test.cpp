@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -118,7 +119,7 @@ TEST_F(ViewerRoutes, ServesThePageWithoutToken) {
 }
 
 TEST_F(ViewerRoutes, NeedsTheTokenAndALoopbackHost) {
-  for (const char* path : {"/api/scene", "/api/revision", "/api/views/0", "/api/views/0/color", "/api/views/0/depth",
+  for (const char* path : {"/api/scene", "/api/events", "/api/views/0", "/api/views/0/color", "/api/views/0/depth",
                            "/api/surfaces/0", "/api/nothing"}) {
     EXPECT_EQ(status_of(get(path, "")), 403) << path;
     EXPECT_EQ(status_of(get(path, kToken + "0")), 403) << path;
@@ -144,6 +145,9 @@ TEST_F(ViewerRoutes, FindsDataByNumberOnly) {
                            "/api/views/0/../1",
                            "/api/views/0?run=2",
                            "/api/views/0?run=",
+                           "/api/views/0/trace",
+                           "/api/views/0/trace?run=2",
+                           "/api/views/3/trace?run=0",
                            "/api/surfaces/2",
                            "/api",
                            "/api/../viewer.js",
@@ -171,7 +175,6 @@ TEST_F(ViewerRoutes, DescribesTheScene) {
   EXPECT_EQ(run["views"][0]["detections"][0]["pose"][12], 0.01) << "column by column";
   EXPECT_EQ(run["views"][2], nullptr) << "not recognised";
   EXPECT_EQ(run["events"][0]["kind"], "moved");
-  EXPECT_EQ(get_json("/api/revision"), 0);
 }
 
 TEST_F(ViewerRoutes, DescribesAView) {
@@ -231,6 +234,40 @@ TEST(SceneData, ReadsTheChangesOfAView) {
   EXPECT_EQ(body_of(get("/api/views/0/changes")).size(), 8U + 12U + 3U);
   EXPECT_EQ(status_of(get("/api/views/1/changes")), 500) << "this view has none";
   std::filesystem::remove_all(folder);
+}
+
+constexpr const char* kTrace = R"({"format":"resight trace 1"}
+{"view":0,"name":"view_0","searched":true,"generated":3,"merged":2,"clustered":1,"hypotheses":[{"object":"ball",)"
+                               R"("verdict":"not verified","origin_views":[0],"correspondences":7,"start":)"
+                               R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]}}],"lost":[]}
+{"view":1,"name":"view_1"}
+)";
+
+TEST(SceneData, SaysWhatBecameOfTheHypotheses) {
+  const auto file = std::filesystem::temp_directory_path() / ("resight_viewer_trace_" + std::to_string(::getpid()));
+  std::ofstream(file) << kTrace;
+  ViewerScene scene = make_scene();
+  scene.runs[1].results.trace = TraceFile::open(file, 2).value();
+  const auto data = SceneData::create(std::move(scene)).value();
+  const json index = json::parse(**data->index());
+  EXPECT_EQ(index["runs"][0]["has_trace"], false);
+  EXPECT_EQ(index["runs"][1]["has_trace"], true);
+  const test::RunningServer server(make_viewer_handler(*data, kToken));
+  const auto get = [&](const std::string& path) {
+    return server.ask("GET " + path + " HTTP/1.1\r\nHost: localhost\r\nX-Resight-Token: " + kToken + "\r\n\r\n");
+  };
+  const json trace = json::parse(body_of(get("/api/views/0/trace?run=1")));
+  ASSERT_EQ(trace["hypotheses"].size(), 1U);
+  EXPECT_EQ(trace["hypotheses"][0]["object"], 0);
+  EXPECT_EQ(trace["hypotheses"][0]["pose"][14], 1);
+  EXPECT_EQ(trace["hypotheses"][0]["verification"], nullptr);
+  EXPECT_EQ(trace["num_merged"], 2);
+  const std::string damaged = get("/api/views/1/trace?run=1");
+  EXPECT_EQ(status_of(damaged), 500);
+  EXPECT_NE(body_of(damaged).find("line 3.searched"), damaged.npos) << damaged;
+  EXPECT_EQ(json::parse(body_of(get("/api/views/2/trace?run=1")))["hypotheses"].size(), 0U) << "not recognised";
+  EXPECT_EQ(json::parse(body_of(get("/api/views/0/trace?run=0")))["hypotheses"].size(), 0U) << "not traced";
+  std::filesystem::remove(file);
 }
 
 TEST(SceneData, MakesEachThingOnce) {

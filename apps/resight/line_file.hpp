@@ -7,11 +7,10 @@
 
 namespace resight::app {
 
-/// What `recognize` has finished, for a run that is interrupted or fails: `finished_views.jsonl` in the folder of the
-/// results, a line per view. The complete results take its place.
-class FinishedViews {
+/// A file that receives a line per view while `recognize` works, so that what is finished survives whatever comes next.
+class LineFile {
  public:
-  explicit FinishedViews(const std::filesystem::path& folder) : file_(folder / "finished_views.jsonl") {}
+  explicit LineFile(std::filesystem::path file) : file_(std::move(file)) {}
 
   /// Appends a line. The first one replaces the file of a run before. Throws an InputError if it cannot be written.
   void add(const std::string& line);

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "finished_views.hpp"
+#include "line_file.hpp"
 
 #include "commands.hpp"
 #include "resight/core/files.hpp"
 
 namespace resight::app {
 
-void FinishedViews::add(const std::string& line) {
+void LineFile::add(const std::string& line) {
+  const std::string bytes = line + "\n";
   if (!out_.is_open()) {
-    value_or_throw(write_file(file_, line));
+    value_or_throw(write_file(file_, bytes));
     out_.open(file_, std::ios::binary | std::ios::app);
   } else {
-    out_ << line << std::flush;  // A view that is finished must survive whatever comes next.
+    out_ << bytes << std::flush;
   }
   if (!out_) throw InputError(file_error(file_, "cannot be written").message);
 }
 
-void FinishedViews::remove() {
+void LineFile::remove() {
   out_.close();
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);

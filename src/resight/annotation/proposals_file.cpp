@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/annotation/proposals_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "resight/annotation/annotation_json.hpp"
+#include "resight/core/files.hpp"
+#include "resight/core/hash.hpp"
+#include "resight/core/input_file.hpp"
+
+namespace resight {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kFormat = "resight proposals 1";
+
+template <typename T>
+std::uint64_t hash_values(std::span<const T> values, std::uint64_t seed) {
+  static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
+  const std::span<const std::byte> bytes = std::as_bytes(values);
+  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, seed);
+}
+
+std::uint64_t hash_frame(const RgbdFrame& frame, std::uint64_t seed) {
+  const Camera& camera = frame.camera;
+  const Eigen::Matrix4d pose = frame.world_from_camera.matrix();
+  const double numbers[] = {camera.fx, camera.fy, camera.cx, camera.cy};
+  const int sizes[] = {camera.width, camera.height};
+  seed = hash_values(std::span<const double>(numbers), seed);
+  seed = hash_values(std::span<const int>(sizes), seed);
+  seed = hash_values(std::span<const double>(pose.data(), static_cast<std::size_t>(pose.size())), seed);
+  seed = hash_values(frame.depth_m.data(), seed);
+  return hash_values(frame.color.data(), seed);
+}
+
+json proposal_to_json(const ChangeProposal& p) {
+  json points = json::array();
+  for (const Eigen::Vector3f& point : p.points_in_world)
+    for (const float value : point) points.push_back(value);
+  return {{"view", p.view},
+          {"kind", to_string(p.kind)},
+          {"num_points", p.num_points},
+          {"points", std::move(points)},
+          {"pose", annotation::pose_to_json(p.box.world_from_box)},
+          {"size_m", annotation::point_to_json(p.box.size_m)},
+          {"pixels", annotation::runs_to_json(p.pixels)}};
+}
+
+/// Finite numbers; none for anything else.
+std::optional<std::vector<double>> numbers_of(const json& list) {
+  if (!list.is_array()) return std::nullopt;
+  std::vector<double> numbers;
+  for (const json& number : list) {
+    if (!number.is_number() || !std::isfinite(number.get<double>())) return std::nullopt;
+    numbers.push_back(number.get<double>());
+  }
+  return numbers;
+}
+
+std::optional<ChangeProposal> proposal_from_json(const json& object, int num_views) {
+  if (!object.is_object()) return std::nullopt;
+  const auto at = [&](const char* key) { return object.contains(key) ? object[key] : json(); };
+  const json view = at("view");
+  const json num_points = at("num_points");
+  const auto points = numbers_of(at("points"));
+  const auto size_m = numbers_of(at("size_m"));
+  const auto pose = annotation::pose_from_json(at("pose"));
+  auto pixels = annotation::runs_from_json(at("pixels"));
+  const auto is_count = [](const json& number) { return number.is_number_unsigned() && number <= 1 << 30; };
+  if (!is_count(view) || view >= num_views || !is_count(num_points) || !points || points->size() % 3 != 0 || !size_m ||
+      size_m->size() != 3 || !pose || !pixels)
+    return std::nullopt;
+  ChangeProposal proposal;
+  proposal.view = view.get<int>();
+  proposal.kind = at("kind") == to_string(RegionKind::kRemoved) ? RegionKind::kRemoved : RegionKind::kNovel;
+  proposal.num_points = num_points.get<int>();
+  for (std::size_t i = 0; i < points->size(); i += 3)
+    proposal.points_in_world.push_back(Eigen::Vector3d((*points)[i], (*points)[i + 1], (*points)[i + 2]).cast<float>());
+  proposal.box = {.world_from_box = *pose, .size_m = Eigen::Vector3d((*size_m)[0], (*size_m)[1], (*size_m)[2])};
+  proposal.pixels = *std::move(pixels);
+  return proposal;
+}
+
+}  // namespace
+
+Result<std::string> digest_inputs(const Sequence& sequence, const std::string& settings) {
+  std::uint64_t hash = hash_text(settings);
+  for (int v = 0; v < sequence.num_views(); ++v) {
+    const auto frame = sequence.read_view(v);
+    if (!frame) return frame.error();
+    hash = hash_frame(*frame, hash_text(sequence.view_name(v), hash));
+  }
+  return fmt::format("{} views {:016x}", sequence.num_views(), hash);
+}
+
+Result<void> write_proposals(const std::filesystem::path& file, const std::string& digest,
+                             const std::vector<ChangeProposal>& proposals) {
+  json regions = json::array();
+  for (const ChangeProposal& proposal : proposals) regions.push_back(proposal_to_json(proposal));
+  const json content = {{"format", kFormat}, {"digest", digest}, {"regions", std::move(regions)}};
+  return write_file(file, content.dump() + "\n");
+}
+
+std::optional<std::vector<ChangeProposal>> read_proposals(const std::filesystem::path& file, const std::string& digest,
+                                                          int num_views) {
+  const auto text = read_file(file);
+  if (!text) return std::nullopt;
+  const json content = json::parse(*text, nullptr, false);
+  if (!content.is_object() || !content.contains("format") || content["format"] != kFormat ||
+      !content.contains("digest") || content["digest"] != digest || !content.contains("regions") ||
+      !content["regions"].is_array())
+    return std::nullopt;
+  std::vector<ChangeProposal> proposals;
+  for (const json& region : content["regions"]) {
+    auto proposal = proposal_from_json(region, num_views);
+    if (!proposal) return std::nullopt;
+    proposals.push_back(*std::move(proposal));
+  }
+  return proposals;
+}
+
+}  // namespace resight

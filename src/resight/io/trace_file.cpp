@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/trace_file.hpp"
+
+#include <fstream>
+
+#include "resight/core/input_file.hpp"
+#include "resight/io/internal/member_reader.hpp"
+
+namespace resight {
+namespace {
+
+using io::as_integer;
+using io::Faults;
+using io::member;
+using io::MemberReader;
+using nlohmann::json;
+
+constexpr const char* kTraceFormat = "resight trace 1";
+constexpr std::uint64_t kMaxLineBytes = 8 << 20;  // A line of ours has 0.2 MB at most.
+
+std::optional<StoredFailedTest> read_failed_test(const MemberReader& reader) {
+  if (reader["test"].is_null()) return std::nullopt;
+  std::optional<StoredFailedTest> failed;
+  reader.object("test", [&](const MemberReader& test) {
+    failed = {.quantity = test.text("quantity"), .value = test.number("value"), .limit = test.number("limit")};
+  });
+  return failed;
+}
+
+StoredVerification read_verification(const MemberReader& reader, int num_hypotheses) {
+  StoredVerification found{.world_from_object = reader.pose("world_from_object"),
+                           .failed_test = read_failed_test(reader),
+                           .suppressed_by = reader.optional_index("suppressed_by", num_hypotheses),
+                           .fit = reader.share("fit"),
+                           .visible_share = reader.share("visible_share"),
+                           .explained_share = reader.share("explained_share"),
+                           .pattern_similarity = reader.number("pattern_similarity"),
+                           .newest_similarity = reader.number("newest_similarity"),
+                           .shared_texture = reader.number("shared_texture"),
+                           .texture_contrast = reader.number("texture_contrast"),
+                           .explained_scene = reader.number("explained_scene"),
+                           .outlier = reader.number("outlier"),
+                           .clutter = reader.number("clutter"),
+                           .plane = reader.number("plane"),
+                           .views = {}};
+  reader.each("views", [&](const MemberReader& view) {
+    found.views.push_back({view.count("view"), view.share("visible_share"), view.share("explained_share")});
+  });
+  return found;
+}
+
+StoredHypothesis read_hypothesis(const MemberReader& reader, int num_hypotheses) {
+  StoredHypothesis hypothesis;
+  hypothesis.object = reader.name("object");
+  hypothesis.verdict = reader.text("verdict");
+  hypothesis.num_correspondences = reader.count("correspondences");
+  hypothesis.start = reader.pose("start");
+  for (const json& view : reader["origin_views"]) {
+    const auto number = as_integer(view);
+    if (!number) reader.fault("origin_views", "expected whole numbers");
+    hypothesis.origin_views.push_back(number.value_or(0));
+  }
+  if (!reader["world_from_object"].is_null()) hypothesis.verification = read_verification(reader, num_hypotheses);
+  return hypothesis;
+}
+
+StoredLoss read_loss(const MemberReader& reader, int num_hypotheses) {
+  return {.object = reader.name("object"),
+          .world_from_object = reader.pose("world_from_object"),
+          .visible_share = reader.share("visible_share"),
+          .stage = reader.text("stage"),
+          .num_keypoints = reader.count("keypoints"),
+          .num_correspondences = reader.count("correspondences"),
+          .num_right_correspondences = reader.count("right_correspondences"),
+          .center_error_m = reader.number("center_error_m"),
+          .rotation_error_rad = reader.number("rotation_error_rad"),
+          .hypothesis = reader.optional_index("hypothesis", num_hypotheses)};
+}
+
+StoredTrace read_trace(const MemberReader& reader) {
+  StoredTrace trace;
+  trace.is_searched = reader.flag("searched");
+  trace.num_generated = reader.count("generated");
+  trace.num_merged = reader.count("merged");
+  trace.num_clustered = reader.count("clustered");
+  const int num_hypotheses = static_cast<int>(reader["hypotheses"].size());
+  reader.each("hypotheses",
+              [&](const MemberReader& item) { trace.hypotheses.push_back(read_hypothesis(item, num_hypotheses)); });
+  reader.each("lost", [&](const MemberReader& item) { trace.lost.push_back(read_loss(item, num_hypotheses)); });
+  return trace;
+}
+
+/// Calls `on_line` with offset and size of each whole line.
+template <typename OnLine>
+Result<void> find_lines(const std::filesystem::path& path, const OnLine& on_line) {
+  auto file = InputFile::open(path);
+  if (!file) return file.error();
+  std::string block;
+  std::uint64_t begin = 0;
+  for (std::uint64_t offset = 0; offset < file->size(); offset += block.size()) {
+    block.resize(std::min<std::uint64_t>(1 << 20, file->size() - offset));
+    if (const auto done = file->read(block.data(), block.size()); !done) return done;
+    for (std::size_t end = block.find('\n'); end != block.npos; end = block.find('\n', end + 1)) {
+      on_line(begin, offset + end - begin);
+      begin = offset + end + 1;
+    }
+  }
+  return {};
+}
+
+Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t size) {
+  if (size > kMaxLineBytes) return file_error(path, "holds a line that is longer than one of ours");
+  std::string line(size, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(offset));
+  in.read(line.data(), static_cast<std::streamsize>(size));
+  if (!in) return file_error(path, "cannot be read");
+  return line;
+}
+
+}  // namespace
+
+Result<TraceFile> TraceFile::open(const std::filesystem::path& file, int num_views) {
+  TraceFile trace;
+  trace.file_ = file;
+  const auto found = find_lines(file, [&](std::uint64_t offset, std::uint64_t size) {
+    trace.lines_.push_back({offset, size});
+  });
+  if (!found) return found.error();
+  if (trace.lines_.empty()) return file_error(file, "is no trace of 'resight recognize --trace'");
+  const auto header = read_part(file, trace.lines_.front().offset, trace.lines_.front().size);
+  if (!header) return header.error();
+  const auto content = io::parse_json(*header);
+  if (!content || member(*content, "format") != kTraceFormat)
+    return file_error(file, "is no trace of 'resight recognize --trace' of this version");
+  trace.lines_.erase(trace.lines_.begin());
+  if (trace.lines_.size() != static_cast<std::size_t>(num_views))
+    return file_error(file, fmt::format("traces {} views, but the results have {}", trace.lines_.size(), num_views));
+  return trace;
+}
+
+Result<StoredTrace> TraceFile::read(int view, const std::string& name) const {
+  const Line& line = lines_.at(static_cast<std::size_t>(view));
+  const auto text = read_part(file_, line.offset, line.size);
+  if (!text) return text.error();
+  const auto content = io::parse_json(*text);
+  if (!content) return file_error(file_, fmt::format("line {}: {}", view + 2, content.error().message));
+  Faults faults(file_);
+  const MemberReader reader(*content, fmt::format("line {}", view + 2), faults);
+  if (reader.integer("view") != view || reader.text("name") != name) reader.fault("view", "is not that of the results");
+  StoredTrace trace = read_trace(reader);
+  if (faults.first()) return *faults.first();
+  return trace;
+}
+
+}  // namespace resight
