@@ -181,6 +181,8 @@ std::optional<FollowedView> OpenniCamera::take(double timeout_s) {
   for (;;) {
     for (CameraStream* stream : {&impl_->depth, &impl_->color})
       if (!stream->frame.isValid() && !impl_->read(*stream, timeout_ms)) return std::nullopt;
+    if (!impl_->depth.frame.isValid() || !impl_->color.frame.isValid())
+      throw InputError("openni2: the camera gave a frame without an image");
     const auto depth_us = static_cast<std::int64_t>(impl_->depth.frame.getTimestamp());
     const auto color_us = static_cast<std::int64_t>(impl_->color.frame.getTimestamp());
     if (std::abs(depth_us - color_us) <= kMaxPairGap_us) return impl_->make_view();

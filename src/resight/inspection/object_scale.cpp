@@ -77,7 +77,8 @@ std::vector<double> vote_for_scales(const std::vector<Correspondence>& matches, 
   for (int n = 0; n < kNumTriedScales; ++n) {
     const auto best = std::ranges::max_element(votes);
     if (*best == 0) break;
-    scales.push_back((static_cast<double>(best - votes.begin()) - kNumVotes / 2 + 0.5) * kVoteWidth);
+    const auto bin = static_cast<int>(best - votes.begin()) - kNumVotes / 2;
+    scales.push_back((bin + 0.5) * kVoteWidth);
     *best = 0;
   }
   return scales;

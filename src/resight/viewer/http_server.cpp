@@ -252,7 +252,7 @@ class HttpServer::Impl {
   void stop() {
     asio::post(context_, [this] { context_.stop(); });
   }
-  void send_event(std::string data) {
+  void send_event(const std::string& data) {
     asio::post(context_, [this, event = format_event(data)] {
       std::erase_if(state_->streams, [](const auto& stream) { return stream.expired(); });
       for (const auto& stream : state_->streams) stream.lock()->send_event(event);
@@ -305,6 +305,6 @@ int HttpServer::num_connections() const { return impl_->num_connections(); }
 void HttpServer::run() { impl_->run(); }
 void HttpServer::run_until_interrupted() { impl_->run_until_interrupted(); }
 void HttpServer::stop() { impl_->stop(); }
-void HttpServer::send_event(std::string data) { impl_->send_event(std::move(data)); }
+void HttpServer::send_event(const std::string& data) { impl_->send_event(data); }
 
 }  // namespace resight

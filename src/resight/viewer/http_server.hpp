@@ -42,7 +42,7 @@ class HttpServer {
   void stop();
   /// Sends an event to all streams (HttpResponse::is_event_stream). A client that has not taken the last event yet gets
   /// only the newest one afterwards. `data` has one line. May be called from any thread.
-  void send_event(std::string data);
+  void send_event(const std::string& data);
 
  private:
   class Impl;
