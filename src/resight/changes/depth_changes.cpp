@@ -45,16 +45,19 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
   return pair;
 }
 
-/// By how many times the least difference that counts a view contradicts the surfaces at these pixels.
-std::vector<float> measure_excess(const PreparedView& surfaces, const PreparedView& view,
-                                  const ViewComparison& comparison, std::span<const int> pixels, double noise_scale,
-                                  const DepthTestOptions& options) {
-  std::vector<float> excess = measure_contradiction(surfaces, view, pixels, noise_scale);
-  for (std::size_t k = 0; k < excess.size(); ++k) {
-    const bool is_recolored = comparison.recolored[static_cast<std::size_t>(pixels[k])] != 0;
-    excess[k] /= static_cast<float>(is_recolored ? options.recolored_sigmas.value_or(options.sigmas) : options.sigmas);
+/// By how much a view contradicts the surfaces at these pixels: 0 at the least difference that counts, 1 from twice
+/// that on, and less where the colours are as before.
+std::vector<float> measure_contradictions(const PreparedView& surfaces, const PreparedView& view,
+                                          const ViewComparison& comparison, std::span<const int> pixels,
+                                          double noise_scale, const DepthTestOptions& options) {
+  std::vector<float> result = measure_contradiction(surfaces, view, pixels, noise_scale);
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const auto i = static_cast<std::size_t>(pixels[k]);
+    const double sigmas =
+        comparison.recolored[i] != 0 ? options.recolored_sigmas.value_or(options.sigmas) : options.sigmas;
+    result[k] = std::clamp(result[k] / static_cast<float>(sigmas) - 1, 0.0F, 1.0F) * comparison.weight[i];
   }
-  return excess;
+  return result;
 }
 
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
@@ -73,7 +76,7 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
   return novel;
 }
 
-/// Mean of measure_excess() over the earlier views that see through a novel surface; 0 at other pixels.
+/// Mean of measure_contradictions() over the earlier views that see through a novel surface; 0 at other pixels.
 Image<float> measure_novel(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
                            std::span<const PairEvidence> pairs, const DepthTestOptions& options,
                            const Image<std::uint8_t>& novel) {
@@ -84,10 +87,10 @@ Image<float> measure_novel(const PreparedView& view, std::span<const PreparedVie
     for (std::size_t i = 0; i < novel.size(); ++i)
       if (novel[i] != 0 && pairs[e].of_view.evidence[i] == Evidence::kSeenThrough)
         pixels.push_back(static_cast<int>(i));
-    const std::vector<float> excess =
-        measure_excess(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
+    const std::vector<float> contradictions =
+        measure_contradictions(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
-      sum[static_cast<std::size_t>(pixels[k])] += excess[k];
+      sum[static_cast<std::size_t>(pixels[k])] += contradictions[k];
       ++num[static_cast<std::size_t>(pixels[k])];
     }
   }
@@ -98,10 +101,10 @@ Image<float> measure_novel(const PreparedView& view, std::span<const PreparedVie
 
 /// Neighbouring errors of depth are alike. A region of noise may therefore have many pixels that are off by little, but
 /// not many that are off by much.
-void drop_weak_regions(const Image<float>& excess, int min_region_px, Image<std::uint8_t>& mask) {
+void drop_weak_regions(const Image<float>& contradictions, int min_region_px, Image<std::uint8_t>& mask) {
   for (const std::vector<int>& region : find_pixel_components(mask, kMaxGap_px)) {
     double mass = 0;
-    for (const int i : region) mass += std::clamp(excess[static_cast<std::size_t>(i)] - 1, 0.0F, 1.0F);
+    for (const int i : region) mass += contradictions[static_cast<std::size_t>(i)];
     if (mass < min_region_px)
       for (const int i : region) mask[static_cast<std::size_t>(i)] = 0;
   }
@@ -123,7 +126,7 @@ class RemovedSurface {
         met_(view.cloud.width(), view.cloud.height()),
         decided_(met_),
         removed_(decided_),
-        excess_(view.cloud.width(), view.cloud.height()) {}
+        contradictions_(view.cloud.width(), view.cloud.height()) {}
 
   [[nodiscard]] GonePixels add(const PreparedView& earlier, const PairEvidence& pair) {
     const Image<Evidence>& evidence = pair.of_earlier.evidence;
@@ -141,19 +144,19 @@ class RemovedSurface {
       gone.in_view.push_back(static_cast<int>(at));
     }
     for (const std::size_t at : present) decided_[at] = 1;
-    const std::vector<float> excess =
-        measure_excess(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
-    for (std::size_t k = 0; k < excess.size(); ++k) {
-      float& largest = excess_[static_cast<std::size_t>(gone.in_view[k])];
-      largest = std::max(largest, excess[k]);
+    const std::vector<float> contradictions =
+        measure_contradictions(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
+    for (std::size_t k = 0; k < contradictions.size(); ++k) {
+      float& largest = contradictions_[static_cast<std::size_t>(gone.in_view[k])];
+      largest = std::max(largest, contradictions[k]);
     }
     return gone;
   }
   Image<std::uint8_t>& mask() { return removed_; }
   /// A pixel that no earlier view projects to is removed if most of those around it are.
   void fill_gaps();
-  /// Largest measure_excess() of the removed pixels.
-  [[nodiscard]] const Image<float>& excess() const { return excess_; }
+  /// Largest measure_contradictions() of the removed pixels.
+  [[nodiscard]] const Image<float>& contradictions() const { return contradictions_; }
 
  private:
   const PreparedView& view_;
@@ -161,7 +164,7 @@ class RemovedSurface {
   Image<std::uint8_t> met_;  // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
-  Image<float> excess_;
+  Image<float> contradictions_;
 };
 
 /// Calls `visit` with each pixel that is at most kMaxGap_px rows and columns away.
@@ -212,7 +215,7 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
     gone[e] = removed.add(*earlier_views[e], pairs[e]);
   }
-  drop_weak_regions(removed.excess(), options.min_region_px, removed.mask());
+  drop_weak_regions(removed.contradictions(), options.min_region_px, removed.mask());
   for (const GonePixels& pixels : gone) {
     std::vector<int>& kept = changes.gone_pixels.emplace_back();
     for (std::size_t i = 0; i < pixels.in_view.size(); ++i)

@@ -23,8 +23,8 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
   v.field("recolored_sigmas", o.recolored_sigmas, positive(),
-          "The same for pixels whose colour, relative to its surroundings, has changed, too: thin things. off: colours "
-          "do not count.",
+          "The same for pixels whose colour, relative to its surroundings, has changed, too: thin things. Pixels that "
+          "look as before count less. off: colours do not count.",
           "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
@@ -47,9 +47,10 @@ struct DepthChanges {
 /// Novel: no earlier view has the surface, and at least one saw free space there. Removed: the view sees through the
 /// surface of an earlier view. Both need neighbours, because neighbouring errors of depth are alike: a region is noise
 /// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). Where colours have
-/// changed, too (find_color_changes()), less of a difference is enough. The noise is scaled to
-/// what the two views show of it (estimate_noise_scale()). If the camera moved, the errors of its poses and its lens
-/// are as large as the contours of both views show (estimate_misregistration_px()). Views must not be null.
+/// changed, too, less of a difference is enough; where they are as before, pixels count less (find_color_changes()).
+/// The noise is scaled to what the two views show of it (estimate_noise_scale()). If the camera moved, the errors of
+/// its poses and its lens are as large as the contours of both views show (estimate_misregistration_px()). Views must
+/// not be null.
 [[nodiscard]] DepthChanges find_depth_changes(const PreparedView& view,
                                               std::span<const PreparedView* const> earlier_views,
                                               const DepthTestOptions& options, int num_threads);

@@ -53,8 +53,11 @@ TEST(DepthChanges, AnUnchangedSceneHasNone) {
 }
 
 // A step of the table by so many standard deviations of the difference, in a square.
-ChangeResult detect_step(float num_sigmas, int side_px) {
-  const PreparedView before = see(scene_with({}));
+ChangeResult detect_step(float num_sigmas, int side_px, bool has_print = false) {
+  PreparedView before = see(scene_with({}));
+  if (has_print)
+    for (std::size_t i = 0; i < before.frame.color.size(); ++i)
+      before.frame.color[i] = {static_cast<std::uint8_t>(i % 320 / 32 * 25), 90, 120};
   RgbdFrame frame = before.frame;
   for (int v = 100; v < 100 + side_px; ++v)
     for (int u = 100; u < 100 + side_px; ++u) {
@@ -71,6 +74,14 @@ TEST(DepthChanges, ASmallRegionMustDifferByMore) {
   EXPECT_EQ(count(detect_step(kMarginal, 7).novel_mask), 0);
   EXPECT_GT(count(detect_step(kMarginal, 20).novel_mask), 20 * 20 / 2);
   EXPECT_GT(count(detect_step(20, 7).novel_mask), 7 * 7 / 2);
+}
+
+// A thing that came would have to look like the print that it hides.
+TEST(DepthChanges, WhereColoursAreAsBeforeARegionMustBeLarger) {
+  constexpr float kMarginal = 2.1F;
+  EXPECT_GT(count(detect_step(kMarginal, 20).novel_mask), 20 * 20 / 2);
+  EXPECT_EQ(count(detect_step(kMarginal, 20, true).novel_mask), 0);
+  EXPECT_GT(count(detect_step(20, 40, true).novel_mask), 40 * 40 / 2);
 }
 
 TEST(DepthChanges, NoiseIsNoChange) {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kSurroundingsPerWidth = 32;  // 20 px of 640: some 4 cm at 1 m.
 constexpr int kSampleStep_px = 16;         // One pixel in 256 is enough for a median.
+constexpr double kMinSimilarShare = 0.1;   // Alike things lie on each other more often than far apart.
 constexpr float kMaxGain = 4;              // Beyond, one of the images is black.
 constexpr float kMinContrast = 32;         // In grey levels: light on uneven surfaces causes less.
 constexpr float kMedians = 3;              // Noise of three channels exceeds 2.6 medians in one pixel of a thousand.
@@ -95,26 +96,38 @@ class ColorComparison {
         gain_(estimate_gain(colors_, others_, view_pixels)),
         sums_(colors_, others_, view_pixels, gain_) {}
 
-  /// Grey levels between the colour and the most similar one in the other view: as they are, or after the mean
-  /// difference around the pixel is taken off, whichever is less. Without the first, what lies beside a change would
-  /// seem changed. What is at most `enough` may be returned too large. The pixel must have one in the other view.
+  /// Grey levels between the colour and the most similar one in the other view. What is at most `enough` may be
+  /// returned too large. The pixel must have one in the other view.
+  [[nodiscard]] float difference(int u, int v, float enough) const {
+    const Channels color = channels_of(colors_(u, v));
+    return least_difference(pixels_(u, v), enough,
+                            [&](const Channels& other) { return (color - other).square().sum(); });
+  }
+
+  /// Same, as they are or after the mean difference around the pixel is taken off, whichever is less. Without the
+  /// first, what lies beside a change would seem changed.
   [[nodiscard]] float deviation(int u, int v, float enough) const {
     const Channels color = channels_of(colors_(u, v));
     const Channels even = color - sums_.mean(u, v, pixels_.width() / kSurroundingsPerWidth);
-    const auto squared = [&](std::size_t other) {
-      const Channels expected = gain_ * channels_of(others_[other]);
-      return std::min((color - expected).square().sum(), (even - expected).square().sum());
-    };
-    const int center = pixels_(u, v);
-    float least = squared(static_cast<std::size_t>(center));
-    const int center_u = center % others_.width();
-    const int center_v = center / others_.width();
-    for (int y = std::max(center_v - radius_px_, 0); y <= std::min(center_v + radius_px_, others_.height() - 1); ++y)
-      for (int x = std::max(center_u - radius_px_, 0); x <= std::min(center_u + radius_px_, others_.width() - 1); ++x) {
-        if (least <= enough * enough) return std::sqrt(least);
-        least = std::min(least, squared(others_.index(x, y)));
+    return least_difference(pixels_(u, v), enough, [&](const Channels& other) {
+      return std::min((color - other).square().sum(), (even - other).square().sum());
+    });
+  }
+
+  /// Share of pixels whose colour in the other view, a third of the image away, differs by no more than `limit`.
+  [[nodiscard]] double similar_share(float limit) const {
+    int num = 0;
+    int num_similar = 0;
+    for (int v = 0; v < pixels_.height(); v += kSampleStep_px)
+      for (int u = 0; u < pixels_.width(); u += kSampleStep_px) {
+        const int far_u = (u + pixels_.width() / 3) % pixels_.width();
+        const int far_v = (v + pixels_.height() / 3) % pixels_.height();
+        if (pixels_(far_u, far_v) < 0) continue;
+        ++num;
+        const Channels other = gain_ * channels_of(others_[static_cast<std::size_t>(pixels_(far_u, far_v))]);
+        num_similar += (channels_of(colors_(u, v)) - other).square().sum() <= limit * limit ? 1 : 0;
       }
-    return std::sqrt(least);
+    return num == 0 ? 1 : std::max(kMinSimilarShare, static_cast<double>(num_similar) / num);
   }
 
   /// The least deviation() of a change.
@@ -127,6 +140,21 @@ class ColorComparison {
   }
 
  private:
+  /// The square root of the least `squared` difference of the pixels around `center` of the other view.
+  template <typename Squared>
+  [[nodiscard]] float least_difference(int center, float enough, const Squared& squared) const {
+    const auto at = [&](std::size_t other) { return squared(gain_ * channels_of(others_[other])); };
+    float least = at(static_cast<std::size_t>(center));
+    const int center_u = center % others_.width();
+    const int center_v = center / others_.width();
+    for (int y = std::max(center_v - radius_px_, 0); y <= std::min(center_v + radius_px_, others_.height() - 1); ++y)
+      for (int x = std::max(center_u - radius_px_, 0); x <= std::min(center_u + radius_px_, others_.width() - 1); ++x) {
+        if (least <= enough * enough) return std::sqrt(least);
+        least = std::min(least, at(others_.index(x, y)));
+      }
+    return std::sqrt(least);
+  }
+
   const Image<Rgb8>& colors_;
   const Image<Rgb8>& others_;
   const Image<int>& pixels_;
@@ -137,19 +165,25 @@ class ColorComparison {
 
 }  // namespace
 
-std::vector<int> find_color_changes(const PreparedView& surfaces, const PreparedView& view,
-                                    const Image<int>& view_pixels, std::span<const int> candidates, int radius_px) {
+ColorChanges find_color_changes(const PreparedView& surfaces, const PreparedView& view, const Image<int>& view_pixels,
+                                std::span<const int> candidates, int radius_px) {
   require(view_pixels.size() == surfaces.cloud.z.size(), "find_color_changes: the pixels are not those of the view");
+  ColorChanges found;
   if (surfaces.surface_color().size() != view_pixels.size() || view.surface_color().size() != view.cloud.z.size())
-    return {};
+    return found;
   const ColorComparison comparison(surfaces, view, view_pixels, radius_px);
   const float limit = comparison.find_limit();
-  std::vector<int> changed;
+  found.similar_share = comparison.similar_share(limit / 2);
   for (const int i : candidates) {
     if (view_pixels[static_cast<std::size_t>(i)] < 0) continue;
-    if (comparison.deviation(i % view_pixels.width(), i / view_pixels.width(), limit) > limit) changed.push_back(i);
+    const int u = i % view_pixels.width();
+    const int v = i / view_pixels.width();
+    if (comparison.difference(u, v, limit / 2) <= limit / 2)
+      found.same.push_back(i);
+    else if (comparison.deviation(u, v, limit) > limit)
+      found.changed.push_back(i);
   }
-  return changed;
+  return found;
 }
 
 }  // namespace resight

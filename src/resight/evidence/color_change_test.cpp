@@ -56,7 +56,7 @@ std::vector<int> find_in(const Image<Rgb8>& colors, const Image<Rgb8>& others, i
                          const Image<int>& pixels = same_pixels()) {
   std::vector<int> all(pixels.size());
   std::iota(all.begin(), all.end(), 0);
-  return find_color_changes(see_colors(colors), see_colors(others), pixels, all, radius_px);
+  return find_color_changes(see_colors(colors), see_colors(others), pixels, all, radius_px).changed;
 }
 
 TEST(FindColorChanges, AThinThingThatComesOrGoes) {
@@ -71,8 +71,10 @@ TEST(FindColorChanges, AThinThingThatComesOrGoes) {
 
 TEST(FindColorChanges, OnlyCandidatesCount) {
   const std::vector<int> candidates{51 * kWallWidth + 70, 51 * kWallWidth + 61, 10};
-  EXPECT_EQ(find_color_changes(see_colors(wood_with_pen()), see_colors(wood()), same_pixels(), candidates, 1),
-            (std::vector<int>{candidates[0], candidates[1]}));
+  const ColorChanges found =
+      find_color_changes(see_colors(wood_with_pen()), see_colors(wood()), same_pixels(), candidates, 1);
+  EXPECT_EQ(found.changed, (std::vector<int>{candidates[0], candidates[1]}));
+  EXPECT_EQ(found.same, std::vector<int>{candidates[2]});
 }
 
 TEST(FindColorChanges, ExposureAndSoftShadowsAreNone) {
@@ -111,6 +113,18 @@ TEST(FindColorChanges, WhereTheOtherViewHasNoPixelNothingChanged) {
   EXPECT_EQ(find_in(wood_with_pen(), wood(), 1, pixels).size(), 30);
   std::ranges::fill(pixels.data(), -1);
   EXPECT_EQ(find_in(wood_with_pen(), wood(), 1, pixels).size(), 0);
+}
+
+TEST(FindColorChanges, LookingAsBeforeMeansTheMoreTheFewerPlacesLookAlike) {
+  const auto similar_share = [](const Image<Rgb8>& colors) {
+    return find_color_changes(see_colors(colors), see_colors(colors), same_pixels(), {}, 1).similar_share;
+  };
+  EXPECT_EQ(similar_share(wood()), 1);
+  EXPECT_GT(similar_share(wood_with_pen()), 0.9);
+  // Each tenth of the image looks like no other.
+  EXPECT_EQ(similar_share(changed(wood(), [](int, int u, int) { return 25 * (u / 16); })), 0.1);
+  const Image<int> nowhere(kWallWidth, kWallHeight, -1);
+  EXPECT_EQ(find_color_changes(see_colors(wood()), see_colors(wood()), nowhere, {}, 1).similar_share, 1);
 }
 
 TEST(FindColorChanges, RefusesPixelsOfAnotherView) {

@@ -229,7 +229,8 @@ ViewComparison compare_depths(const SurfaceComparison& by_depth, const SurfaceCo
                               const OrganizedCloud& surfaces, const CompareViewsOptions& options) {
   ViewComparison result{Image<Evidence>(surfaces.width(), surfaces.height(), Evidence::kUnobserved),
                         Image<int>(surfaces.width(), surfaces.height()),
-                        Image<std::uint8_t>(surfaces.width(), surfaces.height())};
+                        Image<std::uint8_t>(surfaces.width(), surfaces.height()),
+                        Image<float>(surfaces.width(), surfaces.height(), 1)};
   parallel_for_blocks(static_cast<std::size_t>(surfaces.height()), kComparedRows, options.num_threads,
                       [&](std::size_t begin, std::size_t end) {
                         PosedRow posed(surfaces.width());
@@ -255,7 +256,9 @@ void compare_colors(const PreparedView& surfaces, const PreparedView& view, cons
     if (std::exchange(result.recolored[i], 0) != 0) candidates.push_back(static_cast<int>(i));
   // A still camera's colours may lie a pixel beside each other: it interpolates them.
   const int radius_px = std::max(options.window_radius_px, 1);
-  for (const int i : find_color_changes(surfaces, view, result.pixels, candidates, radius_px)) {
+  const ColorChanges colors = find_color_changes(surfaces, view, result.pixels, candidates, radius_px);
+  for (const int i : colors.same) result.weight[static_cast<std::size_t>(i)] = static_cast<float>(colors.similar_share);
+  for (const int i : colors.changed) {
     const auto at = static_cast<std::size_t>(i);
     const Evidence evidence = with_color.classify(with_color.pose(at), options.window_radius_px);
     if (evidence != Evidence::kSeenThrough) continue;

@@ -37,6 +37,8 @@ struct ViewComparison {
   Image<int> pixels;  ///< Index of the pixel of the view that the surface projects to; -1: none, or at too grazing an
                       ///< angle.
   Image<std::uint8_t> recolored;  ///< Non-zero where CompareViewsOptions::recolored_sigmas decided.
+  /// What a contradiction counts: less than 1 where colours are as before (ColorChanges::similar_share).
+  Image<float> weight;
 };
 
 /// Compares the surfaces of one view with another view. The test is statistical: the distance between the surface and

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr const char* kPose = "[1,0,0,0.5, 0,1,0,0, 0,0,1,0.7, 0,0,0,1]";
+constexpr const char* kEventPose = "[1,0,0,0.5, 0,1,0,0, 0,0,1,0.7, 0,0,0,1]";
 
 class EventFile : public testing::Test {
  protected:
@@ -36,8 +36,8 @@ class EventFile : public testing::Test {
 };
 
 TEST_F(EventFile, GoodEventsAreRead) {
-  const auto events = read(R"({"events": [)" + event("3", "moved", "\"mug\"", kPose, kPose) + "," +
-                           event("4", "added", "\"mug\"", "null", kPose) + "]}");
+  const auto events = read(R"({"events": [)" + event("3", "moved", "\"mug\"", kEventPose, kEventPose) + "," +
+                           event("4", "added", "\"mug\"", "null", kEventPose) + "]}");
   ASSERT_TRUE(events.ok()) << events.error().message;
   ASSERT_EQ(events->size(), 2U);
   EXPECT_EQ((*events)[0].view, 3);
@@ -58,18 +58,21 @@ TEST_F(EventFile, WhatIsNoListOfEventsIsRefused) {
 TEST_F(EventFile, HostileEventsAreNamedInOneLine) {
   const std::string mug = "\"mug\"";
   EXPECT_THAT(fault_of("3"), HasSubstr("events[0]: kind: expected"));
-  EXPECT_THAT(fault_of(event("3", "flown", mug, kPose, kPose)), HasSubstr("kind: expected added, moved or removed"));
-  EXPECT_THAT(fault_of(event("5", "moved", mug, kPose, kPose)), HasSubstr("view: 5, but the sequence has 5 views"));
-  EXPECT_THAT(fault_of(event("-1", "moved", mug, kPose, kPose)), HasSubstr("view: expected"));
-  EXPECT_THAT(fault_of(event("1e300", "moved", mug, kPose, kPose)), HasSubstr("view: expected"));
-  EXPECT_THAT(fault_of(event("3", "moved", "7", kPose, kPose)), HasSubstr("object: expected a text"));
-  EXPECT_THAT(fault_of(event("3", "moved", R"("../../x")", kPose, kPose)), HasSubstr("slashes"));
-  EXPECT_THAT(fault_of(event("3", "moved", '"' + std::string(100000, 'a') + '"', kPose, kPose)),
+  EXPECT_THAT(fault_of(event("3", "flown", mug, kEventPose, kEventPose)),
+              HasSubstr("kind: expected added, moved or removed"));
+  EXPECT_THAT(fault_of(event("5", "moved", mug, kEventPose, kEventPose)),
+              HasSubstr("view: 5, but the sequence has 5 views"));
+  EXPECT_THAT(fault_of(event("-1", "moved", mug, kEventPose, kEventPose)), HasSubstr("view: expected"));
+  EXPECT_THAT(fault_of(event("1e300", "moved", mug, kEventPose, kEventPose)), HasSubstr("view: expected"));
+  EXPECT_THAT(fault_of(event("3", "moved", "7", kEventPose, kEventPose)), HasSubstr("object: expected a text"));
+  EXPECT_THAT(fault_of(event("3", "moved", R"("../../x")", kEventPose, kEventPose)), HasSubstr("slashes"));
+  EXPECT_THAT(fault_of(event("3", "moved", '"' + std::string(100000, 'a') + '"', kEventPose, kEventPose)),
               HasSubstr("has 100000 bytes"));
-  const std::string control = fault_of(event("3", "moved", R"("\u001b[31m\n")", kPose, kPose));
+  const std::string control = fault_of(event("3", "moved", R"("\u001b[31m\n")", kEventPose, kEventPose));
   EXPECT_THAT(control, HasSubstr("control characters"));
   EXPECT_EQ(control.find_first_of("\x1b\n"), std::string::npos);
-  EXPECT_THAT(fault_of(event("3", "removed", mug, kPose, kPose)), HasSubstr("do not match the kind 'removed'"));
+  EXPECT_THAT(fault_of(event("3", "removed", mug, kEventPose, kEventPose)),
+              HasSubstr("do not match the kind 'removed'"));
   EXPECT_THAT(fault_of(event("3", "added", mug, "null", "[1,2,3]")), HasSubstr("expected 16 finite numbers"));
   EXPECT_THAT(fault_of(event("3", "added", mug, "null", "[2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]")),
               HasSubstr("world_from_object_after: the pose is not a rigid motion"));
