@@ -122,7 +122,7 @@ Seeds make_track_journal_seeds() {
 constexpr AnnotationLimits kLimits{.num_views = 4, .num_objects = 2};
 
 /// Of a project that has seen each kind of change.
-Seeds make_annotation_seeds() {
+Seeds make_journal_seeds() {
   const fs::path folder = scratch_folder() / "seed";
   {
     const auto project = AnnotationProject::open(folder, kLimits, "fuzz");
@@ -229,7 +229,7 @@ std::vector<FuzzReader> stored_readers() {
        [](std::string_view bytes) { (void)parse_run(bytes, "fuzz"); }, 2000},
       {"track_journal", make_track_journal_seeds,
        [](std::string_view bytes) { (void)TrackJournal::open(write_scratch("track.partial", bytes), "fuzz"); }},
-      {"annotation", make_annotation_seeds, read_annotation, 1000},
+      {"annotation", make_journal_seeds, read_annotation, 1000},
       {"proposals", make_proposal_seeds,
        [](std::string_view bytes) { (void)read_proposals(write_scratch("proposals.json", bytes), "fuzz", 4); }, 2000},
       {"results", make_result_seeds,
