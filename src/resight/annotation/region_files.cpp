@@ -10,6 +10,7 @@
 #include "resight/annotation/annotation_json.hpp"
 #include "resight/annotation/matched_regions.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/io/images.hpp"
 
 namespace resight::annotation {
@@ -72,8 +73,7 @@ Result<void> write_regions(const AnnotationDocument& document, std::span<const C
                     {"mask", file},
                     {"corrected", judgement.mask.has_value()}});
   }
-  return write_file(folder / "regions.json",
-                    Json{{"regions", list}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return write_file(folder / "regions.json", to_json_text(Json{{"regions", list}}, kIndentedJson) + "\n");
 }
 
 }  // namespace resight::annotation

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "resight/core/check.hpp"
+#include "resight/core/json_text.hpp"
 #include "resight/evaluation/loss.hpp"
 #include "resight/report/internal/json_values.hpp"
 #include "resight/verification/failed_test.hpp"
@@ -148,12 +149,10 @@ Json loss_json(const GroundTruthObject& truth, const Loss& loss, const TracedVie
           {"hypothesis", listed_json(numbers, loss.verified)}};
 }
 
-std::string to_line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 }  // namespace
 
 std::string format_trace_header(const std::string& preset, const std::string& version) {
-  return to_line({{"format", "resight trace 1"}, {"version", version}, {"preset", preset}});
+  return to_json_text<Json>({{"format", "resight trace 1"}, {"version", version}, {"preset", preset}});
 }
 
 std::string format_trace_line(const TracedView& view, const ModelLibrary& library) {
@@ -178,7 +177,7 @@ std::string format_trace_line(const TracedView& view, const ModelLibrary& librar
   json["lost"] = Json::array();
   for (std::size_t i = 0; i < losses.size(); ++i)
     json["lost"].push_back(loss_json(view.missed[i], losses[i], view, numbers));
-  return to_line(json);
+  return to_json_text<Json>(json);
 }
 
 }  // namespace resight
