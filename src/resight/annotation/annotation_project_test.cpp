@@ -161,7 +161,7 @@ TEST_F(AnnotationProjectTest, CorrectedMasksSurviveAndCanBeUndone) {
   EXPECT_EQ(mask_of(*project), runs);
   ASSERT_EQ(project->act(UndoEdit{}, 3).kind, Kind::kApplied);
   EXPECT_TRUE(project->document().regions.empty());
-  // A verdict of which the mask is not told keeps it, also when it is read again.
+  // A verdict that names no mask keeps the one that is there, also when it is read again.
   const auto verdict = parse_action(
       R"({"title":"v","changes":[{"do":"judge_region","region":{"view":3,"kind":"removed","center":[1,0.1,2]},)"
       R"("verdict":"rejected"}]})");

@@ -47,14 +47,14 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
 
 /// By how much a view contradicts the surfaces at these pixels: 0 at the least difference that counts, 1 from twice
 /// that on, and less where the colours are as before.
-std::vector<float> measure_contradictions(const PreparedView& surfaces, const PreparedView& view,
-                                          const ViewComparison& comparison, std::span<const int> pixels,
-                                          double noise_scale, const DepthTestOptions& options) {
+std::vector<float> weigh_contradictions(const PreparedView& surfaces, const PreparedView& view,
+                                        const ViewComparison& comparison, std::span<const int> pixels,
+                                        double noise_scale, const DepthTestOptions& options) {
+  const double recolored_sigmas = std::min(options.recolored_sigmas.value_or(options.sigmas), options.sigmas);
   std::vector<float> result = measure_contradiction(surfaces, view, pixels, noise_scale);
   for (std::size_t k = 0; k < result.size(); ++k) {
     const auto i = static_cast<std::size_t>(pixels[k]);
-    const double sigmas =
-        comparison.recolored[i] != 0 ? options.recolored_sigmas.value_or(options.sigmas) : options.sigmas;
+    const double sigmas = comparison.recolored[i] != 0 ? recolored_sigmas : options.sigmas;
     result[k] = std::clamp(result[k] / static_cast<float>(sigmas) - 1, 0.0F, 1.0F) * comparison.weight[i];
   }
   return result;
@@ -76,7 +76,7 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
   return novel;
 }
 
-/// Mean of measure_contradictions() over the earlier views that see through a novel surface; 0 at other pixels.
+/// Mean of weigh_contradictions() over the earlier views that see through a novel surface; 0 at other pixels.
 Image<float> measure_novel(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
                            std::span<const PairEvidence> pairs, const DepthTestOptions& options,
                            const Image<std::uint8_t>& novel) {
@@ -88,7 +88,7 @@ Image<float> measure_novel(const PreparedView& view, std::span<const PreparedVie
       if (novel[i] != 0 && pairs[e].of_view.evidence[i] == Evidence::kSeenThrough)
         pixels.push_back(static_cast<int>(i));
     const std::vector<float> contradictions =
-        measure_contradictions(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
+        weigh_contradictions(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       sum[static_cast<std::size_t>(pixels[k])] += contradictions[k];
       ++num[static_cast<std::size_t>(pixels[k])];
@@ -145,7 +145,7 @@ class RemovedSurface {
     }
     for (const std::size_t at : present) decided_[at] = 1;
     const std::vector<float> contradictions =
-        measure_contradictions(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
+        weigh_contradictions(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
     for (std::size_t k = 0; k < contradictions.size(); ++k) {
       float& largest = contradictions_[static_cast<std::size_t>(gone.in_view[k])];
       largest = std::max(largest, contradictions[k]);
@@ -155,7 +155,7 @@ class RemovedSurface {
   Image<std::uint8_t>& mask() { return removed_; }
   /// A pixel that no earlier view projects to is removed if most of those around it are.
   void fill_gaps();
-  /// Largest measure_contradictions() of the removed pixels.
+  /// Largest weigh_contradictions() of the removed pixels.
   [[nodiscard]] const Image<float>& contradictions() const { return contradictions_; }
 
  private:

@@ -23,8 +23,8 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
   v.field("recolored_sigmas", o.recolored_sigmas, positive(),
-          "The same for pixels whose colour, relative to its surroundings, has changed, too: thin things. Pixels that "
-          "look as before count less. off: colours do not count.",
+          "The same for pixels whose colour, relative to its surroundings, has changed, too: thin things. Not more "
+          "than `sigmas`. Pixels that look as before count less. off: colours do not count.",
           "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),

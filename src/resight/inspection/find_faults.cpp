@@ -116,14 +116,18 @@ void add_fine_shift(const SequenceMeasurements& measured, std::vector<Finding>& 
        .view = measured.views.front().view});
 }
 
+ShiftScores all_shifts(const SequenceMeasurements& measured) {
+  ShiftScores shifts = measured.half_shifts[0];
+  shifts.add(measured.half_shifts[1]);
+  return shifts;
+}
+
 /// Depth of another time than the colours. A constant shift that explains the colours better is none of time.
 bool add_depth_time(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   if (!measured.depth_time) return false;
   const DepthTime& time = *measured.depth_time;
   if (time.views_late == 0 || time.displacement_px <= kMaxFineShift_px || time.gain < kMinTimeContrast) return false;
-  ShiftScores shifts = measured.half_shifts[0];
-  shifts.add(measured.half_shifts[1]);
-  const auto shift = shifts.peak();
+  const auto shift = all_shifts(measured).peak();
   if (shift && shift->mean_contrast > time.mean_contrast) return false;
   findings.push_back({.fault = "depth_time",
                       .message = fmt::format("depth is that of {:.2g} views {} than the colours, {:.0f} px beside them",
@@ -174,9 +178,8 @@ std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured) {
                     "matched, at least {} are needed)",
                     measured.has_poses ? "poses " : "", measured.pairs.size(), measured.num_tried_pairs,
                     inspection::kMinComparedPairs));
-  ShiftScores shifts = measured.half_shifts[0];
-  shifts.add(measured.half_shifts[1]);
-  if (!shifts.peak()) unmeasured.emplace_back("the registration of depth to colour (the depth has too few contours)");
+  if (!all_shifts(measured).peak())
+    unmeasured.emplace_back("the registration of depth to colour (the depth has too few contours)");
   return unmeasured;
 }
 
