@@ -72,12 +72,14 @@ void run_changes(const ChangesArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = open_posed_input(arguments.sequence, arguments.input);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
+  const DepthBias bias = measure_depth_bias(*sequence, config.prepare, config.camera.depth_bias);
   DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence->num_views());
   for (int v = 0; v < sequence->num_views(); ++v) {
     RgbdFrame recorded = value_or_throw(sequence->read_view(v));
     const Camera camera = recorded.camera;
+    correct_depth(bias, recorded);
     const ChangeResult changes = scene.add_view(prepare_view(std::move(recorded), config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));

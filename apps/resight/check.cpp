@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "check_pictures.hpp"
@@ -13,6 +14,7 @@
 #include "resight/inspection/object_scale.hpp"
 #include "resight/io/images.hpp"
 #include "resight/models/library_file.hpp"
+#include "resight/registration/depth_bias.hpp"
 #include "resight/training/training.hpp"
 #include "sequence_input.hpp"
 
@@ -57,6 +59,15 @@ void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, 
   (scales.is_measured() ? report.facts : report.unmeasured).push_back(describe_scales(scales));
 }
 
+// Nothing if the views do not show one.
+void add_depth_bias(const CheckArguments& arguments, const Sequence& sequence, CheckReport& report) {
+  const DepthBias bias = measure_depth_bias(sequence, {}, {.correct = true, .num_threads = arguments.num_threads});
+  if (bias.is_significant())
+    report.facts.push_back(fmt::format(
+        "depth at 1 m is {:.1f} +- {:.1f} mm too {}, and at 2 m four times as much; preset default corrects it",
+        1e3 * std::abs(bias.per_m), 1e3 * bias.sigma_per_m, bias.per_m > 0 ? "small" : "large"));
+}
+
 CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequence) {
   CheckReport report;
   report.measured = value_or_throw(
@@ -64,6 +75,7 @@ CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequ
   report.findings = find_faults(report.measured);
   report.facts = list_facts(report.measured);
   report.unmeasured = list_unmeasured(report.measured);
+  if (sequence.has_poses() && report.findings.empty()) add_depth_bias(arguments, sequence, report);
   if (arguments.models) add_model_sizes(arguments, sequence, report);
   return report;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace resight {
 namespace {
@@ -15,12 +16,16 @@ double gain_of(const HypothesisEvidence& evidence) {
 
 }  // namespace
 
-double detection_score(const HypothesisEvidence& evidence, bool is_tracked, const DetectionScoreOptions& options) {
-  const double log_odds = options.offset + options.gain_weight * gain_of(evidence) +
-                          options.correspondence_weight * std::log1p(evidence.num_correspondences) +
-                          options.fit_weight * evidence.fit + options.visible_weight * evidence.visible_share +
-                          (is_tracked ? options.tracked_weight : 0);
-  return 1 / (1 + std::exp(-log_odds));
+ScoreCues score_cues(const HypothesisEvidence& evidence) {
+  return {gain_of(evidence), std::log1p(evidence.num_correspondences), evidence.fit,
+          std::log(0.01 + evidence.visible_share), std::log1p(evidence.appearance.shared_texture)};
+}
+
+double detection_score(const HypothesisEvidence& evidence, const DetectionScoreOptions& options) {
+  const ScoreCues weights = {options.gain_weight, options.correspondence_weight, options.fit_weight,
+                             options.visible_weight, options.texture_weight};
+  const ScoreCues cues = score_cues(evidence);
+  return 1 / (1 + std::exp(-std::inner_product(cues.begin(), cues.end(), weights.begin(), options.offset)));
 }
 
 }  // namespace resight

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+
 #include "resight/core/options.hpp"
 #include "resight/verification/verify_options.hpp"
 
 namespace resight {
 
-/// Weights of a logistic regression; all 0: 0.5 for any evidence. The weights of the presets (presets.cpp)
-/// were fitted to their detections at K = 5 on two seeds of `dynamic-tabletop`; docs/results.md says how well they
-/// generalise. Those of `default` leave out the similarity of colours, which depends on the lighting.
+/// Weights of a logistic regression; all 0: 0.5 for any evidence. `bench_fit_scores` fits them. Those of `default` are
+/// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
+/// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
+/// docs/results.md says how well the scores generalise.
 struct DetectionScoreOptions {
   double offset = 0;
   double gain_weight = 0;
   double correspondence_weight = 0;
   double fit_weight = 0;
   double visible_weight = 0;
-  double tracked_weight = 0;
+  double texture_weight = 0;
   void check() const { check_options("DetectionScoreOptions", *this); }
 };
 
@@ -24,12 +27,16 @@ inline void declare(OptionVisitor& v, DetectionScoreOptions& o) {
           "Of the unary gain: what it explains of the scene less what it costs, as a share of the former.", "fitted");
   v.field("correspondence_weight", o.correspondence_weight, between(0, 100), "Of log(1 + correspondences).", "fitted");
   v.field("fit_weight", o.fit_weight, between(0, 100), "Of how well its visible points are explained.", "fitted");
-  v.field("visible_weight", o.visible_weight, between(0, 100), "Of the visible share of the model.", "fitted");
-  v.field("tracked_weight", o.tracked_weight, between(0, 100), "Of having been recognised there before.", "fitted");
+  v.field("visible_weight", o.visible_weight, between(0, 100), "Of log(0.01 + visible share of the model).", "fitted");
+  v.field("texture_weight", o.texture_weight, between(0, 100),
+          "Of log(1 + contrast of the texture that model and scene share), in grey levels of L*.", "fitted");
 }
 
+/// What the weights of DetectionScoreOptions weigh, in their order.
+using ScoreCues = std::array<double, 5>;
+[[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
+
 /// How likely an accepted hypothesis is right, in [0, 1]: of the detections with score s about a share s is.
-[[nodiscard]] double detection_score(const HypothesisEvidence& evidence, bool is_tracked,
-                                     const DetectionScoreOptions& options);
+[[nodiscard]] double detection_score(const HypothesisEvidence& evidence, const DetectionScoreOptions& options);
 
 }  // namespace resight

@@ -17,6 +17,7 @@ HypothesisEvidence some_evidence() {
   evidence.fit = 0.8;
   evidence.visible_share = 0.3;
   evidence.num_correspondences = 20;
+  evidence.appearance.shared_texture = 2.5;
   evidence.costs.explained_scene = 500;
   evidence.costs.unary = -350;
   return evidence;
@@ -27,36 +28,37 @@ constexpr DetectionScoreOptions kSome{.offset = -4,
                                       .correspondence_weight = 0.7,
                                       .fit_weight = 2,
                                       .visible_weight = 6,
-                                      .tracked_weight = 0.8};
+                                      .texture_weight = 1.5};
 
 TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
-  const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * 0.3;
-  EXPECT_NEAR(detection_score(some_evidence(), false, kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
-  EXPECT_NEAR(detection_score(some_evidence(), true, kSome), 1 / (1 + std::exp(-log_odds - 0.8)), 1e-12);
+  const double log_odds =
+      -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) + 1.5 * std::log(1 + 2.5);
+  EXPECT_NEAR(detection_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 
 TEST(DetectionScore, GrowsWithTheEvidence) {
   for (const char* preset : {"mvr", "mvr-chd", "default"}) {
     const DetectionScoreOptions options = RecognizerConfig::from_preset(preset).detections.score;
-    const double score = detection_score(some_evidence(), false, options);
+    const double score = detection_score(some_evidence(), options);
     EXPECT_GT(score, 0) << preset;
     EXPECT_LT(score, 1) << preset;
     HypothesisEvidence better = some_evidence();
     better.num_correspondences = 40;
-    EXPECT_GT(detection_score(better, false, options), score) << preset;
+    EXPECT_GT(detection_score(better, options), score) << preset;
     better = some_evidence();
     better.costs.unary = -450;
-    EXPECT_GT(detection_score(better, false, options), score) << preset;
+    better.fit = 0.9;
+    EXPECT_GT(detection_score(better, options), score) << preset;
   }
 }
 
 TEST(DetectionScore, IsFiniteIfNothingIsExplainedOrTheCostIsHigher) {
   HypothesisEvidence evidence = some_evidence();
   evidence.costs.explained_scene = 0;
-  const double nothing = detection_score(evidence, false, kSome);
+  const double nothing = detection_score(evidence, kSome);
   evidence.costs.explained_scene = 1e-3;
   evidence.costs.unary = 1e9;
-  const double costly = detection_score(evidence, false, kSome);
+  const double costly = detection_score(evidence, kSome);
   EXPECT_GT(nothing, costly);
   EXPECT_GT(costly, 0);
 }

@@ -34,8 +34,7 @@ void confirm_by_colors(Detection& detection, const RgbdFrame& current, const Mod
 }  // namespace
 
 std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const std::deque<DynamicScene::View>& window,
-                                       const HypothesisPool& pool, const ModelLibrary& library,
-                                       const RecognizerConfig& config) {
+                                       const ModelLibrary& library, const RecognizerConfig& config) {
   std::vector<Detection> detections;
   for (std::size_t h = 0; h < verified.hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = verified.hypotheses[h];
@@ -46,7 +45,7 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     detection.hypothesis_id = hypothesis.id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = detection_score(evidence, pool.is_tracked(hypothesis), config.detections.score);
+    detection.score = detection_score(evidence, config.detections.score);
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     detection.views = evidence_of_views(verified, h, window);

@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "resight/recognition/hypothesis_pool.hpp"
+#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
@@ -23,8 +23,7 @@ struct VerifiedHypotheses {
 /// colours may confirm the object (color_confirmed_share()).
 [[nodiscard]] std::vector<Detection> make_detections(const VerifiedHypotheses& verified,
                                                      const std::deque<DynamicScene::View>& window,
-                                                     const HypothesisPool& pool, const ModelLibrary& library,
-                                                     const RecognizerConfig& config);
+                                                     const ModelLibrary& library, const RecognizerConfig& config);
 
 /// Drops the detections of which the current view itself confirms less than this share of the model's points.
 void drop_unconfirmed(std::vector<Detection>& detections, double min_share);

@@ -13,7 +13,12 @@ namespace {
 
 void set_paper(RecognizerConfig& config) {
   config.verify.refine.max_iterations.reset();
-  config.detections.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
+  config.detections.score = {.offset = -13.18,
+                             .gain_weight = 4.71,
+                             .correspondence_weight = 1.21,
+                             .fit_weight = 10.91,
+                             .visible_weight = 0,
+                             .texture_weight = 0};
 }
 
 void set_default_verification(VerifyOptions& verify) {
@@ -43,6 +48,7 @@ void set_default(RecognizerConfig& config) {
   config.remember_objects = true;
   config.camera.poses.correct = true;
   config.camera.color_offset.correct = true;
+  config.camera.depth_bias.correct = true;
   config.prepare.color_width_m = 0.005;         // As verify.resolution_m.
   config.prepare.normals.window_radius_px = 4;  // At 1 m, normals of objects are off by 6 deg; by 20 with 2.
   config.features.match.shot_neighbors = 3;
@@ -57,11 +63,12 @@ void set_default(RecognizerConfig& config) {
   config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
-  config.detections.score = {.offset = -4.24,
-                             .gain_weight = 5.14,
-                             .correspondence_weight = 0.71,
-                             .visible_weight = 6.87,
-                             .tracked_weight = 0.83};
+  config.detections.score = {.offset = -6.02,
+                             .gain_weight = 0,
+                             .correspondence_weight = 0.81,
+                             .fit_weight = 8.17,
+                             .visible_weight = 0.93,
+                             .texture_weight = 1.55};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.

@@ -11,11 +11,18 @@ Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer
                                                                  const OnView& on_view, RecognitionTrace* trace) {
   std::vector<std::vector<ObjectEvent>> events;
   const int num_views = sequence.num_views();
+  StageTimes calibration;
+  {
+    const ScopedTimer timer(calibration, "calibration");
+    const RecognizerConfig& config = recognizer.config();
+    recognizer.set_depth_bias(measure_depth_bias(sequence, config.prepare, config.camera.depth_bias));
+  }
   for (int v = 0; v < num_views; ++v) {
     const Result<RgbdFrame> frame = sequence.read_view(v);
     if (!frame) return frame.error();
     if (trace != nullptr) *trace = {};
     SceneUpdate update = recognizer.add_view(*frame, trace);
+    if (v == 0) update.times.add(calibration);
     if (v + 1 == num_views) std::ranges::move(recognizer.finish(), std::back_inserter(update.events));
     events.push_back(update.events);
     if (on_view) on_view(*frame, update);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "resight/recognition/box_scene_test_util.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 #include "resight/sensor/testing/memory_sequence.hpp"
 
 namespace resight {
@@ -65,6 +66,33 @@ TEST(RecognizeSequence, TheTraceIsThatOfEachView) {
                   &trace)
                   .ok());
   EXPECT_EQ(num_merged.size(), 3U);
+}
+
+// Mean distance of the floor from its true height; of the points near it.
+double floor_error_m(const PointCloud& cloud_in_world) {
+  double sum_m = 0;
+  int count = 0;
+  for (const Eigen::Vector3f& p : cloud_in_world.points)
+    if (std::abs(p.z()) < 0.06F && p.y() < 0.7F) sum_m += p.z(), ++count;
+  return std::abs(sum_m) / count;
+}
+
+TEST(RecognizeSequence, DepthIsCorrectedByTheBiasOfItsViews) {
+  const BoxScene scene;
+  const auto reconstruct = [&](bool correct, DepthBias& bias) {
+    RecognizerConfig config = scene.config;
+    config.camera.depth_bias.correct = correct;
+    SceneRecognizer recognizer(scene.library, config);
+    const auto events = recognize_sequence(recognizer, MemorySequence(test::render_biased_views(0.02)),
+                                           [&](const RgbdFrame&, SceneUpdate& update) { bias = update.depth_bias; });
+    EXPECT_TRUE(events.ok());
+    return floor_error_m(recognizer.reconstruction());
+  };
+  DepthBias corrected, uncorrected;
+  EXPECT_LT(reconstruct(true, corrected), 0.005);
+  EXPECT_TRUE(corrected.is_significant());
+  EXPECT_GT(reconstruct(false, uncorrected), 0.015);
+  EXPECT_EQ(uncorrected.num_views, 0);
 }
 
 TEST(RecognizeSequence, StopsAtAViewThatCannotBeRead) {

@@ -18,6 +18,7 @@
 #include "resight/recognition/search_planner_options.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/registration/camera_corrector.hpp"
+#include "resight/registration/depth_bias.hpp"
 #include "resight/sensor/color_offset.hpp"
 #include "resight/sensor/prepared_view.hpp"
 #include "resight/shape_search/shape_search.hpp"
@@ -39,15 +40,17 @@ inline void declare(OptionVisitor& v, RunOptions& o) {
       "the machine. off: no limit.");
 }
 
-/// Errors of the camera that its views show: of its poses, and between its colours and its depth.
+/// Errors of the camera that its views show: of its poses, between its colours and its depth, and of its depth.
 struct CameraOptions {
   CorrectCameraOptions poses{};
   ColorOffsetOptions color_offset{};
+  DepthBiasOptions depth_bias{};
 };
 
 inline void declare(OptionVisitor& v, CameraOptions& o) {
   v.group("poses", o.poses);
   v.group("color_offset", o.color_offset);
+  v.group("depth_bias", o.depth_bias);
 }
 
 /// Features of a view, and their matches in the models.

@@ -42,6 +42,7 @@ struct SceneRecognizer::Impl {
 
   const ModelLibrary& library;
   RecognizerConfig config;
+  DepthBias depth_bias;
   ColorOffsetCorrector color_offset;
   DynamicScene scene;
   SearchPlanner planner;
@@ -79,9 +80,11 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
 void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   update.view = scene.window().empty() ? 0 : scene.window().back().number + 1;
   update.view_name = frame.name;
+  update.depth_bias = depth_bias;
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
+    correct_depth(depth_bias, frame);
     view = prepare_view(std::move(frame), config.prepare);
     update.color_offset = color_offset.correct(view);
   }
@@ -162,7 +165,7 @@ void SceneRecognizer::Impl::verify(VerifiedHypotheses& verified, SceneUpdate& up
   std::vector<VerificationView> views;
   for (const DynamicScene::View& view : scene.window()) views.push_back({&view.cleared});
   verified.evidence = verifier.verify(verified.hypotheses, scene.reconstruction(), views, verified.present).evidence;
-  update.detections = make_detections(verified, scene.window(), pool, library, config);
+  update.detections = make_detections(verified, scene.window(), library, config);
   update.counts.accepted = static_cast<int>(update.detections.size());
   budget.finish_verification(verified.hypotheses.size());
 }
@@ -183,6 +186,7 @@ SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig c
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 
+void SceneRecognizer::set_depth_bias(const DepthBias& bias) { impl_->depth_bias = bias; }
 SceneUpdate SceneRecognizer::add_view(RgbdFrame frame, RecognitionTrace* trace) {
   return impl_->add_view(std::move(frame), trace);
 }

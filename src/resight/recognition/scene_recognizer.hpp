@@ -30,6 +30,8 @@ class SceneRecognizer {
   ~SceneRecognizer();
   SceneRecognizer(SceneRecognizer&&) noexcept;
 
+  /// Bias of the camera's depth, which add_view() corrects if it is significant. Call it before the first view.
+  void set_depth_bias(const DepthBias& bias);
   /// Recognises the scene at this view. Views in time order; poses in one world frame. Throws std::invalid_argument for
   /// a frame that fails check_frame(); the recogniser is then unchanged. `trace`: filled with the intermediate results
   /// of the stages, unless null.

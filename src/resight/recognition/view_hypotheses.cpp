@@ -25,6 +25,7 @@ std::string generation_settings(const RecognizerConfig& config) {
   RecognizerConfig counted;
   counted.run = config.run;
   counted.camera.color_offset = config.camera.color_offset;
+  counted.camera.depth_bias = config.camera.depth_bias;
   counted.prepare = config.prepare;
   counted.features = config.features;
   counted.hypotheses.generate = config.hypotheses.generate;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 
 #include "resight/geometry/rigid3.hpp"
 
@@ -30,6 +31,9 @@ struct NormalEquations {
     return *this;
   }
 };
+
+/// Tukey's weight of a residual in units of the largest one that counts: 1 at 0, 0 from 1 on.
+[[nodiscard]] inline double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
 
 /// How the distance of a point to a plane changes with a small motion of the point, [rotation vector; shift]; `arm`:
 /// the point from the centre of rotation, `normal`: of the plane (Chen and Medioni 1992).

@@ -101,8 +101,6 @@ struct Sums {
   }
 };
 
-double tukey(double x) { return std::abs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0; }
-
 // Bilinear value and gradient (per pixel) of an image; false at its border.
 bool interpolate(const Image<float>& image, float u, float v, float& value, float& du, float& dv) {
   const int u0 = static_cast<int>(std::floor(u));

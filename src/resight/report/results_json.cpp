@@ -110,6 +110,16 @@ Json color_offset_json(const ReportRun& run) {
           {"moved_px", {offset.moved_px.x(), offset.moved_px.y()}}};
 }
 
+// Null if it was not measured.
+Json depth_bias_json(const ReportRun& run) {
+  if (run.views.empty() || run.views.back().update.depth_bias.num_views < 2) return nullptr;
+  const DepthBias& bias = run.views.back().update.depth_bias;
+  return {{"per_m", bias.per_m},
+          {"sigma_per_m", bias.sigma_per_m},
+          {"num_views", bias.num_views},
+          {"corrected", bias.is_significant()}};
+}
+
 Json unknown_if_empty(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
@@ -168,6 +178,7 @@ std::string format_summary_json(const ReportRun& run) {
   json["median_view_wall_s"] = summary.median_view_wall_s;
   json["stages"] = stage_times_json(summary.times, summary.num_views);
   json["color_offset"] = color_offset_json(run);
+  json["depth_bias"] = depth_bias_json(run);
   if (run.num_skipped_views) json["num_skipped_views"] = *run.num_skipped_views;
   json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
   if (summary.num_scored_views > 0) {

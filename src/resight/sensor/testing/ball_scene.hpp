@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "resight/core/random.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -19,7 +20,7 @@ struct BallScene {
   bool ball_print = false;  ///< The texture of the ball moves with it.
 };
 
-inline Camera small_camera() { return {320, 240, 280.0, 280.0, 159.5, 119.5}; }
+inline Camera ball_scene_camera() { return {320, 240, 280.0, 280.0, 159.5, 119.5}; }
 
 /// Pose of a camera at `eye` that looks at `target`. The z axis of the world points up.
 inline Rigid3 look_at_point(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
@@ -47,7 +48,7 @@ inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_f
                                    std::uint64_t seed = 1) {
   RgbdFrame frame;
   frame.name = "ball";
-  frame.camera = small_camera();
+  frame.camera = ball_scene_camera();
   frame.world_from_camera = world_from_camera;
   frame.color = Image<Rgb8>(frame.camera.width, frame.camera.height);
   frame.depth_m = Image<float>(frame.camera.width, frame.camera.height, std::numeric_limits<float>::quiet_NaN());
@@ -71,6 +72,35 @@ inline RgbdFrame render_ball_scene(const BallScene& scene, const Rigid3& world_f
       frame.depth_m(u, v) = static_cast<float>(depth + noise_m * rng.normal());
     }
   return frame;
+}
+
+/// What a camera measures whose disparity is off by `bias_per_m`, with the noise of a Kinect (2.9 mm at 1.2 m):
+/// 1 / measured = 1 / z + bias_per_m.
+inline RgbdFrame render_biased_view(const BallScene& scene, const Rigid3& world_from_camera, double bias_per_m,
+                                    std::uint64_t seed) {
+  constexpr double kDisparityNoise_per_m = 2e-3;
+  RgbdFrame frame = render_ball_scene(scene, world_from_camera);
+  Rng rng(seed);
+  for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
+    frame.depth_m[i] =
+        static_cast<float>(1 / (1.0 / frame.depth_m[i] + bias_per_m + kDisparityNoise_per_m * rng.normal()));
+  return frame;
+}
+
+/// Eight of them, by steps on a circle, whose poses are off by some millimetres. 0: the camera stands.
+inline std::vector<RgbdFrame> render_biased_views(double bias_per_m, const BallScene& scene = {},
+                                                  double step_rad = 0.22) {
+  std::vector<RgbdFrame> frames;
+  Rng rng(7);
+  for (int v = 0; v < 8; ++v) {
+    const double angle_rad = -2.3 + step_rad * v;
+    const double distance_m = 1.1 + (step_rad > 0 ? 0.25 * (v % 3) : 0);
+    const Rigid3 pose =
+        look_at_point({distance_m * std::cos(angle_rad), distance_m * std::sin(angle_rad), 0.75}, {0.05, 0.05, 0.1});
+    frames.push_back(render_biased_view(scene, pose, bias_per_m, static_cast<std::uint64_t>(v) + 1));
+    for (int axis = 0; axis < 3; ++axis) frames.back().world_from_camera.translation[axis] += 0.002 * rng.normal();
+  }
+  return frames;
 }
 
 /// Distances between `a` and `b`: translation in metres, rotation in radians.
