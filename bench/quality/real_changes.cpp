@@ -146,7 +146,7 @@ void run_still(const Arguments& arguments) {
   const auto sequence = open_or_exit(arguments.positional[1]);
   const std::filesystem::path labels = arguments.positional[2];
   const RecognizerConfig config = read_config(arguments, 3);
-  ChangeRun run(config);
+  ChangeRun run(config, *sequence);
   ChangeScore plain;
   ChangeScore detected;
   PictureSheets sheets;
@@ -176,7 +176,7 @@ void run_still(const Arguments& arguments) {
 void run_static(const Arguments& arguments) {
   const auto sequence = value_or_exit(open_posed_sequence(arguments.positional[1]));
   const RecognizerConfig config = read_config(arguments, 2);
-  ChangeRun run(config);
+  ChangeRun run(config, *sequence);
   FalseShares novel;
   FalseShares removed;
   int num_suspect = 0;

@@ -6,11 +6,12 @@
 
 namespace resight::bench {
 
-/// Change detection view by view, with corrected camera poses as in SceneRecognizer.
+/// Change detection view by view, with corrected camera poses and depth as in SceneRecognizer.
 class ChangeRun {
  public:
-  /// Changes are detected whatever the preset. Throws std::invalid_argument for a config that fails check().
-  explicit ChangeRun(const RecognizerConfig& config);
+  /// Changes are detected whatever the preset. The bias of the depth is that of `sequence`. Throws
+  /// std::invalid_argument for a config that fails check().
+  ChangeRun(const RecognizerConfig& config, const Sequence& sequence);
 
   /// Changes of this view against the reconstruction from the views before it.
   ChangeResult add_view(RgbdFrame frame);
@@ -24,6 +25,7 @@ class ChangeRun {
 
  private:
   PrepareViewOptions prepare_;
+  DepthBias depth_bias_;
   double voxel_m_;
   DynamicScene scene_;
   int num_corrected_ = 0;

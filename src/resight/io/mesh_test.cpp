@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/LU>
+#include <optional>
+
 #include "resight/io/images.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 #include "resight/io/internal/test_data.hpp"
@@ -125,6 +128,67 @@ TEST(Mesh, GltfNodesTexturesAndColours) {
     EXPECT_GE(read->mesh.vertices[i].x(), 0.5F);
     const bool is_origin = read->mesh.vertices[i].head<2>().isApprox(Eigen::Vector2f(0.5F, 0));
     EXPECT_EQ(read->mesh.uvs[i].norm() < 1e-6F, is_origin);
+  }
+}
+
+// The square of write_square_obj(); v of the texture points up in PLY, as in OBJ.
+void write_square_ply(const io::TestDirectory& directory) {
+  io::write_text(directory / "square.ply",
+                 "ply\nformat ascii 1.0\ncomment TextureFile square.png\nelement vertex 4\nproperty float x\n"
+                 "property float y\nproperty float z\nproperty float texture_u\nproperty float texture_v\n"
+                 "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0 0 0\n.2 0 0 1 0\n.2 .2 0 1 1\n0 .2 0 0 1\n3 0 1 2\n3 0 2 3\n");
+}
+
+// In glTF, it points down.
+void write_square_gltf(const io::TestDirectory& directory) {
+  std::string buffer;
+  const auto add = [&](float x) { buffer.append(reinterpret_cast<const char*>(&x), 4); };
+  for (const float x : {0.F, 0.F, 0.F, .2F, 0.F, 0.F, .2F, .2F, 0.F, 0.F, 0.F, 0.F, .2F, .2F, 0.F, 0.F, .2F, 0.F})
+    add(x);
+  for (const float x : {0.F, 1.F, 1.F, 1.F, 1.F, 0.F, 0.F, 1.F, 1.F, 0.F, 0.F, 0.F}) add(x);
+  io::write_text(directory / "square.bin", buffer);
+  io::write_text(directory / "square.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+    "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
+    "images":[{"uri":"square.png"}],"buffers":[{"uri":"square.bin","byteLength":120}],
+    "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":72},{"buffer":0,"byteOffset":72,"byteLength":48}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3","min":[0,0,0],"max":[0.2,0.2,0]},
+                 {"bufferView":1,"componentType":5126,"count":6,"type":"VEC2"}]})");
+}
+
+// Colour of a mesh in the plane z = 0.
+std::optional<Rgb8> color_at(const TriangleMesh& mesh, const Eigen::Vector2f& place) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const Eigen::Vector2f c = mesh.vertices[mesh.faces[f][2]].head<2>();
+    Eigen::Matrix2f edges;
+    edges << mesh.vertices[mesh.faces[f][0]].head<2>() - c, mesh.vertices[mesh.faces[f][1]].head<2>() - c;
+    const Eigen::Vector2f b = edges.inverse() * (place - c);
+    if (b.minCoeff() >= 0 && b.sum() <= 1) return surface_color(mesh, static_cast<int>(f), b[0], b[1]);
+  }
+  return std::nullopt;
+}
+
+TEST(Mesh, ColoursAreTheSameInAllFormats) {
+  io::TestDirectory directory;
+  write_square_obj(directory, 0.2);
+  write_square_ply(directory);
+  write_square_gltf(directory);
+  const auto obj = read_mesh(directory / "square.obj");
+  ASSERT_TRUE(obj.ok()) << obj.error().message;
+  for (const char* name : {"square.ply", "square.gltf"}) {
+    const auto other = read_mesh(directory / name);
+    ASSERT_TRUE(other.ok()) << other.error().message;
+    for (float x = 0.013F; x < 0.2F; x += 0.025F)
+      for (float y = 0.011F; y < 0.2F; y += 0.025F) {
+        const std::optional<Rgb8> expected = color_at(obj->mesh, {x, y});
+        ASSERT_TRUE(expected);
+        const std::optional<Rgb8> color = color_at(other->mesh, {x, y});
+        ASSERT_TRUE(color);
+        EXPECT_NEAR(color->r, expected->r, 1) << name << " at " << x << ", " << y;
+        EXPECT_NEAR(color->g, expected->g, 1) << name << " at " << x << ", " << y;
+        EXPECT_NEAR(color->b, expected->b, 1) << name << " at " << x << ", " << y;
+      }
   }
 }
 
