@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,25 @@ namespace {
 
 constexpr double kMaxBias_per_m = 0.05;  // More is a wrong unit or another law.
 constexpr double kMinSigmas = 3;
+
+std::vector<int> spread_views(int num_views) {
+  const int count = std::min(num_views, kMaxBiasViews);
+  std::vector<int> views;
+  for (int k = 0; k < count; ++k) views.push_back(count > 1 ? k * (num_views - 1) / (count - 1) : 0);
+  return views;
+}
+
+// By the given poses. Poses that cannot be read are no evidence.
+bool stands_still(const Sequence& sequence, std::span<const int> views) {
+  std::optional<Rigid3> first;
+  for (const int v : views) {
+    const Result<Rigid3> pose = sequence.read_pose(v);
+    if (!pose) continue;
+    if (first && first->matrix() != pose->matrix()) return false;
+    first = *pose;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -47,12 +67,12 @@ DepthBias estimate_depth_bias(std::span<const AlignmentTarget> views, const Dept
 DepthBias measure_depth_bias(const Sequence& sequence, const PrepareViewOptions& prepare,
                              const DepthBiasOptions& options) {
   if (!options.correct) return {};
-  const int num_views = std::min(sequence.num_views(), kMaxBiasViews);
+  const std::vector<int> numbers = spread_views(sequence.num_views());
+  if (stands_still(sequence, numbers)) return {};
   std::vector<AlignmentView> kept;
   std::vector<AlignmentTarget> views;
-  kept.reserve(static_cast<std::size_t>(num_views));
-  for (int k = 0; k < num_views; ++k) {
-    const int v = num_views > 1 ? k * (sequence.num_views() - 1) / (num_views - 1) : 0;
+  kept.reserve(numbers.size());
+  for (const int v : numbers) {
     Result<RgbdFrame> frame = sequence.read_view(v);
     if (!frame) continue;
     const PreparedView view = prepare_view(std::move(*frame), prepare);

@@ -48,7 +48,7 @@ struct DepthBias {
 [[nodiscard]] DepthBias estimate_depth_bias(std::span<const AlignmentTarget> views, const DepthBiasOptions& options);
 
 /// The same for up to kMaxBiasViews views of a sequence; those that cannot be read do not count. No bias unless
-/// options.correct.
+/// options.correct, and none if all given poses are equal: a camera that stands shows nothing.
 [[nodiscard]] DepthBias measure_depth_bias(const Sequence& sequence, const PrepareViewOptions& prepare,
                                            const DepthBiasOptions& options);
 

@@ -50,6 +50,12 @@ TEST(DepthBias, IsUnknownToAStillCamera) {
   EXPECT_FALSE(bias.is_significant()) << bias.per_m << " +- " << bias.sigma_per_m;
 }
 
+TEST(DepthBias, IsNotMeasuredWhereAllPosesAreEqual) {
+  std::vector<RgbdFrame> frames = test::render_biased_views(0.02, {}, 0);
+  for (RgbdFrame& frame : frames) frame.world_from_camera = frames.front().world_from_camera;
+  EXPECT_EQ(measure(frames).num_views, 0);
+}
+
 TEST(DepthBias, IsUnknownWithoutOverlapOrViews) {
   std::vector<RgbdFrame> apart;
   for (int v = 0; v < 3; ++v)
@@ -58,10 +64,12 @@ TEST(DepthBias, IsUnknownWithoutOverlapOrViews) {
   EXPECT_FALSE(measure(apart).is_significant());
   EXPECT_FALSE(measure({}).is_significant());
   EXPECT_FALSE(measure({apart.front()}).is_significant());
-  EXPECT_EQ(measure({apart.front()}).num_views, 1);
+  EXPECT_EQ(measure({apart.front()}).num_views, 0);
   RgbdFrame empty = apart.front();
   for (std::size_t i = 0; i < empty.depth_m.size(); ++i) empty.depth_m[i] = std::nanf("");
-  EXPECT_FALSE(measure({empty, empty, empty}).is_significant());
+  std::vector<RgbdFrame> without_depth(3, empty);
+  without_depth[1].world_from_camera.translation.x() += 0.1;
+  EXPECT_FALSE(measure(without_depth).is_significant());
 }
 
 TEST(DepthBias, LeavesOutViewsThatCannotBeRead) {
