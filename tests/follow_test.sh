@@ -26,7 +26,7 @@ put_view() { # put_view NUMBER: as a camera writes it, the depth in two parts
 }
 
 follow=(recognize --models models.resight --intrinsics $intrinsics --depth-scale 0.0001 --stream)
-"$resight" "${follow[@]}" --sequence live --poses fixed --follow --keep-late --out out >lines 2>err &
+"$resight" "${follow[@]}" --sequence live --poses fixed --follow --keep-late --trace --out out >lines 2>err &
 program=$!
 wait_for err 'waiting for views: live: no such directory'
 mkdir live
@@ -37,13 +37,14 @@ wait $program
 status=$?
 [ $status = 0 ] || fail "Ctrl-C ends with status $status: $(tail -1 err)"
 [ "$(wc -l <lines)" = 5 ] || fail "not a line a view: $(wc -l <lines)"
-for file in detections.json changes.json summary.json report.html; do [ -s out/$file ] || fail "$file is missing"; done
+for file in detections.json changes.json summary.json report.html trace.jsonl; do [ -s out/$file ] || fail "$file is missing"; done
 [ ! -e out/finished_views.jsonl ] || fail "finished_views.jsonl is left behind"
 grep -q '"num_skipped_views": *0' out/summary.json || fail "summary.json does not count skipped views"
 
 # The same folder as a finished one.
-"$resight" "${follow[@]}" --sequence live --poses fixed --out whole >whole_lines 2>err || fail "afterwards: $(tail -1 err)"
+"$resight" "${follow[@]}" --sequence live --poses fixed --trace --out whole >whole_lines 2>err || fail "afterwards: $(tail -1 err)"
 cmp -s out/detections.json whole/detections.json || fail "detections differ from those of the finished folder"
+cmp -s out/trace.jsonl whole/trace.jsonl || fail "the trace differs from that of the finished folder"
 cmp -s out/changes.json whole/changes.json || fail "changes differ from those of the finished folder"
 
 # All views are there: the newest one wins, and the idle time ends the run.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <utility>
 
 #include "resight/report/stored_view.hpp"
 
@@ -17,13 +18,14 @@ std::shared_ptr<const T> borrow(const T& value) {
 }
 
 ViewerScene make_live_scene(const Sequence& sequence, const ModelLibrary& library, const std::string& title,
-                            const std::string& preset) {
+                            const std::string& preset, std::optional<TraceFile> trace) {
   ViewerScene scene;
   scene.title = title;
   scene.sequence = borrow(sequence);
   scene.library = borrow(library);
   scene.runs.push_back({preset, {}});
   scene.runs.front().results.preset = preset;
+  scene.runs.front().results.trace = std::move(trace);
   scene.runs.front().results.version = RESIGHT_VERSION;
   scene.is_live = true;
   return scene;
@@ -32,9 +34,9 @@ ViewerScene make_live_scene(const Sequence& sequence, const ModelLibrary& librar
 }  // namespace
 
 LiveViewer::LiveViewer(const Sequence& sequence, const ModelLibrary& library, const std::string& title,
-                       const std::string& preset)
+                       const std::string& preset, std::optional<TraceFile> trace)
     : library_(library),
-      scene_(value_or_throw(SceneData::create(make_live_scene(sequence, library, title, preset)))),
+      scene_(value_or_throw(SceneData::create(make_live_scene(sequence, library, title, preset, std::move(trace))))),
       session_(*scene_, {.port = 0, .no_open = false}),
       thread_([this] { session_.server().run(); }) {}
 
@@ -47,7 +49,7 @@ void LiveViewer::stop() {
 }
 
 void LiveViewer::add_view(const ViewRecord& view) {
-  scene_->add_view(to_stored_view(view, library_), to_stored_events(view, library_));
+  value_or_throw(scene_->add_view(to_stored_view(view, library_), to_stored_events(view, library_)));
   tell_revision();
 }
 

@@ -16,9 +16,9 @@ namespace resight::app {
 /// Shows views in a browser as they are recognised. Sequence and library must outlive it.
 class LiveViewer {
  public:
-  /// `name`: of the run. Prints the address.
-  LiveViewer(const Sequence& sequence, const ModelLibrary& library, const std::string& title,
-             const std::string& preset);
+  /// `trace`: that the run writes, if it does. Prints the address.
+  LiveViewer(const Sequence& sequence, const ModelLibrary& library, const std::string& title, const std::string& preset,
+             std::optional<TraceFile> trace);
   ~LiveViewer();
   LiveViewer(const LiveViewer&) = delete;
   LiveViewer& operator=(const LiveViewer&) = delete;

@@ -117,7 +117,6 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
           ->add_flag("--follow", a.follow.is_on,
                      "Take the views of the folder as they are written into it, until Ctrl-C; results are written then")
           ->excludes("--view")
-          ->excludes("--trace")
           ->group(group);
   command
       ->add_option(
@@ -125,7 +124,6 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
           "Instead of --sequence: a camera of OpenNI2 that does not move (openni2, or openni2:URI), until Ctrl-C")
       ->check(kCameras)
       ->excludes("--view")
-      ->excludes("--trace")
       ->excludes("--sequence")
       ->excludes(follow)
       ->group(group);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -65,6 +66,38 @@ void finish_run(std::vector<std::vector<ObjectEvent>> final_events, ReportRun& r
   run.peak_memory_bytes = peak_memory_bytes();
 }
 
+/// Records the views of a run, and tells the observer of each.
+class RunRecorder {
+ public:
+  RunRecorder(const ModelLibrary& library, const RecognizerConfig& config, const RunObserver& observer, ReportRun& run)
+      : library_(&library), acceptance_(&config.verify.acceptance), observer_(&observer), run_(&run) {
+    if (observer.on_trace) observer.on_trace(format_trace_header(run.preset, run.version));
+  }
+  /// To be filled with each view before it is added; null: nothing is traced.
+  [[nodiscard]] RecognitionTrace* trace() { return observer_->on_trace ? &trace_ : nullptr; }
+
+  void add(const RgbdFrame& frame, SceneUpdate& update, std::optional<ViewEvaluation> evaluation, int scene_id,
+           int image_id) {
+    if (observer_->on_trace) {
+      TracedView traced{.update = &update, .trace = &trace_, .missed = {}, .acceptance = acceptance_};
+      if (evaluation) traced.missed = evaluation->missed;
+      observer_->on_trace(format_trace_line(traced, *library_));
+    }
+    ViewRecord& view =
+        run_->views.emplace_back(make_view_record(frame, *library_, std::move(update), std::move(evaluation)));
+    view.scene_id = scene_id;
+    view.image_id = image_id;
+    if (observer_->on_view) observer_->on_view(run_->views);
+  }
+
+ private:
+  const ModelLibrary* library_;
+  const AcceptanceOptions* acceptance_;
+  const RunObserver* observer_;
+  ReportRun* run_;
+  RecognitionTrace trace_;
+};
+
 }  // namespace
 
 ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence, const RecognizerConfig& config,
@@ -73,9 +106,7 @@ ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
   warn_about_names(truth, "ground truth");
   ReportRun run = start_run(config, num_threads);
   SceneRecognizer recognizer(library, config);
-  RecognitionTrace trace;
-  const bool is_traced = static_cast<bool>(observer.on_trace);
-  if (is_traced) observer.on_trace(format_trace_header(run.preset, run.version));
+  RunRecorder recorder(library, config, observer, run);
   Progress progress(config.preset, sequence.num_views());
   const auto on_view = [&](const RgbdFrame& frame, SceneUpdate& update) {
     const int v = update.view;
@@ -84,28 +115,17 @@ ReportRun run_recognition(const ModelLibrary& library, const Sequence& sequence,
     if (!truth.views.empty())
       evaluation = evaluate_view(update, truth.views[static_cast<std::size_t>(v)].objects, truth.former_places,
                                  frame.camera, library);
-    if (is_traced) {
-      const TracedView traced{.update = &update,
-                              .trace = &trace,
-                              .missed = evaluation ? std::span<const GroundTruthObject>(evaluation->missed)
-                                                   : std::span<const GroundTruthObject>(),
-                              .acceptance = &config.verify.acceptance};
-      observer.on_trace(format_trace_line(traced, library));
-    }
-    run.views.push_back(make_view_record(frame, library, std::move(update), std::move(evaluation)));
-    run.views.back().scene_id = sequence.scene_id();
-    run.views.back().image_id = sequence.image_id(v);
-    if (observer.on_view) observer.on_view(run.views.back());
+    recorder.add(frame, update, std::move(evaluation), sequence.scene_id(), sequence.image_id(v));
   };
-  auto events = recognize_sequence(recognizer, sequence, on_view, is_traced ? &trace : nullptr);
-  finish_run(value_or_throw(std::move(events)), run);
+  finish_run(value_or_throw(recognize_sequence(recognizer, sequence, on_view, recorder.trace())), run);
   return run;
 }
 
 ReportRun run_live(const ModelLibrary& library, const NextLiveView& next, const RecognizerConfig& config,
-                   int num_threads, const std::function<void(std::span<ViewRecord>)>& on_view) {
+                   int num_threads, const RunObserver& observer) {
   ReportRun run = start_run(config, num_threads);
   SceneRecognizer recognizer(library, config);
+  RunRecorder recorder(library, config, observer, run);
   Progress progress(config.preset, 0);
   FollowedView current;
   const auto next_frame = [&]() -> Result<std::optional<RgbdFrame>> {
@@ -114,14 +134,11 @@ ReportRun run_live(const ModelLibrary& library, const NextLiveView& next, const 
     current = {.frame = {}, .scene_id = view->scene_id, .image_id = view->image_id};
     return std::optional(std::move(view->frame));
   };
-  auto events = recognize_views(recognizer, next_frame, [&](const RgbdFrame& frame, SceneUpdate& update) {
+  const auto on_view = [&](const RgbdFrame& frame, SceneUpdate& update) {
     report_update(update, progress);
-    run.views.push_back(make_view_record(frame, library, std::move(update)));
-    run.views.back().scene_id = current.scene_id;
-    run.views.back().image_id = current.image_id;
-    if (on_view) on_view(run.views);
-  });
-  finish_run(value_or_throw(std::move(events)), run);
+    recorder.add(frame, update, std::nullopt, current.scene_id, current.image_id);
+  };
+  finish_run(value_or_throw(recognize_views(recognizer, next_frame, on_view, recorder.trace())), run);
   return run;
 }
 

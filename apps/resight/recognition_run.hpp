@@ -24,8 +24,9 @@ void warn_about_names(const SequenceTruth& truth, const std::string& sequence);
 
 /// Receives what happens during a run.
 struct RunObserver {
-  /// Each view as it is recognised; later views may change its events. Its picture may be stored.
-  std::function<void(ViewRecord&)> on_view;
+  /// All views up to the newest, whenever there is a new one. Later views may change its events. Pictures may be
+  /// stored.
+  std::function<void(std::span<ViewRecord>)> on_view;
   /// The lines of trace.jsonl, each before its view; empty = nothing is traced.
   std::function<void(const std::string& line)> on_trace;
 };
@@ -38,8 +39,8 @@ struct RunObserver {
 /// The next view of a camera or of a folder that is being written; none at the end.
 using NextLiveView = std::function<std::optional<FollowedView>()>;
 
-/// Same for views that come one by one. Waits in `next`. `on_view` gets all views up to the newest one.
+/// Same for views that come one by one. Waits in `next`.
 [[nodiscard]] ReportRun run_live(const ModelLibrary& library, const NextLiveView& next, const RecognizerConfig& config,
-                                 int num_threads, const std::function<void(std::span<ViewRecord>)>& on_view = {});
+                                 int num_threads, const RunObserver& observer);
 
 }  // namespace resight::app

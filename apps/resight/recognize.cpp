@@ -78,18 +78,66 @@ void store_new_pictures(std::span<ViewRecord> views, const std::filesystem::path
   for (ViewRecord& view : views.subspan(num_stored)) value_or_throw(store_picture(view, folder));
 }
 
+/// The files of a run that grow with each view.
+class RunFiles {
+ public:
+  RunFiles(const RecognizeArguments& arguments, const ModelLibrary& library)
+      : arguments_(&arguments),
+        library_(&library),
+        folder_(value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill))),
+        finished_(arguments.out / kFinishedViews),
+        trace_(trace_file()) {}
+
+  [[nodiscard]] RunObserver observer() {
+    RunObserver observer;
+    observer.on_view = [this](std::span<ViewRecord> views) {
+      store_new_pictures(views, folder_.path());
+      report_view(*arguments_, views.back(), *library_, finished_);
+    };
+    if (arguments_->trace) observer.on_trace = [this](const std::string& line) { trace_.add(line); };
+    return observer;
+  }
+  /// Where the trace is before the results are complete.
+  [[nodiscard]] std::filesystem::path trace_file() const { return folder_.path() / kTraceFile; }
+  void complete(ReportRun& run) { write_run(*arguments_, run, *library_, folder_, finished_); }
+
+ private:
+  const RecognizeArguments* arguments_;
+  const ModelLibrary* library_;
+  PendingDirectory folder_;
+  LineFile finished_;
+  LineFile trace_;
+};
+
 void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const ModelLibrary& library,
                     const RecognizerConfig& config) {
-  auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  LineFile finished(arguments.out / kFinishedViews);
+  RunFiles files(arguments, library);
   ReportRun run = run_live(
-      library, [&] { return views.next(); }, config, arguments.num_threads,
-      [&](std::span<ViewRecord> run_views) {
-        store_new_pictures(run_views, folder.path());
-        report_view(arguments, run_views.back(), library, finished);
-      });
+      library, [&] { return views.next(); }, config, arguments.num_threads, files.observer());
   run.num_skipped_views = views.num_skipped();
-  write_run(arguments, run, library, folder, finished);
+  files.complete(run);
+}
+
+void recognize_recorded(const Sequence& sequence, RunFiles& files, const RecognizeArguments& arguments,
+                        const ModelLibrary& library, const RecognizerConfig& config) {
+  std::optional<LiveViewer> viewer;
+  RunObserver observer = files.observer();
+  if (arguments.view) {
+    std::optional<TraceFile> trace;
+    if (arguments.trace) trace = TraceFile::follow(files.trace_file());
+    viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset, std::move(trace));
+    observer.on_view = [&viewer, on_view = std::move(observer.on_view)](std::span<ViewRecord> views) {
+      viewer->add_view(views.back());
+      on_view(views);
+    };
+  }
+  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, observer);
+  files.complete(run);
+  if (!viewer) return;
+  std::optional<TraceFile> trace;
+  if (arguments.trace)
+    trace = value_or_throw(TraceFile::open(arguments.out / kTraceFile, static_cast<int>(run.views.size())));
+  viewer->finish(run, std::move(trace));
 }
 
 }  // namespace
@@ -129,7 +177,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   }
   const auto recorded = estimated ? open_input(arguments.sequence, input) : open_posed_input(arguments.sequence, input);
   warn_about_faults(*recorded, arguments.poses != "auto");
-  auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
+  RunFiles files(arguments, library);
   std::optional<PosedSequence> tracked;
   if (estimated) {
     TrackSequenceOptions options;
@@ -138,25 +186,7 @@ void run_recognize(const RecognizeArguments& arguments) {
     options.num_threads = arguments.num_threads;
     tracked.emplace(take_largest_component(*recorded, track_sequence(*recorded, options).track));
   }
-  const Sequence& sequence = tracked ? *tracked : *recorded;
-  std::optional<LiveViewer> viewer;
-  if (arguments.view) viewer.emplace(sequence, library, folder_name(arguments.sequence), config.preset);
-  LineFile finished(arguments.out / kFinishedViews);
-  LineFile trace(folder.path() / kTraceFile);
-  RunObserver observer;
-  observer.on_view = [&](ViewRecord& view) {
-    if (viewer) viewer->add_view(view);
-    if (sequence.num_views() > kViewsPerPage) value_or_throw(store_picture(view, folder.path()));
-    report_view(arguments, view, library, finished);
-  };
-  if (arguments.trace) observer.on_trace = [&](const std::string& line) { trace.add(line); };
-  ReportRun run = run_recognition(library, sequence, config, arguments.num_threads, observer);
-  write_run(arguments, run, library, folder, finished);
-  if (!viewer) return;
-  std::optional<TraceFile> shown;
-  if (arguments.trace)
-    shown = value_or_throw(TraceFile::open(arguments.out / kTraceFile, static_cast<int>(run.views.size())));
-  viewer->finish(run, std::move(shown));
+  recognize_recorded(tracked ? static_cast<const Sequence&>(*tracked) : *recorded, files, arguments, library, config);
 }
 
 }  // namespace resight::app

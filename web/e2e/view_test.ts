@@ -197,9 +197,10 @@ test("a sequence and a model library are shown as well", async () => {
 
 test("views are shown as they are recognised", async () => {
   const inputs = ["--models", setting("MODELS"), "--sequence", setting("SEQUENCE"), "--out", setting("LIVE")];
-  const { address, output, stop } = await serve(inputs, ["recognize", "--view"]);
+  const { address, output, stop } = await serve(inputs, ["recognize", "--view", "--trace"]);
   const page = await open(address);
   await page.waitForFunction(() => document.querySelectorAll(".row[data-track]").length === 2);
+  assert.ok((await numHypotheses(address, 0)) > 0, "the trace of a view comes with it");
   await page.waitForSelector(".mark.removed");
   await page.waitForFunction(() => document.querySelector("figcaption")?.textContent?.startsWith("5/5"));
   await page.close();
@@ -217,6 +218,13 @@ test("without the token, the page says what to do", async () => {
   await page.close();
   assert.equal(await stop(), 0);
 });
+
+async function numHypotheses(address: string, view: number): Promise<number> {
+  const { origin, hash } = new URL(address);
+  const token = new URLSearchParams(hash.slice(1)).get("token") ?? "";
+  const response = await fetch(`${origin}/api/views/${view}/trace?run=0`, { headers: { "X-Resight-Token": token } });
+  return ((await response.json()) as { hypotheses: object[] }).hypotheses.length;
+}
 
 const text = (page: Page, selector: string) => page.locator(selector).evaluate((part) => part.textContent);
 

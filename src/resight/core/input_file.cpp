@@ -58,6 +58,12 @@ Result<void> InputFile::read(void* bytes, std::size_t num_bytes) {
   return {};
 }
 
+Result<void> InputFile::seek(std::uintmax_t offset) {
+  if (offset > size_ || ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0)
+    return file_error(file_, "cannot be read to its end");
+  return {};
+}
+
 Result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   auto input = InputFile::open(file);
   if (!input) return input.error();

@@ -24,6 +24,8 @@ class InputFile {
   [[nodiscard]] std::uintmax_t size() const { return size_; }
   /// Reads the next bytes. Fails if there are fewer.
   [[nodiscard]] Result<void> read(void* bytes, std::size_t num_bytes);
+  /// Goes to a byte, counted from the start, from which read() goes on.
+  [[nodiscard]] Result<void> seek(std::uintmax_t offset);
 
  private:
   InputFile(std::filesystem::path file, int descriptor, std::uintmax_t size)

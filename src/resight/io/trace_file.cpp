@@ -90,14 +90,14 @@ StoredTrace read_trace(const MemberReader& reader) {
   return trace;
 }
 
-/// Calls `on_line` with offset and size of each whole line.
+/// Calls `on_line` with offset and size of each whole line from the line that starts at `begin`.
 template <typename OnLine>
-Result<void> find_lines(const std::filesystem::path& path, const OnLine& on_line) {
+Result<void> find_lines(const std::filesystem::path& path, std::uint64_t begin, const OnLine& on_line) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
+  if (const auto done = file->seek(begin); !done) return done;
   std::string block;
-  std::uint64_t begin = 0;
-  for (std::uint64_t offset = 0; offset < file->size(); offset += block.size()) {
+  for (std::uint64_t offset = begin; offset < file->size(); offset += block.size()) {
     block.resize(std::min<std::uint64_t>(1 << 20, file->size() - offset));
     if (const auto done = file->read(block.data(), block.size()); !done) return done;
     for (std::size_t end = block.find('\n'); end != block.npos; end = block.find('\n', end + 1)) {
@@ -121,26 +121,41 @@ Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t o
 }  // namespace
 
 Result<TraceFile> TraceFile::open(const std::filesystem::path& file, int num_views) {
-  TraceFile trace;
-  trace.file_ = file;
-  const auto found = find_lines(file, [&](std::uint64_t offset, std::uint64_t size) {
-    trace.lines_.push_back({offset, size});
-  });
-  if (!found) return found.error();
-  if (trace.lines_.empty()) return file_error(file, "is no trace of 'resight recognize --trace'");
-  const auto header = read_part(file, trace.lines_.front().offset, trace.lines_.front().size);
-  if (!header) return header.error();
-  const auto content = io::parse_json(*header);
-  if (!content || member(*content, "format") != kTraceFormat)
-    return file_error(file, "is no trace of 'resight recognize --trace' of this version");
-  trace.lines_.erase(trace.lines_.begin());
-  if (trace.lines_.size() != static_cast<std::size_t>(num_views))
-    return file_error(file, fmt::format("traces {} views, but the results have {}", trace.lines_.size(), num_views));
+  TraceFile trace = follow(file);
+  if (const auto found = trace.find_new_views(); !found) return found.error();
+  if (trace.num_views() != num_views)
+    return file_error(file, fmt::format("traces {} views, but the results have {}", trace.num_views(), num_views));
   return trace;
 }
 
+TraceFile TraceFile::follow(std::filesystem::path file) {
+  TraceFile trace;
+  trace.file_ = std::move(file);
+  return trace;
+}
+
+Result<void> TraceFile::find_new_views() {
+  std::vector<Line> found;
+  const auto add = [&](std::uint64_t offset, std::uint64_t size) { found.push_back({offset, size}); };
+  if (const auto done = find_lines(file_, end_offset_, add); !done) return done;
+  if (end_offset_ == 0) {
+    if (found.empty()) return file_error(file_, "is no trace of 'resight recognize --trace'");
+    const auto header = read_part(file_, found.front().offset, found.front().size);
+    if (!header) return header.error();
+    const auto content = io::parse_json(*header);
+    if (!content || member(*content, "format") != kTraceFormat)
+      return file_error(file_, "is no trace of 'resight recognize --trace' of this version");
+    end_offset_ = found.front().size + 1;
+    found.erase(found.begin());
+  }
+  if (!found.empty()) end_offset_ = found.back().offset + found.back().size + 1;
+  lines_.insert(lines_.end(), found.begin(), found.end());
+  return {};
+}
+
 Result<StoredTrace> TraceFile::read(int view, const std::string& name) const {
-  const Line& line = lines_.at(static_cast<std::size_t>(view));
+  if (view >= num_views()) return file_error(file_, fmt::format("has no line of view '{}'", name));
+  const Line& line = lines_[static_cast<std::size_t>(view)];
   const auto text = read_part(file_, line.offset, line.size);
   if (!text) return text.error();
   const auto content = io::parse_json(*text);

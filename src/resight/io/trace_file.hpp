@@ -87,7 +87,12 @@ class TraceFile {
  public:
   /// Fails if the file is no trace. `num_views`: of the results that it belongs to.
   [[nodiscard]] static Result<TraceFile> open(const std::filesystem::path& file, int num_views);
-  /// The trace of a view of the results. Fails if its line is damaged, or is that of another view.
+  /// A trace that is still being written. It has no views before find_new_views().
+  [[nodiscard]] static TraceFile follow(std::filesystem::path file);
+  /// Finds the views whose lines have been written since the last call. Fails if the file is no trace.
+  [[nodiscard]] Result<void> find_new_views();
+  [[nodiscard]] int num_views() const { return static_cast<int>(lines_.size()); }
+  /// The trace of a view of the results. Fails if its line is missing or damaged, or is that of another view.
   [[nodiscard]] Result<StoredTrace> read(int view, const std::string& name) const;
 
  private:
@@ -96,7 +101,8 @@ class TraceFile {
     std::uint64_t size = 0;
   };
   std::filesystem::path file_;
-  std::vector<Line> lines_;  ///< One per view.
+  std::vector<Line> lines_;       ///< One per view.
+  std::uint64_t end_offset_ = 0;  ///< Of the last whole line, its line break included; 0: the header is not read yet.
 };
 
 }  // namespace resight

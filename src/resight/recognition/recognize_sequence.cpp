@@ -32,13 +32,14 @@ Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer
 }
 
 Result<std::vector<std::vector<ObjectEvent>>> recognize_views(SceneRecognizer& recognizer, const NextView& next,
-                                                              const OnView& on_view) {
+                                                              const OnView& on_view, RecognitionTrace* trace) {
   std::vector<std::vector<ObjectEvent>> events;
   for (;;) {
     const Result<std::optional<RgbdFrame>> frame = next();
     if (!frame) return frame.error();
     if (!*frame) break;
-    SceneUpdate update = recognizer.add_view(**frame);
+    if (trace != nullptr) *trace = {};
+    SceneUpdate update = recognizer.add_view(**frame, trace);
     events.push_back(update.events);
     if (on_view) on_view(**frame, update);
   }

@@ -27,9 +27,10 @@ using OnView = std::function<void(const RgbdFrame& frame, SceneUpdate& update)>;
 using NextView = std::function<Result<std::optional<RgbdFrame>>()>;
 
 /// Same for such a source. Events that were waiting for a further view are reported at the last one, but only in the
-/// returned lists. Fails with the error of `next`.
+/// returned lists. Fails with the error of `next`. `trace` as above.
 [[nodiscard]] Result<std::vector<std::vector<ObjectEvent>>> recognize_views(SceneRecognizer& recognizer,
                                                                             const NextView& next,
-                                                                            const OnView& on_view = {});
+                                                                            const OnView& on_view = {},
+                                                                            RecognitionTrace* trace = nullptr);
 
 }  // namespace resight

@@ -168,6 +168,28 @@ TEST_F(StoredTraces, AreReadBack) {
   EXPECT_EQ(trace->lost[0].hypothesis, 1);
 }
 
+TEST_F(StoredTraces, AreFollowedWhileTheyAreWritten) {
+  TraceFile trace = TraceFile::follow(folder_ / kTraceFile);
+  EXPECT_FALSE(trace.find_new_views().ok()) << "there is no file yet";
+  store(header());
+  ASSERT_TRUE(trace.find_new_views().ok());
+  EXPECT_EQ(trace.num_views(), 0);
+  EXPECT_FALSE(trace.read(0, "view4").ok()) << "not written yet";
+  store(header() + line() + "\n" + line().substr(0, 40));
+  ASSERT_TRUE(trace.find_new_views().ok());
+  EXPECT_EQ(trace.num_views(), 1) << "a line that is not whole does not count";
+  EXPECT_TRUE(trace.read(0, "view4").ok());
+  json second = json::parse(line());
+  second["view"] = 1;
+  store(header() + line() + "\n" + second.dump() + "\n");
+  ASSERT_TRUE(trace.find_new_views().ok());
+  EXPECT_EQ(trace.num_views(), 2);
+  const auto read = trace.read(1, "view4");
+  EXPECT_TRUE(read.ok()) << read.error().message;
+  store("");
+  EXPECT_FALSE(trace.find_new_views().ok()) << "the file was cut";
+}
+
 TEST_F(StoredTraces, BelongToTheirResults) {
   ASSERT_TRUE(write_results(folder_, test::make_run(), library_).ok());
   store(header() + line() + "\n");

@@ -41,8 +41,9 @@ class SceneData {
   /// Counts the changes of the index, so that a client need not fetch it in vain.
   [[nodiscard]] int revision() const;
 
-  /// Adds a view to the only run, while views are being recognised.
-  void add_view(StoredView view, std::vector<StoredEvent> events);
+  /// Adds a view to the only run, while views are being recognised. If the run has a trace, the line of the view must
+  /// have been written; fails if it cannot be read.
+  [[nodiscard]] Result<void> add_view(StoredView view, std::vector<StoredEvent> events);
   /// Replaces the events by the final ones: no view follows. Adds the trace of the run, if there is one.
   void finish(std::vector<StoredEvent> events, std::optional<TraceFile> trace = std::nullopt);
 

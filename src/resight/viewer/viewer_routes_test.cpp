@@ -270,6 +270,23 @@ TEST(SceneData, SaysWhatBecameOfTheHypotheses) {
   std::filesystem::remove(file);
 }
 
+TEST(SceneData, SaysWhatBecameOfTheHypothesesWhileViewsAreRecognised) {
+  const auto file = std::filesystem::temp_directory_path() / ("resight_live_trace_" + std::to_string(::getpid()));
+  ViewerScene scene = make_scene();
+  const ViewerRun whole = make_run("live");
+  scene.runs = {ViewerRun{"live", {}}};
+  scene.runs[0].results.trace = TraceFile::follow(file);
+  scene.is_live = true;
+  const auto data = SceneData::create(std::move(scene)).value();
+  EXPECT_EQ(json::parse(**data->index())["runs"][0]["has_trace"], true);
+  EXPECT_EQ(json::parse(**data->trace(0, 0))["hypotheses"].size(), 0U) << "not recognised yet";
+  EXPECT_FALSE(data->add_view(whole.results.views[0], {}).ok()) << "its line was not written";
+  std::ofstream(file) << kTrace;
+  ASSERT_TRUE(data->add_view(whole.results.views[0], {}).ok());
+  EXPECT_EQ(json::parse(**data->trace(0, 0))["hypotheses"].size(), 1U);
+  std::filesystem::remove(file);
+}
+
 TEST(SceneData, MakesEachThingOnce) {
   ViewerScene scene = make_scene();
   const auto sequence = std::make_shared<WallSequence>();
@@ -297,8 +314,8 @@ TEST(SceneData, TakesViewsWhileTheyAreRecognised) {
   const auto data = SceneData::create(std::move(scene)).value();
   EXPECT_EQ(json::parse(**data->index())["runs"][0]["views"][1], nullptr);
   const ViewerRun whole = make_run("live");
-  data->add_view(whole.results.views[0], {});
-  data->add_view(whole.results.views[1], whole.results.events);
+  ASSERT_TRUE(data->add_view(whole.results.views[0], {}).ok());
+  ASSERT_TRUE(data->add_view(whole.results.views[1], whole.results.events).ok());
   EXPECT_EQ(data->revision(), 2);
   const json index = json::parse(**data->index());
   EXPECT_EQ(index["is_live"], true);
