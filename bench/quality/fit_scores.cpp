@@ -36,12 +36,6 @@ struct Sample {
   int sequence = 0;
 };
 
-const HypothesisEvidence& evidence_of(const Detection& detection, const RecognitionTrace& trace) {
-  std::size_t h = 0;
-  while (trace.verified[h].id != detection.hypothesis_id) ++h;
-  return trace.evidence[h];
-}
-
 void add_samples(const char* library_path, const char* path, RecognizerConfig config, int group, int number,
                  std::vector<Sample>& samples) {
   const auto sequence = open_or_exit(path);
@@ -53,7 +47,7 @@ void add_samples(const char* library_path, const char* path, RecognizerConfig co
     const auto matched = match_detections(truth, to_detected_objects(update, library), library, {});
     const auto add = [&](int d, bool right) {
       const Detection& detection = update.detections[d];
-      const ScoreCues cues = score_cues(evidence_of(detection, trace));
+      const ScoreCues cues = score_cues(trace.evidence_of(detection.hypothesis_id));
       Sample& sample = samples.emplace_back(Sample{Weights::Ones(), detection.score, right, group, number});
       std::ranges::copy(cues, sample.cues.data());
     };

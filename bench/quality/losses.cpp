@@ -51,12 +51,6 @@ void print_loss(int view, const GroundTruthObject& truth, const Loss& loss, cons
     fmt::print("\n");
 }
 
-const HypothesisEvidence& evidence_of(const Detection& detection, const RecognitionTrace& trace) {
-  std::size_t h = 0;
-  while (trace.verified[h].id != detection.hypothesis_id) ++h;
-  return trace.evidence[h];
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -97,7 +91,7 @@ int main(int argc, char** argv) {
       fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg score {:.4f}", v, truth[m.truth].object,
                  1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad,
                  update.detections[m.detection].score);
-      print_evidence(evidence_of(update.detections[m.detection], trace));
+      print_evidence(trace.evidence_of(update.detections[m.detection].hypothesis_id));
     }
     for (const int t : matched.false_negatives) {
       const Loss loss = find_loss(truth[t], update.world_from_camera, trace, library, options);
@@ -107,7 +101,7 @@ int main(int argc, char** argv) {
     for (const int d : matched.false_positives) {
       const Detection& detection = update.detections[d];
       fmt::print("view {:2} WRONG  {:16} score {:.4f}", v, library.objects[detection.object].name, detection.score);
-      print_evidence(evidence_of(detection, trace));
+      print_evidence(trace.evidence_of(detection.hypothesis_id));
     }
     for (const ObjectEvent& e : update.events)
       if (is_change(e.kind)) fmt::print("view {:2} {} {}\n", v, to_string(e.kind), library.objects[e.object].name);

@@ -135,8 +135,6 @@ const Row kRows[] = {
      "recognize --models models.resight --sequence views --out out --poses auto --follow", 2, "--follow needs poses"},
     {"FollowBesideTheViewer", kNothing, "recognize --models models.resight --sequence views --out out --follow --view",
      2, "excludes"},
-    {"FollowWithATrace", kNothing, "recognize --models models.resight --sequence views --out out --follow --trace", 2,
-     "excludes"},
     {"NeitherSequenceNorCamera", kNothing, "recognize --models models.resight --out out", 2,
      "give either --sequence or --camera"},
     {"CameraOfAnotherKind", kNothing, "recognize --models models.resight --camera webcam --out out", 2, "--camera: "},

@@ -305,7 +305,8 @@ test("annotate: wrong requests are refused", async () => {
   assert.equal(await post("/actions", edit({ do: "check_view", view: 0, is_checked: true }).replace(/\d+/, "7")), 409);
   assert.equal(await post("/refine", JSON.stringify({ object: 0, pose: [], first_view: 0, last_view: 1 })), 400);
   assert.equal(await post("/place", JSON.stringify({ object: 0, view: 0, u: 999, v: 0 })), 400);
-  assert.equal(await post("/actions", `"${"x".repeat(70000)}"`), 413);
+  assert.equal(await post("/actions", `"${"x".repeat(70_000)}"`), 400, "a large body is read");
+  assert.equal(await post("/actions", `"${"x".repeat(1_100_000)}"`), 413);
   assert.equal((await annotation(address)).revision, revision);
   assert.equal(await stop(), 0);
 });

@@ -96,15 +96,14 @@ void add_pairs(const SampledSurface& surface, const PosedView& view, const Rigid
     if (view.evidence.points[i] != Evidence::kPresent) continue;
     const auto pair = measure_pair(view, to_camera, surface, i);
     if (!pair) continue;
-    const double share = pair->distance_m / gate_m;
-    if (std::abs(share) >= 1) continue;
+    const double weight = tukey(pair->distance_m / gate_m);
+    if (weight == 0) continue;
     const double angle_rad = std::acos(std::min(1.0F, view.evidence.viewing_cosine[i]));
     const double sigma_m =
         noise_sigma(view.frame.camera.noise, pair->depth_m, angle_rad, focal_px).axial_m * std::cos(angle_rad);
-    const double tukey = (1 - share * share) * (1 - share * share);
     const Eigen::Vector3d arm = world_from_object.rotation * (surface.cloud.points[i].cast<double>() - surface.middle);
     equations.add(arm, to_world * pair->normal_in_camera.cast<double>(), pair->distance_m,
-                  tukey * 1e-6 / (sigma_m * sigma_m), surface.radius_m);
+                  weight * 1e-6 / (sigma_m * sigma_m), surface.radius_m);
   }
 }
 

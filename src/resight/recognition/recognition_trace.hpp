@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "resight/features/feature_set.hpp"
@@ -18,6 +20,11 @@ struct RecognitionTrace {
   std::vector<Hypothesis> clustered;                         ///< After clustering; world frame.
   std::vector<Hypothesis> verified;          ///< Without those that changes exclude or that were late; world frame.
   std::vector<HypothesisEvidence> evidence;  ///< One per entry of `verified`.
+  /// That of a detection by its hypothesis_id, which must be one of the view.
+  [[nodiscard]] const HypothesisEvidence& evidence_of(std::uint64_t hypothesis_id) const {
+    const auto found = std::ranges::find(verified, hypothesis_id, &Hypothesis::id);
+    return evidence.at(static_cast<std::size_t>(found - verified.begin()));
+  }
 };
 
 }  // namespace resight

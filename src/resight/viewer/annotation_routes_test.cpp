@@ -211,12 +211,12 @@ TEST_F(AnnotationRoutes, UnknownAddressesAreNotFound) {
 }
 
 TEST_F(AnnotationRoutes, BodiesThatAreNoObjectsAreRefused) {
-  const std::string deep = std::string(30000, '[') + std::string(30000, ']');
+  const std::string deep = std::string(500000, '[') + std::string(500000, ']');
   for (const char* path : {"/actions", "/place", "/refine", "/assess", "/export"}) {
     for (const std::string& body : {std::string(), std::string("{"), std::string("[]"), std::string("7"),
                                     std::string("\"{}\""), std::string("{\"a\":1}}"), std::string("\xff\xfe{}"), deep})
       EXPECT_EQ(status_of(send("POST", path, body)), 400) << path << " " << body.substr(0, 20);
-    EXPECT_EQ(status_of(send("POST", path, "{\"a\":\"" + std::string(70000, 'x') + "\"}")), 413) << path;
+    EXPECT_EQ(status_of(send("POST", path, "{\"a\":\"" + std::string(1100000, 'x') + "\"}")), 413) << path;
   }
   EXPECT_EQ(get("")["revision"], 0);
 }
