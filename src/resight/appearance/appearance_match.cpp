@@ -36,8 +36,8 @@ int count_color_inliers(std::span<const LabColor> expected, std::span<const LabC
 
 TextureMatch match_texture(std::span<const LabColor> model, std::span<const LabColor> expected,
                            std::span<const LabColor> seen, const AppearanceOptions& options) {
-  const PatternMatch match = match_patterns(expected, seen, chroma_weight(options));
-  const double contrast = match_patterns(model, model, chroma_weight(options)).shared_texture;
+  const PatternMatch match = match_patterns(expected, seen, options.chroma_weight);
+  const double contrast = match_patterns(model, model, options.chroma_weight).shared_texture;
   return {match.similarity, std::min(match.shared_texture, contrast), contrast};
 }
 

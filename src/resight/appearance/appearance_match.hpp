@@ -25,11 +25,7 @@ struct ColorPairs {
 [[nodiscard]] std::vector<LabColor> adapt_colors(const ColorPairs& pairs, const PhotometricFit& fit);
 
 [[nodiscard]] inline ColorTolerance color_tolerance(const AppearanceOptions& options) {
-  return {options.sigma_l, options.sigma_ab};
-}
-/// Weight of a and b beside l in pattern_similarity().
-[[nodiscard]] inline double chroma_weight(const AppearanceOptions& options) {
-  return options.sigma_l / options.sigma_ab;
+  return {options.sigma_l, options.sigma_ab, options.sigma_saturation};
 }
 
 /// Number of places where the colours are more similar than `min_similarity` (exp(-ColorTolerance::exponent())).

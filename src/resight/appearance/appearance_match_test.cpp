@@ -49,14 +49,15 @@ TEST(ColorPairs, ShadeByTheirNormals) {
 }
 
 TEST(CountColorInliers, AgreesWithTheFormulaColourByColour) {
-  const AppearanceOptions options{.sigma_l = 0.3, .sigma_ab = 0.1};
+  const AppearanceOptions options{.sigma_l = 0.3, .sigma_ab = 0.1, .sigma_saturation = 0.5};
   const std::vector<LabColor> a = random_colors(500, 2), b = random_colors(500, 3);
   int last = 500;
   for (const double min_similarity : {0.001, 0.1, 0.5, 0.8}) {
     int expected = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double dl = a[i].l - b[i].l, da = a[i].a - b[i].a, db = a[i].b - b[i].b;
-      const double exponent = dl * dl / (4 * 0.3 * 0.3) + (da * da + db * db) / (4 * 0.1 * 0.1);
+      const double exponent =
+          dl * dl / (4 * 0.3 * 0.3) + (da * da + db * db) / (4 * (0.01 + 0.25 * (a[i].a * a[i].a + a[i].b * a[i].b)));
       expected += std::exp(-exponent) > min_similarity ? 1 : 0;
     }
     EXPECT_EQ(count_color_inliers(a, b, min_similarity, options), expected);
@@ -73,7 +74,7 @@ TEST(MatchTexture, SharesNoMoreThanTheModelHas) {
   const TextureMatch same = match_texture(texture, texture, texture, options);
   EXPECT_NEAR(same.similarity, 1, 1e-9);
   EXPECT_EQ(same.shared_texture, same.texture_contrast);
-  EXPECT_EQ(same.texture_contrast, match_patterns(texture, texture, chroma_weight(options)).shared_texture);
+  EXPECT_EQ(same.texture_contrast, match_patterns(texture, texture, options.chroma_weight).shared_texture);
   // An untextured model that shading makes uneven, in the model's colours and in the scene.
   const TextureMatch shaded = match_texture(plain, texture, texture, options);
   EXPECT_NEAR(shaded.similarity, 1, 1e-9);

@@ -12,6 +12,8 @@ struct AppearanceOptions {
   bool use_color = true;
   double sigma_l = 0.4;
   double sigma_ab = 0.2;
+  double sigma_saturation = 0;
+  double chroma_weight = 2;
   std::optional<double> pattern_radius_m{};
   PhotometricLimits light{};
 };
@@ -24,6 +26,13 @@ inline void declare(OptionVisitor& v, AppearanceOptions& o) {
             "ours; reference code: 0.6");
     v.field("sigma_ab", o.sigma_ab, positive(), "Standard deviation of chromaticity, of a* / 128 and b* / 128.",
             "ours; reference code: 0.6");
+    v.field(
+        "sigma_saturation", o.sigma_saturation, between(0, 2),
+        "Standard deviation of saturation, as a share of it: adds to sigma_ab where the model is colourful, because "
+        "cameras and gloss scale saturation. 0: the tolerance is that of grey.",
+        "ours");
+    v.field("chroma_weight", o.chroma_weight, positive(),
+            "Weight of a* and b* beside L* where patterns of colours are compared: light changes L* more.", "ours");
     v.field("pattern_radius_m", o.pattern_radius_m, positive(),
             "Verification compares the patterns of untextured models after both colours are averaged over the surface "
             "within this radius, relative to their mean within three radii: noise, sharpening, small highlights and "

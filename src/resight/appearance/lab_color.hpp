@@ -15,23 +15,29 @@ struct LabColor {
   float b = 0;
 };
 
-/// Tolerance of colour comparisons: standard deviations of l, and of a and b, between observations of one surface.
+/// Tolerance of colour comparisons between a known colour and one that is seen. Standard deviations of l; of a and b of
+/// a grey; and of the saturation, as a share of it: cameras, gloss and a second light scale saturation, so that the
+/// tolerance of a and b grows with the chromaticity of the known colour, while grey stays grey.
 class ColorTolerance {
  public:
-  ColorTolerance(double sigma_l, double sigma_ab)
+  ColorTolerance(double sigma_l, double sigma_ab, double sigma_saturation = 0)
       : inverse_l_(static_cast<float>(1 / (4 * sigma_l * sigma_l))),
-        inverse_ab_(static_cast<float>(1 / (4 * sigma_ab * sigma_ab))) {}
-  /// Negative log of the similarity of two colours, (dl / (2 sigma_l))^2 + (da^2 + db^2) / (2 sigma_ab)^2.
-  [[nodiscard]] float exponent(const LabColor& p, const LabColor& q) const {
-    const float dl = p.l - q.l;
-    const float da = p.a - q.a;
-    const float db = p.b - q.b;
-    return dl * dl * inverse_l_ + (da * da + db * db) * inverse_ab_;
+        four_variance_ab_(static_cast<float>(4 * sigma_ab * sigma_ab)),
+        four_variance_saturation_(static_cast<float>(4 * sigma_saturation * sigma_saturation)) {}
+  /// Negative log of the similarity of two colours, (dl / (2 sigma_l))^2 + (da^2 + db^2) / (2 sigma)^2 with sigma^2 =
+  /// sigma_ab^2 + sigma_saturation^2 (a^2 + b^2), a and b of `known`.
+  [[nodiscard]] float exponent(const LabColor& known, const LabColor& seen) const {
+    const float dl = known.l - seen.l;
+    const float da = known.a - seen.a;
+    const float db = known.b - seen.b;
+    const float four_variance = four_variance_ab_ + four_variance_saturation_ * (known.a * known.a + known.b * known.b);
+    return dl * dl * inverse_l_ + (da * da + db * db) / four_variance;
   }
 
  private:
   float inverse_l_;
-  float inverse_ab_;
+  float four_variance_ab_;
+  float four_variance_saturation_;
 };
 
 /// Converts an sRGB colour.

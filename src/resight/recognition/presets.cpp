@@ -26,8 +26,10 @@ void set_default_verification(VerifyOptions& verify) {
   verify.visibility.min_edge_distance_px = 3;  // As integrate.min_edge_distance_px.
   verify.visibility.free_space = NewestViewFreeSpace{};
   verify.visibility.arrival_share = 0.6;
-  verify.appearance.sigma_l = 0.45;                 // An object in shadow is darker than the fit has it,
-  verify.appearance.sigma_ab = 0.17;                // but not of another chromaticity.
+  verify.appearance.sigma_l = 0.45;          // An object in shadow is darker than the fit has it.
+  verify.appearance.sigma_ab = 0.1;          // Grey stays grey;
+  verify.appearance.sigma_saturation = 0.8;  // cameras, gloss and light from other objects scale saturation.
+  verify.appearance.chroma_weight = 2.65;
   verify.appearance.pattern_radius_m = 0.015;       // Three voxels.
   verify.appearance.light.max_log_darkening = 1.2;  // Objects in a shelf
   verify.appearance.light.max_log_shading = 1.2;    // are lit from one side.

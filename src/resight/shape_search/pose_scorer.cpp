@@ -315,7 +315,7 @@ void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria&
   seen.reserve(confirmed.pixels.size());
   for (const std::size_t pixel : confirmed.pixels) seen.push_back(lab_[pixel]);
   fit.num_explained = count_color_inliers(expected, seen, criteria.min_weight, criteria.appearance);
-  fit.pattern_similarity = pattern_similarity(expected, seen, chroma_weight(criteria.appearance));
+  fit.pattern_similarity = pattern_similarity(expected, seen, criteria.appearance.chroma_weight);
 }
 
 double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed,

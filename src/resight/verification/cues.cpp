@@ -70,7 +70,7 @@ struct CueComputer::Impl {
     for (const PointMatch& m : association_.nearest)
       explained.push_back({object_from_world * association_.local->point(static_cast<std::size_t>(m.local)),
                            association_.local_lab[static_cast<std::size_t>(m.local)]});
-    const Rigid3 motion = resolve_symmetry(model_, explained, chroma_weight(options_.appearance));
+    const Rigid3 motion = resolve_symmetry(model_, explained, options_.appearance.chroma_weight);
     if (motion.rotation.isIdentity()) return;
     SceneAssociation rotated(model_, association_.world_from_object * motion, scene_, views, allowed, options_);
     if (rotated.color_fit() > association_.color_fit()) association_ = std::move(rotated);

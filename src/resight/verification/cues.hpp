@@ -35,7 +35,7 @@ struct HypothesisCues {
 /// The model's colours are adapted to the light of the scene (photometric_fit.hpp). Scene point q is explained with the
 /// largest weight over visible model points p within t = support.max_distance_m:
 ///   exp(-d^2 / 2t^2) * colour(p, q) * max(0, 1 - angle(n_p, n_q) / 90 deg),
-///   colour = exp(-1/2 (dl^2 / 2 sigma_l^2 + (da^2 + db^2) / 2 sigma_ab^2));
+///   colour = exp(-ColorTolerance::exponent(p, q));
 /// weights below 0.05 are dropped. A visible model point is an inlier when exp(-d^2 / 2(t + resolution)^2) * colour
 /// exceeds support.min_weight for a scene point within t and kMaxInlierAngle_rad, and most views do not see through
 /// it. Points of a plane larger than the object cost min(weight, kPlaneWeight) instead of being explained.

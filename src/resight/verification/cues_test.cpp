@@ -154,8 +154,10 @@ BruteForce brute_force(const SmallCase& c, const Rigid3& pose, const ModelVisibi
       const double dl = lab.l - c.scene.lab[q].l;
       const double da = lab.a - c.scene.lab[q].a;
       const double db = lab.b - c.scene.lab[q].b;
+      const double saturation = o.appearance.sigma_saturation * std::hypot(lab.a, lab.b);
+      const double variance_ab = o.appearance.sigma_ab * o.appearance.sigma_ab + saturation * saturation;
       const double color = std::exp(-0.5 * (dl * dl / (2 * o.appearance.sigma_l * o.appearance.sigma_l) +
-                                            (da * da + db * db) / (2 * o.appearance.sigma_ab * o.appearance.sigma_ab)));
+                                            (da * da + db * db) / (2 * variance_ab)));
       const double w = std::exp(-d * d / (2 * o.support.max_distance_m * o.support.max_distance_m)) * color *
                        std::max(0.0, 1 - angle / (std::numbers::pi / 2));
       if (w > 0) result.explained[static_cast<int>(q)] = std::max(result.explained[static_cast<int>(q)], w);
@@ -172,6 +174,7 @@ TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   c.options.planes.reset();
   c.options.refine.max_iterations.reset();
   c.options.appearance.light = {0, 0, 0, 0};
+  c.options.appearance.sigma_saturation = 0.6;
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
        {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {

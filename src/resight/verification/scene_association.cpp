@@ -93,7 +93,7 @@ double SceneAssociation::color_fit() const {
     sum += std::exp(-tolerance.exponent(expected[k], seen[k]));
   }
   return sum / static_cast<double>(visibility.visible.size()) +
-         pattern_similarity(expected, seen, chroma_weight(options_->appearance));
+         pattern_similarity(expected, seen, options_->appearance.chroma_weight);
 }
 
 double SceneAssociation::supported_share() const {

@@ -88,7 +88,7 @@ TextureMatch match_surface_texture(std::span<const Eigen::Vector3f> points, std:
     }
     return result;
   };
-  match.similarity = pattern_similarity(pattern(expected), pattern(seen), chroma_weight(options));
+  match.similarity = pattern_similarity(pattern(expected), pattern(seen), options.chroma_weight);
   return match;
 }
 

@@ -80,7 +80,7 @@ TEST(MatchSurfaceTexture, TexturedModelsAreComparedInFull) {
 TEST(MatchSurfaceTexture, WithoutRadiusItIsThatOfTheColors) {
   const auto a = colors(3, 0.1, 1);
   const auto b = colors(3, 0.1, 2);
-  EXPECT_EQ(similarity(a, b, std::nullopt), pattern_similarity(a, b, chroma_weight(AppearanceOptions{})));
+  EXPECT_EQ(similarity(a, b, std::nullopt), pattern_similarity(a, b, AppearanceOptions{}.chroma_weight));
 }
 
 }  // namespace
