@@ -14,16 +14,27 @@ double gain_of(const HypothesisEvidence& evidence) {
   return std::clamp(-evidence.costs.unary / evidence.costs.explained_scene, -1.0, 1.0);
 }
 
+double share_beside_planes(const HypothesisCosts& costs) {
+  const double claimed = costs.explained_scene + costs.plane;
+  return claimed > 0 ? costs.explained_scene / claimed : 0;
+}
+
 }  // namespace
 
 ScoreCues score_cues(const HypothesisEvidence& evidence) {
-  return {gain_of(evidence), std::log1p(evidence.num_correspondences), evidence.fit,
-          std::log(0.01 + evidence.visible_share), std::log1p(evidence.appearance.shared_texture)};
+  return {gain_of(evidence),
+          std::log1p(evidence.num_correspondences),
+          evidence.fit,
+          std::log(0.01 + evidence.visible_share),
+          std::log1p(evidence.appearance.shared_texture),
+          share_beside_planes(evidence.costs),
+          evidence.appearance.newest_similarity};
 }
 
 double detection_score(const HypothesisEvidence& evidence, const DetectionScoreOptions& options) {
-  const ScoreCues weights = {options.gain_weight, options.correspondence_weight, options.fit_weight,
-                             options.visible_weight, options.texture_weight};
+  const ScoreCues weights = {options.gain_weight,    options.correspondence_weight, options.fit_weight,
+                             options.visible_weight, options.texture_weight,        options.beside_planes_weight,
+                             options.newest_weight};
   const ScoreCues cues = score_cues(evidence);
   return 1 / (1 + std::exp(-std::inner_product(cues.begin(), cues.end(), weights.begin(), options.offset)));
 }

@@ -18,6 +18,8 @@ struct DetectionScoreOptions {
   double fit_weight = 0;
   double visible_weight = 0;
   double texture_weight = 0;
+  double beside_planes_weight = 0;
+  double newest_weight = 0;
   void check() const { check_options("DetectionScoreOptions", *this); }
 };
 
@@ -30,10 +32,16 @@ inline void declare(OptionVisitor& v, DetectionScoreOptions& o) {
   v.field("visible_weight", o.visible_weight, between(0, 100), "Of log(0.01 + visible share of the model).", "fitted");
   v.field("texture_weight", o.texture_weight, between(0, 100),
           "Of log(1 + contrast of the texture that model and scene share), in grey levels of L*.", "fitted");
+  v.field("beside_planes_weight", o.beside_planes_weight, between(0, 100),
+          "Of the share of what it explains that is no part of a plane larger than the object: pieces of tables and "
+          "walls look like the faces of boxes.",
+          "fitted");
+  v.field("newest_weight", o.newest_weight, between(0, 100),
+          "Of the similarity of its colours to those of the newest view (acceptance.min_newest_similarity).", "fitted");
 }
 
 /// What the weights of DetectionScoreOptions weigh, in their order.
-using ScoreCues = std::array<double, 5>;
+using ScoreCues = std::array<double, 7>;
 [[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
 
 /// How likely an accepted hypothesis is right, in [0, 1]: of the detections with score s about a share s is.

@@ -18,7 +18,9 @@ HypothesisEvidence some_evidence() {
   evidence.visible_share = 0.3;
   evidence.num_correspondences = 20;
   evidence.appearance.shared_texture = 2.5;
+  evidence.appearance.newest_similarity = 0.75;
   evidence.costs.explained_scene = 500;
+  evidence.costs.plane = 125;
   evidence.costs.unary = -350;
   return evidence;
 }
@@ -28,11 +30,13 @@ constexpr DetectionScoreOptions kSome{.offset = -4,
                                       .correspondence_weight = 0.7,
                                       .fit_weight = 2,
                                       .visible_weight = 6,
-                                      .texture_weight = 1.5};
+                                      .texture_weight = 1.5,
+                                      .beside_planes_weight = 3,
+                                      .newest_weight = 2.5};
 
 TEST(DetectionScore, IsTheLogisticOfTheWeightedEvidence) {
-  const double log_odds =
-      -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) + 1.5 * std::log(1 + 2.5);
+  const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) +
+                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75;
   EXPECT_NEAR(detection_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 

@@ -18,7 +18,9 @@ void set_paper(RecognizerConfig& config) {
                              .correspondence_weight = 1.21,
                              .fit_weight = 10.91,
                              .visible_weight = 0,
-                             .texture_weight = 0};
+                             .texture_weight = 0,
+                             .beside_planes_weight = 0,
+                             .newest_weight = 0};
 }
 
 void set_default_verification(VerifyOptions& verify) {
@@ -65,12 +67,14 @@ void set_default(RecognizerConfig& config) {
   config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
-  config.detections.score = {.offset = -6.02,
+  config.detections.score = {.offset = -13.75,
                              .gain_weight = 0,
-                             .correspondence_weight = 0.81,
-                             .fit_weight = 8.17,
-                             .visible_weight = 0.93,
-                             .texture_weight = 1.55};
+                             .correspondence_weight = 0.66,
+                             .fit_weight = 5.76,
+                             .visible_weight = 0.9,
+                             .texture_weight = 1.96,
+                             .beside_planes_weight = 6.47,
+                             .newest_weight = 4.52};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.
