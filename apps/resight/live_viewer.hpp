@@ -16,7 +16,7 @@ namespace resight::app {
 /// Shows views in a browser as they are recognised. Sequence and library must outlive it.
 class LiveViewer {
  public:
-  /// `trace`: that the run writes, if it does. Prints the address.
+  /// `trace`: the file that the run writes; none: it is not traced. Prints the address.
   LiveViewer(const Sequence& sequence, const ModelLibrary& library, const std::string& title, const std::string& preset,
              std::optional<TraceFile> trace);
   ~LiveViewer();

@@ -13,7 +13,7 @@ namespace resight {
 /// What one client can take of the server.
 struct HttpLimits {
   std::uint32_t max_header_bytes = 8 << 10;  ///< Beyond: status 431.
-  std::uint64_t max_body_bytes = 1 << 20;    ///< Beyond: status 413. A mask of a wide image may have 100 kB.
+  std::uint64_t max_body_bytes = 1 << 20;    ///< Beyond: status 413. Leaves room for masks.
   int max_connections = 64;                  ///< Beyond: status 503.
   double request_time_s = 15;   ///< For a request to arrive, from the end of the last one. Beyond: status 408.
   double response_time_s = 60;  ///< For an answer to be taken. Beyond: the connection is closed.

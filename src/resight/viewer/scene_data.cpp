@@ -178,10 +178,10 @@ Result<PointCloud> SceneData::read_surface(int object) const {
 Result<void> SceneData::add_view(StoredView view, std::vector<StoredEvent> events) {
   const std::scoped_lock lock(mutex_);
   require(scene_.runs.size() == 1 && scene_.sequence, "SceneData::add_view: expected one run on a sequence");
-  for (const StoredDetection& detection : view.detections) objects_.add(detection.object, detection.bop_id);
   RecognitionResults& results = scene_.runs.front().results;
   if (results.trace)
     if (const auto found = results.trace->find_new_views(); !found) return found;
+  for (const StoredDetection& detection : view.detections) objects_.add(detection.object, detection.bop_id);
   const int number = find_view(*scene_.sequence, view.name);
   require(number >= 0, "SceneData::add_view: the sequence has no such view");
   stored_views_.front()[static_cast<std::size_t>(number)] = static_cast<int>(results.views.size());
