@@ -20,7 +20,23 @@ cd "$web" && node build.mjs --tests || { fail "npm ci is missing in web/"; exit 
 RESIGHT=$resight MODELS=$work/models.resight SEQUENCE=$sequence PROJECT=$work/project \
   PICTURES=$pictures timeout 300 node --test build/e2e/annotate_test.mjs || fail "the browser test failed"
 
+# The proposed regions are kept until a file of the sequence changes.
 cd "$work" || exit 1
+restart() {
+  rm -f start.txt
+  timeout 60 "$resight" annotate --models models.resight --sequence "$sequence" --out project --no-open >start.txt &
+  local pid=$!
+  for _ in $(seq 300); do [ -s start.txt ] && break; sleep 0.1; done
+  kill -INT $pid
+  wait $pid || fail "annotate did not start again"
+}
+touch -d '2 days ago' project/proposals.json
+restart
+[ -n "$(find project/proposals.json -mtime +1)" ] || fail "the regions were found again without a reason"
+touch "$(ls "$sequence"/rgb/* | sed -n 2p)"
+restart
+[ -z "$(find project/proposals.json -mtime +1)" ] || fail "a changed image did not lead to other regions"
+
 export=project/export/bop/000001
 for file in scene_gt.json scene_gt_info.json events.json mask/000000_000000.png mask_visib/000000_000000.png; do
   [ -s "$export/$file" ] || fail "the export lacks $file"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "folder_files.hpp"
 #include "interrupts.hpp"
 #include "output_paths.hpp"
 #include "progress.hpp"
@@ -44,9 +45,10 @@ std::string identify(const Sequence& sequence, const ModelLibrary& library) {
                      models);
 }
 
-/// What the proposals depend on beside the views. The number of threads is not part of it.
-std::string describe_detector(const RecognizerConfig& config) {
+/// What the proposals depend on beside the views that are read. The number of threads is not part of it.
+std::string describe_inputs(const AnnotateArguments& arguments, const RecognizerConfig& config) {
   std::string text = fmt::format("resight {}, regions of {} points\n", RESIGHT_VERSION, kMinRegionPoints);
+  text += describe_files(value_or_throw(find_sequence_folder(arguments.sequence)), arguments.out);
   for (const auto& [name, value] : config.to_settings()) text += fmt::format("{} = {}\n", name, value);
   return text;
 }
@@ -55,7 +57,7 @@ std::string describe_detector(const RecognizerConfig& config) {
 std::vector<ChangeProposal> find_regions(const Sequence& sequence, const AnnotateArguments& arguments) {
   const RecognizerConfig config = make_config("default", std::nullopt, std::nullopt, arguments.num_threads);
   const fs::path file = arguments.out / "proposals.json";
-  const std::string digest = value_or_throw(digest_inputs(sequence, describe_detector(config)));
+  const std::string digest = value_or_throw(digest_inputs(sequence, describe_inputs(arguments, config)));
   if (auto known = read_proposals(file, digest, sequence.num_views())) return *std::move(known);
   Progress progress("annotate", sequence.num_views());
   auto regions = value_or_throw(propose_changes(sequence, scene_options(config), kMinRegionPoints, [&](int view) {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <set>
 #include <sstream>
 
+#include "folder_files.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
@@ -94,25 +94,10 @@ std::uint64_t hash_file(const fs::path& file, std::uint64_t hash) {
   return hash;
 }
 
-// Names and contents of all files of a folder, also below symbolic links: data sets often link to their images. Each
-// folder counts once, however many links lead to it, and `skipped` does not count. A folder that does not exist counts
-// as empty.
+// Names and contents of all files of a folder. One that does not exist counts as empty.
 std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash, const fs::path& skipped = {}) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) return hash;
-  std::set<fs::path> visited{fs::canonical(folder, error), fs::weakly_canonical(skipped, error)};
-  for (fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink, error), end;
-       !error && it != end; it.increment(error)) {
-    std::error_code unreadable;
-    if (it->is_regular_file(unreadable)) files.push_back(it->path());
-    const bool is_folder = it->is_directory(unreadable);
-    if (unreadable || (is_folder && !visited.insert(fs::canonical(it->path(), unreadable)).second))
-      it.disable_recursion_pending();
-  }
-  if (error) throw InputError(fmt::format("{}: cannot be listed ({})", folder.string(), error.message()));
-  std::ranges::sort(files);
-  for (const fs::path& file : files) hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
+  for (const fs::path& file : list_files(folder, skipped))
+    hash = hash_file(file, hash_text(file.lexically_relative(folder).string(), hash));
   return hash;
 }
 
