@@ -188,13 +188,13 @@ Seeds make_result_seeds() {
   return {join_files(files)};
 }
 
-constexpr const char* kTraceHead = "{\"format\":\"resight trace 1\"}\n";
+constexpr const char* kTraceHead = "{\"format\":\"resight trace 2\"}\n";
 Seeds make_trace_seeds() {
   const std::string pose = R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]})";
   const std::string hypothesis =
       R"({"object":"cup","verdict":"no support","origin_views":[0],"correspondences":7,"start":)" + pose +
       R"(,"world_from_object":)" + pose + R"(,"test":{"quantity":"explained share","value":0.5,"limit":0.7},)" +
-      R"("suppressed_by":null,"fit":0.5,"visible_share":0.4,"explained_share":0.5,"pattern_similarity":0.1,)" +
+      R"("suppressed_by":null,"score":0.6,"fit":0.5,"visible_share":0.4,"explained_share":0.5,"pattern_similarity":0.1,)" +
       R"("newest_similarity":1,"shared_texture":0,"texture_contrast":3,"explained_scene":9,"outlier":3,"clutter":0,)" +
       R"("plane":0,"views":[{"view":0,"visible_share":0.4,"explained_share":null}]})";
   const std::string loss = R"({"object":"cup","world_from_object":)" + pose +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits the weights of the scores of detections (DetectionScoreOptions) that a preset uses: right or wrong at K = 0
+// Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses: right or wrong at K = 0
 // and 5. Groups of sequences are divided by "--" and count the same. The calibration error of a group is that of scores
 // whose weights were fitted without the sequence. That of the preset itself is beside it.
 //   bench_fit_scores default val.resight val/test/000001 val.resight val/test/000002 -- tc.resight
@@ -26,8 +26,8 @@ using namespace resight;
 
 constexpr int kNumWeights = std::tuple_size_v<ScoreCues> + 1;  // With the offset.
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
-constexpr const char* kNames[kNumWeights] = {"gain",    "correspondence", "fit",    "visible",
-                                             "texture", "beside planes",  "newest", "offset"};
+constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",   "visible", "texture",
+                                             "beside planes", "newest",         "solid", "offset"};
 
 struct Sample {
   Weights cues;
@@ -107,10 +107,10 @@ int main(int argc, char** argv) {
     exit_with("usage: bench_fit_scores PRESET LIBRARY SEQUENCE [LIBRARY SEQUENCE]... [-- LIBRARY SEQUENCE...]");
   RecognizerConfig config = preset_or_exit(argv[1]);
   config.set_num_threads(2);
-  const DetectionScoreOptions& score = config.detections.score;
+  const HypothesisScoreOptions& score = config.verify.score;
   Weights is_used;
   is_used << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
-      score.texture_weight, score.beside_planes_weight, score.newest_weight, 1;
+      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.solid_weight, 1;
   is_used = (is_used.array() != 0).cast<double>();
   std::vector<Sample> samples;
   int group = 0, number = 0;

@@ -49,7 +49,7 @@ TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {
   std::istringstream lines(read_text(folder_ / "out/trace.jsonl"));
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(nlohmann::json::parse(line)["format"], "resight trace 1");
+  EXPECT_EQ(nlohmann::json::parse(line)["format"], "resight trace 2");
   int num_views = 0;
   for (; std::getline(lines, line); ++num_views) EXPECT_EQ(nlohmann::json::parse(line)["view"], num_views);
   EXPECT_EQ(num_views, kViews);

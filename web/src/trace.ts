@@ -7,6 +7,8 @@ import type { Pose, SceneObject } from "./protocol";
 export interface Verification {
   /** Number of a hypothesis of the view; -1: none that is listed. */
   suppressed_by: number;
+  /** 0 if it was rejected before. */
+  score: number;
   fit: number;
   visible_share: number;
   explained_share: number;
@@ -128,6 +130,7 @@ export function evidenceRows(hypothesis: Hypothesis): [string, string][] {
   const v = hypothesis.verification;
   if (!v) return rows;
   rows.push(
+    ["score", v.score > 0 ? number(v.score) : "–"],
     ["fit", percent(v.fit)],
     ["visible", percent(v.visible_share)],
     ["explained", percent(v.explained_share)],

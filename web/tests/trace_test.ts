@@ -24,6 +24,7 @@ const kMug: SceneObject = {
 
 const verification = (change: Partial<Verification> = {}): Verification => ({
   suppressed_by: -1,
+  score: 0.6,
   fit: 0.5,
   visible_share: 0.25,
   explained_share: 0.55,

@@ -15,7 +15,7 @@ using io::member;
 using io::MemberReader;
 using nlohmann::json;
 
-constexpr const char* kTraceFormat = "resight trace 1";
+constexpr const char* kTraceFormat = "resight trace 2";
 constexpr std::uint64_t kMaxLineBytes = 8 << 20;  // A line of ours has 0.2 MB at most.
 
 std::optional<StoredFailedTest> read_failed_test(const MemberReader& reader) {
@@ -31,6 +31,7 @@ StoredVerification read_verification(const MemberReader& reader, int num_hypothe
   StoredVerification found{.world_from_object = reader.pose("world_from_object"),
                            .failed_test = read_failed_test(reader),
                            .suppressed_by = reader.optional_index("suppressed_by", num_hypotheses),
+                           .score = reader.share("score"),
                            .fit = reader.share("fit"),
                            .visible_share = reader.share("visible_share"),
                            .explained_share = reader.share("explained_share"),

@@ -35,6 +35,7 @@ struct StoredVerification {
   Rigid3 world_from_object;  ///< Refined.
   std::optional<StoredFailedTest> failed_test;
   int suppressed_by = -1;  ///< Index into the hypotheses of the view; -1: none that is listed.
+  double score = 0;        ///< 0 if it was rejected before.
   double fit = 0;
   double visible_share = 0;
   double explained_share = 0;

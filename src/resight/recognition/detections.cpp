@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "resight/recognition/detection_score.hpp"
 #include "resight/verification/appearance_check.hpp"
 
 namespace resight {
@@ -45,7 +44,7 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     detection.hypothesis_id = hypothesis.id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = detection_score(evidence, config.detections.score);
+    detection.score = evidence.score;
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     detection.views = evidence_of_views(verified, h, window);

@@ -13,14 +13,15 @@ namespace {
 
 void set_paper(RecognizerConfig& config) {
   config.verify.refine.max_iterations.reset();
-  config.detections.score = {.offset = -13.18,
-                             .gain_weight = 4.71,
-                             .correspondence_weight = 1.21,
-                             .fit_weight = 10.91,
-                             .visible_weight = 0,
-                             .texture_weight = 0,
-                             .beside_planes_weight = 0,
-                             .newest_weight = 0};
+  config.verify.score = {.offset = -13.18,
+                         .gain_weight = 4.71,
+                         .correspondence_weight = 1.21,
+                         .fit_weight = 10.91,
+                         .visible_weight = 0,
+                         .texture_weight = 0,
+                         .beside_planes_weight = 0,
+                         .newest_weight = 0,
+                         .solid_weight = 0};
 }
 
 void set_default_verification(VerifyOptions& verify) {
@@ -67,14 +68,16 @@ void set_default(RecognizerConfig& config) {
   config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
-  config.detections.score = {.offset = -13.75,
-                             .gain_weight = 0,
-                             .correspondence_weight = 0.66,
-                             .fit_weight = 5.76,
-                             .visible_weight = 0.9,
-                             .texture_weight = 1.96,
-                             .beside_planes_weight = 6.47,
-                             .newest_weight = 4.52};
+  config.verify.selection.score_power = 0.5;
+  config.verify.score = {.offset = -21.23,
+                         .gain_weight = 0,
+                         .correspondence_weight = 0.6,
+                         .fit_weight = 5.3,
+                         .visible_weight = 0.8,
+                         .texture_weight = 1.86,
+                         .beside_planes_weight = 4.25,
+                         .newest_weight = 4.35,
+                         .solid_weight = 10.3};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.

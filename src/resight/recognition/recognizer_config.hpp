@@ -14,7 +14,6 @@
 #include "resight/history/object_history.hpp"
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
-#include "resight/recognition/detection_score.hpp"
 #include "resight/recognition/search_planner_options.hpp"
 #include "resight/reconstruction/integration.hpp"
 #include "resight/registration/camera_corrector.hpp"
@@ -114,7 +113,6 @@ inline void declare(OptionVisitor& v, ChangeOptions& o) {
 /// Which accepted hypotheses are detections, and how likely they are right.
 struct DetectionOptions {
   double min_reported_share = 0;
-  DetectionScoreOptions score{};
 };
 
 inline void declare(OptionVisitor& v, DetectionOptions& o) {
@@ -122,7 +120,6 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
           "An object of which the view itself confirms a smaller share of the model (hidden, or outside the image) is "
           "tracked, but no detection of this view. 0: every object is one.",
           "ours");
-  v.group("score", o.score);
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the

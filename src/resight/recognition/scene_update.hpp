@@ -34,7 +34,7 @@ struct Detection {
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
-  double score = 0;          ///< Probability that it is right, in [0, 1] (detection_score.hpp).
+  double score = 0;          ///< Probability that it is right, in [0, 1] (HypothesisScoreOptions).
   double fit = 0;            ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;

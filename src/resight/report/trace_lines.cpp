@@ -100,6 +100,7 @@ void add_evidence(const HypothesisEvidence& e, const TracedView& view, const std
   json["world_from_object"] = rounded(e.world_from_object);
   json["test"] = failed_test_json(e, *view.acceptance);
   json["suppressed_by"] = listed_json(numbers, e.suppressed_by);
+  json["score"] = rounded(e.score);
   json["fit"] = rounded(e.fit);
   json["visible_share"] = rounded(e.visible_share);
   json["explained_share"] = rounded(e.explained_share);
@@ -152,7 +153,7 @@ Json loss_json(const GroundTruthObject& truth, const Loss& loss, const TracedVie
 }  // namespace
 
 std::string format_trace_header(const std::string& preset, const std::string& version) {
-  return to_json_text<Json>({{"format", "resight trace 1"}, {"version", version}, {"preset", preset}});
+  return to_json_text<Json>({{"format", "resight trace 2"}, {"version", version}, {"preset", preset}});
 }
 
 std::string format_trace_line(const TracedView& view, const ModelLibrary& library) {

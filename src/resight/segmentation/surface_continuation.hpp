@@ -20,10 +20,15 @@ struct SurfacePoint {
          from.normal.dot(to.normal) >= kMinNormalDot;
 }
 
-/// Whether it continues in colour.
-[[nodiscard]] inline bool continues_color(const LabColor& from, const LabColor& to, const ColorTolerance& tolerance) {
-  constexpr float kMaxExponent = 0.22F;  // A similarity of 0.8.
-  return tolerance.exponent(from, to) < kMaxExponent;
+/// Whether it continues in colour. Both points are seen by one camera in one light, so that the tolerance is that of
+/// shading and noise, whatever the colour. False for NaN.
+[[nodiscard]] inline bool continues_color(const LabColor& from, const LabColor& to) {
+  constexpr float kMaxLightness = 0.375F;    // 19 of L*
+  constexpr float kMaxChromaticity = 0.16F;  // 20 of a*, b*
+  const float dl = (from.l - to.l) / kMaxLightness;
+  const float da = (from.a - to.a) / kMaxChromaticity;
+  const float db = (from.b - to.b) / kMaxChromaticity;
+  return dl * dl + da * da + db * db < 1;
 }
 
 /// Whether a plane is larger than an object: a smaller one may be a face of the object itself.

@@ -23,11 +23,15 @@ TEST(ContinuesShape, NearTheTangentPlaneWithASimilarNormal) {
   EXPECT_FALSE(continues_shape(from, {{0, 0, 1}, Vector3f(nan, nan, nan)}, 0.005F));
 }
 
-TEST(ContinuesColor, ByTheToleranceGiven) {
-  const LabColor grey{0, 0, 0};
-  const LabColor bluer{0, 0, -0.1F};
-  EXPECT_TRUE(continues_color(grey, bluer, {0.4, 0.2}));
-  EXPECT_FALSE(continues_color(grey, bluer, {0.4, 0.05}));
+TEST(ContinuesColor, ByLightnessAndChromaticityWhateverTheColor) {
+  for (const LabColor from : {LabColor{0, 0, 0}, LabColor{0.2F, 0.5F, -0.4F}}) {
+    EXPECT_TRUE(continues_color(from, {from.l + 0.35F, from.a, from.b}));
+    EXPECT_FALSE(continues_color(from, {from.l + 0.4F, from.a, from.b}));
+    EXPECT_TRUE(continues_color(from, {from.l, from.a + 0.1F, from.b - 0.1F}));
+    EXPECT_FALSE(continues_color(from, {from.l, from.a + 0.12F, from.b - 0.12F}));
+    EXPECT_FALSE(continues_color(from, {from.l - 0.3F, from.a, from.b + 0.13F}));
+    EXPECT_FALSE(continues_color(from, {std::numeric_limits<float>::quiet_NaN(), from.a, from.b}));
+  }
 }
 
 TEST(IsLargerThanObject, ByAFifthOfItsDiameter) {

@@ -318,8 +318,7 @@ void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria&
   fit.pattern_similarity = pattern_similarity(expected, seen, criteria.appearance.chroma_weight);
 }
 
-double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed,
-                                    const MatchCriteria& criteria) const {
+double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed) const {
   const float z = view_.cloud.z[confirmed.pixels.front()];
   const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
   Silhouette silhouette(confirmed.outline, cell_px);
@@ -327,13 +326,12 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
     const auto pixel = static_cast<int>(confirmed.pixels[k]);
     silhouette.set_known(Eigen::Vector2f(pixel % lab_.width(), pixel / lab_.width()), pixel);
   }
-  const ColorTolerance tolerance = color_tolerance(criteria.appearance);
   const auto continues = [&](std::size_t from, std::size_t to) {
     const OrganizedCloud& cloud = view_.cloud;
     return cloud.has_normal(from) && cloud.has_normal(to) &&
            continues_shape({cloud.point(from), cloud.normal(from)}, {cloud.point(to), cloud.normal(to)},
                            kMaxContinuationOffset_m) &&
-           continues_color(lab_[from], lab_[to], tolerance);
+           continues_color(lab_[from], lab_[to]);
   };
   int num_cells = 0;
   silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
@@ -371,7 +369,7 @@ PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_f
   if (!confirmed.colors.empty()) compare_colors(confirmed, criteria, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;
-  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed, criteria));
+  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed));
   return fit;
 }
 

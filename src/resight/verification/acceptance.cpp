@@ -78,8 +78,10 @@ std::optional<FailedTest> find_failed_test(const HypothesisEvidence& evidence, c
   if (auto failed = test_evidence(evidence, options)) return failed;
   const double limit = min_gain(evidence, options);
   const double gain = -unary_cost(evidence);
-  if (gain > limit) return std::nullopt;
-  return FailedTest{.verdict = Verdict::kCost, .quantity = "gain", .value = gain, .limit = limit};
+  if (gain <= limit) return FailedTest{.verdict = Verdict::kCost, .quantity = "gain", .value = gain, .limit = limit};
+  if (evidence.costs.unary <= 0) return std::nullopt;
+  return FailedTest{
+      .verdict = Verdict::kCost, .quantity = "gain weighted by score", .value = -evidence.costs.unary, .limit = 0};
 }
 
 }  // namespace resight

@@ -131,5 +131,18 @@ TEST(FindFailedTest, NamesTheGainThatIsTooSmall) {
   EXPECT_FALSE(has_unary_gain(e, options()));
 }
 
+TEST(FindFailedTest, NamesTheGainOfAnUnlikelyHypothesis) {
+  HypothesisEvidence e = good_evidence();
+  e.verdict = Verdict::kCost;
+  e.costs.unary = 20;  // In the selection, with its small score.
+  const auto failed = find_failed_test(e, options());
+  ASSERT_TRUE(failed.has_value());
+  EXPECT_STREQ(failed->quantity, "gain weighted by score");
+  EXPECT_DOUBLE_EQ(failed->value, -20);
+  EXPECT_DOUBLE_EQ(failed->limit, 0);
+  e.costs.unary = -20;
+  EXPECT_FALSE(find_failed_test(e, options()).has_value());
+}
+
 }  // namespace
 }  // namespace resight

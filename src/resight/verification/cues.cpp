@@ -10,6 +10,7 @@
 #include "resight/appearance/appearance_match.hpp"
 #include "resight/segmentation/surface_continuation.hpp"
 #include "resight/verification/acceptance.hpp"
+#include "resight/verification/hypothesis_score.hpp"
 #include "resight/verification/newest_view_appearance.hpp"
 #include "resight/verification/pose_refinement.hpp"
 #include "resight/verification/scene_association.hpp"
@@ -95,7 +96,10 @@ struct CueComputer::Impl {
     }
     fill_evidence(association_.visibility.evidence.size());
     cues_.evidence.verdict = assess_evidence(cues_.evidence, options_.acceptance);
-    if (cues_.evidence.verdict == Verdict::kCost) add_costs(*association_.local);
+    if (cues_.evidence.verdict == Verdict::kCost) {
+      add_costs(*association_.local);
+      cues_.evidence.score = hypothesis_score(cues_.evidence, options_.score);
+    }
     return std::move(cues_);
   }
 
@@ -233,7 +237,7 @@ struct CueComputer::Impl {
   bool continues(int p, int q, const ContinuationClutter& rule) const {
     return continues_shape({scene_.points[p], scene_.normals[p]}, {scene_.points[q], scene_.normals[q]},
                            static_cast<float>(rule.max_offset_m)) &&
-           (!use_color_ || continues_color(scene_.lab[p], scene_.lab[q], colors_));
+           (!use_color_ || continues_color(scene_.lab[p], scene_.lab[q]));
   }
 
   // The same for whatever lies around, but only where the surface goes on.
@@ -328,6 +332,9 @@ struct CueComputer::Impl {
     evidence.visible_share = association_.points.empty() ? 0
                                                          : static_cast<double>(evidence.num_visible) /
                                                                static_cast<double>(association_.points.size());
+    const auto num_seen_through = std::ranges::count(association_.visibility.seen_through, 1);
+    evidence.seen_through_share =
+        evidence.num_visible == 0 ? 0 : static_cast<double>(num_seen_through) / evidence.num_visible;
     evidence.visible_share_per_view.assign(num_views, 0);
     evidence.explained_share_per_view.assign(num_views, 0);
     for (std::size_t view = 0; view < num_views; ++view) {

@@ -15,10 +15,11 @@ std::int32_t to_weight(float weight) {
   return static_cast<std::int32_t>(std::lround(static_cast<double>(weight) * kWeightOne));
 }
 
-std::vector<FixedWeight> merge_weights(const HypothesisCues& cues) {
+std::vector<FixedWeight> merge_weights(const HypothesisCues& cues, double score_power) {
+  const auto trust = static_cast<float>(std::pow(cues.evidence.score, score_power));  // 1 for a power of 0.
   std::vector<FixedWeight> merged;
   merged.reserve(cues.explained.size() + cues.clutter.size());
-  for (const WeightedPoint& w : cues.explained) merged.push_back({w.point, to_weight(w.weight), 0});
+  for (const WeightedPoint& w : cues.explained) merged.push_back({w.point, to_weight(trust * w.weight), 0});
   for (const WeightedPoint& w : cues.clutter) merged.push_back({w.point, 0, to_weight(w.weight)});
   std::sort(merged.begin(), merged.end(), [](const FixedWeight& a, const FixedWeight& b) { return a.point < b.point; });
   return merged;
@@ -43,7 +44,7 @@ SelectionProblem make_selection_problem(std::span<const HypothesisCues* const> c
   int num_scene_points = 0;
   for (const HypothesisCues* cues : candidates) {
     problem.unary.push_back(to_fixed(own_cost(cues->evidence)));
-    problem.weights.push_back(merge_weights(*cues));
+    problem.weights.push_back(merge_weights(*cues, options.score_power));
     if (!problem.weights.back().empty())
       num_scene_points = std::max(num_scene_points, problem.weights.back().back().point + 1);
   }

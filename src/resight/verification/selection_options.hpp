@@ -18,6 +18,7 @@ struct SelectionOptions {
   double duplicity_weight = 1.0;
   DuplicityRule duplicity_rule = DuplicityRule::kBeyondBest;
   double occupancy_weight = 2.0;
+  double score_power = 0;
   int max_moves = 5000;
   int max_exact_hypotheses = 12;
   void check() const { check_options("SelectionOptions", *this); }
@@ -32,6 +33,10 @@ inline void declare(OptionVisitor& v, SelectionOptions& o) {
            "Which weights of a point that several hypotheses explain are charged.");
   v.field("occupancy_weight", o.occupancy_weight, between(0, 1e6),
           "Cost of a voxel that the surfaces of two objects fill. 0: objects may interpenetrate.");
+  v.field("score_power", o.score_power, between(0, 10),
+          "What a hypothesis explains counts by its score to this power, so that the more likely of two hypotheses "
+          "stays that explain the same. 0: all count the same; 1: what is explained on average.",
+          "ours");
   v.field("max_moves", o.max_moves, at_least(0),
           "Accepted moves of the local search per connected component of hypotheses: a budget in steps, not in time.",
           "paper [11]");

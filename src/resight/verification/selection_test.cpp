@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "resight/core/random.hpp"
@@ -27,6 +28,7 @@ struct RandomCues {
       }
       h.evidence.costs.outlier = rng.uniform(0, 0.3 * stretch);
       h.evidence.costs.plane = rng.uniform(0, 0.05 * stretch);
+      h.evidence.score = rng.uniform();
       cues.push_back(std::move(h));
     }
     for (int a = 0; a < num_candidates; ++a)
@@ -47,7 +49,8 @@ double slow_cost(const RandomCues& random, const std::vector<std::uint8_t>& acti
   for (std::size_t c = 0; c < random.cues.size(); ++c) {
     if (active[c] == 0) continue;
     cost += random.cues[c].evidence.costs.outlier + random.cues[c].evidence.costs.plane;
-    for (const WeightedPoint& w : random.cues[c].explained) explained[w.point].push_back(w.weight);
+    const double trust = std::pow(random.cues[c].evidence.score, options.score_power);
+    for (const WeightedPoint& w : random.cues[c].explained) explained[w.point].push_back(trust * w.weight);
     for (const WeightedPoint& w : random.cues[c].clutter) clutter[w.point] += w.weight;
   }
   for (const auto& [point, weights] : explained) {
@@ -75,7 +78,10 @@ FixedCost cost_from_scratch(const SelectionProblem& problem, const std::vector<s
 
 TEST(Selection, CostKeptUpToDateIsTheCostFromScratch) {
   for (const DuplicityRule rule : {DuplicityRule::kBeyondBest, DuplicityRule::kAllWeights}) {
-    const SelectionOptions options{.duplicity_weight = 0.75, .duplicity_rule = rule, .occupancy_weight = 1.5};
+    const SelectionOptions options{.duplicity_weight = 0.75,
+                                   .duplicity_rule = rule,
+                                   .occupancy_weight = 1.5,
+                                   .score_power = rule == DuplicityRule::kBeyondBest ? 0.5 : 0};
     const RandomCues random(15, 600, 150, 7);
     const SelectionProblem problem = make_selection_problem(random.pointers, random.voxels, options);
     ASSERT_GT(problem.num_points, 300);
@@ -109,6 +115,22 @@ FixedCost minimum(const SelectionProblem& problem) {
     best = std::min(best, cost_from_scratch(problem, active));
   }
   return best;
+}
+
+TEST(Selection, TheMoreLikelyOfTwoStaysIfItExplainsNearlyAsMuch) {
+  std::vector<HypothesisCues> cues(2);
+  for (int q = 0; q < 100; ++q) cues[0].explained.push_back({q, 1});
+  for (int q = 0; q < 95; ++q) cues[1].explained.push_back({q, 1});
+  cues[0].evidence.score = 0.5;
+  cues[1].evidence.score = 0.9;
+  const std::vector<const HypothesisCues*> pointers{&cues[0], &cues[1]};
+  const std::vector<SharedVoxels> same_place{{0, 1, 100}};
+  const auto chosen = [&](double score_power) {
+    const SelectionOptions options{.score_power = score_power};
+    return search_selection(make_selection_problem(pointers, same_place, options), options).active;
+  };
+  EXPECT_EQ(chosen(0), (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(chosen(0.5), (std::vector<std::uint8_t>{0, 1}));
 }
 
 TEST(SearchSelection, FindsTheMinimumOfSmallProblems) {

@@ -9,6 +9,7 @@
 #include "resight/core/options.hpp"
 #include "resight/verification/acceptance.hpp"
 #include "resight/verification/clutter_options.hpp"
+#include "resight/verification/hypothesis_score.hpp"
 #include "resight/verification/pose_refinement.hpp"
 #include "resight/verification/selection_options.hpp"
 #include "resight/verification/visibility_options.hpp"
@@ -56,6 +57,7 @@ struct VerifyOptions {
   std::optional<PlaneOptions> planes = PlaneOptions{};
   SelectionOptions selection{};
   AcceptanceOptions acceptance{};
+  HypothesisScoreOptions score{};
   std::uint64_t seed = 1;
   int num_threads = 1;  ///< Same bits for any value >= 1.
   void check() const { check_options("VerifyOptions", *this); }
@@ -72,6 +74,7 @@ inline void declare(OptionVisitor& v, VerifyOptions& o) {
   v.group("planes", o.planes, "Whether planes larger than an object count as background.", "V4R");
   v.group("selection", o.selection);
   v.group("acceptance", o.acceptance);
+  v.group("score", o.score);
   v.seed(o.seed);
   v.num_threads(o.num_threads);
   v.rule(!o.planes || !o.planes->spacing_m || std::holds_alternative<ContinuationClutter>(o.clutter.rule),

@@ -12,6 +12,7 @@ Json verification_json(const StoredVerification& v) {
     views.push_back(
         {{"view", view.view}, {"visible_share", view.visible_share}, {"explained_share", view.explained_share}});
   Json json = {{"suppressed_by", v.suppressed_by},
+               {"score", v.score},
                {"fit", v.fit},
                {"visible_share", v.visible_share},
                {"explained_share", v.explained_share},

@@ -236,7 +236,7 @@ TEST(SceneData, ReadsTheChangesOfAView) {
   std::filesystem::remove_all(folder);
 }
 
-constexpr const char* kTrace = R"({"format":"resight trace 1"}
+constexpr const char* kTrace = R"({"format":"resight trace 2"}
 {"view":0,"name":"view_0","searched":true,"generated":3,"merged":2,"clustered":1,"hypotheses":[{"object":"ball",)"
                                R"("verdict":"not verified","origin_views":[0],"correspondences":7,"start":)"
                                R"({"rotation":[1,0,0,0,1,0,0,0,1],"translation_m":[0,0,1]}}],"lost":[]}

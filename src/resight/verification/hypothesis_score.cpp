@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/recognition/detection_score.hpp"
+#include "resight/verification/hypothesis_score.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "resight/verification/selection_cost.hpp"
+
 namespace resight {
 namespace {
 
-// 1: costs nothing. What is accepted beside others may cost more than it explains alone.
+// 1: costs nothing.
 double gain_of(const HypothesisEvidence& evidence) {
   if (evidence.costs.explained_scene <= 0) return 0;
-  return std::clamp(-evidence.costs.unary / evidence.costs.explained_scene, -1.0, 1.0);
+  return std::clamp(-unary_cost(evidence) / evidence.costs.explained_scene, -1.0, 1.0);
 }
 
 double share_beside_planes(const HypothesisCosts& costs) {
@@ -28,13 +30,14 @@ ScoreCues score_cues(const HypothesisEvidence& evidence) {
           std::log(0.01 + evidence.visible_share),
           std::log1p(evidence.appearance.shared_texture),
           share_beside_planes(evidence.costs),
-          evidence.appearance.newest_similarity};
+          evidence.appearance.newest_similarity,
+          1 - evidence.seen_through_share};
 }
 
-double detection_score(const HypothesisEvidence& evidence, const DetectionScoreOptions& options) {
+double hypothesis_score(const HypothesisEvidence& evidence, const HypothesisScoreOptions& options) {
   const ScoreCues weights = {options.gain_weight,    options.correspondence_weight, options.fit_weight,
                              options.visible_weight, options.texture_weight,        options.beside_planes_weight,
-                             options.newest_weight};
+                             options.newest_weight,  options.solid_weight};
   const ScoreCues cues = score_cues(evidence);
   return 1 / (1 + std::exp(-std::inner_product(cues.begin(), cues.end(), weights.begin(), options.offset)));
 }

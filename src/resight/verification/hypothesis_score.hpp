@@ -3,7 +3,7 @@
 #include <array>
 
 #include "resight/core/options.hpp"
-#include "resight/verification/verify_options.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
 
 namespace resight {
 
@@ -11,7 +11,7 @@ namespace resight {
 /// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
 /// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
 /// docs/results.md says how well the scores generalise.
-struct DetectionScoreOptions {
+struct HypothesisScoreOptions {
   double offset = 0;
   double gain_weight = 0;
   double correspondence_weight = 0;
@@ -20,10 +20,11 @@ struct DetectionScoreOptions {
   double texture_weight = 0;
   double beside_planes_weight = 0;
   double newest_weight = 0;
-  void check() const { check_options("DetectionScoreOptions", *this); }
+  double solid_weight = 0;
+  void check() const { check_options("HypothesisScoreOptions", *this); }
 };
 
-inline void declare(OptionVisitor& v, DetectionScoreOptions& o) {
+inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
   v.field("offset", o.offset, between(-100, 100), "Log odds of being right before any evidence.", "fitted");
   v.field("gain_weight", o.gain_weight, between(0, 100),
           "Of the unary gain: what it explains of the scene less what it costs, as a share of the former.", "fitted");
@@ -38,13 +39,16 @@ inline void declare(OptionVisitor& v, DetectionScoreOptions& o) {
           "fitted");
   v.field("newest_weight", o.newest_weight, between(0, 100),
           "Of the similarity of its colours to those of the newest view (acceptance.min_newest_similarity).", "fitted");
+  v.field("solid_weight", o.solid_weight, between(0, 100),
+          "Of the share of its visible points that are no free space in the newest view.", "fitted");
 }
 
-/// What the weights of DetectionScoreOptions weigh, in their order.
-using ScoreCues = std::array<double, 7>;
+/// What the weights of HypothesisScoreOptions weigh, in their order.
+using ScoreCues = std::array<double, 8>;
 [[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
 
-/// How likely an accepted hypothesis is right, in [0, 1]: of the detections with score s about a share s is.
-[[nodiscard]] double detection_score(const HypothesisEvidence& evidence, const DetectionScoreOptions& options);
+/// How likely a hypothesis with enough support and the right appearance is right, in [0, 1]: of the accepted ones with
+/// score s about a share s is.
+[[nodiscard]] double hypothesis_score(const HypothesisEvidence& evidence, const HypothesisScoreOptions& options);
 
 }  // namespace resight
