@@ -32,8 +32,8 @@ std::vector<fs::path> list_files(const fs::path& folder, const fs::path& skipped
 
 std::string describe_files(const fs::path& file_or_folder, const fs::path& skipped) {
   std::error_code error;
-  const std::vector<fs::path> files =
-      fs::is_directory(file_or_folder, error) ? list_files(file_or_folder, skipped) : std::vector<fs::path>{file_or_folder};
+  const std::vector<fs::path> files = fs::is_directory(file_or_folder, error) ? list_files(file_or_folder, skipped)
+                                                                              : std::vector<fs::path>{file_or_folder};
   std::string text;
   for (const fs::path& file : files) {
     const auto size = fs::file_size(file, error);

@@ -9,9 +9,9 @@
 
 namespace resight {
 
-/// Identifies what the proposals of a sequence depend on: names and poses of all views, pixels and cameras of up to 8 of
-/// them, and `settings` (version and options of the change detector, and whatever tells that the other pixels are the
-/// same, such as the times of files). Fails if a view cannot be read.
+/// Identifies what the proposals of a sequence depend on: names and poses of all views, pixels and cameras of up to 8
+/// of them, and `settings` (version and options of the change detector, and whatever tells that the other pixels are
+/// the same, such as the times of files). Fails if a view cannot be read.
 [[nodiscard]] Result<std::string> digest_inputs(const Sequence& sequence, const std::string& settings);
 
 /// Stores proposals, so that they need not be found again.

@@ -110,7 +110,7 @@ inline void declare(OptionVisitor& v, ChangeOptions& o) {
   });
 }
 
-/// Which accepted hypotheses are detections, and how likely they are right.
+/// Which accepted hypotheses are detections.
 struct DetectionOptions {
   double min_reported_share = 0;
 };
