@@ -83,6 +83,10 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   await page.waitForSelector(".legend:visible");
   await page.keyboard.press("d");
   await picture(page, "compare");
+  await page.getByLabel("Colours of the objects").selectOption("error");
+  await page.getByText("15 mm farther").waitFor();
+  await waitForDrawing(page, 100);
+  await picture(page, "depth_error");
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280, "something is cut off");
   await waitForDrawing(page, 100);
 

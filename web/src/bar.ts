@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bar above the views: which run, which layers, which colours; and the overview of the keyboard.
 
-import { kEvidenceColors } from "./colors";
+import { kErrorColors, kEvidenceColors } from "./colors";
 import { button, byId, element } from "./dom";
-import { kCloudColors, kLayers, kObjectColors, type Layer } from "./link";
+import { kCloudColors, kLayers, kObjectColors, type Layer, type ObjectColors } from "./link";
 import type { App } from "./store";
 
 export interface BarActions {
@@ -138,15 +138,19 @@ export class Bar {
     return group;
   }
 
-  /** What the colours of evidence mean. */
+  /** What the colours of the objects mean. */
   private makeLegend(): HTMLElement {
-    const names = ["not seen", "occluded", "present", "seen through"];
-    const entries = names.map((name, index) =>
-      element("span", { class: "object", style: `--object-color: ${kEvidenceColors[index]}` }, name),
-    );
-    const legend = element("div", { class: "legend" }, ...entries);
+    const entries = (names: string[], colors: readonly string[]) =>
+      names.map((name, index) => element("span", { class: "object", style: `--object-color: ${colors[index]}` }, name));
+    const meanings: Partial<Record<ObjectColors, HTMLElement[]>> = {
+      evidence: entries(["not seen", "occluded", "present", "seen through"], kEvidenceColors),
+      error: entries(["depth 15 mm nearer", "as the model", "15 mm farther"], kErrorColors),
+    };
+    const legend = element("div", { class: "legend" });
     this.follow(() => {
-      legend.hidden = this.app.get().objectColors !== "evidence";
+      const meaning = meanings[this.app.get().objectColors];
+      legend.replaceChildren(...(meaning ?? []));
+      legend.hidden = !meaning;
     });
     return legend;
   }
@@ -172,7 +176,7 @@ export class Bar {
     const objects = choose(
       "Colours of the objects",
       kObjectColors,
-      { own: "objects: own", label: "objects: label", evidence: "objects: evidence" },
+      { own: "objects: own", label: "objects: label", evidence: "objects: evidence", error: "objects: depth error" },
       "objectColors",
     );
     if (this.app.scene.views.length === 0) return [];

@@ -1,7 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
+import { classifyError } from "./geometry";
+
+type Rgb = [number, number, number];
 
 /** Colours of what a view says of a surface: not seen, occluded, present, seen through. */
 export const kEvidenceColors = ["#8b949e", "#3e7bfa", "#30a46c", "#e5484d"] as const;
+
+/** Colours of errors of depth: the view is nearer than the model by the limit, as near, farther by the limit. */
+export const kErrorColors = ["#3e7bfa", "#f2f2f2", "#e5484d"] as const;
+
+/** A colour per error; grey for NaN. */
+export function errorColors(errors: Float32Array, limit: number): Uint8Array {
+  const [nearer, same, farther] = kErrorColors.map(parseColor) as [Rgb, Rgb, Rgb];
+  const unseen = parseColor(kEvidenceColors[0]);
+  const colors = new Uint8Array(3 * errors.length);
+  for (const [i, error] of errors.entries()) {
+    const share = Math.max(-1, Math.min(1, error / limit));
+    const end = share < 0 ? nearer : farther;
+    const color = Number.isNaN(error)
+      ? unseen
+      : same.map((value, c) => value + ((end[c] ?? 0) - value) * Math.abs(share));
+    colors.set(color, 3 * i);
+  }
+  return colors;
+}
+
+/** A colour per error by what it says (classifyError()). */
+export function evidenceColors(errors: Float32Array, margin: number): Uint8Array {
+  const palette = kEvidenceColors.map(parseColor);
+  const colors = new Uint8Array(3 * errors.length);
+  for (const [i, error] of errors.entries()) colors.set(palette[classifyError(error, margin)] ?? [0, 0, 0], 3 * i);
+  return colors;
+}
 
 /** Colours of n points, all the same. */
 export function plainColors(count: number, color: string): Uint8Array {
@@ -12,7 +42,7 @@ export function plainColors(count: number, color: string): Uint8Array {
 }
 
 /** Red, green and blue of #rrggbb. */
-export function parseColor(color: string): [number, number, number] {
+export function parseColor(color: string): Rgb {
   const value = Number.parseInt(color.slice(1), 16);
   return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }

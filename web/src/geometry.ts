@@ -153,18 +153,16 @@ export function pickPoint(
   return best;
 }
 
-/** What the depth of a view says about points of a surface at a pose: 0 not seen, 1 occluded, 2 present, 3 seen through
- * (docs/glossary.md). Without the noise model of the recogniser: for looking, not for deciding. */
-export function classifySurface(
+/** Depth of a view less that of points of a surface at a pose, in metres. NaN: not seen. */
+export function depthErrors(
   positions: ArrayLike<number>,
   normals: ArrayLike<number> | null,
   cameraFromSurface: Pose,
   camera: Camera,
   depth: ArrayLike<number>,
-  marginM: number,
-): Uint8Array {
-  const classes = new Uint8Array(positions.length / 3);
-  for (let i = 0; i < classes.length; ++i) {
+): Float32Array {
+  const errors = new Float32Array(positions.length / 3).fill(Number.NaN);
+  for (let i = 0; i < errors.length; ++i) {
     const p = transformPoint(cameraFromSurface, [
       at(positions, 3 * i),
       at(positions, 3 * i + 1),
@@ -178,9 +176,14 @@ export function classifySurface(
     if (!pixel) continue;
     const [u, v] = [Math.round(pixel[0]), Math.round(pixel[1])];
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    const difference = at(depth, v * camera.width + u) - p[2];
-    if (Number.isNaN(difference)) continue;
-    classes[i] = difference < -marginM ? 1 : difference > marginM ? 3 : 2;
+    errors[i] = at(depth, v * camera.width + u) - p[2];
   }
-  return classes;
+  return errors;
+}
+
+/** What such an error says of a point: 0 not seen, 1 occluded, 2 present, 3 seen through (docs/glossary.md). Without
+ * the noise model of the recogniser: for looking, not for deciding. */
+export function classifyError(error: number, marginM: number): 0 | 1 | 2 | 3 {
+  if (Number.isNaN(error)) return 0;
+  return error < -marginM ? 1 : error > marginM ? 3 : 2;
 }

@@ -17,8 +17,8 @@ export type Layer = (typeof kLayers)[number];
 
 export const kDefaultLayers: readonly Layer[] = ["cloud", "objects", "places", "cameras", "outlines", "labels"];
 
-export type ObjectColors = "own" | "label" | "evidence";
-export const kObjectColors: readonly ObjectColors[] = ["own", "label", "evidence"];
+export type ObjectColors = "own" | "label" | "evidence" | "error";
+export const kObjectColors: readonly ObjectColors[] = ["own", "label", "evidence", "error"];
 export type CloudColors = "image" | "distance";
 export const kCloudColors: readonly CloudColors[] = ["image", "distance"];
 

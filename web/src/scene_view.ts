@@ -2,9 +2,9 @@
 // Fills the 3D view with what the state asks for.
 import { Matrix4, type Object3D } from "three";
 import type { Api } from "./api";
-import { distanceColors, kEvidenceColors, parseColor, plainColors } from "./colors";
+import { distanceColors, errorColors, evidenceColors, plainColors } from "./colors";
 import {
-  classifySurface,
+  depthErrors,
   depthToPoints,
   inverseRigid,
   multiply,
@@ -28,7 +28,6 @@ const kEvidenceMarginM = 0.015;
 const kObjectNearerM = 0.012;
 /** Three standard deviations, ten times enlarged: they are about a millimetre. */
 const kShownDeviations = 30;
-const kEvidenceRgb = kEvidenceColors.map(parseColor);
 
 interface Item {
   object: number;
@@ -304,13 +303,14 @@ export class SceneView {
     const { objectColors, view } = this.app.get();
     const object = this.app.object(item.object);
     const count = surface.positions.length / 3;
-    if (item.kind === "detection" && objectColors === "evidence") {
+    if (item.kind === "detection" && (objectColors === "evidence" || objectColors === "error")) {
       const pose = this.app.cameraPose(view);
       if (pose && this.camera) {
         const { depth } = await this.api.viewImages(view, this.camera);
         const cameraFromObject = multiply(inverseRigid(pose), item.pose);
         const { positions, normals } = surface;
-        return paint(classifySurface(positions, normals, cameraFromObject, this.camera, depth, kEvidenceMarginM));
+        const errors = depthErrors(positions, normals, cameraFromObject, this.camera, depth);
+        return (objectColors === "error" ? errorColors : evidenceColors)(errors, kEvidenceMarginM);
       }
     }
     if (objectColors === "own" && surface.colors) return surface.colors;
@@ -401,11 +401,4 @@ function depthRange(depth: Float32Array): [number, number] {
   sample.sort((a, b) => a - b);
   const at = (share: number) => sample[Math.floor(share * (sample.length - 1))] ?? 1;
   return [at(0.02), at(0.98)];
-}
-
-function paint(classes: Uint8Array): Uint8Array {
-  const colors = new Uint8Array(3 * classes.length);
-  for (let i = 0; i < classes.length; ++i)
-    for (let c = 0; c < 3; ++c) colors[3 * i + c] = kEvidenceRgb[classes[i] ?? 0]?.[c] ?? 0;
-  return colors;
 }

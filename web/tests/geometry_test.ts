@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
+import { errorColors, kErrorColors, kEvidenceColors, parseColor } from "../src/colors";
 import {
-  classifySurface,
+  classifyError,
+  depthErrors,
   depthToPoints,
   distance,
   guessUp,
@@ -105,8 +107,21 @@ test("a surface is occluded, present or seen through by what is measured", () =>
     unproject(kCamera, 2, 0, 0.8),
     unproject(kCamera, 9, 0, 1),
   ];
-  const classes = classifySurface(points.flat(), null, kIdentity, kCamera, depth, 0.015);
-  assert.deepEqual([...classes], [1, 2, 3, 0]);
-  const away = classifySurface(points.flat(), new Array(4).fill([0, 0, 1]).flat(), kIdentity, kCamera, depth, 0.015);
-  assert.deepEqual([...away], [0, 0, 0, 0], "sides that face away are not seen");
+  const errors = depthErrors(points.flat(), null, kIdentity, kCamera, depth);
+  assertNear(
+    [...errors.subarray(0, 3)].map((error) => Math.round(1e6 * error) / 1e6),
+    [-0.3, -0.01, 0.2],
+  );
+  assert.deepEqual(
+    [...errors].map((error) => classifyError(error, 0.015)),
+    [1, 2, 3, 0],
+  );
+  const away = depthErrors(points.flat(), new Array(4).fill([0, 0, 1]).flat(), kIdentity, kCamera, depth);
+  assert.ok(away.every(Number.isNaN), "sides that face away are not seen");
+});
+
+test("errors of depth are blue where the view is nearer, red where it is farther, grey where it says nothing", () => {
+  const colors = errorColors(new Float32Array([-0.03, 0, 0.015, Number.NaN]), 0.015);
+  const expected = [kErrorColors[0], kErrorColors[1], kErrorColors[2], kEvidenceColors[0]].flatMap(parseColor);
+  assert.deepEqual([...colors], expected);
 });

@@ -145,7 +145,9 @@ Result<void> TraceFile::find_new_views() {
     if (!header) return header.error();
     const auto content = io::parse_json(*header);
     if (!content || member(*content, "format") != kTraceFormat)
-      return file_error(file_, "is no trace of 'resight recognize --trace' of this version");
+      return file_error(
+          file_,
+          "is no trace of 'resight recognize --trace' of this version (remove it to use the results without it)");
     end_offset_ = found.front().size + 1;
     found.erase(found.begin());
   }
