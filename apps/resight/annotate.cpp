@@ -46,18 +46,19 @@ std::string identify(const Sequence& sequence, const ModelLibrary& library) {
 }
 
 /// What the proposals depend on beside the views that are read. The number of threads is not part of it.
-std::string describe_inputs(const AnnotateArguments& arguments, const RecognizerConfig& config) {
+std::string describe_inputs(const fs::path& input, const fs::path& project, const RecognizerConfig& config) {
   std::string text = fmt::format("resight {}, regions of {} points\n", RESIGHT_VERSION, kMinRegionPoints);
-  text += describe_files(value_or_throw(find_sequence_folder(arguments.sequence)), arguments.out);
+  text += describe_files(input, project);
   for (const auto& [name, value] : config.to_settings()) text += fmt::format("{} = {}\n", name, value);
   return text;
 }
 
 /// The regions that the change detector proposes. They are kept in the project while views and detector stay the same.
-std::vector<ChangeProposal> find_regions(const Sequence& sequence, const AnnotateArguments& arguments) {
+std::vector<ChangeProposal> find_regions(const Sequence& sequence, const fs::path& input,
+                                         const AnnotateArguments& arguments) {
   const RecognizerConfig config = make_config("default", std::nullopt, std::nullopt, arguments.num_threads);
   const fs::path file = arguments.out / "proposals.json";
-  const std::string digest = value_or_throw(digest_inputs(sequence, describe_inputs(arguments, config)));
+  const std::string digest = value_or_throw(digest_inputs(sequence, describe_inputs(input, arguments.out, config)));
   if (auto known = read_proposals(file, digest, sequence.num_views())) return *std::move(known);
   Progress progress("annotate", sequence.num_views());
   auto regions = value_or_throw(propose_changes(sequence, scene_options(config), kMinRegionPoints, [&](int view) {
@@ -90,7 +91,8 @@ void run_annotate(const AnnotateArguments& arguments) {
   value_or_throw(check_export_folder(export_folder));  // Before the work, not after it.
   const std::shared_ptr<const Sequence> sequence = open_posed_input(arguments.sequence, arguments.input);
   const auto library = std::make_shared<const ModelLibrary>(value_or_throw(load_library(arguments.models)));
-  const std::string name = folder_name(value_or_throw(find_sequence_folder(arguments.sequence)));
+  const fs::path input = value_or_throw(find_sequence_folder(arguments.sequence));
+  const std::string name = folder_name(input);
   AnnotationTask task{.sequence = sequence,
                       .library = library,
                       .regions = {},
@@ -102,7 +104,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   task.project = value_or_throw(AnnotationProject::open(arguments.out, limits, identify(*sequence, *library)));
   if (task.project->was_cut_off()) print_warning("the last action was cut off and is dropped");
   if (arguments.detections) add_detections(*arguments.detections, *sequence, *library, *task.project);
-  task.regions = find_regions(*sequence, arguments);
+  task.regions = find_regions(*sequence, input, arguments);
   AnnotationService service(std::move(task));
 
   ViewerScene shown;

@@ -17,8 +17,8 @@ std::vector<fs::path> list_files(const fs::path& folder, const fs::path& skipped
   std::error_code error;
   if (!fs::is_directory(folder, error)) return files;
   std::set<fs::path> visited{fs::canonical(folder, error), fs::weakly_canonical(skipped, error)};
-  for (fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink, error), end;
-       !error && it != end; it.increment(error)) {
+  const auto options = fs::directory_options::follow_directory_symlink | fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator it(folder, options, error), end; !error && it != end; it.increment(error)) {
     std::error_code unreadable;
     if (it->is_regular_file(unreadable)) files.push_back(it->path());
     const bool is_folder = it->is_directory(unreadable);

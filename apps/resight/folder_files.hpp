@@ -7,8 +7,8 @@
 namespace resight::app {
 
 /// All files of a folder in order of name, also below symbolic links: data sets often link to their images. Each folder
-/// counts once, however many links lead to it, and `skipped` does not count. Empty for a folder that does not exist.
-/// Throws InputError if it cannot be listed.
+/// counts once, however many links lead to it. `skipped`, and folders that the user may not read, do not count. Empty
+/// for a folder that does not exist. Throws InputError if it cannot be listed.
 [[nodiscard]] std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder,
                                                             const std::filesystem::path& skipped = {});
 

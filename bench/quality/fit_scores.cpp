@@ -26,8 +26,8 @@ using namespace resight;
 
 constexpr int kNumWeights = std::tuple_size_v<ScoreCues> + 1;  // With the offset.
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
-constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",   "visible", "texture",
-                                             "beside planes", "newest",         "solid", "offset"};
+constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",          "visible", "texture",
+                                             "beside planes", "newest",         "seen through", "offset"};
 
 struct Sample {
   Weights cues;
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
   const HypothesisScoreOptions& score = config.verify.score;
   Weights is_used;
   is_used << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
-      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.solid_weight, 1;
+      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight, 1;
   is_used = (is_used.array() != 0).cast<double>();
   std::vector<Sample> samples;
   int group = 0, number = 0;

@@ -15,12 +15,10 @@ export function errorColors(errors: Float32Array, limit: number): Uint8Array {
   const unseen = parseColor(kEvidenceColors[0]);
   const colors = new Uint8Array(3 * errors.length);
   for (const [i, error] of errors.entries()) {
-    const share = Math.max(-1, Math.min(1, error / limit));
-    const end = share < 0 ? nearer : farther;
-    const color = Number.isNaN(error)
-      ? unseen
-      : same.map((value, c) => value + ((end[c] ?? 0) - value) * Math.abs(share));
-    colors.set(color, 3 * i);
+    const isSeen = !Number.isNaN(error);
+    const share = isSeen ? Math.min(1, Math.abs(error) / limit) : 1;
+    const end = !isSeen ? unseen : error < 0 ? nearer : farther;
+    for (let c = 0; c < 3; ++c) colors[3 * i + c] = (1 - share) * (same[c] ?? 0) + share * (end[c] ?? 0);
   }
   return colors;
 }

@@ -67,8 +67,8 @@ export class World {
   private readonly marker: Mesh;
   private isDirty = false;
   private isMoving = false;
-  private lastDrawn = 0;
-  private share = 1;
+  private lastDrawnMs = 0;
+  private movingShare = 1;
   private knownGizmo: Gizmo | null = null;
   private home: CameraState = { position: [1, -1, 1], target: [0, 0, 0] };
   /** Called when the user has moved the camera. */
@@ -186,12 +186,13 @@ export class World {
   /** Draws at once. */
   draw(): void {
     this.isDirty = false;
-    this.chooseShare();
+    this.adaptShare();
+    const share = this.isMoving ? this.movingShare : 1;
     const height = this.renderer.getDrawingBufferSize(new Vector2()).y;
     this.scene.traverse((object) => {
       if (!(object instanceof PointSet)) return;
       object.fitScreen(this.camera, height);
-      if (object.isEven) object.setShare(this.share);
+      if (object.isEven) object.setShare(share);
     });
     const distance = this.camera.position.distanceTo(this.marker.position);
     this.marker.scale.setScalar(0.006 * distance);
@@ -199,13 +200,15 @@ export class World {
     this.placeLabels();
   }
 
-  /** While the camera moves, a machine that is too slow for all points draws fewer. */
-  private chooseShare(): void {
+  /** While the camera moves, a machine that is too slow for all points draws as many as it can. */
+  private adaptShare(): void {
     const now = performance.now();
-    const elapsed = now - this.lastDrawn;
-    this.lastDrawn = now;
-    if (!this.isMoving) this.share = 1;
-    else if (elapsed > kSlowFrameMs && elapsed < kPauseMs) this.share = Math.max(kMinShare, this.share / 4);
+    const elapsedMs = now - this.lastDrawnMs;
+    this.lastDrawnMs = now;
+    if (!this.isMoving || elapsedMs > kPauseMs) return;
+    const change =
+      elapsedMs > kSlowFrameMs ? Math.max(0.25, kSlowFrameMs / elapsedMs) : elapsedMs < kSlowFrameMs / 2 ? 1.2 : 1;
+    this.movingShare = Math.min(1, Math.max(kMinShare, change * this.movingShare));
   }
 
   private placeLabels(): void {

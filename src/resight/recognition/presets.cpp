@@ -13,15 +13,7 @@ namespace {
 
 void set_paper(RecognizerConfig& config) {
   config.verify.refine.max_iterations.reset();
-  config.verify.score = {.offset = -13.18,
-                         .gain_weight = 4.71,
-                         .correspondence_weight = 1.21,
-                         .fit_weight = 10.91,
-                         .visible_weight = 0,
-                         .texture_weight = 0,
-                         .beside_planes_weight = 0,
-                         .newest_weight = 0,
-                         .solid_weight = 0};
+  config.verify.score = {.offset = -13.18, .gain_weight = 4.71, .correspondence_weight = 1.21, .fit_weight = 10.91};
 }
 
 void set_default_verification(VerifyOptions& verify) {
@@ -69,15 +61,14 @@ void set_default(RecognizerConfig& config) {
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
   config.verify.selection.score_power = 0.5;
-  config.verify.score = {.offset = -21.23,
-                         .gain_weight = 0,
+  config.verify.score = {.offset = -10.93,
                          .correspondence_weight = 0.6,
                          .fit_weight = 5.3,
                          .visible_weight = 0.8,
                          .texture_weight = 1.86,
                          .beside_planes_weight = 4.25,
                          .newest_weight = 4.35,
-                         .solid_weight = 10.3};
+                         .seen_through_weight = 10.3};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.

@@ -44,8 +44,8 @@ struct HypothesisCosts {
   double outlier = 0;          ///< Visible model points that are not explained.
   double clutter = 0;          ///< Unexplained scene points beside the explained ones (ClutterOptions).
   double plane = 0;            ///< Points of planes that it claims, and model points on the far side of a plane.
-  /// Cost of the set with this hypothesis alone, its gain weighted by its score (selection.score_power). Negative:
-  /// unary gain. 0 if rejected earlier.
+  /// Cost of the set with this hypothesis alone. What it explains counts by its score (selection.score_power), unless
+  /// it was merged with another one before the selection. Negative: unary gain. 0 if rejected earlier.
   double unary = 0;
 };
 
@@ -66,7 +66,7 @@ struct HypothesisEvidence {
   std::vector<float> explained_share_per_view;
   /// Inliers / visible points, grazing ones count a tenth: what acceptance.min_explained_share tests.
   double explained_share = 0;
-  double seen_through_share = 0;  ///< Of the visible points: free space in the views that decide (free_space).
+  double seen_through_share = 0;  ///< Of the visible points (visibility.free_space).
   AppearanceEvidence appearance;
   HypothesisCosts costs;
   /// Probability that it is right, in [0, 1] (HypothesisScoreOptions); 0 without enough support or the right

@@ -20,7 +20,7 @@ struct HypothesisScoreOptions {
   double texture_weight = 0;
   double beside_planes_weight = 0;
   double newest_weight = 0;
-  double solid_weight = 0;
+  double seen_through_weight = 0;
   void check() const { check_options("HypothesisScoreOptions", *this); }
 };
 
@@ -39,8 +39,9 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
           "fitted");
   v.field("newest_weight", o.newest_weight, between(0, 100),
           "Of the similarity of its colours to those of the newest view (acceptance.min_newest_similarity).", "fitted");
-  v.field("solid_weight", o.solid_weight, between(0, 100),
-          "Of the share of its visible points that are no free space in the newest view.", "fitted");
+  v.field("seen_through_weight", o.seen_through_weight, between(0, 100),
+          "Counts against it: of the share of its visible points that are seen through (visibility.free_space).",
+          "fitted");
 }
 
 /// What the weights of HypothesisScoreOptions weigh, in their order.

@@ -34,11 +34,11 @@ constexpr HypothesisScoreOptions kSome{.offset = -4,
                                        .texture_weight = 1.5,
                                        .beside_planes_weight = 3,
                                        .newest_weight = 2.5,
-                                       .solid_weight = 2};
+                                       .seen_through_weight = 2};
 
 TEST(HypothesisScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) +
-                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 + 2 * 0.9;
+                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1;
   EXPECT_NEAR(hypothesis_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 

@@ -34,8 +34,8 @@ inline void declare(OptionVisitor& v, SelectionOptions& o) {
   v.field("occupancy_weight", o.occupancy_weight, between(0, 1e6),
           "Cost of a voxel that the surfaces of two objects fill. 0: objects may interpenetrate.");
   v.field("score_power", o.score_power, between(0, 10),
-          "What a hypothesis explains counts by its score to this power, so that the more likely of two hypotheses "
-          "stays that explain the same. 0: all count the same; 1: what is explained on average.",
+          "What a hypothesis explains is multiplied by its score to this power: of two hypotheses that explain the "
+          "same, the more likely one is accepted. 0: the score does not count.",
           "ours");
   v.field("max_moves", o.max_moves, at_least(0),
           "Accepted moves of the local search per connected component of hypotheses: a budget in steps, not in time.",

@@ -247,6 +247,26 @@ TEST(VerifyHypotheses, TheNewestViewDecidesWhatHasComeOrGone) {
   EXPECT_TRUE(accepts(gone, {}));
 }
 
+TEST(VerifyHypotheses, TellsTheShareThatIsSeenThroughAndTheScore) {
+  const std::vector<Rigid3> cameras = circle_of_cameras(3, 0.8, 0.6, 0.3);
+  const VerifyOptions options{.visibility = {.free_space = NewestViewFreeSpace{}},
+                              .score = {.offset = -1, .fit_weight = 3, .seen_through_weight = 2}};
+  const auto evidence = [&](const World& newest) {
+    const std::vector<PreparedView> views = {render(one_box(), cameras[0]), render(one_box(), cameras[1]),
+                                             render(newest, cameras[2])};
+    return verify_hypotheses({{make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))}}, make_library(), merge(views),
+                             references(views), {}, options)
+        .evidence[0];
+  };
+  const HypothesisEvidence there = evidence(one_box());
+  EXPECT_LT(there.seen_through_share, 0.05);
+  EXPECT_EQ(there.score, hypothesis_score(there, options.score));
+  EXPECT_GT(there.score, 0.5);
+  const HypothesisEvidence gone = evidence({});
+  EXPECT_GT(gone.seen_through_share, 0.5);
+  EXPECT_EQ(gone.score, 0) << "rejected before";
+}
+
 TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
   // They see through what the newest view cannot see: the far sides of the box.
   const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
