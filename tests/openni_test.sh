@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# `resight recognize --camera openni2` with a camera that a test driver shows. Usage: openni_test.sh PATH_OF_RESIGHT
-# LIB_OPENNI2 TEST_DRIVER
+# `resight recognize --camera openni2` with a camera that a test driver shows, and with a recording of it that OpenNI2
+# plays. Usage: openni_test.sh PATH_OF_RESIGHT LIB_OPENNI2 TEST_DRIVER RECORD_CAMERA
 set -uo pipefail
 resight=$(realpath "$1")
 library=$(realpath "$2")
 driver=$(realpath "$3")
+record_camera=$(realpath "$4")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 cd "$work" || exit 1
 
 # OpenNI2 looks for drivers beside its library.
-mkdir -p camera/OpenNI2/Drivers none/OpenNI2/Drivers
-for folder in camera none; do cp "$library" $folder/libOpenNI2.so.0; done
+mkdir -p {camera,player,none}/OpenNI2/Drivers
+for folder in camera player none; do cp "$library" $folder/libOpenNI2.so.0; done
 cp "$driver" camera/OpenNI2/Drivers/libSequenceDriver.so.0
+cp "$(dirname "$library")/OpenNI2/Drivers/libOniFile.so.0" player/OpenNI2/Drivers
 export RESIGHT_TEST_SEQUENCE=$PWD/scene/test/000001
 
 write_scene 3 -90 -90 true >scene.toml
@@ -32,6 +34,17 @@ wait $program || fail "a stop ends with status $?: $(tail -1 err)"
 grep -q 'focal length 262.5 px' err || fail "the focal length is not that of the field of view: $(cat err)"
 grep -q '"object": *"tea_box"' live/detections.json || fail "the tea is not recognised"
 grep -q '"sequence": *"openni2"' live/summary.json || fail "summary.json does not name the camera"
+
+# A recording ends by itself.
+LD_LIBRARY_PATH=camera timeout 60 "$record_camera" "$PWD/camera.oni" 20 >log 2>&1 || fail "not recorded: $(cat log)"
+LD_LIBRARY_PATH=player timeout 120 "$resight" recognize --models models.resight --camera "openni2:$PWD/camera.oni" \
+  --out played --stream >lines 2>err || fail "a recording ends with status $?: $(tail -1 err)"
+[ "$(wc -l <lines)" -ge 1 ] || fail "no views of the recording: $(cat err)"
+grep -q '"object": *"tea_box"' played/detections.json || fail "the tea is not recognised in the recording"
+
+LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight --camera "openni2:$PWD/scene.toml" \
+  --out no >lines 2>err
+[ $? = 2 ] || fail "a file that is no recording is no bad input: $(cat err)"
 
 LD_LIBRARY_PATH=none timeout 60 "${recognize[@]}" --out no >lines 2>err
 [ $? = 2 ] || fail "a missing camera is no bad input: $(cat err)"

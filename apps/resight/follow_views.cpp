@@ -77,6 +77,7 @@ std::optional<FollowedView> CameraViews::next() {
   const Clock::time_point begin = Clock::now();
   while (!is_stop_requested() && !is_idle_for_too_long(begin, arguments_)) {
     std::optional<FollowedView> view = camera_.take(kPatience_s);
+    if (!view && camera_.has_ended()) break;
     if (!view) continue;
     if (!has_view_) tell_first_view(*view, camera_.notes());
     has_view_ = true;

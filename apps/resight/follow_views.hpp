@@ -13,7 +13,7 @@ namespace resight::app {
 class LiveViews {
  public:
   virtual ~LiveViews() = default;
-  /// Waits for the next view. None at the end: after Ctrl-C or the idle time. Throws an InputError if no
+  /// Waits for the next view. None at the end: after Ctrl-C, the idle time, or a recording. Throws an InputError if no
   /// view has come until then.
   [[nodiscard]] virtual std::optional<FollowedView> next() = 0;
   /// Views that newer ones have overtaken.
@@ -39,7 +39,7 @@ class FolderViews final : public LiveViews {
 /// Views of a camera that does not move.
 class CameraViews final : public LiveViews {
  public:
-  /// `name`: "openni2", or "openni2:" and the URI of a device.
+  /// `name`: "openni2", or "openni2:" and the URI of a device or the path of a recording.
   CameraViews(const std::string& name, const OpenSequenceOptions& open, const FollowArguments& arguments);
   [[nodiscard]] std::optional<FollowedView> next() override;
   [[nodiscard]] int num_skipped() const override { return camera_.num_skipped(); }

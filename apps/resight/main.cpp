@@ -121,7 +121,8 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
   command
       ->add_option(
           "--camera", a.camera,
-          "Instead of --sequence: a camera of OpenNI2 that does not move (openni2, or openni2:URI), until Ctrl-C")
+          "Instead of --sequence: a camera of OpenNI2 that does not move (openni2, or openni2:URI), until Ctrl-C, or a "
+          "recording of one (openni2:FILE.oni), played once")
       ->check(kCameras)
       ->excludes("--view")
       ->excludes("--sequence")

@@ -72,7 +72,9 @@ Image<float> to_depth_image(const openni::VideoFrameRef& frame) {
 struct CameraStream {
   openni::VideoStream stream;
   openni::VideoFrameRef frame;
-  int last_index = -1;  ///< Of the last one.
+  int last_index = -1;                               ///< Of the last one.
+  int num_frames = std::numeric_limits<int>::max();  ///< Of a recording: their indices are 1 to this.
+  [[nodiscard]] bool has_ended() const { return !frame.isValid() && last_index >= num_frames; }
 };
 
 }  // namespace
@@ -89,6 +91,7 @@ struct OpenniCamera::Impl {
 
   void open_stream(CameraStream& opened, openni::SensorType type, const char* what);
   void register_depth();
+  void play_once();
   void find_camera(const OpenCameraOptions& options);
   bool read(CameraStream& from, int timeout_ms);
   FollowedView make_view();
@@ -103,6 +106,13 @@ void OpenniCamera::Impl::register_depth() {
   if (device.isImageRegistrationModeSupported(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR))
     device.setImageRegistrationMode(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR);
   device.setDepthColorSyncEnabled(true);
+}
+
+void OpenniCamera::Impl::play_once() {
+  openni::PlaybackControl* playback = device.getPlaybackControl();
+  if (playback == nullptr) return;
+  require_ok(playback->setRepeatEnabled(false), "the recording cannot be played once");
+  for (CameraStream* played : {&depth, &color}) played->num_frames = playback->getNumberOfFrames(played->stream);
 }
 
 void OpenniCamera::Impl::find_camera(const OpenCameraOptions& options) {
@@ -164,6 +174,7 @@ OpenniCamera::OpenniCamera(const OpenCameraOptions& options) : impl_(std::make_u
   impl_->register_depth();
   impl_->open_stream(impl_->depth, openni::SENSOR_DEPTH, "depth");
   impl_->open_stream(impl_->color, openni::SENSOR_COLOR, "colour");
+  impl_->play_once();
   impl_->find_camera(options);
 }
 
@@ -190,6 +201,8 @@ std::optional<FollowedView> OpenniCamera::take(double timeout_s) {
   }
 }
 
+bool OpenniCamera::has_ended() const { return impl_->depth.has_ended() || impl_->color.has_ended(); }
+
 int OpenniCamera::num_skipped() const { return impl_->num_skipped; }
 
 std::vector<std::string> OpenniCamera::notes() const { return {impl_->note}; }
@@ -203,6 +216,7 @@ OpenniCamera::OpenniCamera(const OpenCameraOptions& /*options*/) {
 }
 OpenniCamera::~OpenniCamera() = default;
 std::optional<FollowedView> OpenniCamera::take(double /*timeout_s*/) { return std::nullopt; }
+bool OpenniCamera::has_ended() const { return false; }
 int OpenniCamera::num_skipped() const { return 0; }
 std::vector<std::string> OpenniCamera::notes() const { return {}; }
 

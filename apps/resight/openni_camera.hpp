@@ -10,13 +10,14 @@
 namespace resight::app {
 
 struct OpenCameraOptions {
-  std::string uri;         ///< Of the device. Empty: any device.
+  std::string uri;         ///< Of the device, or the path of a recording (`.oni`). Empty: any device.
   std::string intrinsics;  ///< "fx,fy,cx,cy" or a file. Empty: from the field of view that the device tells.
   const DepthSensor* sensor = nullptr;  ///< Whose noise the depth has. Null: structured light.
 };
 
 /// A camera of OpenNI2 (Kinect v1, Xtion, PrimeSense and others). It does not move: poses are the identity. The newest
-/// frame is taken; those that came before it, while nobody asked, are counted.
+/// frame is taken; those that came before it, while nobody asked, are counted. A recording is played at its own speed,
+/// once.
 class OpenniCamera {
  public:
   /// Throws an InputError if the program was built without OpenNI2, or if the camera cannot be opened.
@@ -28,6 +29,7 @@ class OpenniCamera {
   /// The next pair of colour and depth; none after `timeout_s` without one. Throws std::runtime_error if the camera
   /// is gone.
   [[nodiscard]] std::optional<FollowedView> take(double timeout_s);
+  [[nodiscard]] bool has_ended() const;   ///< A recording has been played to its last frame.
   [[nodiscard]] int num_skipped() const;  ///< Frames of the camera that nobody took.
   [[nodiscard]] std::vector<std::string> notes() const;
 

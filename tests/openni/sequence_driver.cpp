@@ -45,6 +45,7 @@ class SequenceStream : public oni::driver::StreamBase {
     const float horizontal = fov(camera.width, camera.fx), vertical = fov(camera.height, camera.fy);
     const int max_value = 10000;
     const OniBool off = FALSE;
+    const OniCropping uncropped{};
     const auto status = [&](const auto& value) {
       return static_cast<OniStatus>(copy_property(&value, sizeof(value), data, size));
     };
@@ -59,6 +60,8 @@ class SequenceStream : public oni::driver::StreamBase {
         return is_depth() ? status(max_value) : ONI_STATUS_NOT_SUPPORTED;
       case ONI_STREAM_PROPERTY_MIRRORING:
         return status(off);
+      case ONI_STREAM_PROPERTY_CROPPING:
+        return status(uncropped);
       default:
         return ONI_STATUS_NOT_SUPPORTED;
     }
@@ -66,12 +69,13 @@ class SequenceStream : public oni::driver::StreamBase {
   OniBool isPropertySupported(int id) override {
     return id == ONI_STREAM_PROPERTY_VIDEO_MODE || id == ONI_STREAM_PROPERTY_HORIZONTAL_FOV ||
            id == ONI_STREAM_PROPERTY_VERTICAL_FOV || id == ONI_STREAM_PROPERTY_MIRRORING ||
-           (id == ONI_STREAM_PROPERTY_MAX_VALUE && is_depth());
+           id == ONI_STREAM_PROPERTY_CROPPING || (id == ONI_STREAM_PROPERTY_MAX_VALUE && is_depth());
   }
-  /// What a recorder keeps beside the frames.
+  /// What a recorder keeps beside the frames. The file driver shows no frame of a stream without a cropping.
   void notifyAllProperties() override {
-    for (const int id : {ONI_STREAM_PROPERTY_VIDEO_MODE, ONI_STREAM_PROPERTY_HORIZONTAL_FOV,
-                         ONI_STREAM_PROPERTY_VERTICAL_FOV, ONI_STREAM_PROPERTY_MAX_VALUE}) {
+    for (const int id :
+         {ONI_STREAM_PROPERTY_VIDEO_MODE, ONI_STREAM_PROPERTY_HORIZONTAL_FOV, ONI_STREAM_PROPERTY_VERTICAL_FOV,
+          ONI_STREAM_PROPERTY_MAX_VALUE, ONI_STREAM_PROPERTY_CROPPING}) {
       char data[64];
       int size = sizeof(data);
       if (getProperty(id, data, &size) == ONI_STATUS_OK) raisePropertyChanged(id, data, size);

@@ -160,7 +160,7 @@ ProceduralObject make_seeded_cup(const std::string& name, Rng rng, bool is_plain
   const CupShape shape{bottom_m, top_m, rng.uniform(0.075, 0.115), 0.004};
   const TextureStyle style = random_style(rng);
   const double around_m = 2 * std::numbers::pi * std::max(bottom_m, top_m);
-  TextureAtlas atlas(1024, 3.4);
+  TextureAtlas atlas(1024, std::min(3.4, 1008 / (around_m * kMmPerM)));  // 1008 px: what its gutters leave of a row.
   const PixelRect outside = printed_region(atlas, around_m, shape.height_m, style, 1);
   const PixelRect inside = atlas.solid({236, 234, 228});
   const PixelRect handle = atlas.solid(style.base());
