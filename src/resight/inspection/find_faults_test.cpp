@@ -80,6 +80,39 @@ TEST(FindFaults, ACameraThatStandsIsAFactAndNoFault) {
   EXPECT_NE(list_facts(measured).front().find("does not move"), std::string::npos);
 }
 
+// All matches are on the ball then.
+TEST(FindFaults, ACameraThatStandsMayShowMotionBeforeAPlainBackground) {
+  const Rigid3 pose = test::look_at_point({0.3, -1, 0.8}, {0, 0.1, 0.1});
+  const RgbdFrame background = test::render_ball_scene({.has_ball = false}, pose);
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 5; ++v) {
+    const test::BallScene scene{.ball_m = {-0.2 + 0.1 * v, 0.05, 0.15}, .ball_radius_m = 0.15, .ball_print = true};
+    RgbdFrame frame = sharpen(test::render_ball_scene(scene, pose));
+    for (std::size_t i = 0; i < frame.color.size(); ++i)
+      if (frame.depth_m[i] == background.depth_m[i]) frame.color[i] = {128, 128, 128};
+    frames.push_back(std::move(frame));
+  }
+  const auto measured = measure_sequence(test::MemorySequence(frames), {.max_views = 24, .num_threads = 1}).value();
+  EXPECT_GE(measured.pairs.size(), 3U);
+  EXPECT_GT(measured.pair_shift_px, 10);
+  EXPECT_EQ(names_of(find_faults(measured)), "");
+}
+
+TEST(FindFaults, ASlowSwingIsNoStandingCamera) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 5; ++v) {
+    const double angle = 0.05 * v;
+    frames.push_back(render_view(
+        test::look_at_point({1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75}, {0, 0.1, 0.15}), 0.0015, v));
+    frames.back().world_from_camera = Rigid3();
+  }
+  const auto measured = measure_sequence(test::MemorySequence(frames), {.max_views = 24, .num_threads = 1}).value();
+  EXPECT_LT(measured.pair_shift_px, 8);  // Of an image 320 px wide.
+  const std::vector<Finding> findings = find_faults(measured);
+  ASSERT_EQ(findings.size(), 1U) << names_of(findings) << measured.pair_shift_px;
+  EXPECT_EQ(findings[0].fault, "fixed_poses");
+}
+
 // Their standard errors come from few pairs, and are uncertain themselves. The poses are called what they are: coarse.
 TEST(FindFaults, FewNoisyViewsAreNoWrongUnit) {
   int num_compared = 0;

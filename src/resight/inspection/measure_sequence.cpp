@@ -111,6 +111,19 @@ double median_over(const std::vector<ViewPair>& pairs, const ValueOf& value_of) 
   return upper_median(std::move(values));
 }
 
+using DepthOfViews = std::map<int, Image<float>>;
+
+double measure_standing_share(const SequenceMeasurements& all, const DepthOfViews& depths_m) {
+  const auto stands = [&](const ViewPair& pair) {
+    const auto count = [&](const Rigid3& b_from_a) {
+      return count_same_depth(depths_m.at(pair.a), depths_m.at(pair.b), all.camera, b_from_a);
+    };
+    const Rigid3 moved{pair.b_from_a.rotation, all.depth_unit_m * pair.b_from_a.translation};
+    return count(Rigid3()) >= count(moved);
+  };
+  return static_cast<double>(std::ranges::count_if(all.pairs, stands)) / static_cast<double>(all.pairs.size());
+}
+
 /// Whether the camera moves so slowly that only views far apart tell of intrinsics and poses, as at video rate.
 bool is_slow(const SequenceMeasurements& all) {
   constexpr double kSlow_px = 5;
@@ -147,6 +160,8 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   }
   all.depth_unit_m = upper_median(std::move(medians_m));
   if (!is_usable(all)) return all;
+  DepthOfViews depths_m;
+  for (const auto& [v, frame] : views.frames) depths_m.emplace(v, frame.depth_m);
   FeaturesOfViews features;
   for (auto& [v, frame] : views.frames)
     if (frame.camera == all.camera)
@@ -157,6 +172,7 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   all.depth_time = measure_depth_time(views.contours, all.pairs, all.camera, all.depth_unit_m);
   all.far_pairs = match_pairs(choose_far_pairs(inspected, all.num_views), features, all.camera);
   if (is_slow(all)) all.pairs = std::exchange(all.far_pairs, {});
+  all.standing_share = measure_standing_share(all, depths_m);
   const auto error_of = [](const ViewPair& pair) { return pair.error_px; };
   all.pair_error_px = median_over(all.pairs, error_of);
   all.far_pair_error_px = median_over(all.far_pairs, error_of);

@@ -12,9 +12,11 @@ namespace {
 
 // Beyond this, contours of other surfaces agree by chance (estimate_misregistration_px()).
 constexpr double kMaxPoseError_px = 8;
-constexpr double kMinMotion_px = 5;  // Between views; less says nothing about poses and intrinsics.
-constexpr double kMinGain = 3;       // How much better another convention must explain the views.
-constexpr double kMinTimeGain = 2;   // The same for another time: the poses between views are interpolated.
+constexpr double kReferenceWidth_px = 640;
+constexpr double kMaxStandingShift_px = 8;  // Of images of that width.
+constexpr double kMinMotion_px = 5;         // Between views; less says nothing about poses and intrinsics.
+constexpr double kMinGain = 3;              // How much better another convention must explain the views.
+constexpr double kMinTimeGain = 2;          // The same for another time: the poses between views are interpolated.
 // Factory calibrations of depth differ by up to 4 % (TUM RGB-D: 3.5 %), those of focal lengths by 5 %.
 constexpr double kMaxLogScale = 0.06;
 constexpr double kMaxLogFocal = 0.08;
@@ -52,11 +54,12 @@ struct PoseContext {
 
 bool add_fixed(const PoseContext& c) {
   if (!c.poses.all_equal) return false;
-  if (c.all.pair_shift_px > kMaxPoseError_px)
+  const double max_shift_px = kMaxStandingShift_px * c.all.camera.width / kReferenceWidth_px;
+  if (c.all.standing_share < 0.5 && c.all.pair_shift_px > max_shift_px)
     c.add("fixed_poses",
           fmt::format("the poses say that the camera stands, but views differ by {:.0f} px", c.all.pair_shift_px),
-          "--poses auto, or resight track", c.all.pair_shift_px, "px", kMaxPoseError_px,
-          c.all.pair_shift_px / kMaxPoseError_px);
+          "--poses auto, or resight track", c.all.pair_shift_px, "px", max_shift_px,
+          c.all.pair_shift_px / max_shift_px);
   return true;
 }
 

@@ -114,4 +114,24 @@ double median_error_px(std::span<const MatchedPoint> matches, const Camera& came
   return upper_median(std::move(errors_px));
 }
 
+int count_same_depth(const Image<float>& depth_a, const Image<float>& depth_b, const Camera& camera,
+                     const Rigid3& b_from_a) {
+  constexpr int kStep_px = 4;
+  constexpr double kMaxDifference = 0.01;
+  int num_same = 0;
+  for (int v = 0; v < depth_a.height(); v += kStep_px)
+    for (int u = 0; u < depth_a.width(); u += kStep_px) {
+      if (!(depth_a(u, v) > 0)) continue;
+      const Eigen::Vector3d in_b = b_from_a * camera.unproject(u, v, depth_a(u, v));
+      if (!(in_b.z() > 0)) continue;
+      const Eigen::Vector2d pixel = camera.project(in_b);
+      if (!(pixel.array() > -0.5).all() || !(pixel.x() < depth_b.width() - 0.5) ||
+          !(pixel.y() < depth_b.height() - 0.5))
+        continue;
+      const float seen = depth_b(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+      if (std::abs(seen - in_b.z()) < kMaxDifference * in_b.z()) ++num_same;
+    }
+  return num_same;
+}
+
 }  // namespace resight

@@ -53,4 +53,9 @@ inline constexpr double kMatchDepthSigma = 0.02;
 [[nodiscard]] double median_error_px(std::span<const MatchedPoint> matches, const Camera& camera,
                                      const Rigid3& b_from_a);
 
+/// Of every fourth row and column, the pixels of a whose depth, moved by b_from_a, is that of b within 1 %. Depths in
+/// the unit of the translation.
+[[nodiscard]] int count_same_depth(const Image<float>& depth_a, const Image<float>& depth_b, const Camera& camera,
+                                   const Rigid3& b_from_a);
+
 }  // namespace resight
