@@ -152,11 +152,11 @@ std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
   if (measured.poses) inspection::add_origin_fault(measured.poses->farthest_m, 0, findings);
   add_blur(measured, findings);
   if (!add_depth_time(measured, findings) && !add_wide_shift(measured, findings)) add_fine_shift(measured, findings);
-  const bool has_depth_fault = std::ranges::any_of(findings, [](const Finding& f) {
-    return f.fault == "depth_scale" || f.fault == "eight_bit_depth" || f.fault == "unregistered_depth" ||
-           f.fault == "depth_time";
-  });
-  if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, findings);
+  const auto has = [&](std::string_view fault) {
+    return std::ranges::find(findings, fault, &Finding::fault) != findings.end();
+  };
+  const bool has_depth_fault = has("depth_scale") || has("eight_bit_depth") || has("depth_time");
+  if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, has("unregistered_depth"), findings);
   return findings;
 }
 

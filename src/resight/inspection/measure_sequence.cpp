@@ -114,12 +114,14 @@ double median_over(const std::vector<ViewPair>& pairs, const ValueOf& value_of) 
 using DepthOfViews = std::map<int, Image<float>>;
 
 double measure_standing_share(const SequenceMeasurements& all, const DepthOfViews& depths_m) {
+  constexpr double kMinSameShare = 0.4;  // Of the measured pixels: most of the scene stays.
   const auto stands = [&](const ViewPair& pair) {
-    const auto count = [&](const Rigid3& b_from_a) {
-      return count_same_depth(depths_m.at(pair.a), depths_m.at(pair.b), all.camera, b_from_a);
-    };
+    const Image<float>& first = depths_m.at(pair.a);
+    const Image<float>& second = depths_m.at(pair.b);
     const Rigid3 moved{pair.b_from_a.rotation, all.depth_unit_m * pair.b_from_a.translation};
-    return count(Rigid3()) >= count(moved);
+    const int num_same = count_same_depth(first, second, all.camera, Rigid3());
+    return num_same > kMinSameShare * count_same_depth(first, first, all.camera, Rigid3()) &&
+           num_same >= count_same_depth(first, second, all.camera, moved);
   };
   return static_cast<double>(std::ranges::count_if(all.pairs, stands)) / static_cast<double>(all.pairs.size());
 }
