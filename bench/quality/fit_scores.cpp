@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses: right or wrong at K = 0
 // and 5. Groups of sequences are divided by "--" and count the same. The calibration error of a group is that of scores
-// whose weights were fitted without the sequence. That of the preset itself is beside it.
+// whose weights were fitted without the sequence, and so is the log loss. Those of the preset itself are beside them.
 //   bench_fit_scores default val.resight val/test/000001 val.resight val/test/000002 -- tc.resight
 //   table-camera/test/000001
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -26,8 +27,8 @@ using namespace resight;
 
 constexpr int kNumWeights = std::tuple_size_v<ScoreCues> + 1;  // With the offset.
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
-constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",          "visible", "texture",
-                                             "beside planes", "newest",         "seen through", "offset"};
+constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",          "visible",    "texture",
+                                             "beside planes", "newest",         "seen through", "silhouette", "offset"};
 
 struct Sample {
   Weights cues;
@@ -60,6 +61,8 @@ void add_samples(const char* library_path, const char* path, RecognizerConfig co
 
 double probability(const Weights& weights, const Weights& cues) { return 1 / (1 + std::exp(-weights.dot(cues))); }
 
+double log_loss(double score, bool right) { return -std::log(std::clamp(right ? score : 1 - score, 1e-9, 1.0)); }
+
 // Logistic regression by Newton's method, with a little ridge. `is_used`: cues that count. Leaves out a sequence.
 Weights fit(const std::vector<Sample>& samples, const Weights& is_used, int left_out) {
   std::vector<double> num_in_group;
@@ -87,17 +90,25 @@ Weights fit(const std::vector<Sample>& samples, const Weights& is_used, int left
 
 void print_calibration(const std::vector<Sample>& samples, const Weights& is_used, int num_sequences, int num_groups) {
   std::vector<Reliability> fitted(num_groups), current(num_groups);
+  std::vector<double> fitted_loss(num_groups), current_loss(num_groups), num_samples(num_groups);
   for (int left_out = 0; left_out < num_sequences; ++left_out) {
     const Weights weights = fit(samples, is_used, left_out);
     for (const Sample& s : samples) {
       if (s.sequence != left_out) continue;
-      fitted[s.group].add(probability(weights, s.cues.cwiseProduct(is_used)), s.right);
+      const double score = probability(weights, s.cues.cwiseProduct(is_used));
+      fitted[s.group].add(score, s.right);
       current[s.group].add(s.score, s.right);
+      fitted_loss[s.group] += log_loss(score, s.right);
+      current_loss[s.group] += log_loss(s.score, s.right);
+      ++num_samples[s.group];
     }
   }
   for (int g = 0; g < num_groups; ++g)
-    fmt::print("group {}: calibration error {:.3f} fitted without the sequence, {:.3f} as the preset has it\n", g + 1,
-               fitted[g].calibration_error(), current[g].calibration_error());
+    fmt::print(
+        "group {}: calibration error {:.3f} and log loss {:.4f} fitted without the sequence, {:.3f} and {:.4f} as the "
+        "preset has it\n",
+        g + 1, fitted[g].calibration_error(), fitted_loss[g] / num_samples[g], current[g].calibration_error(),
+        current_loss[g] / num_samples[g]);
 }
 
 }  // namespace
@@ -107,10 +118,12 @@ int main(int argc, char** argv) {
     exit_with("usage: bench_fit_scores PRESET LIBRARY SEQUENCE [LIBRARY SEQUENCE]... [-- LIBRARY SEQUENCE...]");
   RecognizerConfig config = preset_or_exit(argv[1]);
   config.set_num_threads(2);
+  config.detections.min_score = 0;
   const HypothesisScoreOptions& score = config.verify.score;
   Weights is_used;
   is_used << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
-      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight, 1;
+      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight,
+      score.silhouette_weight, 1;
   is_used = (is_used.array() != 0).cast<double>();
   std::vector<Sample> samples;
   int group = 0, number = 0;

@@ -53,8 +53,10 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
   return detections;
 }
 
-void drop_unconfirmed(std::vector<Detection>& detections, double min_share) {
-  std::erase_if(detections, [&](const Detection& d) { return d.views.back().confirmed_share() < min_share; });
+void drop_unlikely(std::vector<Detection>& detections, const DetectionOptions& options) {
+  std::erase_if(detections, [&](const Detection& d) {
+    return d.views.back().confirmed_share() < options.min_reported_share || d.score < options.min_score;
+  });
 }
 
 }  // namespace resight

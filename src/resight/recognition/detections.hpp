@@ -25,7 +25,7 @@ struct VerifiedHypotheses {
                                                      const std::deque<DynamicScene::View>& window,
                                                      const ModelLibrary& library, const RecognizerConfig& config);
 
-/// Drops the detections of which the current view itself confirms less than this share of the model's points.
-void drop_unconfirmed(std::vector<Detection>& detections, double min_share);
+/// Drops the detections of which the current view itself confirms too little, and those that are too unlikely.
+void drop_unlikely(std::vector<Detection>& detections, const DetectionOptions& options);
 
 }  // namespace resight

@@ -113,6 +113,7 @@ inline void declare(OptionVisitor& v, ChangeOptions& o) {
 /// Which accepted hypotheses are detections.
 struct DetectionOptions {
   double min_reported_share = 0;
+  double min_score = 0;
 };
 
 inline void declare(OptionVisitor& v, DetectionOptions& o) {
@@ -120,6 +121,11 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
           "An object of which the view itself confirms a smaller share of the model (hidden, or outside the image) is "
           "tracked, but no detection of this view. 0: every object is one.",
           "ours");
+  v.field(
+      "min_score", o.min_score, between(0, 1),
+      "An object that is less likely right (verify.score) is tracked, but no detection of this view. 0: every object "
+      "is one.",
+      "ours");
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the

@@ -69,7 +69,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
   if (pool.is_tracked_object_rejected(verified.hypotheses, verified.evidence)) planner.request_search();
   pool.forget_refuted(verified.hypotheses, verified.evidence, config.hypotheses.min_carried_share);
-  drop_unconfirmed(update.detections, config.detections.min_reported_share);
+  drop_unlikely(update.detections, config.detections);
   if (trace != nullptr) {
     trace->verified = std::move(verified.hypotheses);
     trace->evidence = std::move(verified.evidence);

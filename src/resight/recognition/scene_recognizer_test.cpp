@@ -112,6 +112,19 @@ TEST(SceneRecognizer, AnObjectOutOfSightIsTrackedButNotDetected) {
   EXPECT_EQ(c.run()[1].detections.size(), 1U);
 }
 
+TEST(SceneRecognizer, AnUnlikelyObjectIsTrackedButNotDetected) {
+  BoxScene c;
+  const std::vector<SceneUpdate> all = c.run();
+  ASSERT_EQ(all[1].detections.size(), 1U);
+  const double score = all[1].detections[0].score;
+  ASSERT_LT(score, 1);
+  c.config.detections.min_score = 0.5 * (1 + score);
+  const std::vector<SceneUpdate> few = c.run();
+  EXPECT_TRUE(few[1].detections.empty());
+  ASSERT_EQ(few[1].events.size(), all[1].events.size());
+  for (std::size_t e = 0; e < all[1].events.size(); ++e) EXPECT_EQ(few[1].events[e].kind, all[1].events[e].kind);
+}
+
 TEST(SceneRecognizer, AnObjectWithoutDepthIsConfirmedByItsTexture) {
   const BoxScene c;
   for (const bool has_colors : {true, false}) {

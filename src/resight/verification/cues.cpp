@@ -98,6 +98,8 @@ struct CueComputer::Impl {
     cues_.evidence.verdict = assess_evidence(cues_.evidence, options_.acceptance);
     if (cues_.evidence.verdict == Verdict::kCost) {
       add_costs(*association_.local);
+      if (newest_view_appearance_)
+        cues_.evidence.appearance.silhouette_error = newest_view_appearance_->silhouette_error(white_balance);
       cues_.evidence.score = hypothesis_score(cues_.evidence, options_.score);
     }
     return std::move(cues_);

@@ -35,6 +35,8 @@ struct AppearanceEvidence {
   double newest_similarity = 1;
   double shared_texture = 0;    ///< PatternMatch::shared_texture, at most texture_contrast.
   double texture_contrast = 0;  ///< Texture of the visible model itself, in even light.
+  /// NewestViewAppearance::silhouette_error(), for hypotheses with enough support and the right appearance.
+  double silhouette_error = 0;
 };
 
 /// The terms of the selection. All but `outlier` are computed only for hypotheses with enough support and the right

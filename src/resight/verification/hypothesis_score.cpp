@@ -31,13 +31,14 @@ ScoreCues score_cues(const HypothesisEvidence& evidence) {
           std::log1p(evidence.appearance.shared_texture),
           share_beside_planes(evidence.costs),
           evidence.appearance.newest_similarity,
-          -evidence.seen_through_share};
+          -evidence.seen_through_share,
+          -std::log(0.02 + evidence.appearance.silhouette_error)};
 }
 
 double hypothesis_score(const HypothesisEvidence& evidence, const HypothesisScoreOptions& options) {
   const ScoreCues weights = {options.gain_weight,    options.correspondence_weight, options.fit_weight,
                              options.visible_weight, options.texture_weight,        options.beside_planes_weight,
-                             options.newest_weight,  options.seen_through_weight};
+                             options.newest_weight,  options.seen_through_weight,   options.silhouette_weight};
   const ScoreCues cues = score_cues(evidence);
   return 1 / (1 + std::exp(-std::inner_product(cues.begin(), cues.end(), weights.begin(), options.offset)));
 }

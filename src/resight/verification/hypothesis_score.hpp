@@ -21,6 +21,7 @@ struct HypothesisScoreOptions {
   double beside_planes_weight = 0;
   double newest_weight = 0;
   double seen_through_weight = 0;
+  double silhouette_weight = 0;
   void check() const { check_options("HypothesisScoreOptions", *this); }
 };
 
@@ -42,10 +43,14 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
   v.field("seen_through_weight", o.seen_through_weight, between(0, 100),
           "Counts against it: of the share of its visible points that are seen through (visibility.free_space).",
           "fitted");
+  v.field("silhouette_weight", o.silhouette_weight, between(0, 100),
+          "Counts against it: of log(0.02 + share of the points that lie where the newest view has no depth, and shows "
+          "other colours).",
+          "fitted");
 }
 
 /// What the weights of HypothesisScoreOptions weigh, in their order.
-using ScoreCues = std::array<double, 8>;
+using ScoreCues = std::array<double, 9>;
 [[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
 
 /// How likely a hypothesis with enough support and the right appearance is right, in [0, 1]: of the accepted ones with

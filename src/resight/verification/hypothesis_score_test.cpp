@@ -23,6 +23,7 @@ HypothesisEvidence some_evidence() {
   evidence.costs.plane = 125;
   evidence.costs.outlier = 25;  // gains 500 - 125 - 25
   evidence.seen_through_share = 0.1;
+  evidence.appearance.silhouette_error = 0.05;
   return evidence;
 }
 
@@ -34,11 +35,12 @@ constexpr HypothesisScoreOptions kSome{.offset = -4,
                                        .texture_weight = 1.5,
                                        .beside_planes_weight = 3,
                                        .newest_weight = 2.5,
-                                       .seen_through_weight = 2};
+                                       .seen_through_weight = 2,
+                                       .silhouette_weight = 1.1};
 
 TEST(HypothesisScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) +
-                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1;
+                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1 - 1.1 * std::log(0.02 + 0.05);
   EXPECT_NEAR(hypothesis_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 

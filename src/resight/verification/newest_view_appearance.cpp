@@ -2,6 +2,7 @@
 #include "resight/verification/newest_view_appearance.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "resight/verification/surface_blur.hpp"
@@ -19,6 +20,41 @@ int find_newest(const ModelVisibility& visibility) {
   for (int v = static_cast<int>(visibility.evidence.size()) - 1; v >= 0; --v)
     if (std::ranges::count(visibility.evidence[static_cast<std::size_t>(v)], Evidence::kPresent) >= enough) return v;
   return -1;
+}
+
+// Whether the camera sees the point at no grazing angle.
+bool is_facing(const Eigen::Vector3f& point_in_camera, const Eigen::Vector3f& normal_in_camera) {
+  constexpr float kMinCosine = 0.3F;
+  return -point_in_camera.dot(normal_in_camera) > kMinCosine * point_in_camera.norm();
+}
+
+template <typename Visit>
+bool any_around(const Image<float>& image, const Pixel& pixel, int radius_px, const Visit& visit) {
+  for (int v = std::max(0, pixel.v - radius_px); v <= std::min(image.height() - 1, pixel.v + radius_px); ++v)
+    for (int u = std::max(0, pixel.u - radius_px); u <= std::min(image.width() - 1, pixel.u + radius_px); ++u)
+      if (visit(u, v)) return true;
+  return false;
+}
+
+// Whether something before the point is measured near its pixel.
+bool may_be_occluded(const Image<float>& depth_m, const Pixel& pixel, float z_m) {
+  constexpr int kRadius_px = 6;
+  constexpr float kMinDistance_m = 0.02F;
+  return any_around(depth_m, pixel, kRadius_px, [&](int u, int v) { return depth_m(u, v) < z_m - kMinDistance_m; });
+}
+
+// No pixel around has the expected colour, and none is saturated.
+bool is_of_other_color(const Image<Rgb8>& color, const Pixel& pixel, const LabColor& expected,
+                       const ColorTolerance& tolerance, float max_exponent) {
+  constexpr int kRadius_px = 3;  // Poses and colours of real cameras are off by some pixels.
+  constexpr int kSaturated = 250;
+  for (int v = std::max(0, pixel.v - kRadius_px); v <= std::min(color.height() - 1, pixel.v + kRadius_px); ++v)
+    for (int u = std::max(0, pixel.u - kRadius_px); u <= std::min(color.width() - 1, pixel.u + kRadius_px); ++u) {
+      const Rgb8 c = color(u, v);
+      if (std::max({c.r, c.g, c.b}) >= kSaturated) return false;
+      if (tolerance.exponent(expected, to_lab(c)) <= max_exponent) return false;
+    }
+  return true;
 }
 
 }  // namespace
@@ -42,6 +78,36 @@ NewestViewAppearance::NewestViewAppearance(const PreparedModel& model, const Sce
     if (!association.normals.empty()) colors_.normals.push_back(association.normals[i]);
   }
   light_ = fit_photometry(colors_, options.appearance.light);
+  add_unmeasured(model, association, view, evidence);
+}
+
+void NewestViewAppearance::add_unmeasured(const PreparedModel& model, const SceneAssociation& association,
+                                          const DepthView& view, std::span<const Evidence> evidence) {
+  if (association.normals.empty()) return;
+  color_ = view.color;
+  const Rigid3f camera_from_world(view.world_from_camera.inverse());
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    if (evidence[k] != Evidence::kUnobserved) continue;
+    const Eigen::Vector3f p = camera_from_world * association.points[k];
+    if (!is_facing(p, camera_from_world.rotation * association.normals[k])) continue;
+    const std::optional<Pixel> pixel = view.camera.pixel_of(p.cast<double>());
+    if (!pixel || !std::isnan(view.depth_m(pixel->u, pixel->v)) || may_be_occluded(view.depth_m, *pixel, p.z()))
+      continue;
+    pixels_.push_back(*pixel);
+    unmeasured_.model.push_back(model.linear_light[k]);
+    unmeasured_.normals.push_back(association.normals[k]);
+  }
+}
+
+double NewestViewAppearance::silhouette_error(const Eigen::Array3f& white_balance) const {
+  if (colors_.empty() || pixels_.empty()) return 0;
+  const std::vector<LabColor> expected = adapt_colors(unmeasured_, limit_chromaticity(light_, white_balance));
+  const ColorTolerance tolerance = color_tolerance(options_.appearance);
+  const float max_exponent = -std::log(static_cast<float>(options_.support.min_weight));
+  int num_other = 0;
+  for (std::size_t k = 0; k < pixels_.size(); ++k)
+    num_other += is_of_other_color(*color_, pixels_[k], expected[k], tolerance, max_exponent) ? 1 : 0;
+  return static_cast<double>(num_other) / static_cast<double>(pixels_.size() + colors_.size());
 }
 
 double NewestViewAppearance::similarity(const Eigen::Array3f& white_balance) const {

@@ -18,11 +18,22 @@ class NewestViewAppearance {
   /// Similarity by match_surface_texture() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;
 
+  /// Of the points that this view should see, the share that lies where it has no depth, and shows none of the expected
+  /// colours: there the silhouette of the model reaches over its surroundings. Depth is missing at most contours, so
+  /// that it does not tell. 0 if no view sees enough.
+  [[nodiscard]] double silhouette_error(const Eigen::Array3f& white_balance) const;
+
  private:
+  void add_unmeasured(const PreparedModel& model, const SceneAssociation& association, const DepthView& view,
+                      std::span<const Evidence> evidence);
+
   const VerifyOptions& options_;
   std::vector<Eigen::Vector3f> points_;
   ColorPairs colors_;  // One pair per point.
   PhotometricFit light_;
+  ColorPairs unmeasured_;      // Of the model alone, where the view has no depth.
+  std::vector<Pixel> pixels_;  // Of the same points.
+  const Image<Rgb8>* color_ = nullptr;
 };
 
 }  // namespace resight

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "resight/verification/hypothesis_verifier.hpp"
@@ -148,6 +149,43 @@ TEST(VerifyTexture, ADifferentTextureIsRejected) {
   EXPECT_THAT(accepted(result), testing::ElementsAre(1));
   EXPECT_EQ(result.evidence[0].verdict, Verdict::kDifferentAppearance);
   EXPECT_LT(result.evidence[0].appearance.pattern_similarity, result.evidence[1].appearance.pattern_similarity - 0.2);
+}
+
+// A low box, taken for a higher one of the same colour. There is depth on the box only, so that only colours tell what
+// is beyond its contour.
+class SilhouetteTest : public testing::Test {
+ protected:
+  double silhouette_error(Rgb8 table_color, const std::vector<Solid>& others = {}) const {
+    World world{.solids = {low_}, .table_color = table_color};
+    for (const Solid& other : others) world.solids.push_back(other);
+    Fixture f(world, {look_at({0.8, 0, 0.5}, {0, 0, 0.03})});
+    for (PreparedView& view : f.views)
+      for (std::size_t i = 0; i < view.cloud.z.size(); ++i)
+        if (view.frame.color[i] == table_color) view.cloud.z[i] = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Hypothesis> high = {make_hypothesis(0, on_table(0, 0, high_.size_m.z() / 2))};
+    const HypothesisEvidence evidence =
+        f.verify(high, {.objects = {make_model("high", high_)}},
+                 {.acceptance = {.min_explained_share = 0, .min_newest_similarity = -1}})
+            .evidence[0];
+    EXPECT_GT(evidence.num_explained, 50);
+    return evidence.appearance.silhouette_error;
+  }
+
+  const Rgb8 red_{170, 50, 50};
+  Solid low_{Shape::kBox, {0.1, 0.14, 0.1}, plain(red_), on_table(0, 0, 0.05)};
+  Solid high_{Shape::kBox, {0.1, 0.14, 0.14}, plain(red_), {}};
+};
+
+TEST_F(SilhouetteTest, ColoursTellWhereThereIsNoDepth) { EXPECT_GT(silhouette_error({60, 90, 170}), 0.1); }
+
+TEST_F(SilhouetteTest, OfItsOwnColourItMayReachOver) { EXPECT_EQ(silhouette_error({170, 50, 51}), 0); }
+
+TEST_F(SilhouetteTest, SaturatedColoursTellNothing) { EXPECT_EQ(silhouette_error({255, 255, 255}), 0); }
+
+TEST_F(SilhouetteTest, WhatMayBeHiddenTellsNothing) {
+  // A bar before the upper border of the box.
+  const Solid bar{Shape::kBox, {0.02, 0.4, 0.05}, plain({90, 90, 90}), on_table(0.25, 0, 0.23)};
+  EXPECT_LT(silhouette_error({60, 90, 170}, {bar}), 0.5 * silhouette_error({60, 90, 170}));
 }
 
 }  // namespace
