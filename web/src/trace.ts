@@ -102,7 +102,7 @@ const kStages: Record<string, string> = {
   "no group": "right matches, but no hypothesis near it",
   "wrong pose": "hypotheses near it, but none with the right pose",
   "clustered out": "a right hypothesis was merged into a wrong one",
-  "called absent": "a right hypothesis was excluded by changes, left out, or taken for another object",
+  "called absent": "a right hypothesis was excluded by changes, left out, too unlikely, or taken for another object",
   "refined away": "a right hypothesis was moved away by the refinement",
   rejected: "a right hypothesis was rejected",
 };

@@ -17,7 +17,7 @@ enum class LossStage : std::uint8_t {
   kWrongPose,     ///< A hypothesis at the place, but with too large an error.
   kClusteredOut,  ///< A correct hypothesis that clustering merged into a wrong one.
   /// A correct hypothesis after clustering that was not rejected: excluded by the changes, left out by a deadline, or
-  /// accepted and matched to another ground-truth object.
+  /// accepted and matched to another ground-truth object, or too unlikely to be reported (detections.min_score).
   kCalledAbsent,
   kRefinedAway,  ///< A correct hypothesis that the refinement moved beyond the limits.
   kRejected,     ///< A correct hypothesis that the verification rejected.
