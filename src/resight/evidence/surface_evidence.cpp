@@ -114,7 +114,7 @@ SurfaceEvidence classify_surface(const OrientedPoints& surface, const Rigid3& ca
     if (p.viewing_cosine < min_cosine || !(p.z > 0)) return;
     const Evidence evidence =
         classify_at(view.camera.pixel_at({p.u, p.v}), p.z, view, options.margin, options.window_radius_px);
-    result.points[i] = is_observed(evidence) && self && self->hides(p) ? Evidence::kOccluded : evidence;
+    result.points[i] = self && self->hides(p) ? Evidence::kOccluded : evidence;
   };
   parallel_for_blocks(num, kPointsPerTask, options.num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) classify(i);

@@ -28,11 +28,11 @@ bool is_facing(const Eigen::Vector3f& point_in_camera, const Eigen::Vector3f& no
   return -point_in_camera.dot(normal_in_camera) > kMinCosine * point_in_camera.norm();
 }
 
-template <typename Visit>
-bool any_around(const Image<float>& image, const Pixel& pixel, int radius_px, const Visit& visit) {
+template <typename T, typename Test>
+bool any_around(const Image<T>& image, const Pixel& pixel, int radius_px, const Test& test) {
   for (int v = std::max(0, pixel.v - radius_px); v <= std::min(image.height() - 1, pixel.v + radius_px); ++v)
     for (int u = std::max(0, pixel.u - radius_px); u <= std::min(image.width() - 1, pixel.u + radius_px); ++u)
-      if (visit(u, v)) return true;
+      if (test(image(u, v))) return true;
   return false;
 }
 
@@ -40,21 +40,17 @@ bool any_around(const Image<float>& image, const Pixel& pixel, int radius_px, co
 bool may_be_occluded(const Image<float>& depth_m, const Pixel& pixel, float z_m) {
   constexpr int kRadius_px = 6;
   constexpr float kMinDistance_m = 0.02F;
-  return any_around(depth_m, pixel, kRadius_px, [&](int u, int v) { return depth_m(u, v) < z_m - kMinDistance_m; });
+  return any_around(depth_m, pixel, kRadius_px, [&](float other_m) { return other_m < z_m - kMinDistance_m; });
 }
 
-// No pixel around has the expected colour, and none is saturated.
+// Whether no pixel around has the expected colour, and none is saturated: highlights tell nothing.
 bool is_of_other_color(const Image<Rgb8>& color, const Pixel& pixel, const LabColor& expected,
                        const ColorTolerance& tolerance, float max_exponent) {
   constexpr int kRadius_px = 3;  // Poses and colours of real cameras are off by some pixels.
   constexpr int kSaturated = 250;
-  for (int v = std::max(0, pixel.v - kRadius_px); v <= std::min(color.height() - 1, pixel.v + kRadius_px); ++v)
-    for (int u = std::max(0, pixel.u - kRadius_px); u <= std::min(color.width() - 1, pixel.u + kRadius_px); ++u) {
-      const Rgb8 c = color(u, v);
-      if (std::max({c.r, c.g, c.b}) >= kSaturated) return false;
-      if (tolerance.exponent(expected, to_lab(c)) <= max_exponent) return false;
-    }
-  return true;
+  return !any_around(color, pixel, kRadius_px, [&](const Rgb8& c) {
+    return std::max({c.r, c.g, c.b}) >= kSaturated || tolerance.exponent(expected, to_lab(c)) <= max_exponent;
+  });
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ class NewestViewAppearance {
   /// Similarity by match_surface_texture() under the white balance of the scene; 1 if no view sees enough.
   [[nodiscard]] double similarity(const Eigen::Array3f& white_balance) const;
 
-  /// Of the points that this view should see, the share that lies where it has no depth, and shows none of the expected
-  /// colours: there the silhouette of the model reaches over its surroundings. Depth is missing at most contours, so
-  /// that it does not tell. 0 if no view sees enough.
+  /// How far the silhouette of the model reaches over its surroundings. Depth is missing at most contours, but colours
+  /// tell: the share of the points that the view should see which lie where it has no depth, and no colour like theirs.
+  /// 0 if no view sees enough.
   [[nodiscard]] double silhouette_error(const Eigen::Array3f& white_balance) const;
 
  private:
