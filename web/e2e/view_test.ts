@@ -166,8 +166,17 @@ test("places have coordinates, and distances are measured", async () => {
   await picture(page, "keys");
   await page.keyboard.press("Escape");
   await page.keyboard.press("End");
+  await page.waitForSelector('body[data-shown="4"]');
+  // A busy browser draws so rarely that a look at each frame misses views.
+  await page.evaluate(() => {
+    const { body } = document;
+    const note = () => body.setAttribute("data-played", `${body.dataset.played ?? ""} ${body.dataset.shown}`);
+    new MutationObserver(note).observe(body, { attributes: true, attributeFilter: ["data-shown"] });
+  });
   await page.keyboard.press("Space"); // plays from the start
-  await page.waitForSelector('body[data-shown="1"]');
+  await page.waitForSelector('body[data-played$=" 4"]');
+  const played = (await page.locator("body").getAttribute("data-played")) ?? "";
+  assert.equal(played.replaceAll(" -1", ""), " 0 1 2 3 4");
   await page.close();
   assert.equal(await stop(), 0);
 });
