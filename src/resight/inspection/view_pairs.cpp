@@ -116,11 +116,11 @@ double median_error_px(std::span<const MatchedPoint> matches, const Camera& came
 
 int count_same_depth(const Image<float>& depth_a, const Image<float>& depth_b, const Camera& camera,
                      const Rigid3& b_from_a) {
-  constexpr int kStep_px = 4;
+  constexpr int kSpacing_px = 4;
   constexpr double kMaxDifference = 0.01;
   int num_same = 0;
-  for (int v = 0; v < depth_a.height(); v += kStep_px)
-    for (int u = 0; u < depth_a.width(); u += kStep_px) {
+  for (int v = 0; v < depth_a.height(); v += kSpacing_px)
+    for (int u = 0; u < depth_a.width(); u += kSpacing_px) {
       if (!(depth_a(u, v) > 0)) continue;
       const Eigen::Vector3d in_b = b_from_a * camera.unproject(u, v, depth_a(u, v));
       if (!(in_b.z() > 0)) continue;
