@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "resight/core/statistics.hpp"
@@ -123,12 +124,9 @@ int count_same_depth(const Image<float>& depth_a, const Image<float>& depth_b, c
     for (int u = 0; u < depth_a.width(); u += kSpacing_px) {
       if (!(depth_a(u, v) > 0)) continue;
       const Eigen::Vector3d in_b = b_from_a * camera.unproject(u, v, depth_a(u, v));
-      if (!(in_b.z() > 0)) continue;
-      const Eigen::Vector2d pixel = camera.project(in_b);
-      if (!(pixel.array() > -0.5).all() || !(pixel.x() < depth_b.width() - 0.5) ||
-          !(pixel.y() < depth_b.height() - 0.5))
-        continue;
-      const float seen = depth_b(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+      const std::optional<Pixel> pixel = camera.pixel_of(in_b);
+      if (!pixel) continue;
+      const float seen = depth_b(pixel->u, pixel->v);
       if (std::abs(seen - in_b.z()) < kMaxDifference * in_b.z()) ++num_same;
     }
   return num_same;

@@ -10,6 +10,7 @@ namespace resight {
 /// Weights of a logistic regression; all 0: 0.5 for any evidence. `bench_fit_scores` fits them. Those of `default` are
 /// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
 /// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
+/// The offset and the weight of the silhouette were fitted afterwards, with the others held.
 /// docs/results.md says how well the scores generalise.
 struct HypothesisScoreOptions {
   double offset = 0;
