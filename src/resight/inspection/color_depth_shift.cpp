@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "resight/inspection/internal/contour_contrast.hpp"
 
@@ -11,6 +13,8 @@ namespace {
 
 constexpr int kMinContour_px = 200;
 constexpr double kScaleSigmas = 0.5;  // By which a peak at another scale must be higher.
+constexpr double kMinPeakSigmas = 5;  // Of an unregistered shift.
+constexpr double kSameShift_px = 4;   // Of both halves of the views.
 
 /// With a border of zeros, so that every shift has a value.
 Image<float> add_border(const Image<float>& contrast) {
@@ -79,6 +83,34 @@ std::optional<ColorDepthShift> ShiftScores::peak() const {
   }
   best.num_contour_pixels = num_pixels_;
   return best;
+}
+
+std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts) {
+  const auto a = half_shifts[0].peak();
+  const auto b = half_shifts[1].peak();
+  const auto is_wide = [](const ColorDepthShift& s) {
+    return s.shift_px.norm() > kMaxRegisteredShift_px || std::abs(s.scale - 1) > kMaxRegisteredScale;
+  };
+  if (!a || !b || !is_wide(*a) || !is_wide(*b)) return std::nullopt;
+  if (std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas ||
+      std::abs(a->scale - b->scale) > kMaxRegisteredScale || (a->shift_px - b->shift_px).norm() > kSameShift_px)
+    return std::nullopt;
+  return a;
+}
+
+void align_colors(const ColorDepthShift& shift, RgbdFrame& frame) {
+  const Image<Rgb8> seen = std::exchange(frame.color, Image<Rgb8>(frame.color.width(), frame.color.height()));
+  const Eigen::Vector2d middle(0.5 * (seen.width() - 1), 0.5 * (seen.height() - 1));
+  for (int v = 0; v < seen.height(); ++v)
+    for (int u = 0; u < seen.width(); ++u) {
+      const Eigen::Vector2d at = middle + shift.scale * (Eigen::Vector2d(u, v) - middle) + shift.shift_px;
+      const auto x = static_cast<int>(std::lround(at.x()));
+      const auto y = static_cast<int>(std::lround(at.y()));
+      if (seen.contains(x, y))
+        frame.color(u, v) = seen(x, y);
+      else
+        frame.depth_m(u, v) = std::numeric_limits<float>::quiet_NaN();
+    }
 }
 
 }  // namespace resight

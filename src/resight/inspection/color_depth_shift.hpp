@@ -6,8 +6,13 @@
 #include <vector>
 
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
+
+/// What registered depth may be off by: measure_color_offset() reaches 4 px, and the scales searched are 5 % apart.
+inline constexpr double kMaxRegisteredShift_px = 5;
+inline constexpr double kMaxRegisteredScale = 0.06;
 
 /// Where the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel
 /// middle + scale * (p - middle) + shift. A scale other than 1 is that of two cameras with different focal lengths.
@@ -39,5 +44,12 @@ class ShiftScores {
   std::array<std::vector<float>, kScales.size()> sums_;
   int num_pixels_ = 0;
 };
+
+/// The shift of depth that is not registered to the colours: more than 5 px or a scale, the same in both halves of the
+/// views. None if there is none, or if the contours do not tell.
+[[nodiscard]] std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts);
+
+/// Takes the colours from where they lie beside the depth. Pixels without a colour lose their depth.
+void align_colors(const ColorDepthShift& shift, RgbdFrame& frame);
 
 }  // namespace resight

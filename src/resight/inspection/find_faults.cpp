@@ -17,10 +17,6 @@ namespace {
 constexpr double kMaxEdgeWidth_px = 8;  // Of images 640 px wide: SIFT finds little in the finest three octaves then.
 constexpr double kMaxBlurredShare = 0.1;
 constexpr double kMaxFineShift_px = 2;  // Twice the width of a depth edge; appearance tolerates one pixel.
-constexpr double kMaxWideShift_px = 5;  // measure_color_offset() reaches 4.
-constexpr double kMinPeakSigmas = 5;
-constexpr double kSameShift_px = 4;
-constexpr double kSameScale = 0.06;  // A step of ShiftScores::kScales.
 constexpr std::size_t kMinShiftViews = 3;
 constexpr double kMinTimeContrast = 1.15;    // Over the contrast as given.
 constexpr double kMaxRelativeSpread = 0.34;  // A shift that varies is none of the calibration.
@@ -68,26 +64,20 @@ void add_blur(const SequenceMeasurements& measured, std::vector<Finding>& findin
                       .view = worst->view});
 }
 
-/// A shift of more than measure_color_offset() reaches, if both halves of the views show the same one.
 bool add_wide_shift(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
-  const auto a = measured.half_shifts[0].peak();
-  const auto b = measured.half_shifts[1].peak();
-  const auto is_scaled = [](const ColorDepthShift& s) { return std::abs(s.scale - 1) > kSameScale; };
-  const auto is_wide = [&](const ColorDepthShift& s) { return s.shift_px.norm() > kMaxWideShift_px || is_scaled(s); };
-  if (!a || !b || !is_wide(*a) || !is_wide(*b)) return false;
-  if (std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas || std::abs(a->scale - b->scale) > kSameScale ||
-      (a->shift_px - b->shift_px).norm() > kSameShift_px)
-    return false;
-  const double shift_px = a->shift_px.norm();
-  findings.push_back({.fault = "unregistered_depth",
-                      .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
-                                             a->shift_px.x(), a->shift_px.y(), a->scale),
-                      .remedy = "record depth registered (aligned) to colour",
-                      .value = shift_px,
-                      .unit = "px",
-                      .threshold = kMaxWideShift_px,
-                      .margin = std::max({1.0, shift_px / kMaxWideShift_px, std::abs(a->scale - 1) / kSameScale}),
-                      .view = measured.views.front().view});
+  const auto shift = find_unregistered_shift(measured.half_shifts);
+  if (!shift) return false;
+  const double shift_px = shift->shift_px.norm();
+  findings.push_back(
+      {.fault = "unregistered_depth",
+       .message = fmt::format("colours lie ({:.0f}, {:.0f}) px beside the depth, {:.2f} times as large",
+                              shift->shift_px.x(), shift->shift_px.y(), shift->scale),
+       .remedy = "record depth registered (aligned) to colour",
+       .value = shift_px,
+       .unit = "px",
+       .threshold = kMaxRegisteredShift_px,
+       .margin = std::max(shift_px / kMaxRegisteredShift_px, std::abs(shift->scale - 1) / kMaxRegisteredScale),
+       .view = measured.views.front().view});
   return true;
 }
 
@@ -156,7 +146,7 @@ std::vector<Finding> find_faults(const SequenceMeasurements& measured) {
     return std::ranges::find(findings, fault, &Finding::fault) != findings.end();
   };
   const bool has_depth_fault = has("depth_scale") || has("eight_bit_depth") || has("depth_time");
-  if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, has("unregistered_depth"), findings);
+  if (has_camera && !has_depth_fault) inspection::add_pose_faults(measured, findings);
   return findings;
 }
 

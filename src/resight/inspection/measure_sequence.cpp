@@ -164,6 +164,8 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   if (!is_usable(all)) return all;
   DepthOfViews depths_m;
   for (const auto& [v, frame] : views.frames) depths_m.emplace(v, frame.depth_m);
+  if (const auto shift = find_unregistered_shift(all.half_shifts))
+    for (auto& [v, frame] : views.frames) align_colors(*shift, frame);
   FeaturesOfViews features;
   for (auto& [v, frame] : views.frames)
     if (frame.camera == all.camera)

@@ -93,7 +93,7 @@ bool add_time(const PoseContext& c) {
   return true;
 }
 
-bool add_scale(const PoseContext& c, bool only_units) {
+bool add_scale(const PoseContext& c) {
   const GivenPosesFit& fit = c.poses.readings.front().fit;
   const double log_scale = fit.log_scale.value;
   const double limit = std::max(kMaxLogScale, sure_errors(fit.pair_errors_px.size(), 1) * fit.log_scale.standard_error);
@@ -101,7 +101,6 @@ bool add_scale(const PoseContext& c, bool only_units) {
     return false;
   const double scale = std::exp(log_scale);
   const bool is_unit = std::abs(std::abs(log_scale) - std::log(1000)) < 0.3;
-  if (only_units && !is_unit) return false;
   c.add(is_unit ? "pose_unit" : "depth_scale",
         fmt::format("the motion that depth shows is {:.4g} times that of the poses (+- {:.1f} %)", scale,
                     100 * fit.log_scale.standard_error),
@@ -158,15 +157,15 @@ void add_drift(const PoseContext& c) {
 
 }  // namespace
 
-void add_pose_faults(const SequenceMeasurements& measured, bool only_gross, std::vector<Finding>& findings) {
+void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   if (measured.pairs.size() < kMinComparedPairs) return;
   const PoseMeasurements none;
   const PoseContext c{measured, measured.poses ? *measured.poses : none, findings, measured.pairs.front().b};
   const bool moves = measured.pair_shift_px > kMinMotion_px;
-  if (moves && !only_gross && add_intrinsics(c)) return;
+  if (moves && add_intrinsics(c)) return;
   if (!measured.poses || add_fixed(c)) return;
-  if (add_convention(c) || add_scale(c, only_gross) || add_time(c)) return;
-  if (!only_gross && !add_accuracy(c)) add_drift(c);
+  if (add_convention(c) || add_scale(c) || add_time(c)) return;
+  if (!add_accuracy(c)) add_drift(c);
 }
 
 }  // namespace resight::inspection

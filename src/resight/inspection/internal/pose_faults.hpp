@@ -11,8 +11,7 @@ namespace resight::inspection {
 /// With fewer matched pairs of views, their motion says too little.
 inline constexpr std::size_t kMinComparedPairs = 3;
 
-/// Adds faults that the motion between views shows: of poses, of their unit and time, of the intrinsics. `only_gross`:
-/// only wrong conventions, units of poses and times, and fixed poses, which show even if depth is not registered.
-void add_pose_faults(const SequenceMeasurements& measured, bool only_gross, std::vector<Finding>& findings);
+/// Adds faults that the motion between views shows: of poses, of their unit and time, of the intrinsics.
+void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings);
 
 }  // namespace resight::inspection
