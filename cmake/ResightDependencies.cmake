@@ -26,8 +26,10 @@ if(NOT TARGET resight_lzf)
   target_link_libraries(resight_lzf INTERFACE ${LZF_LIBRARY})
 endif()
 
-# Compression and storage of recordings.
-foreach(library "lz4;lz4frame.h" "bz2;bzlib.h" "zstd;zstd.h" "sqlite3;sqlite3.h")
+find_package(OpenEXR 3 REQUIRED)
+
+# Compression and storage of recordings, and archives of NumPy arrays.
+foreach(library "lz4;lz4frame.h" "bz2;bzlib.h" "zstd;zstd.h" "sqlite3;sqlite3.h" "zip;zip.h")
   list(GET library 0 name)
   list(GET library 1 header)
   string(TOUPPER ${name} prefix)

@@ -5,6 +5,7 @@
 #include "reader.hpp"
 #include "resight/core/crc32.hpp"
 #include "resight/io/images.hpp"
+#include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/image_header.hpp"
 #include "resight/io/internal/recording_images.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
@@ -70,6 +71,12 @@ std::vector<std::string> make_npy_seeds() {
           npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1), }\n", 8)};
 }
 
+std::vector<std::string> stored_depth(const std::vector<std::string>& names) {
+  std::vector<std::string> seeds;
+  for (const std::string& name : names) seeds.push_back(source_file("tests/data/depth/" + name));
+  return seeds;
+}
+
 void read_npy(std::string_view bytes) {
   const fs::path file = write_scratch("depth.npy", bytes);
   (void)read_depth_npy(file);
@@ -116,6 +123,16 @@ std::vector<FuzzReader> image_readers() {
       {"image_header", make_image_seeds, [](std::string_view bytes) { (void)io::parse_image_header(bytes); }},
       {"image", make_image_seeds, decode, 2000},
       {"npy", make_npy_seeds, read_npy},
+      {"npz",
+       [] {
+         return stored_depth({"single.npz", "named.npz"});
+       },
+       [](std::string_view bytes) { (void)io::parse_depth_npz(bytes, "fuzz.npz", std::nullopt); }},
+      {"exr",
+       [] {
+         return stored_depth({"single.exr", "half.exr"});
+       },
+       [](std::string_view bytes) { (void)io::parse_depth_exr(bytes, "fuzz.exr", std::nullopt); }, 1000},
       {"image_message", make_image_message_seeds, read_image_message},
   };
 }

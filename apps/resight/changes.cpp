@@ -17,6 +17,7 @@
 #include "resight/reconstruction/dynamic_scene.hpp"
 #include "resight/report/overlay.hpp"
 #include "resight/report/scene_changes.hpp"
+#include "resight/sensor/read_ahead.hpp"
 #include "sequence_input.hpp"
 
 namespace resight::app {
@@ -71,13 +72,15 @@ void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = open_posed_input(arguments.sequence, arguments.input);
+  warn_about_faults(*sequence, true);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   const DepthBias bias = measure_depth_bias(*sequence, config.prepare, config.camera.depth_bias);
   DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence->num_views());
+  ReadAhead reader(*sequence, arguments.num_threads);
   for (int v = 0; v < sequence->num_views(); ++v) {
-    RgbdFrame recorded = value_or_throw(sequence->read_view(v));
+    RgbdFrame recorded = value_or_throw(reader.read_view(v));
     const Camera camera = recorded.camera;
     correct_depth(bias, recorded);
     const ChangeResult changes = scene.add_view(prepare_view(std::move(recorded), config.prepare));

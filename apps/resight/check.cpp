@@ -47,6 +47,7 @@ struct CheckReport {
   std::vector<Finding> findings;
   std::vector<std::string> facts;
   std::vector<std::string> unmeasured;
+  bool knows_sizes = false;  ///< Those of known objects were measured.
   [[nodiscard]] bool is_sound() const { return findings.empty() && unmeasured.empty(); }
 };
 
@@ -57,6 +58,7 @@ void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, 
       sequence, library, {.max_views = std::min(12, arguments.max_views), .num_threads = arguments.num_threads}));
   for (Finding& f : find_scale_faults(scales, library)) report.findings.push_back(std::move(f));
   (scales.is_measured() ? report.facts : report.unmeasured).push_back(describe_scales(scales));
+  report.knows_sizes = scales.is_measured();
 }
 
 // Nothing if the views do not show one.
@@ -74,9 +76,10 @@ CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequ
       measure_sequence(sequence, {.max_views = arguments.max_views, .num_threads = arguments.num_threads}));
   report.findings = find_faults(report.measured);
   report.facts = list_facts(report.measured);
-  report.unmeasured = list_unmeasured(report.measured);
   if (sequence.has_poses() && report.findings.empty()) add_depth_bias(arguments, sequence, report);
   if (arguments.models) add_model_sizes(arguments, sequence, report);
+  for (std::string& what : list_unmeasured(report.measured, report.knows_sizes))
+    report.unmeasured.push_back(std::move(what));
   return report;
 }
 

@@ -65,6 +65,15 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
       ->add_option("--intrinsics", options.intrinsics,
                    "fx,fy,cx,cy (px; distortion coefficients after it), or a file with them")
       ->group(group);
+  command
+      ->add_option("--depth-intrinsics", options.depth_intrinsics,
+                   "The same of the depth camera, if folders hold depth that is not registered to colour")
+      ->group(group);
+  command
+      ->add_option("--color-from-depth", options.color_from_depth,
+                   "File with the pose of that camera: a matrix of 12 or 16 numbers that maps its points to those of "
+                   "the colour camera, metres")
+      ->group(group);
   command->add_option("--depth-scale", options.depth_scale_m, "Metres per unit of stored depth, such as 0.001")
       ->check(kDepthScales)
       ->group(group);
@@ -84,6 +93,12 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
       ->group(group);
   command->add_option("--every", options.views.every, "Takes every n-th view [1]")
       ->check(CLI::Range(1, 1000000))
+      ->group(group);
+  command
+      ->add_option("--min-motion", options.views.min_motion_m,
+                   "Takes a view only if the camera, or what is 1 m in front of it, has moved by this since the last "
+                   "one, metres [0]")
+      ->check(CLI::Range(0.0, 100.0))
       ->group(group);
   command->add_option("--from", options.views.from_s, "Takes views from this time on, seconds since the first")
       ->group(group);

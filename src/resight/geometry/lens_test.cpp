@@ -33,6 +33,23 @@ TEST(LensDistortion, PlumbBob) {
             1e-12);
 }
 
+// librealsense writes the models of its recordings with these names.
+// In two of them, tangential terms act on the place that the radial ones give.
+TEST(LensDistortion, NamesOfLibrealsense) {
+  const std::vector<double> k = {0.2, -0.5, 0.01, -0.02, 0.7};
+  const Eigen::Vector2d ideal(0.3, -0.2);
+  EXPECT_EQ(*lens("Brown Conrady", k).distort(ideal), *lens("plumb_bob", k).distort(ideal));
+  EXPECT_EQ(*lens("Kannala Brandt4", {0.1, 0, 0, 0}).distort(ideal),
+            *lens("equidistant", {0.1, 0, 0, 0}).distort(ideal));
+  const double r2 = 0.13;
+  const double radial = 1 + 0.2 * r2 - 0.5 * r2 * r2 + 0.7 * r2 * r2 * r2;
+  const Eigen::Vector2d bent = radial * ideal;
+  const double x = bent.x() + 2 * 0.01 * bent.x() * bent.y() - 0.02 * (r2 + 2 * bent.x() * bent.x());
+  const double y = bent.y() + 2 * -0.02 * bent.x() * bent.y() + 0.01 * (r2 + 2 * bent.y() * bent.y());
+  for (const char* name : {"Modified Brown Conrady", "Inverse Brown Conrady"})
+    EXPECT_LT((*lens(name, k).distort(ideal) - Eigen::Vector2d(x, y)).norm(), 1e-12) << name;
+}
+
 TEST(LensDistortion, RationalIsARatioOfPolynomials) {
   const std::vector<double> k = {0.2, -0.5, 0, 0, 0.7};
   std::vector<double> rational = k;

@@ -88,12 +88,13 @@ std::optional<ColorDepthShift> ShiftScores::peak() const {
 std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftScores, 2>& half_shifts) {
   const auto a = half_shifts[0].peak();
   const auto b = half_shifts[1].peak();
-  const auto is_wide = [](const ColorDepthShift& s) {
-    return s.shift_px.norm() > kMaxRegisteredShift_px || std::abs(s.scale - 1) > kMaxRegisteredScale;
+  if (!a || !b) return std::nullopt;
+  const double difference_px = (a->shift_px - b->shift_px).norm();
+  const auto is_wide = [&](const ColorDepthShift& s) {
+    return s.shift_px.norm() > kMaxRegisteredShift_px + difference_px || std::abs(s.scale - 1) > kMaxRegisteredScale;
   };
-  if (!a || !b || !is_wide(*a) || !is_wide(*b)) return std::nullopt;
-  if (std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas ||
-      std::abs(a->scale - b->scale) > kMaxRegisteredScale || (a->shift_px - b->shift_px).norm() > kSameShift_px)
+  if (!is_wide(*a) || !is_wide(*b) || std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas ||
+      std::abs(a->scale - b->scale) > kMaxRegisteredScale || difference_px > kSameShift_px)
     return std::nullopt;
   return a;
 }

@@ -160,8 +160,11 @@ std::vector<std::string> list_facts(const SequenceMeasurements& measured) {
   return facts;
 }
 
-std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured) {
+std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured, bool knows_sizes) {
   std::vector<std::string> unmeasured;
+  if (!knows_sizes && (!measured.poses || measured.poses->all_equal))
+    unmeasured.emplace_back(
+        "a unit of the depth that is off by less than ten (it needs --models, or the poses of a camera that moves)");
   if (measured.pairs.size() < inspection::kMinComparedPairs)
     unmeasured.push_back(
         fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be "

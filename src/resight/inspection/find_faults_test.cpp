@@ -137,14 +137,42 @@ TEST(FindFaults, WithoutPairsMuchIsNotMeasured) {
   const test::MemorySequence two({good_sequence().read_view(0).value(), good_sequence().read_view(7).value()});
   const auto measured = measure_sequence(two, {.max_views = 24, .num_threads = 1}).value();
   EXPECT_EQ(names_of(find_faults(measured)), "");
-  ASSERT_EQ(list_unmeasured(measured).size(), 1U);
-  EXPECT_NE(list_unmeasured(measured).front().find("intrinsics, poses and the time"), std::string::npos);
+  ASSERT_EQ(list_unmeasured(measured, true).size(), 1U);
+  EXPECT_NE(list_unmeasured(measured, true).front().find("intrinsics, poses and the time"), std::string::npos);
+}
+
+TEST(FindFaults, OnlyPosesOrKnownObjectsTellTheUnitOfDepth) {
+  const test::BrokenSequence fixed(good_sequence(), "poses_fixed");
+  std::vector<RgbdFrame> standing(4, good_sequence().read_view(0).value());
+  const test::MemorySequence still(standing);
+  for (const Sequence* sequence : {static_cast<const Sequence*>(&fixed), static_cast<const Sequence*>(&still)}) {
+    const auto measured = measure_sequence(*sequence, {.max_views = 24, .num_threads = 1}).value();
+    ASSERT_EQ(list_unmeasured(measured, false).size(), 1U);
+    EXPECT_NE(list_unmeasured(measured, false).front().find("unit of the depth"), std::string::npos);
+    EXPECT_TRUE(list_unmeasured(measured, true).empty());
+  }
+}
+
+TEST(FindFaults, AShiftThatTheViewsDoNotAgreeOnIsNone) {
+  const auto shifts = [](int first_px, int second_px) {
+    std::array<ShiftScores, 2> halves;
+    for (int v = 0; v < 8; ++v) {
+      RgbdFrame frame = good_sequence().read_view(v).value();
+      align_colors({.shift_px = {v % 2 == 0 ? first_px : second_px, 0}}, frame);
+      halves[static_cast<std::size_t>(v % 2)].add(prepare_view(std::move(frame)));
+    }
+    return find_unregistered_shift(halves);
+  };
+  EXPECT_TRUE(shifts(-9, -9).has_value());
+  EXPECT_NEAR(shifts(-9, -9)->shift_px.x(), 9, 1);
+  EXPECT_FALSE(shifts(-5, -7).has_value());
+  EXPECT_FALSE(shifts(-9, 9).has_value());
 }
 
 /// Views whose depth was measured `late` views after their colours.
 test::MemorySequence sequence_with_late_depth(double late) {
   std::vector<RgbdFrame> frames;
-  for (int v = 0; v < 10; ++v) {
+  for (int v = 0; v < 8; ++v) {
     const auto camera_at = [](double view) {  // To and fro, by up to 0.1 rad a view.
       const double angle = 0.3 * std::sin(0.35 * view);
       return test::look_at_point({1.1 * std::sin(angle), -1.1 * std::cos(angle), 0.75}, {0.3 * angle, 0.1, 0.15});
@@ -223,8 +251,9 @@ std::string breakage_name(const ::testing::TestParamInfo<test::Breakage>& info) 
 INSTANTIATE_TEST_SUITE_P(All, BreakageTest, ::testing::ValuesIn(test::breakages()), breakage_name);
 
 TEST(CheckQuickly, SeesWhatTheFirstViewsShow) {
-  for (const char* name : {"depth_x0.1", "depth_x1000", "no_depth", "eight_bits", "black", "intrinsics_of_double_size",
-                           "focal_1e-6", "focal_1e300", "poses_in_mm", "poses_inverted", "poses_100_km_away"}) {
+  for (const char* name :
+       {"depth_x0.1", "depth_x1000", "no_depth", "eight_bits", "black", "intrinsics_of_double_size", "focal_1e-6",
+        "focal_1e300", "poses_in_mm", "poses_inverted", "poses_opengl", "poses_100_km_away"}) {
     const test::BrokenSequence broken(good_sequence(), name);
     EXPECT_EQ(check_quickly(broken, true).size(), 1U) << name << " " << names_of(check_quickly(broken, true));
   }

@@ -56,15 +56,24 @@ void check_poses(const RgbdFrame& a, const RgbdFrame& b, int view, std::vector<F
   shorter.translation *= 1e-3;
   const double inverted = agreeing_share(a, b, from_b * from_a.inverse());
   const double in_mm = agreeing_share(a, b, shorter);
-  const bool is_inverted = inverted >= in_mm;
-  const double other = std::max(inverted, in_mm);
+  const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  const Rigid3 y_up = Rigid3::from_rotation(flip);
+  const double opengl = agreeing_share(a, b, (from_b * y_up).inverse() * (from_a * y_up));
+  const double other = std::max({inverted, in_mm, opengl});
   if (other < kMinOtherShare) return;
-  findings.push_back({.fault = is_inverted ? "pose_convention" : "pose_unit",
+  const bool is_inverted = inverted == other;
+  const bool is_in_mm = !is_inverted && in_mm == other;
+  findings.push_back({.fault = is_in_mm ? "pose_unit" : "pose_convention",
                       .message = fmt::format(
                           "the depths of two views agree at {:.0f} % of the pixels, and at {:.0f} % if the poses are "
                           "{}",
-                          100 * given, 100 * other, is_inverted ? "world to camera" : "in millimetres"),
-                      .remedy = is_inverted ? "--pose-convention world-to-camera" : "divide the translations by 1000",
+                          100 * given, 100 * other,
+                          is_in_mm      ? "in millimetres"
+                          : is_inverted ? "world to camera"
+                                        : "those of a camera with y up"),
+                      .remedy = is_in_mm      ? "divide the translations by 1000"
+                                : is_inverted ? "--pose-convention world-to-camera"
+                                              : "--pose-convention opengl",
                       .value = other,
                       .unit = "",
                       .threshold = kMinOtherShare,

@@ -37,10 +37,64 @@ bool is_named_for_calibration(std::string_view lower_name) {
          lower_name.starts_with("cam_k") || lower_name.find("calib") != lower_name.npos;
 }
 
+/// Files of poses and of lists hold other numbers.
 bool may_hold_calibration(std::string_view lower_name) {
-  constexpr std::array<std::string_view, 6> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt"};
-  return is_named_for_calibration(lower_name) ||
-         std::ranges::any_of(kHints, [&](std::string_view hint) { return lower_name.find(hint) != lower_name.npos; });
+  constexpr std::array<std::string_view, 7> kOthers = {"pose",  "traj", "groundtruth", "odometry",
+                                                       "assoc", "imu",  "label"};
+  return std::ranges::none_of(kOthers,
+                              [&](std::string_view other) { return lower_name.find(other) != lower_name.npos; });
+}
+
+/// What other numbers hardly look like: square pixels, and a centre in the middle of what such a camera sees.
+bool is_plausible(const Calibration& calibration) {
+  const Intrinsics& k = calibration.intrinsics;
+  const auto is_between = [](double value, double low, double high) { return value > low && value < high; };
+  return k.fx > 50 && is_between(k.fx / k.fy, 0.8, 1.25) && is_between(k.cx / k.fx, 0.05, 3) &&
+         is_between(k.cy / k.fy, 0.05, 3);
+}
+
+/// Of a camera in COLMAP's cameras.txt: which numbers behind the size are fx, fy, cx, cy and distortion coefficients.
+struct ColmapModel {
+  std::string_view name;
+  std::string_view lens;
+  std::size_t num_focal_lengths;
+  std::size_t num_coefficients;
+};
+constexpr std::array<ColmapModel, 6> kColmapModels{{{"SIMPLE_PINHOLE", "", 1, 0},
+                                                    {"PINHOLE", "", 2, 0},
+                                                    {"SIMPLE_RADIAL", "plumb_bob", 1, 1},
+                                                    {"RADIAL", "plumb_bob", 1, 2},
+                                                    {"OPENCV", "plumb_bob", 2, 4},
+                                                    {"OPENCV_FISHEYE", "equidistant", 2, 4}}};
+
+/// None if the text is no list of COLMAP's cameras (number, model, width, height, parameters).
+Result<std::optional<Calibration>> parse_colmap_cameras(std::string_view text, std::string_view what) {
+  std::optional<Calibration> found;
+  while (!text.empty()) {
+    const auto words = split_tokens(cut_line(text));
+    if (words.empty() || words[0].starts_with('#')) continue;
+    if (words.size() < 4) return std::optional<Calibration>();
+    const auto model = std::ranges::find(kColmapModels, words[1], &ColmapModel::name);
+    if (model == kColmapModels.end()) return std::optional<Calibration>();
+    std::vector<double> n;
+    for (std::size_t i = 2; i < words.size(); ++i) n.push_back(parse_number(words[i]).value_or(std::nan("")));
+    const std::size_t center = 2 + model->num_focal_lengths;
+    if (n.size() != center + 2 + model->num_coefficients || !(n[0] >= 1 && n[0] < 1e6 && n[1] >= 1 && n[1] < 1e6))
+      return Error{fmt::format("{}: the camera '{}' has {} numbers", what, model->name, n.size())};
+    auto calibration = calibration_from_numbers({n[2], n[center - 1], n[center], n[center + 1]}, what);
+    if (!calibration) return calibration.error();
+    std::vector<double> coefficients(n.begin() + static_cast<std::ptrdiff_t>(center) + 2, n.end());
+    coefficients.resize(4, 0);
+    const auto lens = LensDistortion::make(model->lens, coefficients);
+    if (!lens) return Error{fmt::format("{}: {}", what, lens.error().message)};
+    calibration->lens = *lens;
+    calibration->width = static_cast<int>(n[0]);
+    calibration->height = static_cast<int>(n[1]);
+    if (found && found->intrinsics != calibration->intrinsics)
+      return Error{fmt::format("{}: holds several cameras; give one by --intrinsics fx,fy,cx,cy", what)};
+    found = *calibration;
+  }
+  return found;
 }
 
 struct FoundCalibration {
@@ -56,16 +110,20 @@ bool is_of_color(const FoundCalibration& found) {
 /// Collects the calibrations directly in a folder. Returns the error of a file that by its name must hold one.
 std::optional<Error> collect_calibrations(const fs::path& folder, std::vector<FoundCalibration>& found) {
   constexpr std::uintmax_t kMaxCalibrationBytes = 1U << 20;
+  constexpr int kMaxOtherFiles = 50;  // More are no calibrations, but one file per view.
   std::optional<Error> error;
+  int num_others = 0;
   for (const std::string& name : list_files(folder)) {
     const std::string lower = to_lower(name);
-    if (!has_text_extension(name) || !may_hold_calibration(lower) || lower.find("pose") != lower.npos) continue;
+    if (!has_text_extension(name) || !may_hold_calibration(lower)) continue;
+    const bool is_named = is_named_for_calibration(lower);
+    if (!is_named && ++num_others > kMaxOtherFiles) continue;
     std::error_code ignored;
     if (fs::file_size(folder / name, ignored) > kMaxCalibrationBytes) continue;
     const auto calibration = read_calibration(folder / name);
-    if (calibration)
+    if (calibration && (is_named || is_plausible(*calibration)))
       found.push_back({folder / name, *calibration});
-    else if (is_named_for_calibration(lower))
+    else if (!calibration && is_named)
       error = calibration.error();
   }
   return error;
@@ -117,6 +175,9 @@ Result<Calibration> read_calibration(const fs::path& file) {
   const auto text = read_file(file);
   if (!text) return text.error();
   if (const auto numbers = parse_number_list(*text)) return calibration_from_numbers(*numbers, file.string());
+  const auto of_colmap = parse_colmap_cameras(*text, file.string());
+  if (!of_colmap) return of_colmap.error();
+  if (*of_colmap) return **of_colmap;
   const auto calibration = calibration_from_fields(parse_fields(*text), file.string());
   if (!calibration) return calibration.error();
   if (!*calibration)

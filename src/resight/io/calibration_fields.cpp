@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
+#include <utility>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/json.hpp"
@@ -33,9 +35,9 @@ std::optional<std::vector<double>> find_matrix(const CalibrationFields& fields) 
   const auto cx = find_scalar(fields, {"cx", "ppx", "c_x", "principal_x"});
   const auto cy = find_scalar(fields, {"cy", "ppy", "c_y", "principal_y"});
   if (fx && fy && cx && cy) return std::vector<double>{*fx, *fy, *cx, *cy};
-  const std::vector<double>* matrix =
-      find_numbers(fields, {"camera_matrix", "intrinsic_matrix", "cam_k", "k", "intrinsics", "intrinsic",
-                            "color_intrinsic", "color_intrinsics", "camera_intrinsics", "camera_intrinsic", "matrix"});
+  const std::vector<double>* matrix = find_numbers(
+      fields, {"camera_matrix", "intrinsic_matrix", "cam_k", "k", "intrinsics", "intrinsic", "color_intrinsic",
+               "color_intrinsics", "camera_intrinsics", "camera_intrinsic", "m_calibrationcolorintrinsic", "matrix"});
   return matrix == nullptr ? std::nullopt : std::optional(*matrix);
 }
 
@@ -69,6 +71,14 @@ bool is_separator(char c) {
          c == '}' || c == '(' || c == ')' || c == '"' || c == '\'';
 }
 
+/// The words of a line such as "fx 517.3", whose name has no colon.
+std::optional<std::pair<std::string, std::string>> name_with_number(std::string_view line) {
+  const auto words = split_tokens(line);
+  if (words.size() != 2 || line.find_first_of(":=") != line.npos || parse_number(words[0]) || !parse_number(words[1]))
+    return std::nullopt;
+  return std::pair(std::string(words[0]), std::string(words[1]));
+}
+
 /// Words of a text without comments. The end of a name becomes the word ":".
 std::vector<std::string> split_words(std::string_view text) {
   std::vector<std::string> words(1);
@@ -78,6 +88,10 @@ std::vector<std::string> split_words(std::string_view text) {
   while (!text.empty()) {
     std::string_view line = cut_line(text);
     line = line.substr(0, line.find('#'));
+    if (const auto pair = name_with_number(line)) {
+      words.insert(words.end() - 1, {pair->first, ":", pair->second});
+      continue;
+    }
     for (const char c : line) {
       if (is_separator(c)) {
         end_word();

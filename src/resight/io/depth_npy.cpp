@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,6 +12,7 @@
 #include <string>
 
 #include "resight/io/images.hpp"
+#include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 
@@ -18,12 +22,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the binary readers assume a little-endian machine");
 
 /// Types of numbers that depth is stored in.
-enum class NpyType { kFloat32, kFloat64, kUint8, kUint16, kInt32, kUint32 };
+enum class NpyType { kFloat16, kFloat32, kFloat64, kUint8, kUint16, kInt32, kUint32 };
 
 struct NpyHeader {
   int width = 0;
   int height = 0;
   NpyType type = NpyType::kFloat32;
+  bool is_column_major = false;
   std::size_t data_offset = 0;
 };
 
@@ -31,7 +36,8 @@ struct NamedNpyType {
   std::string_view name;
   NpyType type;
 };
-constexpr std::array<NamedNpyType, 7> kNpyTypes = {{{"'<f4'", NpyType::kFloat32},
+constexpr std::array<NamedNpyType, 8> kNpyTypes = {{{"'<f2'", NpyType::kFloat16},
+                                                    {"'<f4'", NpyType::kFloat32},
                                                     {"'<f8'", NpyType::kFloat64},
                                                     {"'|u1'", NpyType::kUint8},
                                                     {"'<u2'", NpyType::kUint16},
@@ -41,7 +47,7 @@ constexpr std::array<NamedNpyType, 7> kNpyTypes = {{{"'<f4'", NpyType::kFloat32}
 
 std::size_t bytes_of(NpyType type) {
   if (type == NpyType::kUint8) return 1;
-  if (type == NpyType::kUint16) return 2;
+  if (type == NpyType::kUint16 || type == NpyType::kFloat16) return 2;
   return type == NpyType::kFloat64 ? 8 : 4;
 }
 
@@ -54,6 +60,8 @@ double load_as(const char* bytes) {
 
 double load_value(NpyType type, const char* bytes) {
   switch (type) {
+    case NpyType::kFloat16:
+      return load_as<Eigen::half>(bytes);
     case NpyType::kFloat32:
       return load_as<float>(bytes);
     case NpyType::kFloat64:
@@ -98,40 +106,61 @@ std::optional<NpyHeader> parse_npy_header(std::string_view bytes) {
   const std::string_view dictionary = bytes.substr(begin, length);
   const auto type = std::ranges::find_if(
       kNpyTypes, [&](const NamedNpyType& t) { return dictionary.find(t.name) != dictionary.npos; });
-  const bool row_major = dictionary.find("'fortran_order': False") != dictionary.npos;
+  const bool is_column_major = dictionary.find("'fortran_order': True") != dictionary.npos;
   const auto shape = parse_shape(dictionary);
-  if (type == kNpyTypes.end() || !row_major || !shape || shape->first <= 0 || shape->second <= 0 ||
-      shape->first > kMaxImageSide_px || shape->second > kMaxImageSide_px ||
-      shape->first * shape->second > kMaxViewPixels)
+  if (type == kNpyTypes.end() || !shape || shape->first <= 0 || shape->second <= 0 || shape->first > kMaxImageSide_px ||
+      shape->second > kMaxImageSide_px || shape->first * shape->second > kMaxViewPixels)
     return std::nullopt;
-  return NpyHeader{static_cast<int>(shape->second), static_cast<int>(shape->first), type->type, begin + length};
+  return NpyHeader{static_cast<int>(shape->second), static_cast<int>(shape->first), type->type, is_column_major,
+                   begin + length};
 }
 
 }  // namespace
 
+Result<Image<float>> io::parse_depth_npy(std::string_view bytes, std::string_view name,
+                                         std::optional<double> metres_per_unit) {
+  const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
+  const auto header = parse_npy_header(bytes);
+  if (!header)
+    return fail("is not a supported NumPy array (expected numbers such as '<f4', in a shape (height, width))");
+  const bool is_float =
+      header->type == NpyType::kFloat16 || header->type == NpyType::kFloat32 || header->type == NpyType::kFloat64;
+  if (!is_float && !metres_per_unit)
+    return fail(
+        "holds whole numbers, whose unit is not known: give --depth-scale METRES per unit (0.001: millimetres)");
+  const std::size_t num_pixels = static_cast<std::size_t>(header->width) * static_cast<std::size_t>(header->height);
+  const std::size_t value_bytes = bytes_of(header->type);
+  if (bytes.size() - header->data_offset < num_pixels * value_bytes)
+    return fail("is cut off: fewer values than its shape says");
+  Image<float> depth_m(header->width, header->height);
+  const double scale = metres_per_unit.value_or(1);
+  const char* value = bytes.data() + header->data_offset;
+  for (std::size_t i = 0; i < num_pixels; ++i, value += value_bytes) {
+    const auto z = static_cast<float>(scale * load_value(header->type, value));
+    const auto height = static_cast<std::size_t>(header->height);
+    const std::size_t pixel =
+        header->is_column_major ? i % height * static_cast<std::size_t>(header->width) + i / height : i;
+    depth_m[pixel] = z > 0 && std::isfinite(z) ? z : std::numeric_limits<float>::quiet_NaN();
+  }
+  return depth_m;
+}
+
+bool io::holds_depth_array(std::string_view extension) {
+  return extension == "npy" || extension == "npz" || extension == "exr";
+}
+
+Result<Image<float>> io::read_depth_array(const std::filesystem::path& file, std::optional<double> metres_per_unit) {
+  const auto bytes = read_file(file);
+  if (!bytes) return bytes.error();
+  const std::string extension = extension_of(file);
+  const auto parse = extension == "npz" ? parse_depth_npz : extension == "exr" ? parse_depth_exr : parse_depth_npy;
+  return parse(*bytes, file.string(), metres_per_unit);
+}
+
 Result<Image<float>> read_depth_npy(const std::filesystem::path& file, std::optional<double> metres_per_unit) {
   const auto bytes = io::read_file(file);
   if (!bytes) return bytes.error();
-  const auto header = parse_npy_header(*bytes);
-  if (!header)
-    return io::file_error(
-        file, "is not a supported NumPy array (expected numbers such as '<f4', C order, shape (height, width))");
-  const bool is_float = header->type == NpyType::kFloat32 || header->type == NpyType::kFloat64;
-  if (!is_float && !metres_per_unit)
-    return io::file_error(
-        file, "holds whole numbers, whose unit is not known: give --depth-scale METRES per unit (0.001: millimetres)");
-  const std::size_t num_pixels = static_cast<std::size_t>(header->width) * static_cast<std::size_t>(header->height);
-  const std::size_t value_bytes = bytes_of(header->type);
-  if (bytes->size() - header->data_offset < num_pixels * value_bytes)
-    return io::file_error(file, "is cut off: fewer values than its shape says");
-  Image<float> depth_m(header->width, header->height);
-  const double scale = metres_per_unit.value_or(1);
-  for (std::size_t i = 0; i < num_pixels; ++i) {
-    const auto z =
-        static_cast<float>(scale * load_value(header->type, bytes->data() + header->data_offset + i * value_bytes));
-    depth_m[i] = z > 0 && std::isfinite(z) ? z : std::numeric_limits<float>::quiet_NaN();
-  }
-  return depth_m;
+  return io::parse_depth_npy(*bytes, file.string(), metres_per_unit);
 }
 
 }  // namespace resight

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/depth_check.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_series.hpp"
@@ -124,7 +125,7 @@ Result<void> check_first_view(const Sequence& sequence, const FolderCamera& came
 
 std::string describe_unit(const FileSeries& depth, const OpenSequenceOptions& options, const FolderCamera& camera) {
   if (options.depth_scale_m) return fmt::format("{} m per unit", *options.depth_scale_m);
-  if (extension_of(depth.pattern) == "npy") return "taken as metres (--depth-scale)";
+  if (holds_depth_array(extension_of(depth.pattern))) return "taken as metres (--depth-scale)";
   if (camera.calibration.metres_per_unit)
     return fmt::format("{:.6g} m per unit ({})", *camera.calibration.metres_per_unit, camera.source);
   return "taken as millimetres (--depth-scale)";
@@ -161,6 +162,12 @@ SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera)
 
 }  // namespace
 
+bool holds_poses(const fs::path& directory) {
+  return std::ranges::any_of(find_series(directory), [](const FileSeries& s) { return s.kind == SeriesKind::kPose; }) ||
+         std::ranges::any_of(list_files(directory),
+                             [](const std::string& n) { return is_pose_list_name(to_lower(n)); });
+}
+
 bool is_image_folder(const fs::path& directory) {
   const auto paired = pair_series(find_series(directory), directory);
   return !paired.ok() || paired->has_value();
@@ -174,6 +181,7 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
   const auto camera = find_folder_camera(directory, options, **series);
   if (!camera) return camera.error();
   SequenceTable table = make_table(**series, *camera);
+  if (const auto done = set_depth_camera(table, options); !done) return done.error();
   describe(table, **series, options, *camera);
   std::vector<std::string> keys;
   for (const ImagePair& pair : (*series)->pairs) keys.push_back(pair.key);

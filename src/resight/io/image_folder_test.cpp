@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "resight/io/images.hpp"
-#include "resight/io/internal/calibration.hpp"
 #include "resight/io/internal/test_data.hpp"
 
 namespace resight {
@@ -86,8 +85,8 @@ TEST(ImageFolder, SaysWhatIsMissing) {
   ASSERT_TRUE(write_color(directory / "a/depth/000000.png", Image<Rgb8>(kWidth, kHeight)).ok());
   EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("pictures of depth, no depth"));
   std::filesystem::remove_all(directory / "a/depth");
-  io::write_text(directory / "a/depth/000000.exr", "x");
-  EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr(".exr files, which are not read"));
+  io::write_text(directory / "a/depth/000000.tiff", "x");
+  EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr(".tiff files, which are not read"));
   write_layout(directory / "b", kTwoFolders);
   io::write_text(directory / "b/camera.yaml", "fx: 60\nfy: 61\ncx: 900\ncy: 2.5\n");
   EXPECT_THAT(open_sequence(directory / "b").error().message, HasSubstr("another image size"));
@@ -114,6 +113,79 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("the unit is wrong"));
 }
 
+TEST(ImageFolder, DepthArraysAreMetres) {
+  for (const char* extension : {".npz", ".exr"}) {
+    io::TestDirectory directory;
+    write_layout(directory.path(), kTwoFolders);
+    std::filesystem::remove_all(directory / "depth");
+    std::filesystem::create_directories(directory / "depth");
+    for (int i = 0; i < 3; ++i)
+      std::filesystem::copy(
+          std::filesystem::path(RESIGHT_SOURCE_DIR) / "tests/data/depth" / ("single" + std::string(extension)),
+          directory / "depth" / (numbered(kTwoFolders, i) + extension));
+    io::write_text(directory / "intrinsics.txt", kMatrix);
+    const auto sequence = open_sequence(directory.path());
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    EXPECT_NEAR((*sequence)->read_view(2)->depth_m(2, 1), 1.1, 1e-6);
+    EXPECT_THAT((*sequence)->notes(), testing::Contains(HasSubstr("taken as metres")));
+  }
+}
+
+// Depth of a phone has fewer pixels than its colours, but the same field of view.
+TEST(ImageFolder, RegisteredDepthOfLowerResolution) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "color/0.jpg", Image<Rgb8>(2 * kWidth, 2 * kHeight)).ok());
+  Image<float> depth_m(kWidth, kHeight, 1.0F);
+  depth_m(5, 3) = 2;
+  ASSERT_TRUE(write_depth(directory / "depth/0.png", depth_m, 0.001).ok());
+  io::write_text(directory / "intrinsics.txt", "60 60 7.5 5.5\n");
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  const RgbdFrame frame = (*sequence)->read_view(0).value();
+  ASSERT_EQ(frame.depth_m.width(), 2 * kWidth);
+  for (int v = 0; v < 2 * kHeight; ++v)
+    for (int u = 0; u < 2 * kWidth; ++u)
+      EXPECT_EQ(frame.depth_m(u, v), u / 2 == 5 && v / 2 == 3 ? 2 : 1) << u << " " << v;
+}
+
+TEST(ImageFolder, DepthOfACameraBesideIsRegistered) {
+  io::TestDirectory directory;
+  write_layout(directory.path(), kTwoFolders);
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(
+        write_depth(directory / "depth" / (numbered(kTwoFolders, i) + ".png"), Image<float>(12, 12, 1.5F), 0.001).ok());
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  EXPECT_THAT(open_sequence(directory.path()).error().message,
+              HasSubstr("expected depth registered to colour, or --depth-intrinsics and --color-from-depth"));
+  // The depth camera looks at the same place from 10 cm (4 px of it) to the left.
+  OpenSequenceOptions options;
+  options.depth_intrinsics = "60,60,5.5,5.5";
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("need each other"));
+  options.color_from_depth = (directory / "color_from_depth.txt").string();
+  io::write_text(options.color_from_depth, "1 0 0 -0.1 0 1 0 0 0 0 1 0\n");
+  const auto sequence = open_sequence(directory.path(), options);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  const RgbdFrame frame = (*sequence)->read_view(0).value();
+  ASSERT_EQ(frame.depth_m.width(), kWidth);
+  EXPECT_NEAR(frame.depth_m(1, 2), 1.5, 1e-6);
+  EXPECT_TRUE(std::isnan(frame.depth_m(7, 2))) << "beyond the right border of the depth camera";
+  io::write_text(options.color_from_depth, "1 0 0 -100 0 1 0 0 0 0 1 0\n");
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("100 m apart (expected metres)"));
+}
+
+TEST(ImageFolder, PosesBesideNumpyDepthAreRead) {
+  io::TestDirectory directory;
+  write_layout(directory.path(), kNumpy);
+  io::write_text(directory / "cam_K.txt", kMatrix);
+  EXPECT_EQ((*open_posed_sequence(directory.path()))->format(), "npy");
+  EXPECT_THAT((*open_posed_sequence(directory.path()))->notes(), testing::Contains(HasSubstr("stand still")));
+  const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1\n";
+  io::write_text(directory / "poses.txt", rows + rows + rows);
+  const auto posed = open_posed_sequence(directory.path());
+  ASSERT_TRUE(posed.ok()) << posed.error().message;
+  EXPECT_EQ((*posed)->read_pose(1)->translation, Eigen::Vector3d(1, 2, 3));
+}
+
 TEST(ImageFolder, NamesThatAreTimes) {
   io::TestDirectory directory;
   const std::vector<std::pair<std::string, std::string>> times = {{"1305031102.175304", "1305031102.160407"},
@@ -134,6 +206,29 @@ TEST(ImageFolder, NamesThatAreTimes) {
   EXPECT_EQ((*sequence)->view_name(2), "1305031103.005100");
   EXPECT_NEAR((*sequence)->read_pose(0)->translation.x(), 1 + 0.000407 / 0.04, 1e-4);
   EXPECT_NEAR((*sequence)->read_pose(2)->translation.x(), 3, 1e-6);
+}
+
+TEST(ImageFolder, NamesWithoutNumbersArePairedByName) {
+  io::TestDirectory directory;
+  const auto write_pair = [&](const std::string& color, const std::string& depth) {
+    ASSERT_TRUE(write_color(directory / color, Image<Rgb8>(kWidth, kHeight)).ok());
+    ASSERT_TRUE(write_depth(directory / depth, Image<float>(kWidth, kHeight, 1.0F), 0.001).ok());
+  };
+  const auto num_views = [&](const std::string& folder) {
+    io::write_text(directory / folder / "intrinsics.txt", kMatrix);
+    const auto sequence = open_sequence(directory / folder);
+    return sequence.ok() ? (*sequence)->num_views() : 0;
+  };
+  write_pair("a/rgb/apple.png", "a/depth/apple.png");
+  write_pair("a/rgb/bed.png", "a/depth/bed.png");
+  EXPECT_EQ(num_views("a"), 2);
+  write_pair("b/cup_color.png", "b/cup_depth.png");
+  write_pair("b/door_color.png", "b/door_depth.png");
+  EXPECT_EQ(num_views("b"), 2);
+  write_pair("c/color.png", "c/depth.png");
+  EXPECT_EQ(num_views("c"), 1);
+  write_pair("d/rgb/apple.png", "d/depth/bed.png");
+  EXPECT_EQ(num_views("d"), 0) << "two views that have nothing to do with each other";
 }
 
 TEST(ImageFolder, SeveralSeriesAreNotGuessed) {
@@ -167,6 +262,27 @@ TEST(ImageFolder, PosesPerView) {
   EXPECT_EQ((*open_sequence(directory.path(), options))->read_pose(1)->rotation(1, 1), -1);
 }
 
+TEST(ImageFolder, ViewsAreChosenByMotion) {
+  io::TestDirectory directory;
+  FolderLayout layout = kTwoFolders;
+  layout.count = 5;
+  write_layout(directory.path(), layout);
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  OpenSequenceOptions options;
+  options.views.min_motion_m = 0.1;
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message,
+              HasSubstr("no poses, which --min-motion needs"));
+  // 6 cm further each time, and then 0.2 rad about y: what is 1 m ahead moves by 0.2 m.
+  io::write_text(directory / "poses.txt",
+                 "0 0 0 0 0 0 0 1\n1 .06 0 0 0 0 0 1\n2 .12 0 0 0 0 0 1\n3 .18 0 0 0 0 0 1\n"
+                 "4 .18 0 0 0 0.0998334 0 0.9950042\n");
+  const auto sequence = open_sequence(directory.path(), options);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 3);
+  EXPECT_EQ((*sequence)->view_name(1), "000002");
+  EXPECT_EQ((*sequence)->view_name(2), "000004");
+}
+
 TEST(ImageFolder, PoseFilesOfAllForms) {
   io::TestDirectory directory;
   write_layout(directory.path(), kTwoFolders);
@@ -186,6 +302,23 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
     ASSERT_EQ((*sequence)->num_views(), 3) << text;
     EXPECT_EQ((*sequence)->read_pose(2)->translation, Eigen::Vector3d(1, 2, 3)) << text;
   }
+  io::write_text(
+      directory / "given",
+      "timestamp, frame, x, y, z, qx, qy, qz, qw\n3.2, 0, 7, 0, 0, 0, 0, 0, 1\n4.5, 2, 9, 0, 0, 0, 0, 0, 1\n");
+  const auto numbered_views = open_posed_sequence(directory.path(), options);
+  ASSERT_TRUE(numbered_views.ok()) << numbered_views.error().message;
+  ASSERT_EQ((*numbered_views)->num_views(), 2) << "by the column of numbers";
+  EXPECT_EQ((*numbered_views)->read_pose(1)->translation.x(), 9);
+  // Times are no numbers of views, even if some are whole.
+  io::write_text(directory / "given", "0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n1.0 3 0 0 0 0 0 1\n");
+  const auto in_order = open_posed_sequence(directory.path(), options);
+  ASSERT_TRUE(in_order.ok()) << in_order.error().message;
+  ASSERT_EQ((*in_order)->num_views(), 3);
+  for (int v = 0; v < 3; ++v) EXPECT_EQ((*in_order)->read_pose(v)->translation.x(), v + 1);
+  EXPECT_THAT((*in_order)->notes(), testing::Contains(HasSubstr("in the order of the views")));
+  io::write_text(directory / "given", "0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n");
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message,
+              HasSubstr("2 poses with times, but the names of the 3 images tell no times"));
   io::write_text(directory / "given", rows16);
   EXPECT_THAT(open_sequence(directory.path(), options).error().message,
               HasSubstr("1 poses without stamps for 3 views"));
@@ -193,60 +326,16 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("line 1"));
 }
 
-TEST(Calibration, UsualForms) {
+TEST(ImageFolder, IntrinsicsAreFoundByContent) {
   io::TestDirectory directory;
-  const auto read = [&](const std::string& name, const std::string& text) {
-    io::write_text(directory / name, text);
-    return io::read_calibration(directory / name);
-  };
-  const std::vector<std::pair<std::string, std::string>> forms = {
-      {"k.txt", kMatrix},
-      {"k.txt", "60 61 3.5 2.5\n"},
-      {"k.csv", "60,0,3.5\n0,61,2.5\n0,0,1\n"},
-      {"k.txt", "60 0 3.5 0\n0 61 2.5 0\n0 0 1 0\n0 0 0 1\n"},
-      {"k.json", R"({"width": 8, "height": 6, "intrinsic_matrix": [60, 0, 0, 0, 61, 0, 3.5, 2.5, 1]})"},
-      {"k.json", R"({"fx": 60, "fy": 61, "ppx": 3.5, "ppy": 2.5, "depth_scale": 0.001})"},
-      {"k.json", R"({"camera": {"w": 8, "h": 6, "fx": 60, "fy": 61, "cx": 3.5, "cy": 2.5, "scale": 6553.5}})"},
-      {"k.json",
-       R"({"depth": {"K": [[1, 0, 1], [0, 1, 1], [0, 0, 1]]}, "color": {"K": [[60, 0, 3.5], [0, 61, 2.5], [0, 0, 1]]}})"},
-      {"k.yaml",
-       "image_width: 8\nimage_height: 6\ncamera_matrix:\n  rows: 3\n  cols: 3\n  data: [60, 0, 3.5, 0, 61,\n    "
-       "2.5, 0, 0, 1]\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0, "
-       "0, 0, 0, 0]\n"},
-      {"k.yaml", "%YAML:1.0\nCamera.fx: 60.0\nCamera.fy: 61.0\nCamera.cx: 3.5\nCamera.cy: 2.5\nCamera.k1: 0.0\n"},
-      {"k.ini", "[camera]\nfx = 60\nfy = 61\ncx = 3.5\ncy = 2.5\n"}};
-  for (const auto& [name, text] : forms) {
-    const auto calibration = read(name, text);
-    ASSERT_TRUE(calibration.ok()) << calibration.error().message << "\n" << text;
-    EXPECT_EQ(calibration->intrinsics, (io::Intrinsics{60, 61, 3.5, 2.5})) << text;
-    EXPECT_TRUE(calibration->lens.is_none()) << text;
-  }
-  EXPECT_NEAR(*read("r.json", forms[6].second)->metres_per_unit, 1 / 6553.5, 1e-12);
-  const auto distorted = read("d.yaml", "fx: 60\nfy: 61\ncx: 3.5\ncy: 2.5\nk1: 0.1\nk2: 0.01\np1: 0\np2: 0\n");
-  ASSERT_TRUE(distorted.ok()) << distorted.error().message;
-  EXPECT_FALSE(distorted->lens.is_none());
-  EXPECT_THAT(read("bad.txt", "1 2 3\n").error().message, HasSubstr("3 numbers"));
-  EXPECT_THAT(
-      read("bad.json", R"({"a": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "b": {"fx": 2, "fy": 2, "cx": 1, "cy": 1}})")
-          .error()
-          .message,
-      HasSubstr("several cameras"));
-}
-
-TEST(Calibration, SurvivesDamage) {
-  io::TestDirectory directory;
-  Rng rng(4);
-  for (const std::string& form :
-       {std::string(R"({"camera": {"w": 8, "fx": 60, "fy": 61, "cx": [3, 4], "cy": 2.5, "K": {"data": [1]}}})"),
-        std::string("camera_matrix: !!opencv-matrix\n rows: 3\n data: [60, 0, 3.5, 0, 61, 2.5, 0, 0, 1]\nd: [1]\n")})
-    for (int i = 0; i < 300; ++i) {
-      std::string text = form.substr(0, 1 + rng.below(static_cast<std::uint32_t>(form.size())));
-      text[rng.below(static_cast<std::uint32_t>(text.size()))] = static_cast<char>(rng.below(256));
-      const auto file = directory / (form[0] == '{' ? "k.json" : "k.yaml");
-      io::write_text(file, text);
-      const auto calibration = io::read_calibration(file);
-      EXPECT_TRUE(calibration.ok() || !calibration.error().message.empty());
-    }
+  write_layout(directory.path(), kTwoFolders);
+  io::write_text(directory / "notes.txt", "1 2 3 4\n");
+  io::write_text(directory / "boxes.csv", "10,20,30,40\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("no intrinsics"));
+  io::write_text(directory / "params.json", R"({"fx": 60, "fy": 61, "cx": 7.5, "cy": 6})");
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->read_view(0)->camera.fx, 60);
 }
 
 }  // namespace

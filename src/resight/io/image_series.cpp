@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
@@ -75,13 +76,13 @@ double time_of_digits(const std::vector<std::string>& digits) {
 /// Files whose name says depth, in formats that are not read: for messages.
 bool is_unread_depth(const std::string& pattern) {
   const std::string extension = extension_of(pattern);
-  return extension == "png" || extension == "exr" || extension == "npz" || extension == "tiff" || extension == "tif";
+  return extension == "png" || extension == "tiff" || extension == "tif";
 }
 
 /// By the first bytes: 16-bit PNG with one channel is depth, other images are colour.
 SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
   const std::string extension = extension_of(file);
-  if (extension == "npy") return has_any(lower_name, {"pose"}) ? SeriesKind::kOther : SeriesKind::kDepth;
+  if (holds_depth_array(extension)) return has_any(lower_name, {"pose"}) ? SeriesKind::kOther : SeriesKind::kDepth;
   if (extension == "jpg" || extension == "jpeg") return SeriesKind::kColor;
   if (extension == "txt") return has_any(lower_name, {"pose", "extrinsic"}) ? SeriesKind::kPose : SeriesKind::kOther;
   if (extension != "png") return SeriesKind::kOther;
@@ -91,6 +92,15 @@ SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
   const int color_type = static_cast<unsigned char>((*start)[25]);
   if (bits == 16 && color_type == 0) return SeriesKind::kDepth;
   return has_any(lower_name, {"depth"}) ? SeriesKind::kOther : SeriesKind::kColor;
+}
+
+/// What tells views apart whose names have no number: "apple" of apple_rgb.png.
+std::string bare_stem(const std::string& name) {
+  std::string stem = to_lower(fs::path(name).stem().string());
+  for (const std::string_view word : {"colour", "color", "rgb", "depth", "image", "img"})
+    if (const std::size_t at = stem.find(word); at != stem.npos) stem.erase(at, word.size());
+  std::erase_if(stem, [](char c) { return c == '_' || c == '-' || c == '.' || c == ' '; });
+  return stem;
 }
 
 /// Removes the numbers that are the same in all names, such as those of "color_640x480".
@@ -116,6 +126,7 @@ void set_keys(FileSeries& series, const std::vector<std::string>& names) {
       digits.push_back(runs.digits[i]);
       end = runs.ends[i];
     }
+    if (runs.digits.empty()) key = bare_stem(name);
     const std::string stem = fs::path(name).stem().string();
     const std::string shown = end == 0 || end > stem.size() ? stem : name.substr(0, end);
     // Two seconds with one fraction: all runs belong to the time, although the first may be the same in all names.
@@ -123,15 +134,26 @@ void set_keys(FileSeries& series, const std::vector<std::string>& names) {
   }
 }
 
-void add_series(const fs::path& folder, std::vector<FileSeries>& all) {
-  std::map<std::string, std::vector<std::string>> names;
-  for (const std::string& name : list_files(folder)) names[split_digits(name).pattern].push_back(name);
-  const std::string folder_lower = to_lower(folder_name(folder));
-  for (const auto& [pattern, of_pattern] : names) {
+/// `says_what`: the name of the folder says what its files are. That of the sequence may be any.
+void add_series(const fs::path& folder, bool says_what, std::vector<FileSeries>& all) {
+  const std::string prefix = says_what ? to_lower(folder_name(folder)) + "/" : "";
+  const auto kind_of = [&](const std::string& name) { return kind_of_image(folder / name, prefix + to_lower(name)); };
+  std::map<std::pair<std::string, SeriesKind>, std::vector<std::string>> names;  // Of numbered names, without a kind.
+  for (const std::string& name : list_files(folder)) {
+    std::string pattern = split_digits(name).pattern;
+    SeriesKind kind = SeriesKind::kOther;
+    if (pattern.find('#') == pattern.npos && !is_no_view(to_lower(name))) {
+      kind = kind_of(name);
+      if (kind == SeriesKind::kColor || kind == SeriesKind::kDepth) pattern = "*." + extension_of(name);
+    }
+    names[{pattern, kind}].push_back(name);
+  }
+  for (const auto& [key, of_pattern] : names) {
+    const std::string& pattern = key.first;
     FileSeries series;
     series.folder = folder;
     series.pattern = pattern;
-    series.kind = kind_of_image(folder / of_pattern.front(), folder_lower + "/" + to_lower(of_pattern.front()));
+    series.kind = kind_of(of_pattern.front());
     if (series.kind == SeriesKind::kOther && !is_unread_depth(pattern)) continue;
     if (is_no_view(to_lower(pattern))) continue;
     set_keys(series, of_pattern);
@@ -167,7 +189,8 @@ int rank_of(const FileSeries& series) {
   const std::string name = to_lower(folder_name(series.folder) + "/" + series.pattern);
   if (series.kind == SeriesKind::kColor) return has_any(name, {"color", "colour", "rgb"}) ? 2 : 1;
   const bool registered = has_any(name, {"aligned", "registered", "to_color"});
-  return (has_any(name, {"depth"}) ? 2 : 0) + (registered ? 2 : 0) + (extension_of(series.pattern) == "npy" ? 1 : 0);
+  return (has_any(name, {"depth"}) ? 2 : 0) + (registered ? 2 : 0) +
+         (holds_depth_array(extension_of(series.pattern)) ? 1 : 0);
 }
 
 struct Candidate {
@@ -185,9 +208,9 @@ std::string FileSeries::label() const {
 
 std::vector<FileSeries> find_series(const fs::path& folder) {
   std::vector<FileSeries> all;
-  add_series(folder, all);
+  add_series(folder, false, all);
   for (const std::string& name : list_directories(folder))
-    if (is_view_folder(to_lower(name)) && !is_no_view(to_lower(name))) add_series(folder / name, all);
+    if (is_view_folder(to_lower(name)) && !is_no_view(to_lower(name))) add_series(folder / name, true, all);
   return all;
 }
 
@@ -231,14 +254,14 @@ std::string describe_images(const std::vector<FileSeries>& all) {
     const std::string extension = extension_of(series.pattern);
     const std::string why = extension == "png" ? "8-bit or colour images (pictures of depth, no depth)"
                                                : "." + extension + " files, which are not read (convert them)";
-    return fmt::format("found {} colour images, but {} are {}; expected 16-bit PNG or npy", num_color, series.label(),
-                       why);
+    return fmt::format("found {} colour images, but {} are {}; expected 16-bit PNG, npy, npz or exr", num_color,
+                       series.label(), why);
   }
   if (num_color == 0 && num_depth == 0) return "";
   if (num_color > 0 && num_depth > 0)
     return fmt::format("found {} colour and {} depth images whose names have no number in common", num_color,
                        num_depth);
-  return num_color > 0 ? fmt::format("found {} colour images, but no depth (16-bit PNG or npy)", num_color)
+  return num_color > 0 ? fmt::format("found {} colour images, but no depth (16-bit PNG, npy, npz or exr)", num_color)
                        : fmt::format("found {} depth images, but no colour (JPEG or 8-bit PNG)", num_depth);
 }
 

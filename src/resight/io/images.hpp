@@ -29,7 +29,7 @@ inline constexpr int kMaxViewPixels = 1 << 24;
 [[nodiscard]] Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name);
 /// Reads depth in metres from a 16-bit PNG: stored value times `metres_per_unit`. A stored 0 (no return) becomes NaN.
 [[nodiscard]] Result<Image<float>> read_depth(const std::filesystem::path& file, double metres_per_unit);
-/// Reads a NumPy file with shape (height, width): floating-point metres, or any numbers times `metres_per_unit`. Values
+/// Reads a NumPy array of shape (height, width): floating-point metres, or any numbers times `metres_per_unit`. Values
 /// that are not positive and finite become NaN. Whole numbers without a unit are refused.
 [[nodiscard]] Result<Image<float>> read_depth_npy(const std::filesystem::path& file,
                                                   std::optional<double> metres_per_unit = {});

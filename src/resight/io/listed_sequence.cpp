@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "resight/io/images.hpp"
+#include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/sensor/rectify.hpp"
 
@@ -35,6 +36,26 @@ Result<Image<float>> read_unsaturated_depth(const fs::path& file, double metres_
   return depth_m;
 }
 
+/// Whether they show the same field of view.
+bool has_same_shape(const Image<Rgb8>& color, const Image<float>& depth) {
+  const double of_color = static_cast<double>(color.width()) / color.height();
+  const double of_depth = static_cast<double>(depth.width()) / depth.height();
+  return depth.width() < color.width() && std::abs(of_depth / of_color - 1) < 0.01;
+}
+
+/// Depth of a camera with fewer pixels, registered to the colours, as cameras of phones give it.
+Image<float> enlarge_depth(const Image<float>& depth_m, const Camera& color_camera) {
+  const double x = static_cast<double>(depth_m.width()) / color_camera.width;
+  const double y = static_cast<double>(depth_m.height()) / color_camera.height;
+  const Camera camera{depth_m.width(),
+                      depth_m.height(),
+                      x * color_camera.fx,
+                      y * color_camera.fy,
+                      x * (color_camera.cx + 0.5) - 0.5,
+                      y * (color_camera.cy + 0.5) - 0.5};
+  return register_depth(depth_m, camera, Rigid3::identity(), color_camera);
+}
+
 class ListedSequence final : public Sequence {
  public:
   explicit ListedSequence(SequenceTable table) : table_(std::move(table)) {}
@@ -59,20 +80,24 @@ class ListedSequence final : public Sequence {
     if (!color) return color.error();
     auto depth = read_depth_image(listed);
     if (!depth) return depth.error();
-    if (color->width() != depth->width() || color->height() != depth->height())
-      return file_error(listed.depth,
-                        fmt::format("is {}x{}, but its colour image {}x{}; expected depth registered to colour",
-                                    depth->width(), depth->height(), color->width(), color->height()));
     const Intrinsics& k = listed.intrinsics;
-    RgbdFrame frame{listed.name,
-                    {color->width(), color->height(), k.fx, k.fy, k.cx, k.cy},
-                    std::move(*color),
-                    std::move(*depth),
-                    listed.world_from_camera};
+    const Camera camera{color->width(), color->height(), k.fx, k.fy, k.cx, k.cy};
+    const bool has_same_size = color->width() == depth->width() && color->height() == depth->height();
+    if (table_.depth_camera) {
+      *depth = register_to_color(*depth, camera);
+    } else if (!has_same_size) {
+      if (!has_same_shape(*color, *depth))
+        return file_error(listed.depth,
+                          fmt::format("is {}x{}, but its colour image {}x{}; expected depth registered to colour, or "
+                                      "--depth-intrinsics and --color-from-depth",
+                                      depth->width(), depth->height(), color->width(), color->height()));
+      *depth = enlarge_depth(*depth, camera);
+    }
+    RgbdFrame frame{listed.name, camera, std::move(*color), std::move(*depth), listed.world_from_camera};
     if (const auto done = check_frame(frame); !done) return file_error(listed.color, done.error().message);
     if (!table_.lens.is_none()) {
       frame.color = undistort_color(frame.color, frame.camera, table_.lens);
-      frame.depth_m = undistort_depth(frame.depth_m, frame.camera, table_.lens);
+      if (!table_.depth_camera) frame.depth_m = undistort_depth(frame.depth_m, frame.camera, table_.lens);
     }
     return frame;
   }
@@ -81,12 +106,20 @@ class ListedSequence final : public Sequence {
   [[nodiscard]] SequenceTable& table() { return table_; }
 
  private:
+  [[nodiscard]] Image<float> register_to_color(const Image<float>& depth_m, const Camera& color_camera) const {
+    const DepthCamera& of_depth = *table_.depth_camera;
+    const Intrinsics& k = of_depth.intrinsics;
+    const Camera camera{depth_m.width(), depth_m.height(), k.fx, k.fy, k.cx, k.cy};
+    return register_depth(of_depth.lens.is_none() ? depth_m : undistort_depth(depth_m, camera, of_depth.lens), camera,
+                          of_depth.color_from_depth, color_camera);
+  }
+
   [[nodiscard]] Result<Image<float>> read_depth_image(const ListedView& view) const {
     switch (table_.depth_storage) {
       case DepthStorage::kNpy:
         return read_depth_npy(view.depth, table_.npy_unit_m);
       case DepthStorage::kByName:
-        if (extension_of(view.depth) == "npy") return read_depth_npy(view.depth, table_.npy_unit_m);
+        if (holds_depth_array(extension_of(view.depth))) return read_depth_array(view.depth, table_.npy_unit_m);
         return read_unsaturated_depth(view.depth, view.metres_per_unit);
       case DepthStorage::kRotatedPng:
         return read_rotated_depth(view.depth, view.metres_per_unit);

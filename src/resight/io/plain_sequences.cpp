@@ -156,14 +156,15 @@ Result<CameraInfo> read_camera_info(const fs::path& file) {
 
 bool is_npy_sequence(const fs::path& directory) {
   return is_file(directory / "cam_K.txt") && is_folder(directory / "rgb") &&
-         !list_stems(directory / "depth", ".npy").empty();
+         !list_stems(directory / "depth", ".npy").empty() && !holds_poses(directory);
 }
 
-SequenceResult open_npy_sequence(const fs::path& directory) {
+SequenceResult open_npy_sequence(const fs::path& directory, const OpenSequenceOptions& options) {
   const auto intrinsics = read_camera_matrix(directory / "cam_K.txt");
   if (!intrinsics) return intrinsics.error();
   SequenceTable table;
   table.format = "npy";
+  if (options.poses.empty()) table.notes.emplace_back("no file of poses: the camera is taken to stand still (--poses)");
   table.depth_storage = DepthStorage::kNpy;
   for (const std::string& stem : list_stems(directory / "rgb", ".png")) {
     ListedView view = make_view(directory / "rgb", stem, ".png", "", static_cast<int>(table.views.size()));

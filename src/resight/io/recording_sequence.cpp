@@ -207,7 +207,7 @@ Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   depth_unit_m_ = options.depth_scale_m ? options.depth_scale_m : poses->depth_unit_m();
   describe(*poses, options);
   const std::string& damage = recording_->damage().empty() ? scan.damage : recording_->damage();
-  if (!damage.empty()) notes_.push_back("damaged, read up to there: " + damage);
+  if (!damage.empty()) notes_.push_back("damaged, what can be read is used: " + damage);
   const auto pairs = pair_images(scan, options.topics.max_time_difference_s);
   if (const auto done = find_views(pairs, *poses, options); !done) return done;
   const auto first = read_view(0);

@@ -22,7 +22,9 @@ enum class PoseConvention {
 
 /// The views of a sequence that are used.
 struct ViewChoice {
-  int every = 1;                 ///< Takes each n-th view.
+  int every = 1;  ///< Takes each n-th view.
+  /// Takes a view only if the camera, or what is 1 m in front of it, has moved by this since the last one. 0: any.
+  double min_motion_m = 0;
   std::optional<double> from_s;  ///< Seconds since the first view.
   std::optional<double> to_s;    ///< Seconds since the first view.
 };
@@ -40,6 +42,8 @@ struct RecordingTopics {
 /// How to open a sequence that does not say everything itself, or says it wrongly. Everything is optional.
 struct OpenSequenceOptions {
   std::string intrinsics;               ///< "fx,fy,cx,cy", distortion coefficients after it, or a file.
+  std::string depth_intrinsics;         ///< The same of a depth camera whose depth is not registered to colour.
+  std::string color_from_depth;         ///< A file with its pose: 12 or 16 numbers, row by row, metres.
   std::optional<double> depth_scale_m;  ///< Metres per unit of stored depth.
   std::string poses;                    ///< A file of camera poses, or "fixed": the camera does not move.
   PoseConvention pose_convention = PoseConvention::kCameraToWorld;  ///< Of poses in the folder or in `poses`.

@@ -13,15 +13,18 @@
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
+#include "resight/io/pose_text.hpp"
 
 /// What the user says about a sequence of separate images.
 namespace resight::io {
 namespace {
 
+constexpr double kMaxBaseline_m = 1;
+
 bool gives_something(const OpenSequenceOptions& options) {
-  return !options.intrinsics.empty() || options.depth_scale_m || !options.poses.empty() ||
-         options.pose_convention != PoseConvention::kCameraToWorld || options.views.every != 1 ||
-         options.views.from_s || options.views.to_s;
+  return !options.intrinsics.empty() || !options.depth_intrinsics.empty() || !options.color_from_depth.empty() ||
+         options.depth_scale_m || !options.poses.empty() || options.pose_convention != PoseConvention::kCameraToWorld ||
+         options.views.every != 1 || options.views.min_motion_m > 0 || options.views.from_s || options.views.to_s;
 }
 
 Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
@@ -29,6 +32,24 @@ Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
   if (convention == PoseConvention::kCameraToWorld) return pose;
   Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
   return pose * Rigid3::from_rotation(flip);
+}
+
+/// Without names and times of the views, whole stamps are numbers of views, as are those of a column of their own.
+std::map<double, Rigid3> poses_by_number(const std::vector<StampedPose>& list) {
+  std::map<double, Rigid3> by_number;
+  const bool has_numbers = std::ranges::none_of(list, [](const StampedPose& p) { return std::isnan(p.number); });
+  for (const StampedPose& pose : list) {
+    const double number = has_numbers ? pose.number : pose.time_s;
+    if (!std::isnan(number) && number != std::floor(number)) return {};
+    by_number.emplace(number, pose.world_from_camera);
+  }
+  return by_number;
+}
+
+std::vector<std::optional<Rigid3>> in_order(const std::vector<StampedPose>& list) {
+  std::vector<std::optional<Rigid3>> poses;
+  for (const StampedPose& pose : list) poses.emplace_back(pose.world_from_camera);
+  return poses;
 }
 
 /// Keeps the views that have a pose, and notes the number of the others.
@@ -49,6 +70,22 @@ Result<void> keep_posed_views(SequenceTable& table, const std::vector<std::optio
   return {};
 }
 
+/// Of the camera, or of the point 1 m in front of it, whichever is larger.
+double motion_m(const Rigid3& from, const Rigid3& to) {
+  const Eigen::Vector3d ahead(0, 0, 1);
+  return std::max((to.translation - from.translation).norm(), (to * ahead - from * ahead).norm());
+}
+
+Result<void> choose_moved_views(SequenceTable& table, double min_motion_m) {
+  if (!table.has_poses) return Error{"the views have no poses, which --min-motion needs"};
+  std::vector<ListedView> kept;
+  for (ListedView& view : table.views)
+    if (kept.empty() || motion_m(kept.back().world_from_camera, view.world_from_camera) >= min_motion_m)
+      kept.push_back(std::move(view));
+  table.views = std::move(kept);
+  return {};
+}
+
 Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   std::vector<ListedView> kept;
   const double begin_s = table.views.front().time_s;
@@ -63,7 +100,7 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   }
   if (kept.empty()) return Error{"no view lies between --from and --until"};
   table.views = std::move(kept);
-  return {};
+  return choice.min_motion_m > 0 ? choose_moved_views(table, choice.min_motion_m) : Result<void>();
 }
 
 }  // namespace
@@ -77,14 +114,21 @@ Result<void> assign_poses(SequenceTable& table, const fs::path& file) {
   if (!has_stamps) {
     if (list->size() != poses.size())
       return file_error(file, fmt::format("holds {} poses without stamps for {} views", list->size(), poses.size()));
-    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = (*list)[i].world_from_camera;
-    return keep_posed_views(table, poses, file);
+    return keep_posed_views(table, in_order(*list), file);
   }
   std::map<std::string, Rigid3, std::less<>> by_name;
-  std::map<double, Rigid3> by_number;
-  for (const StampedPose& pose : *list) {
-    by_name.emplace(pose.stamp, pose.world_from_camera);
-    if (!std::isnan(pose.time_s)) by_number.emplace(pose.time_s, pose.world_from_camera);
+  for (const StampedPose& pose : *list) by_name.emplace(pose.stamp, pose.world_from_camera);
+  const std::map<double, Rigid3> by_number = poses_by_number(*list);
+  const bool has_times = std::ranges::none_of(table.views, [](const ListedView& v) { return std::isnan(v.time_s); });
+  const bool is_named = std::ranges::any_of(table.views, [&](const ListedView& v) { return by_name.contains(v.name); });
+  if (!has_times && !is_named && by_number.empty()) {
+    if (list->size() != poses.size())
+      return file_error(file, fmt::format("holds {} poses with times, but the names of the {} images tell no times",
+                                          list->size(), poses.size()));
+    table.notes.push_back(
+        fmt::format("the names of the images tell no times: the poses of {} are taken in the order of the views",
+                    file.filename().string()));
+    return keep_posed_views(table, in_order(*list), file);
   }
   std::ranges::stable_sort(*list, {}, &StampedPose::time_s);
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -100,15 +144,32 @@ Result<void> assign_poses(SequenceTable& table, const fs::path& file) {
   return keep_posed_views(table, poses, file);
 }
 
+Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options) {
+  if (options.depth_intrinsics.empty() && options.color_from_depth.empty()) return {};
+  if (table.is_recording) return Error{"holds the depth camera itself: --depth-intrinsics does not apply"};
+  if (options.depth_intrinsics.empty() || options.color_from_depth.empty())
+    return Error{"--depth-intrinsics and --color-from-depth need each other"};
+  const auto calibration = parse_calibration(options.depth_intrinsics);
+  if (!calibration) return calibration.error();
+  const auto color_from_depth = read_pose(options.color_from_depth);
+  if (!color_from_depth) return color_from_depth.error();
+  if (color_from_depth->translation.norm() > kMaxBaseline_m)
+    return file_error(options.color_from_depth, fmt::format("its cameras are {:.3g} m apart (expected metres)",
+                                                            color_from_depth->translation.norm()));
+  table.depth_camera = DepthCamera{calibration->intrinsics, calibration->lens, *color_from_depth};
+  return {};
+}
+
 Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& options) {
   if (!gives_something(options)) return {};
   if (SequenceTable* table = listed_table(sequence)) return apply_options(*table, options);
   return Error{
-      "consists of PCD files, which hold camera, unit and poses themselves: --intrinsics, "
-      "--depth-scale, --poses, --every, --from and --until do not apply"};
+      "consists of PCD files, which hold camera, unit and poses themselves: --intrinsics, --depth-intrinsics, "
+      "--depth-scale, --poses, --every, --min-motion, --from and --until do not apply"};
 }
 
 Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& options) {
+  if (const auto done = set_depth_camera(table, options); !done) return done;
   if (!options.intrinsics.empty()) {
     const auto calibration = parse_calibration(options.intrinsics);
     if (!calibration) return calibration.error();

@@ -57,6 +57,7 @@ Result<std::vector<StampedPose>> from_stamped_rows(const std::vector<PoseRow>& r
     if (!may_be_untracked && !std::isfinite(row.numbers[0]))
       return file_error(file, fmt::format("line {} cannot be parsed: its time is no number", row.line));
     poses.push_back({row.numbers[0], row.stamp, *pose});
+    if (at == 2) poses.back().number = row.numbers[1];
   }
   return poses;
 }

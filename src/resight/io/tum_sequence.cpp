@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include "resight/io/internal/files.hpp"
@@ -86,26 +88,39 @@ Result<ImagePairs> associate(const fs::path& directory) {
   return pairs;
 }
 
-/// The calibration given, in the folder, or published for the data set of that name.
-Result<Calibration> find_tum_calibration(const fs::path& directory, const OpenSequenceOptions& options) {
+/// Whether one of the words of a folder's name, such as rgbd_dataset_freiburg1_xyz, is the word.
+bool names(std::string_view folder, std::string_view word) {
+  const auto is_letter_or_digit = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (std::size_t at = folder.find(word); at != folder.npos; at = folder.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !is_letter_or_digit(folder[at - 1])) && (end == folder.size() || !is_letter_or_digit(folder[end])))
+      return true;
+  }
+  return false;
+}
+
+/// The calibration given, in the folder, or published for the data set of that name, with a note.
+Result<Calibration> find_tum_calibration(const fs::path& directory, const OpenSequenceOptions& options,
+                                         std::vector<std::string>& notes) {
   if (!options.intrinsics.empty()) return parse_calibration(options.intrinsics);
   fs::path source;
   const auto found = find_calibration(directory, source);
   if (!found) return found.error();
   if (*found) return **found;
   const std::string name = to_lower(folder_name(directory));
-  Calibration published;
-  if (name.find("freiburg1") != name.npos || name.find("fr1") != name.npos)
-    published.intrinsics = {517.3, 516.5, 318.6, 255.3};
-  else if (name.find("freiburg2") != name.npos || name.find("fr2") != name.npos)
-    published.intrinsics = {520.9, 521.0, 325.1, 249.7};
-  else if (name.find("freiburg3") != name.npos || name.find("fr3") != name.npos)
-    published.intrinsics = {535.4, 539.2, 320.1, 247.6};
-  else
-    return file_error(directory,
-                      "holds no camera.txt, and its name is none of the TUM data set (freiburg1, ..): give "
-                      "--intrinsics fx,fy,cx,cy or FILE");
-  return published;
+  constexpr std::array<Intrinsics, 3> kPublished{
+      {{517.3, 516.5, 318.6, 255.3}, {520.9, 521.0, 325.1, 249.7}, {535.4, 539.2, 320.1, 247.6}}};
+  for (std::size_t i = 0; i < kPublished.size(); ++i) {
+    if (!names(name, fmt::format("freiburg{}", i + 1)) && !names(name, fmt::format("fr{}", i + 1))) continue;
+    notes.push_back(fmt::format(
+        "intrinsics: those published for freiburg{} of the TUM data set, by the folder's name (--intrinsics)", i + 1));
+    Calibration calibration;
+    calibration.intrinsics = kPublished[i];
+    return calibration;
+  }
+  return file_error(directory,
+                    "holds no camera.txt, and its name is none of the TUM data set (freiburg1, ..): give "
+                    "--intrinsics fx,fy,cx,cy or FILE");
 }
 
 }  // namespace
@@ -120,9 +135,9 @@ SequenceResult open_tum_sequence(const fs::path& directory, const OpenSequenceOp
   const fs::path associations = directory / "associations.txt";
   const auto pairs = is_file(associations) ? read_associations(associations) : associate(directory);
   if (!pairs) return pairs.error();
-  const auto calibration = find_tum_calibration(directory, options);
-  if (!calibration) return calibration.error();
   SequenceTable table;
+  const auto calibration = find_tum_calibration(directory, options, table.notes);
+  if (!calibration) return calibration.error();
   table.format = "tum";
   table.lens = calibration->lens;
   table.has_poses = options.poses.empty() && is_file(directory / "groundtruth.txt");

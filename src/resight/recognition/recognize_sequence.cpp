@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "resight/sensor/read_ahead.hpp"
+
 namespace resight {
 
 Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer& recognizer, const Sequence& sequence,
@@ -17,8 +19,9 @@ Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer
     const RecognizerConfig& config = recognizer.config();
     recognizer.set_depth_bias(measure_depth_bias(sequence, config.prepare, config.camera.depth_bias));
   }
+  ReadAhead reader(sequence, recognizer.config().verify.num_threads);
   for (int v = 0; v < num_views; ++v) {
-    const Result<RgbdFrame> frame = sequence.read_view(v);
+    const Result<RgbdFrame> frame = reader.read_view(v);
     if (!frame) return frame.error();
     if (trace != nullptr) *trace = {};
     SceneUpdate update = recognizer.add_view(*frame, trace);

@@ -90,6 +90,7 @@ void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   }
   update.changes = scene.add_view(std::move(view), &update.times);
   update.world_from_camera = scene.window().back().raw.world_from_camera;
+  update.pose_correction = scene.window().back().pose_correction;
   update.reconstruction_points = scene.reconstruction().size();
   update.searched = planner.needs_search(scene.window().back().cleared, update.changes);
 }

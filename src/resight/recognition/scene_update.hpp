@@ -9,6 +9,7 @@
 #include "resight/geometry/rigid3.hpp"
 #include "resight/history/object_event.hpp"
 #include "resight/history/object_observation.hpp"
+#include "resight/registration/camera_corrector.hpp"
 #include "resight/registration/depth_bias.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
 #include "resight/sensor/color_offset.hpp"
@@ -58,6 +59,7 @@ struct SceneUpdate {
   int view = 0;  ///< Number in the sequence, from 0.
   std::string view_name;
   Rigid3 world_from_camera;  ///< As given, or corrected (RecognizerConfig::camera).
+  PoseCorrection pose_correction;
   ColorOffset color_offset;  ///< Of the views so far; zero unless RecognizerConfig::camera corrects it.
   DepthBias depth_bias;      ///< As set by SceneRecognizer::set_depth_bias(); corrected if it is significant.
   std::vector<Detection> detections;

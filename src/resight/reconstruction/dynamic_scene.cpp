@@ -49,12 +49,16 @@ DynamicScene::DynamicScene(const DynamicSceneOptions& options)
 ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
   StageTimes own;
   StageTimes& measured = times != nullptr ? *times : own;
+  CorrectedCamera camera;
   {
     const ScopedTimer timer(measured, "poses");
-    view.frame.world_from_camera = corrector_.add_view(view);
+    camera = corrector_.add_view(view);
+    view.frame.world_from_camera = camera.world_from_camera;
   }
   const ScopedTimer timer(measured, "changes and reconstruction");
-  return add_at_pose(std::move(view));
+  ChangeResult changes = add_at_pose(std::move(view));
+  window_.back().pose_correction = camera.correction;
+  return changes;
 }
 
 ChangeResult DynamicScene::find_changes(const PreparedView& view) const {

@@ -33,6 +33,7 @@ class DynamicScene {
     /// Points that this view observed as novel; world frame.
     PointCloud novel_in_world;
     ViewVoxels voxels;  ///< Voxels of `cleared`. Only views affected by a removal are reduced again.
+    PoseCorrection pose_correction = {};
   };
 
   /// Throws std::invalid_argument if the options are invalid.

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/printable.hpp"
 #include "resight/recordings/internal/containers.hpp"
 
 namespace resight {
@@ -37,6 +39,11 @@ class SplitRecording final : public Recording {
     }
     damage_ = part->damage();
     parts_.push_back(std::move(part));
+  }
+  void lacks(const std::vector<std::string>& missing) {
+    const std::string text = fmt::format("{} of the files of metadata.yaml {} missing ({})", missing.size(),
+                                         missing.size() == 1 ? "is" : "are", printable(missing.front()));
+    damage_ += (damage_.empty() ? "" : "; ") + text;
   }
   [[nodiscard]] std::string format() const override { return parts_.front()->format(); }
   [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
@@ -81,6 +88,27 @@ std::vector<fs::path> list_parts(const fs::path& folder) {
   return parts;
 }
 
+/// The parts that metadata.yaml of a ROS 2 bag names, but which are not there.
+std::vector<std::string> list_missing_parts(const fs::path& folder) {
+  std::vector<std::string> missing;
+  const auto text = read_file(folder / "metadata.yaml", 1U << 20);
+  const std::size_t list = text.ok() ? text->find("relative_file_paths:") : std::string::npos;
+  if (list == std::string::npos) return missing;
+  std::istringstream lines(text->substr(text->find('\n', list)));
+  std::string line;
+  std::getline(lines, line);  // the rest of the line of the key
+  while (std::getline(lines, line)) {
+    const std::size_t dash = line.find_first_not_of(' ');
+    if (dash == std::string::npos || line[dash] != '-') break;
+    const std::size_t begin = line.find_first_not_of(" \"'", dash + 1);
+    if (begin == std::string::npos) continue;
+    const std::string name = line.substr(begin, line.find_last_not_of(" \"'\r") + 1 - begin);
+    std::error_code ignored;
+    if (!fs::exists(folder / fs::path(name).filename(), ignored)) missing.push_back(name);
+  }
+  return missing;
+}
+
 bool has_compressed_parts(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
@@ -117,13 +145,15 @@ Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& w
     return file_error(where, recordings::has_compressed_parts(where)
                                  ? "its files are compressed as a whole; unpack them with zstd -d"
                                  : "holds no *.db3 or *.mcap");
-  if (parts.size() == 1) return recordings::open_file(parts.front());
+  const std::vector<std::string> missing = recordings::list_missing_parts(where);
+  if (parts.size() == 1 && missing.empty()) return recordings::open_file(parts.front());
   auto split = std::make_unique<recordings::SplitRecording>();
   for (const auto& part : parts) {
     auto opened = recordings::open_file(part);
     if (!opened) return opened.error();
     split->add(std::move(*opened));
   }
+  if (!missing.empty()) split->lacks(missing);
   return Result<std::unique_ptr<Recording>>(std::move(split));
 }
 

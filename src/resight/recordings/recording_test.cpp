@@ -175,6 +175,25 @@ TEST(Recording, CutsAreNamed) {
   EXPECT_GT((*recording)->messages().size(), 2U);
 }
 
+TEST(Recording, MissingPartsAreNamed) {
+  const fs::path folder = fs::temp_directory_path() / "resight_recordings_MissingParts";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  fs::copy(recorded("ros2.db3"), folder / "bag_0.db3");
+  const auto write_metadata = [&](const std::string& files) {
+    std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n"
+                                            << files << "  duration:\n    nanoseconds: 1\n";
+  };
+  write_metadata("    - bag_0.db3\n");
+  EXPECT_EQ((*open_recording(folder))->damage(), "");
+  write_metadata("    - bag_0.db3\n    - \"bag_1.db3\"\n");
+  const auto recording = open_recording(folder);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_THAT((*recording)->damage(), HasSubstr("1 of the files of metadata.yaml is missing (bag_1.db3)"));
+  EXPECT_FALSE((*recording)->messages().empty());
+  fs::remove_all(folder);
+}
+
 /// Every file with bytes exchanged is refused or read.
 TEST(Recording, SurvivesDamage) {
   TemporaryFile file;

@@ -10,6 +10,8 @@ namespace {
 
 /// Longer paths are taken for loops.
 constexpr std::size_t kMaxDepth = 100;
+/// A transform this near in time counts even where the next one is far: robots stop to look.
+constexpr double kSameTime_s = 0.01;
 
 }  // namespace
 
@@ -60,7 +62,11 @@ std::optional<Rigid3> TransformBuffer::at(const Edge& edge, std::int64_t time_ns
   if (after != list.end() && after != list.begin()) {
     const auto before = std::prev(after);
     const double gap_s = seconds(before->first, after->first);
-    if (gap_s > max_gap_s) return std::nullopt;
+    if (gap_s > max_gap_s) {
+      if (seconds(time_ns, after->first) <= kSameTime_s) return after->second;
+      if (seconds(before->first, time_ns) <= kSameTime_s) return before->second;
+      return std::nullopt;
+    }
     const double t = gap_s > 0 ? seconds(before->first, time_ns) / gap_s : 0;
     const Eigen::Quaterniond q =
         Eigen::Quaterniond(before->second.rotation).slerp(t, Eigen::Quaterniond(after->second.rotation));

@@ -36,6 +36,8 @@ TEST(TransformBuffer, InterpolatesAlongThePath) {
 TEST(TransformBuffer, GapsAndUnknownFramesHaveNoTransform) {
   const TransformBuffer buffer = make_buffer();
   EXPECT_FALSE(buffer.find("map", "camera", 1500000000, 0.5).has_value()) << "the neighbours are 1 s apart";
+  EXPECT_TRUE(buffer.find("map", "camera", 2000000000, 0.5).has_value()) << "robots stop to look";
+  EXPECT_TRUE(buffer.find("map", "camera", 1005000000, 0.5).has_value());
   EXPECT_FALSE(buffer.find("map", "camera", 9000000000, 1).has_value()) << "long after the last one";
   EXPECT_TRUE(buffer.find("map", "camera", 2100000000, 1).has_value());
   EXPECT_FALSE(buffer.find("map", "nothing", 1500000000, 2).has_value());

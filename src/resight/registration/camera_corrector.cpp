@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/registration/camera_corrector.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -32,25 +34,28 @@ CameraCorrector::CameraCorrector(const CorrectCameraOptions& options) : options_
   align_.prior_sigma_rad = options_.sigma_rad;
 }
 
-Rigid3 CameraCorrector::add_view(const PreparedView& view) {
+CorrectedCamera CameraCorrector::add_view(const PreparedView& view) {
   const Rigid3& given = view.frame.world_from_camera;
-  if (!options_.correct) return given;
+  CorrectedCamera camera{given, {}};
+  if (!options_.correct) return camera;
   View added{make_alignment_view(view), given, given};
-  if (!added.view.levels.empty()) added.world_from_camera = correct(added.view, given);
+  if (!added.view.levels.empty()) camera = correct(added.view, given);
+  added.world_from_camera = camera.world_from_camera;
   views_.push_back(std::move(added));
   if (views_.size() > static_cast<std::size_t>(options_.num_views)) views_.pop_front();
-  return views_.back().world_from_camera;
+  return camera;
 }
 
-Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& given) const {
+CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3& given) const {
   std::vector<AlignmentTarget> targets;
   for (const View& earlier : views_)
     if (earlier.view.levels.size() >= view.levels.size()) targets.push_back({&earlier.view, earlier.world_from_camera});
-  if (targets.empty()) return given;
+  if (targets.empty()) return {given, {}};
   // Most given poses are right; the finest level alone confirms them.
   AlignViewOptions near = align_;
   near.num_levels = 1;
-  if (!is_surprising(align_view(view, targets, given, near), given)) return given;
+  if (const AlignedView aligned = align_view(view, targets, given, near); !is_surprising(aligned, given))
+    return {given, measure(aligned, given, given)};
   // Poses of a tracker drift: the motion since the last view is known better than the pose.
   const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
@@ -65,7 +70,26 @@ Rigid3 CameraCorrector::correct(const AlignmentView& view, const Rigid3& given) 
     }
     if (is_same_pose(moved, given)) break;
   }
-  return best.cost < kMaxCostRatio * as_given.cost && is_surprising(best, given) ? best.world_from_camera : given;
+  const bool is_off = best.cost < kMaxCostRatio * as_given.cost && is_surprising(best, given);
+  const Rigid3& corrected = is_off ? best.world_from_camera : given;
+  return {corrected, measure(best, corrected, given)};
+}
+
+PoseCorrection CameraCorrector::measure(const AlignedView& aligned, const Rigid3& world_from_camera,
+                                        const Rigid3& given) const {
+  PoseCorrection correction;
+  if (aligned.overlap < options_.min_overlap) return correction;
+  // What the surfaces leave open, the given pose tells.
+  const TwistMatrix information = aligned.information + twist_information(options_.sigma_rad, options_.sigma_m);
+  const Twist variances = information.inverse().diagonal();
+  correction.is_measured = true;
+  correction.sigma_rad = std::sqrt(variances.head<3>().mean());
+  correction.sigma_m = std::sqrt(variances.tail<3>().mean());
+  if (is_same_pose(world_from_camera, given)) return correction;
+  const Twist moved = to_twist(world_from_camera.inverse() * given);
+  correction.moved_rad = moved.head<3>().norm();
+  correction.moved_m = moved.tail<3>().norm();
+  return correction;
 }
 
 bool CameraCorrector::is_too_far(const AlignedView& aligned, const Rigid3& start) const {

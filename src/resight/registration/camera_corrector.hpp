@@ -31,6 +31,20 @@ inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
   v.num_threads(o.num_threads);
 }
 
+/// By how much the given pose of a camera is off.
+struct PoseCorrection {
+  bool is_measured = false;  ///< The views before show where the camera is.
+  double moved_m = 0;        ///< Between given and corrected pose; 0 if the given one stands.
+  double moved_rad = 0;
+  double sigma_m = 0;  ///< Standard error of the measured pose, root mean square over the three axes.
+  double sigma_rad = 0;
+};
+
+struct CorrectedCamera {
+  Rigid3 world_from_camera;  ///< As given, or corrected.
+  PoseCorrection correction;
+};
+
 /// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected
 /// poses, from its given pose and from the given motion since the last view: the poses of a tracker drift. Robust
 /// weights keep changed regions from pulling. A pose that agrees with its alignment, or fits nearly as well, is
@@ -39,8 +53,8 @@ class CameraCorrector {
  public:
   explicit CameraCorrector(const CorrectCameraOptions& options = {});
 
-  /// Returns the corrected world_from_camera of a view (with normals) and keeps the view as a target for the next ones.
-  Rigid3 add_view(const PreparedView& view);
+  /// Corrects the pose of a view (with normals) and keeps the view as a target for the next ones.
+  CorrectedCamera add_view(const PreparedView& view);
 
  private:
   struct View {
@@ -48,7 +62,9 @@ class CameraCorrector {
     Rigid3 world_from_camera;
     Rigid3 given;
   };
-  [[nodiscard]] Rigid3 correct(const AlignmentView& view, const Rigid3& given) const;
+  [[nodiscard]] CorrectedCamera correct(const AlignmentView& view, const Rigid3& given) const;
+  [[nodiscard]] PoseCorrection measure(const AlignedView& aligned, const Rigid3& world_from_camera,
+                                       const Rigid3& given) const;
   [[nodiscard]] bool is_too_far(const AlignedView& aligned, const Rigid3& start) const;
   [[nodiscard]] bool is_surprising(const AlignedView& aligned, const Rigid3& world_from_camera) const;
 

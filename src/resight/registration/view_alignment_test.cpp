@@ -192,15 +192,25 @@ TEST_F(Corrector, MendsAPoseThatIsOff) {
   corrector.add_view(prepared({}, first_pose(), 0.001));
   PreparedView view = prepared({}, second_pose(), 0.001, 2);
   view.frame.world_from_camera = off(second_pose(), 0.012, 0.015);
-  const Rigid3 corrected = corrector.add_view(view);
+  const auto [corrected, correction] = corrector.add_view(view);
   EXPECT_LT(shift_m(corrected, second_pose()), 0.003);
   EXPECT_LT(turn_rad(corrected, second_pose()), 0.003);
+  EXPECT_TRUE(correction.is_measured);
+  EXPECT_NEAR(correction.moved_m, shift_m(corrected, view.frame.world_from_camera), 1e-9);
+  EXPECT_NEAR(correction.moved_rad, 0.015, 0.003);
+  EXPECT_GT(correction.sigma_m, 0);
+  EXPECT_LT(correction.sigma_m, 0.003);
+  EXPECT_LT(correction.sigma_rad, 0.003);
 }
 
 TEST_F(Corrector, LeavesARightPoseBitByBit) {
   CameraCorrector corrector(options());
   corrector.add_view(prepared({}, first_pose(), 0.001));
-  EXPECT_EQ(corrector.add_view(prepared({}, second_pose(), 0.001, 2)).matrix(), second_pose().matrix());
+  const auto [corrected, correction] = corrector.add_view(prepared({}, second_pose(), 0.001, 2));
+  EXPECT_EQ(corrected.matrix(), second_pose().matrix());
+  EXPECT_TRUE(correction.is_measured);
+  EXPECT_EQ(correction.moved_m, 0);
+  EXPECT_EQ(correction.moved_rad, 0);
 }
 
 TEST_F(Corrector, DoesNotMoveAViewFarAway) {
@@ -209,7 +219,9 @@ TEST_F(Corrector, DoesNotMoveAViewFarAway) {
   PreparedView view = prepared({}, second_pose());
   view.frame.world_from_camera = off(second_pose(), 0.3, 0.3);
   const Rigid3 given = view.frame.world_from_camera;
-  EXPECT_EQ(corrector.add_view(view).matrix(), given.matrix());
+  const auto [corrected, correction] = corrector.add_view(view);
+  EXPECT_EQ(corrected.matrix(), given.matrix());
+  EXPECT_FALSE(correction.is_measured);
 }
 
 TEST_F(Corrector, OffByDefault) {
@@ -217,7 +229,7 @@ TEST_F(Corrector, OffByDefault) {
   corrector.add_view(prepared({}, first_pose()));
   PreparedView view = prepared({}, second_pose());
   view.frame.world_from_camera = off(second_pose(), 0.012, 0.015);
-  EXPECT_EQ(corrector.add_view(view).matrix(), view.frame.world_from_camera.matrix());
+  EXPECT_EQ(corrector.add_view(view).world_from_camera.matrix(), view.frame.world_from_camera.matrix());
 }
 
 TEST(AlignViewOptions, BadValuesAreRefused) {

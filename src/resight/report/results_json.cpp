@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "resight/core/check.hpp"
 #include "resight/core/json_text.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/report/internal/json_values.hpp"
 #include "resight/report/internal/results_text.hpp"
 #include "resight/report/results.hpp"
@@ -120,6 +124,30 @@ Json depth_bias_json(const ReportRun& run) {
           {"corrected", bias.is_significant()}};
 }
 
+// Null if no view could be compared with earlier ones.
+Json pose_correction_json(const ReportRun& run) {
+  std::vector<double> moved_m, moved_rad, sigmas_m, sigmas_rad;
+  int num_corrected = 0;
+  for (const ViewRecord& view : run.views) {
+    const PoseCorrection& correction = view.update.pose_correction;
+    if (!correction.is_measured) continue;
+    moved_m.push_back(correction.moved_m);
+    moved_rad.push_back(correction.moved_rad);
+    sigmas_m.push_back(correction.sigma_m);
+    sigmas_rad.push_back(correction.sigma_rad);
+    num_corrected += correction.moved_m > 0 || correction.moved_rad > 0 ? 1 : 0;
+  }
+  if (moved_m.empty()) return nullptr;
+  return {{"num_views", moved_m.size()},
+          {"num_corrected", num_corrected},
+          {"largest_m", std::ranges::max(moved_m)},
+          {"largest_rad", std::ranges::max(moved_rad)},
+          {"median_m", upper_median(std::move(moved_m))},
+          {"median_rad", upper_median(std::move(moved_rad))},
+          {"sigma_m", upper_median(std::move(sigmas_m))},
+          {"sigma_rad", upper_median(std::move(sigmas_rad))}};
+}
+
 Json unknown_if_empty(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json unknown_if_zero(std::size_t value) { return value == 0 ? Json(nullptr) : Json(value); }
@@ -179,6 +207,7 @@ std::string format_summary_json(const ReportRun& run) {
   json["stages"] = stage_times_json(summary.times, summary.num_views);
   json["color_offset"] = color_offset_json(run);
   json["depth_bias"] = depth_bias_json(run);
+  json["pose_correction"] = pose_correction_json(run);
   if (run.num_skipped_views) json["num_skipped_views"] = *run.num_skipped_views;
   json["peak_memory_bytes"] = unknown_if_zero(run.peak_memory_bytes);
   if (summary.num_scored_views > 0) {

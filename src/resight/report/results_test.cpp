@@ -191,6 +191,7 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
   EXPECT_TRUE(parsed["evaluation"]["score"]["precision"].is_null());
 
   EXPECT_TRUE(parsed.at("color_offset").is_null());
+  EXPECT_TRUE(parsed.at("pose_correction").is_null());
   EXPECT_FALSE(parsed.contains("num_skipped_views"));
   run.num_skipped_views = 3;
   run.views.back().update.color_offset = {{2.25, -1.5}, {0.25, 0.5}, 7, {2, -1}};
@@ -198,6 +199,11 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
   EXPECT_EQ(parsed.at("color_offset"), json::parse(R"({"offset_px": [2.25, -1.5], "spread_px": [0.25, 0.5],
                                                       "num_views": 7, "moved_px": [2, -1]})"));
   EXPECT_EQ(parsed.at("num_skipped_views"), 3);
+  run.views.front().update.pose_correction = {.is_measured = true, .moved_m = 0, .sigma_m = 0.001};
+  run.views.back().update.pose_correction = {true, 0.03, 0.02, 0.002, 0.001};
+  parsed = json::parse(format_summary_json(run));
+  EXPECT_EQ(parsed.at("pose_correction"), json::parse(R"({"num_views": 2, "num_corrected": 1, "largest_m": 0.03,
+      "largest_rad": 0.02, "median_m": 0.03, "median_rad": 0.02, "sigma_m": 0.002, "sigma_rad": 0.001})"));
 }
 
 // The lists are never in memory as a whole. The layout is the one of the JSON library all the same.

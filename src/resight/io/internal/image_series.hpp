@@ -21,12 +21,12 @@ struct SeriesFile {
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< If the name is a time.
 };
 
-/// Files whose names differ in their numbers only.
+/// Files whose names differ in their numbers only, or images of one kind whose names have no number.
 struct FileSeries {
   std::filesystem::path folder;
-  std::string pattern;  ///< File name with # for each number, such as "frame-#.depth.png".
+  std::string pattern;  ///< File name with # for each number, such as "frame-#.depth.png", or "*.png".
   SeriesKind kind = SeriesKind::kOther;
-  std::map<std::string, SeriesFile> files;  ///< By the numbers that differ, without leading zeros.
+  std::map<std::string, SeriesFile> files;  ///< By the numbers that differ, without leading zeros, or by the name.
   [[nodiscard]] std::string label() const;  ///< For messages: folder and pattern.
 };
 

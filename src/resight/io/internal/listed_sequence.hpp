@@ -18,7 +18,14 @@ enum class DepthStorage {
   kPng,         ///< 16-bit PNG.
   kRotatedPng,  ///< 16-bit PNG, each value rotated right by 3 bits.
   kNpy,         ///< NumPy array of floating-point metres.
-  kByName,      ///< kNpy or kPng by the extension; the largest 16-bit value is no return, too.
+  kByName,      ///< A number array or kPng by the extension; the largest 16-bit value is no return, too.
+};
+
+/// A depth camera beside the colour camera.
+struct DepthCamera {
+  Intrinsics intrinsics;
+  LensDistortion lens;
+  Rigid3 color_from_depth;
 };
 
 /// A view without its images; everything else is already known.
@@ -42,8 +49,10 @@ struct SequenceTable {
   bool has_ground_truth = false;
   bool is_recording = false;  ///< The table only lists times and poses.
   DepthStorage depth_storage = DepthStorage::kPng;
-  std::optional<double> npy_unit_m;  ///< Unit of NumPy arrays. Otherwise metres, and whole numbers are refused.
+  std::optional<double> npy_unit_m;  ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
   LensDistortion lens;               ///< Of both images. The views that are read are without distortion.
+  /// None: the depth is registered to the colours, maybe at a lower resolution.
+  std::optional<DepthCamera> depth_camera;
   std::vector<ListedView> views;
   std::vector<std::string> notes;
 };
@@ -57,6 +66,9 @@ struct SequenceTable {
 /// Sets the poses of views from a file: by the name of the view, by its time, or by its place in the order. Views
 /// without a pose are left out, with a note.
 [[nodiscard]] Result<void> assign_poses(SequenceTable& table, const std::filesystem::path& file);
+
+/// Sets the depth camera that the options give, if they do.
+[[nodiscard]] Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options);
 
 /// Replaces what the options give: intrinsics, unit of depth, poses, and the choice of views. Fails for a sequence that
 /// make_listed_sequence() has not made, if the options give anything.

@@ -24,7 +24,8 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] SequenceResult open_single_pcd(const std::filesystem::path& file);
 
 [[nodiscard]] bool is_npy_sequence(const std::filesystem::path& directory);
-[[nodiscard]] SequenceResult open_npy_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_npy_sequence(const std::filesystem::path& directory,
+                                               const OpenSequenceOptions& options);
 [[nodiscard]] bool is_fixed_camera_sequence(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_fixed_camera_sequence(const std::filesystem::path& directory);
 [[nodiscard]] bool is_camera_info_sequence(const std::filesystem::path& directory);
@@ -36,6 +37,8 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] bool is_image_folder(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_image_folder(const std::filesystem::path& directory,
                                                const OpenSequenceOptions& options);
+/// Whether files in such a folder are named like camera poses.
+[[nodiscard]] bool holds_poses(const std::filesystem::path& directory);
 /// One sentence about the images in a folder that is no sequence. Empty if there are none.
 [[nodiscard]] std::string describe_image_folder(const std::filesystem::path& directory);
 

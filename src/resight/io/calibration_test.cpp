@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/calibration.hpp"
+
+#include <gmock/gmock.h>
+
+#include "resight/io/internal/test_data.hpp"
+
+namespace resight {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kCameraMatrix = "60 0 3.5\n0 61 2.5\n0 0 1\n";
+
+TEST(Calibration, UsualForms) {
+  io::TestDirectory directory;
+  const auto read = [&](const std::string& name, const std::string& text) {
+    io::write_text(directory / name, text);
+    return io::read_calibration(directory / name);
+  };
+  const std::vector<std::pair<std::string, std::string>> forms = {
+      {"k.txt", kCameraMatrix},
+      {"k.txt", "60 61 3.5 2.5\n"},
+      {"k.csv", "60,0,3.5\n0,61,2.5\n0,0,1\n"},
+      {"k.txt", "60 0 3.5 0\n0 61 2.5 0\n0 0 1 0\n0 0 0 1\n"},
+      {"k.json", R"({"width": 8, "height": 6, "intrinsic_matrix": [60, 0, 0, 0, 61, 0, 3.5, 2.5, 1]})"},
+      {"k.json", R"({"fx": 60, "fy": 61, "ppx": 3.5, "ppy": 2.5, "depth_scale": 0.001})"},
+      {"k.json", R"({"camera": {"w": 8, "h": 6, "fx": 60, "fy": 61, "cx": 3.5, "cy": 2.5, "scale": 6553.5}})"},
+      {"k.json",
+       R"({"depth": {"K": [[1, 0, 1], [0, 1, 1], [0, 0, 1]]}, "color": {"K": [[60, 0, 3.5], [0, 61, 2.5], [0, 0, 1]]}})"},
+      {"k.yaml",
+       "image_width: 8\nimage_height: 6\ncamera_matrix:\n  rows: 3\n  cols: 3\n  data: [60, 0, 3.5, 0, 61,\n    "
+       "2.5, 0, 0, 1]\ndistortion_model: plumb_bob\ndistortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0, "
+       "0, 0, 0, 0]\n"},
+      {"k.yaml", "%YAML:1.0\nCamera.fx: 60.0\nCamera.fy: 61.0\nCamera.cx: 3.5\nCamera.cy: 2.5\nCamera.k1: 0.0\n"},
+      {"k.ini", "[camera]\nfx = 60\nfy = 61\ncx = 3.5\ncy = 2.5\n"},
+      {"k.txt", "fx 60\nfy 61\ncx 3.5\ncy 2.5\n"},
+      {"cameras.txt", "# Camera list\n1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 60 61 3.5 2.5\n"},
+      {"scene0000_00.txt",
+       "m_colorWidth = 8\nm_calibrationColorIntrinsic = 60 0 3.5 0 0 61 2.5 0 0 0 1 0 0 0 0 1\n"
+       "m_calibrationDepthIntrinsic = 9 0 1 0 0 9 1 0 0 0 1 0 0 0 0 1\n"}};
+  for (const auto& [name, text] : forms) {
+    const auto calibration = read(name, text);
+    ASSERT_TRUE(calibration.ok()) << calibration.error().message << "\n" << text;
+    EXPECT_EQ(calibration->intrinsics, (io::Intrinsics{60, 61, 3.5, 2.5})) << text;
+    EXPECT_TRUE(calibration->lens.is_none()) << text;
+  }
+  EXPECT_NEAR(*read("r.json", forms[6].second)->metres_per_unit, 1 / 6553.5, 1e-12);
+  const auto distorted = read("d.yaml", "fx: 60\nfy: 61\ncx: 3.5\ncy: 2.5\nk1: 0.1\nk2: 0.01\np1: 0\np2: 0\n");
+  ASSERT_TRUE(distorted.ok()) << distorted.error().message;
+  EXPECT_FALSE(distorted->lens.is_none());
+  const auto opencv = read("cameras.txt", "1 OPENCV 8 6 60 61 3.5 2.5 0.1 0.01 0 0\n");
+  ASSERT_TRUE(opencv.ok()) << opencv.error().message;
+  EXPECT_EQ(opencv->lens, *LensDistortion::make("plumb_bob", std::vector<double>{0.1, 0.01, 0, 0}));
+  EXPECT_EQ(opencv->width, 8);
+  EXPECT_EQ(read("cameras.txt", "1 SIMPLE_RADIAL 8 6 60 3.5 2.5 0.1\n")->intrinsics,
+            (io::Intrinsics{60, 60, 3.5, 2.5}));
+  EXPECT_THAT(read("cameras.txt", "1 PINHOLE 8 6 60 61 3.5\n").error().message, HasSubstr("'PINHOLE' has 5 numbers"));
+  EXPECT_THAT(read("cameras.txt", "1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 70 71 3.5 2.5\n").error().message,
+              HasSubstr("several cameras"));
+  EXPECT_THAT(read("bad.txt", "1 2 3\n").error().message, HasSubstr("3 numbers"));
+  EXPECT_THAT(
+      read("bad.json", R"({"a": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "b": {"fx": 2, "fy": 2, "cx": 1, "cy": 1}})")
+          .error()
+          .message,
+      HasSubstr("several cameras"));
+}
+
+TEST(Calibration, SurvivesDamage) {
+  io::TestDirectory directory;
+  Rng rng(4);
+  for (const std::string& form :
+       {std::string(R"({"camera": {"w": 8, "fx": 60, "fy": 61, "cx": [3, 4], "cy": 2.5, "K": {"data": [1]}}})"),
+        std::string("camera_matrix: !!opencv-matrix\n rows: 3\n data: [60, 0, 3.5, 0, 61, 2.5, 0, 0, 1]\nd: [1]\n")})
+    for (int i = 0; i < 300; ++i) {
+      std::string text = form.substr(0, 1 + rng.below(static_cast<std::uint32_t>(form.size())));
+      text[rng.below(static_cast<std::uint32_t>(text.size()))] = static_cast<char>(rng.below(256));
+      const auto file = directory / (form[0] == '{' ? "k.json" : "k.yaml");
+      io::write_text(file, text);
+      const auto calibration = io::read_calibration(file);
+      EXPECT_TRUE(calibration.ok() || !calibration.error().message.empty());
+    }
+}
+
+}  // namespace
+}  // namespace resight

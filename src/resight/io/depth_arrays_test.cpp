@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/io/internal/depth_arrays.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/test_data.hpp"
+
+namespace resight::io {
+namespace {
+
+using testing::HasSubstr;
+
+/// Written by NumPy and OpenCV (tests/data/depth/README.md).
+fs::path stored(const std::string& name) { return fs::path(RESIGHT_SOURCE_DIR) / "tests/data/depth" / name; }
+
+TEST(DepthArrays, FilesOfOtherWriters) {
+  for (const char* name : {"single.npz", "named.npz", "single.exr", "half.exr", "fortran.npy"}) {
+    const auto depth_m = read_depth_array(stored(name), std::nullopt);
+    ASSERT_TRUE(depth_m.ok()) << depth_m.error().message;
+    ASSERT_EQ(depth_m->width(), 8) << name;
+    ASSERT_EQ(depth_m->height(), 6) << name;
+    const double tolerance_m = std::string(name) == "half.exr" || std::string(name) == "fortran.npy" ? 1e-3 : 1e-6;
+    for (int v = 0; v < 6; ++v)
+      for (int u = 0; u < 8; ++u) {
+        if ((u == 3 && v == 2) || (u == 5 && v == 4))
+          EXPECT_TRUE(std::isnan((*depth_m)(u, v))) << name;
+        else
+          EXPECT_NEAR((*depth_m)(u, v), 1 + 0.01 * (8 * v + u), tolerance_m) << name << " " << u << " " << v;
+      }
+    EXPECT_NEAR((*read_depth_array(stored(name), 0.001))(1, 0), 0.00101, 1e-5) << name;
+  }
+}
+
+TEST(DepthArrays, SaysWhichArrayIsMissing) {
+  EXPECT_THAT(read_depth_array(stored("unnamed.npz"), std::nullopt).error().message,
+              HasSubstr("holds 2 arrays (a, b, ..), none of which is called depth"));
+}
+
+TEST(DepthArrays, DamageIsAnError) {
+  TestDirectory directory;
+  Rng rng(3);
+  for (const std::string name : {"single.npz", "named.npz", "single.exr", "half.exr", "fortran.npy"}) {
+    const std::string good = *read_file(stored(name));
+    for (int i = 0; i < 200; ++i) {
+      std::string bytes = good.substr(0, i % 2 == 0 ? good.size() : rng.below(static_cast<std::uint32_t>(good.size())));
+      if (!bytes.empty())
+        bytes[rng.below(static_cast<std::uint32_t>(bytes.size()))] ^= static_cast<char>(1U << (i % 8));
+      write_text(directory / name, bytes);
+      const auto depth_m = read_depth_array(directory / name, std::nullopt);
+      EXPECT_TRUE(depth_m.ok() || depth_m.error().message.find(name) != std::string::npos);
+    }
+    write_text(directory / name, good.substr(0, good.size() / 2));
+    EXPECT_FALSE(read_depth_array(directory / name, std::nullopt).ok()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace resight::io

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "resight/io/images.hpp"
+#include "resight/io/internal/depth_arrays.hpp"
+
+namespace resight::io {
+namespace {
+
+/// The bytes of a file, for OpenEXR. It reports errors by exceptions.
+class ByteStream : public Imf::IStream {
+ public:
+  explicit ByteStream(std::string_view bytes) : IStream("depth"), bytes_(bytes) {}
+  bool read(char* target, int count) override {
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - position_)
+      throw std::runtime_error("the file ends too early");
+    std::memcpy(target, bytes_.data() + position_, static_cast<std::size_t>(count));
+    position_ += static_cast<std::uint64_t>(count);
+    return position_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override {
+    if (position > bytes_.size()) throw std::runtime_error("the file ends too early");
+    position_ = position;
+  }
+
+ private:
+  std::string_view bytes_;
+  std::uint64_t position_ = 0;
+};
+
+/// Empty if there are several channels and none has the name of depth.
+std::string find_depth_channel(const Imf::ChannelList& channels) {
+  constexpr std::array kNames = {"Z", "depth", "Y", "V", "R"};
+  for (const char* name : kNames)
+    if (channels.findChannel(name) != nullptr) return name;
+  const auto first = channels.begin();
+  if (first == channels.end()) return "";
+  auto second = first;
+  return ++second == channels.end() ? first.name() : "";
+}
+
+Result<Image<float>> read_channel(ByteStream& stream, std::string_view name) {
+  const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
+  Imf::InputFile file(stream, 0);
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  if (width < 1 || height < 1 || width > kMaxImageSide_px || height > kMaxImageSide_px ||
+      width * height > kMaxViewPixels)
+    return fail(fmt::format("the image size {}x{} is out of range", width, height));
+  const std::string channel = find_depth_channel(file.header().channels());
+  if (channel.empty()) return fail("holds no channel of depth (Z, depth, Y, V, R, or a single one)");
+  const Imf::Channel& found = file.header().channels()[channel];
+  if (found.xSampling != 1 || found.ySampling != 1) return fail("its channel of depth has fewer pixels than the image");
+  Image<float> values(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN());
+  Imf::FrameBuffer buffer;
+  buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data().data(), window));
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+}  // namespace
+
+Result<Image<float>> parse_depth_exr(std::string_view bytes, std::string_view name,
+                                     std::optional<double> metres_per_unit) {
+  try {
+    ByteStream stream(bytes);
+    auto depth_m = read_channel(stream, name);
+    if (!depth_m) return depth_m;
+    const double scale = metres_per_unit.value_or(1);
+    for (float& z_m : depth_m->data()) {
+      const auto scaled = static_cast<float>(scale * z_m);
+      z_m = scaled > 0 && std::isfinite(scaled) ? scaled : std::numeric_limits<float>::quiet_NaN();
+    }
+    return depth_m;
+  } catch (const std::exception&) {
+    return Error{fmt::format("{}: cannot be decoded as an OpenEXR image (damaged?)", name)};
+  }
+}
+
+}  // namespace resight::io
