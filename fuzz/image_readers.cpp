@@ -102,12 +102,15 @@ std::vector<std::string> make_image_message_seeds() {
   seeds.push_back(compressed("png", png));
   seeds.push_back(compressed("16UC1; compressedDepth png", std::string(12, '\0') + png));
   seeds.push_back(compressed("32FC1; compressedDepth png", std::string(12, '\1') + png));
+  seeds.push_back('\4' + recordings::disparity_message(1.5, "camera", 500, 0.1F, 4, 2, std::string(32, '\x41')));
   return seeds;
 }
 
 void read_image_message(std::string_view bytes) {
   if (bytes.empty()) return;
-  const char* const type = (bytes[0] & 2) != 0 ? "sensor_msgs/CompressedImage" : "sensor_msgs/Image";
+  const char* const type = (bytes[0] & 4) != 0   ? "stereo_msgs/DisparityImage"
+                           : (bytes[0] & 2) != 0 ? "sensor_msgs/CompressedImage"
+                                                 : "sensor_msgs/Image";
   const RecordedTopic topic{"/camera/depth/image", type,
                             (bytes[0] & 1) != 0 ? MessageLayout::kCdr : MessageLayout::kRos1};
   bytes.remove_prefix(1);

@@ -119,11 +119,39 @@ Json describe_library(const ModelLibrary& library) {
   return json;
 }
 
+std::vector<double> rounded_extent_m(const std::vector<Eigen::Vector3f>& points) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points) box.extend(p);
+  const Eigen::Vector3f size = box.sizes();
+  return {rounded(size.x()), rounded(size.y()), rounded(size.z())};
+}
+
+// A model that cannot be read says why: a wrong unit, for example.
+Json describe_model(const ModelLocation& location) {
+  Json json = {{"name", location.name}, {"format", location.format}, {"path", location.path.string()}};
+  const auto model = read_model(location);
+  if (!model.ok()) {
+    json["error"] = model.error().message;
+    return json;
+  }
+  if (model->mesh) {
+    json["extent_m"] = rounded_extent_m(model->mesh->vertices);
+    json["vertices"] = model->mesh->vertices.size();
+    json["faces"] = model->mesh->faces.size();
+    json["textured"] = model->mesh->has_texture();
+  } else if (model->surface) {
+    json["extent_m"] = rounded_extent_m(model->surface->points);
+    json["points"] = model->surface->size();
+  }
+  if (!model->views.empty()) json["views"] = model->views.size();
+  if (!model->warnings.empty()) json["warnings"] = model->warnings;
+  return json;
+}
+
 Json describe_models(const std::vector<ModelLocation>& models) {
   Json json;
   json["models"] = Json::array();
-  for (const ModelLocation& model : models)
-    json["models"].push_back({{"name", model.name}, {"format", model.format}, {"path", model.path.string()}});
+  for (const ModelLocation& model : models) json["models"].push_back(describe_model(model));
   return json;
 }
 

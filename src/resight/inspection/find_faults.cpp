@@ -52,7 +52,9 @@ void add_blur(const SequenceMeasurements& measured, std::vector<Finding>& findin
     ++num_blurred;
     if (worst == nullptr || v.color.edge_width_px > worst->color.edge_width_px) worst = &v;
   }
-  if (worst == nullptr || num_blurred <= kMaxBlurredShare * static_cast<double>(measured.views.size())) return;
+  const std::size_t num_views = measured.views.size();
+  const bool is_one_of_several = num_blurred == 1 && num_views > 1;
+  if (worst == nullptr || is_one_of_several || num_blurred <= kMaxBlurredShare * static_cast<double>(num_views)) return;
   findings.push_back({.fault = "motion_blur",
                       .message = fmt::format("{} of {} inspected views are blurred (edges are up to {:.1f} px wide)",
                                              num_blurred, measured.views.size(), worst->color.edge_width_px),

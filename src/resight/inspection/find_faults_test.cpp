@@ -153,6 +153,21 @@ TEST(FindFaults, OnlyPosesOrKnownObjectsTellTheUnitOfDepth) {
   }
 }
 
+TEST(FindFaults, OneBlurredViewOfSeveralIsNoFault) {
+  const test::BrokenSequence blurred(good_sequence(), "motion_blur");
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 5; ++v) frames.push_back(good_sequence().read_view(v).value());
+  frames[2] = blurred.read_view(2).value();
+  const auto faults_of = [](std::vector<RgbdFrame> views) {
+    return find_faults(
+        measure_sequence(test::MemorySequence(std::move(views)), {.max_views = 24, .num_threads = 1}).value());
+  };
+  EXPECT_EQ(names_of(faults_of(frames)), "");
+  frames[3] = blurred.read_view(3).value();
+  EXPECT_NE(names_of(faults_of(frames)).find("motion_blur"), std::string::npos);
+  EXPECT_NE(names_of(faults_of({frames[2]})).find("motion_blur"), std::string::npos);
+}
+
 TEST(FindFaults, AShiftThatTheViewsDoNotAgreeOnIsNone) {
   const auto shifts = [](int first_px, int second_px) {
     std::array<ShiftScores, 2> halves;

@@ -318,7 +318,7 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
   EXPECT_THAT((*in_order)->notes(), testing::Contains(HasSubstr("in the order of the views")));
   io::write_text(directory / "given", "0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n");
   EXPECT_THAT(open_sequence(directory.path(), options).error().message,
-              HasSubstr("2 poses with times, but the names of the 3 images tell no times"));
+              HasSubstr("2 poses with times, which the names of the images do not tell, for 3 views"));
   io::write_text(directory / "given", rows16);
   EXPECT_THAT(open_sequence(directory.path(), options).error().message,
               HasSubstr("1 poses without stamps for 3 views"));

@@ -127,6 +127,23 @@ Result<Image<float>> decode_raw_depth(const ImageMessage& image, std::optional<d
   return depth_m;
 }
 
+/// Infinite disparities have no depth.
+Result<Image<float>> decode_disparity_depth(std::string_view bytes, const RecordedTopic& topic) {
+  const auto message = decode_disparity(bytes, topic.layout, topic.name);
+  if (!message) return message.error();
+  const double unit = message->focal_length_px * message->baseline_m;
+  if (message->image.encoding != "32FC1" || !(unit > 0) || !std::isfinite(unit))
+    return Error{fmt::format(
+        "{}: a disparity image without focal length or baseline, or of another encoding than 32FC1", topic.name)};
+  auto depth_m = decode_raw_depth(message->image, 1, topic.name);
+  if (!depth_m) return depth_m;
+  for (float& value : depth_m->data()) {
+    const bool is_measured = value >= message->min_disparity_px && value <= message->max_disparity_px;
+    value = is_measured ? to_depth(unit / static_cast<double>(value), 1) : std::numeric_limits<float>::quiet_NaN();
+  }
+  return depth_m;
+}
+
 /// compressed_depth_image_transport: 12 bytes (a number and two parameters), then a PNG of 16 bits. Floating-point
 /// metres are stored as a / (value - b).
 Result<Image<float>> decode_compressed_depth(const CompressedImageMessage& image, std::optional<double> metres_per_unit,
@@ -184,6 +201,7 @@ Result<Image<float>> decode_depth_message(std::string_view bytes, const Recorded
       return Error{fmt::format("{}: the encoding '{}' is no depth", topic.name, printable(image->encoding))};
     return decode_raw_depth(*image, metres_per_unit, topic.name);
   }
+  if (topic.type == "stereo_msgs/DisparityImage") return decode_disparity_depth(bytes, topic);
   const auto image = decode_compressed_image(bytes, topic.layout, topic.name);
   if (!image) return image.error();
   if (image->format.find("compressedDepth") != std::string::npos)

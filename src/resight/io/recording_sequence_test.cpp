@@ -208,6 +208,25 @@ TEST(RecordingImages, DepthEncodings) {
   EXPECT_EQ(io::content_of("16UC1; jpeg compressed ", "/c"), io::ImageContent::kUnknown);
 }
 
+TEST(RecordingImages, DepthOfDisparities) {
+  const RecordedTopic topic{"/stereo/disparity", "stereo_msgs/DisparityImage", MessageLayout::kRos1};
+  const float disparities_px[] = {50, 0.5F, 101, std::nanf("")};
+  const auto message = [&](float focal_length_px) {
+    return recordings::disparity_message(2.5, "left", focal_length_px, 0.05F, 2, 2,
+                                         {reinterpret_cast<const char*>(disparities_px), sizeof(disparities_px)});
+  };
+  const auto depth_m = io::decode_depth_message(message(600), topic, {});
+  ASSERT_TRUE(depth_m.ok()) << depth_m.error().message;
+  EXPECT_NEAR((*depth_m)[0], 600 * 0.05 / 50, 1e-6);
+  for (const std::size_t i : {1, 2, 3}) EXPECT_TRUE(std::isnan((*depth_m)[i])) << i;
+  EXPECT_THAT(io::decode_depth_message(message(0), topic, {}).error().message, HasSubstr("without focal length"));
+  const auto start = decode_image_start(message(600), topic);
+  ASSERT_TRUE(start.ok());
+  EXPECT_EQ(io::content_of(start->encoding, topic.name), io::ImageContent::kDepth);
+  EXPECT_EQ(start->header.frame, "left");
+  EXPECT_FALSE(io::decode_depth_message(message(600).substr(0, 90), topic, {}).ok());
+}
+
 TEST(RecordingImages, CompressedDepth) {
   io::TestDirectory directory;
   ASSERT_TRUE(write_depth(directory / "d.png", Image<float>(4, 3, 1.25F), 0.001).ok());

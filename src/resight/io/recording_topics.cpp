@@ -13,7 +13,7 @@ namespace resight::io {
 namespace {
 
 bool is_image_type(std::string_view type) {
-  return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage";
+  return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage" || type == "stereo_msgs/DisparityImage";
 }
 
 struct ImageTopic {
@@ -85,8 +85,9 @@ Result<ImageTopic> choose_image_topic(const Recording& recording, const std::vec
       return Error{fmt::format("has no images of the topic {}; topics of {} images: {}", given, what,
                                names.empty() ? "none" : names)};
     return Error{fmt::format("has no topic of {} images ({})", what,
-                             is_color ? "sensor_msgs/Image such as rgb8, or CompressedImage"
-                                      : "sensor_msgs/Image 16UC1 or 32FC1, or compressedDepth")};
+                             is_color
+                                 ? "sensor_msgs/Image such as rgb8, or CompressedImage"
+                                 : "sensor_msgs/Image 16UC1 or 32FC1, compressedDepth, or stereo_msgs/DisparityImage")};
   }
   std::ranges::stable_sort(candidates, std::ranges::greater(), &ImageTopic::rank);
   if (candidates.size() > 1 && candidates[0].rank == candidates[1].rank)

@@ -3,16 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
-#include "resight/io/internal/text.hpp"
-#include "resight/io/internal/trajectory_file.hpp"
 #include "resight/io/pose_text.hpp"
 
 /// What the user says about a sequence of separate images.
@@ -32,42 +28,6 @@ Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
   if (convention == PoseConvention::kCameraToWorld) return pose;
   Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
   return pose * Rigid3::from_rotation(flip);
-}
-
-/// Without names and times of the views, whole stamps are numbers of views, as are those of a column of their own.
-std::map<double, Rigid3> poses_by_number(const std::vector<StampedPose>& list) {
-  std::map<double, Rigid3> by_number;
-  const bool has_numbers = std::ranges::none_of(list, [](const StampedPose& p) { return std::isnan(p.number); });
-  for (const StampedPose& pose : list) {
-    const double number = has_numbers ? pose.number : pose.time_s;
-    if (!std::isnan(number) && number != std::floor(number)) return {};
-    by_number.emplace(number, pose.world_from_camera);
-  }
-  return by_number;
-}
-
-std::vector<std::optional<Rigid3>> in_order(const std::vector<StampedPose>& list) {
-  std::vector<std::optional<Rigid3>> poses;
-  for (const StampedPose& pose : list) poses.emplace_back(pose.world_from_camera);
-  return poses;
-}
-
-/// Keeps the views that have a pose, and notes the number of the others.
-Result<void> keep_posed_views(SequenceTable& table, const std::vector<std::optional<Rigid3>>& poses,
-                              const fs::path& file) {
-  std::vector<ListedView> kept;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (poses[i]) {
-      kept.push_back(std::move(table.views[i]));
-      kept.back().world_from_camera = *poses[i];
-    }
-  if (kept.empty()) return file_error(file, "holds no pose of any view (compared by name and by time)");
-  if (kept.size() < poses.size())
-    table.notes.push_back(fmt::format("{} of {} views have no pose in {} and are left out", poses.size() - kept.size(),
-                                      poses.size(), file.filename().string()));
-  table.views = std::move(kept);
-  table.has_poses = true;
-  return {};
 }
 
 /// Of the camera, or of the point 1 m in front of it, whichever is larger.
@@ -104,45 +64,6 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
 }
 
 }  // namespace
-
-Result<void> assign_poses(SequenceTable& table, const fs::path& file) {
-  auto list = read_pose_list(file, true);
-  if (!list) return list.error();
-  std::vector<std::optional<Rigid3>> poses(table.views.size());
-  if (list->empty()) return file_error(file, "holds no poses");
-  const bool has_stamps = !list->front().stamp.empty();
-  if (!has_stamps) {
-    if (list->size() != poses.size())
-      return file_error(file, fmt::format("holds {} poses without stamps for {} views", list->size(), poses.size()));
-    return keep_posed_views(table, in_order(*list), file);
-  }
-  std::map<std::string, Rigid3, std::less<>> by_name;
-  for (const StampedPose& pose : *list) by_name.emplace(pose.stamp, pose.world_from_camera);
-  const std::map<double, Rigid3> by_number = poses_by_number(*list);
-  const bool has_times = std::ranges::none_of(table.views, [](const ListedView& v) { return std::isnan(v.time_s); });
-  const bool is_named = std::ranges::any_of(table.views, [&](const ListedView& v) { return by_name.contains(v.name); });
-  if (!has_times && !is_named && by_number.empty()) {
-    if (list->size() != poses.size())
-      return file_error(file, fmt::format("holds {} poses with times, but the names of the {} images tell no times",
-                                          list->size(), poses.size()));
-    table.notes.push_back(
-        fmt::format("the names of the images tell no times: the poses of {} are taken in the order of the views",
-                    file.filename().string()));
-    return keep_posed_views(table, in_order(*list), file);
-  }
-  std::ranges::stable_sort(*list, {}, &StampedPose::time_s);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const ListedView& view = table.views[i];
-    const auto number = trailing_number(view.name);
-    if (const auto it = by_name.find(view.name); it != by_name.end())
-      poses[i] = it->second;
-    else if (!std::isnan(view.time_s))
-      poses[i] = interpolate_pose(*list, view.time_s);
-    else if (const auto same = by_number.find(number.value_or(-1)); same != by_number.end())
-      poses[i] = same->second;
-  }
-  return keep_posed_views(table, poses, file);
-}
 
 Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options) {
   if (options.depth_intrinsics.empty() && options.color_from_depth.empty()) return {};

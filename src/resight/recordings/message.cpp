@@ -50,6 +50,18 @@ std::optional<Rigid3> read_rigid(MessageReader& reader) {
   return Rigid3{rotation.normalized().toRotationMatrix(), translation};
 }
 
+ImageMessage read_image(MessageReader& reader) {
+  ImageMessage image;
+  image.header = read_header(reader);
+  image.height = reader.value<std::uint32_t>();
+  image.width = reader.value<std::uint32_t>();
+  image.encoding = reader.text();
+  image.is_big_endian = reader.value<std::uint8_t>() != 0;
+  image.row_bytes = reader.value<std::uint32_t>();
+  image.data = reader.blob();
+  return image;
+}
+
 std::string without_slash(std::string frame) {
   if (frame.starts_with('/')) frame.erase(0, 1);
   return frame;
@@ -59,16 +71,24 @@ std::string without_slash(std::string frame) {
 
 Result<ImageMessage> decode_image(std::string_view bytes, MessageLayout layout, std::string_view what) {
   MessageReader reader(bytes, layout);
-  ImageMessage image;
-  image.header = read_header(reader);
-  image.height = reader.value<std::uint32_t>();
-  image.width = reader.value<std::uint32_t>();
-  image.encoding = reader.text();
-  image.is_big_endian = reader.value<std::uint8_t>() != 0;
-  image.row_bytes = reader.value<std::uint32_t>();
-  image.data = reader.blob();
+  ImageMessage image = read_image(reader);
   if (!reader.ok()) return cut_message(what);
   return image;
+}
+
+Result<DisparityMessage> decode_disparity(std::string_view bytes, MessageLayout layout, std::string_view what) {
+  MessageReader reader(bytes, layout);
+  DisparityMessage disparity;
+  read_header(reader);
+  disparity.image = read_image(reader);
+  disparity.focal_length_px = reader.value<float>();
+  disparity.baseline_m = reader.value<float>();
+  for (int i = 0; i < 4; ++i) reader.value<std::uint32_t>();  // valid window
+  reader.value<std::uint8_t>();                               // whether it is to be rectified
+  disparity.min_disparity_px = reader.value<float>();
+  disparity.max_disparity_px = reader.value<float>();
+  if (!reader.ok()) return cut_message(what);
+  return disparity;
 }
 
 Result<CompressedImageMessage> decode_compressed_image(std::string_view bytes, MessageLayout layout,
@@ -86,7 +106,9 @@ Result<ImageStart> decode_image_start(std::string_view bytes, const RecordedTopi
   MessageReader reader(bytes, topic.layout);
   ImageStart start;
   start.header = read_header(reader);
-  if (topic.type == "sensor_msgs/Image") {
+  const bool is_disparity = topic.type == "stereo_msgs/DisparityImage";
+  if (is_disparity) read_header(reader);  // of the image in it
+  if (topic.type == "sensor_msgs/Image" || is_disparity) {
     reader.value<std::uint32_t>();
     reader.value<std::uint32_t>();
   }

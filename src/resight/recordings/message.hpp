@@ -37,6 +37,15 @@ struct CompressedImageMessage {
   std::string_view data;
 };
 
+/// stereo_msgs/DisparityImage: the depth is focal_length_px * baseline_m / disparity.
+struct DisparityMessage {
+  ImageMessage image;  ///< Of disparities, px.
+  double focal_length_px = 0;
+  double baseline_m = 0;
+  double min_disparity_px = 0;  ///< Smaller and larger ones are not measured.
+  double max_disparity_px = 0;
+};
+
 /// sensor_msgs/CameraInfo.
 struct CameraInfoMessage {
   MessageHeader header;
@@ -59,7 +68,9 @@ struct StampedTransform {
 [[nodiscard]] Result<ImageMessage> decode_image(std::string_view bytes, MessageLayout layout, std::string_view what);
 [[nodiscard]] Result<CompressedImageMessage> decode_compressed_image(std::string_view bytes, MessageLayout layout,
                                                                      std::string_view what);
-/// Header and encoding (or format) of one of the two, from the first bytes of a message.
+[[nodiscard]] Result<DisparityMessage> decode_disparity(std::string_view bytes, MessageLayout layout,
+                                                        std::string_view what);
+/// Header and encoding (or format) of one of the three, from the first bytes of a message.
 struct ImageStart {
   MessageHeader header;
   std::string encoding;

@@ -38,6 +38,13 @@ inline std::string image_message(double time_s, const std::string& frame, const 
          packed(static_cast<std::uint32_t>(width)) + packed_text(encoding) + std::string(1, '\0') +
          packed(static_cast<std::uint32_t>(data.size() / static_cast<std::size_t>(height))) + packed_text(data);
 }
+/// Of disparities from 1 to 100 px.
+inline std::string disparity_message(double time_s, const std::string& frame, float focal_length_px, float baseline_m,
+                                     int width, int height, const std::string& data) {
+  return packed_header(time_s, frame) + image_message(time_s, frame, "32FC1", width, height, data) +
+         packed(focal_length_px) + packed(baseline_m) + std::string(17, '\0') + packed(1.0F) + packed(100.0F) +
+         packed(0.125F);
+}
 inline std::string camera_info_message(const std::string& frame, int width, int height, const std::string& model,
                                        const std::vector<double>& distortion, const std::vector<double>& k) {
   std::string bytes = packed_header(1, frame) + packed(static_cast<std::uint32_t>(height)) +
