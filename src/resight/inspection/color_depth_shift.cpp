@@ -89,9 +89,10 @@ std::optional<ColorDepthShift> find_unregistered_shift(const std::array<ShiftSco
   const auto a = half_shifts[0].peak();
   const auto b = half_shifts[1].peak();
   if (!a || !b) return std::nullopt;
-  const double difference_px = (a->shift_px - b->shift_px).norm();
+  const double difference_px = (a->shift_px - b->shift_px).norm();  // Half of it is the error of their mean.
   const auto is_wide = [&](const ColorDepthShift& s) {
-    return s.shift_px.norm() > kMaxRegisteredShift_px + difference_px || std::abs(s.scale - 1) > kMaxRegisteredScale;
+    return s.shift_px.norm() > kMaxRegisteredShift_px + 0.5 * difference_px ||
+           std::abs(s.scale - 1) > kMaxRegisteredScale;
   };
   if (!is_wide(*a) || !is_wide(*b) || std::min(a->peak_sigmas, b->peak_sigmas) < kMinPeakSigmas ||
       std::abs(a->scale - b->scale) > kMaxRegisteredScale || difference_px > kSameShift_px)
