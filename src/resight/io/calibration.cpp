@@ -37,6 +37,13 @@ bool is_named_for_calibration(std::string_view lower_name) {
          lower_name.starts_with("cam_k") || lower_name.find("calib") != lower_name.npos;
 }
 
+/// A name that may say so. Of others, only the content counts.
+bool hints_at_calibration(std::string_view lower_name) {
+  constexpr std::array<std::string_view, 6> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt"};
+  return is_named_for_calibration(lower_name) ||
+         std::ranges::any_of(kHints, [&](std::string_view hint) { return lower_name.find(hint) != lower_name.npos; });
+}
+
 /// Files of poses and of lists hold other numbers.
 bool may_hold_calibration(std::string_view lower_name) {
   constexpr std::array<std::string_view, 7> kOthers = {"pose",  "traj", "groundtruth", "odometry",
@@ -79,8 +86,10 @@ Result<std::optional<Calibration>> parse_colmap_cameras(std::string_view text, s
     std::vector<double> n;
     for (std::size_t i = 2; i < words.size(); ++i) n.push_back(parse_number(words[i]).value_or(std::nan("")));
     const std::size_t center = 2 + model->num_focal_lengths;
-    if (n.size() != center + 2 + model->num_coefficients || !(n[0] >= 1 && n[0] < 1e6 && n[1] >= 1 && n[1] < 1e6))
+    if (n.size() != center + 2 + model->num_coefficients)
       return Error{fmt::format("{}: the camera '{}' has {} numbers", what, model->name, n.size())};
+    if (!(n[0] >= 1 && n[0] < 1e6 && n[1] >= 1 && n[1] < 1e6))
+      return Error{fmt::format("{}: the image size {}x{} is out of range", what, n[0], n[1])};
     auto calibration = calibration_from_numbers({n[2], n[center - 1], n[center], n[center + 1]}, what);
     if (!calibration) return calibration.error();
     std::vector<double> coefficients(n.begin() + static_cast<std::ptrdiff_t>(center) + 2, n.end());
@@ -90,7 +99,8 @@ Result<std::optional<Calibration>> parse_colmap_cameras(std::string_view text, s
     calibration->lens = *lens;
     calibration->width = static_cast<int>(n[0]);
     calibration->height = static_cast<int>(n[1]);
-    if (found && found->intrinsics != calibration->intrinsics)
+    if (found && (found->intrinsics != calibration->intrinsics || found->lens != calibration->lens ||
+                  found->width != calibration->width || found->height != calibration->height))
       return Error{fmt::format("{}: holds several cameras; give one by --intrinsics fx,fy,cx,cy", what)};
     found = *calibration;
   }
@@ -100,7 +110,22 @@ Result<std::optional<Calibration>> parse_colmap_cameras(std::string_view text, s
 struct FoundCalibration {
   fs::path file;
   Calibration calibration;
+  bool is_hinted = true;  ///< By its name.
 };
+
+/// A few numbers without names may be anything.
+bool is_list_of_few_numbers(const fs::path& file) {
+  const auto text = extension_of(file) == "json" ? Result<std::string>(Error{""}) : read_file(file);
+  const auto numbers = text.ok() ? parse_number_list(*text) : std::nullopt;
+  return numbers && numbers->size() != 9 && numbers->size() != 12 && numbers->size() != 16;
+}
+
+/// The calibration that a file of any name holds, if it can hardly be anything else.
+std::optional<Calibration> find_by_content(const fs::path& file) {
+  if (is_list_of_few_numbers(file)) return std::nullopt;
+  const auto calibration = read_calibration(file);
+  return calibration.ok() && is_plausible(*calibration) ? std::optional(*calibration) : std::nullopt;
+}
 
 bool is_of_color(const FoundCalibration& found) {
   const std::string name = to_lower(found.file.filename().string());
@@ -116,14 +141,19 @@ std::optional<Error> collect_calibrations(const fs::path& folder, std::vector<Fo
   for (const std::string& name : list_files(folder)) {
     const std::string lower = to_lower(name);
     if (!has_text_extension(name) || !may_hold_calibration(lower)) continue;
-    const bool is_named = is_named_for_calibration(lower);
-    if (!is_named && ++num_others > kMaxOtherFiles) continue;
+    const bool is_hinted = hints_at_calibration(lower);
+    if (!is_hinted && ++num_others > kMaxOtherFiles) continue;
     std::error_code ignored;
     if (fs::file_size(folder / name, ignored) > kMaxCalibrationBytes) continue;
+    if (!is_hinted) {
+      if (const auto calibration = find_by_content(folder / name))
+        found.push_back({folder / name, *calibration, false});
+      continue;
+    }
     const auto calibration = read_calibration(folder / name);
-    if (calibration && (is_named || is_plausible(*calibration)))
+    if (calibration)
       found.push_back({folder / name, *calibration});
-    else if (!calibration && is_named)
+    else if (is_named_for_calibration(lower))
       error = calibration.error();
   }
   return error;
@@ -186,9 +216,9 @@ Result<Calibration> read_calibration(const fs::path& file) {
   return **calibration;
 }
 
-Result<Calibration> parse_calibration(std::string_view numbers_or_file) {
+Result<Calibration> parse_calibration(std::string_view numbers_or_file, std::string_view option) {
   if (const auto numbers = parse_number_list(numbers_or_file); numbers && !is_file(numbers_or_file))
-    return calibration_from_numbers(*numbers, "--intrinsics");
+    return calibration_from_numbers(*numbers, option);
   return read_calibration(numbers_or_file);
 }
 
@@ -198,7 +228,10 @@ Result<std::optional<Calibration>> find_calibration(const fs::path& folder, fs::
   for (const std::string& name : list_directories(folder))
     if (is_named_for_calibration(to_lower(name)))
       if (auto below = collect_calibrations(folder / name, found); below && !error) error = below;
-  if (found.empty() && error) return *error;
+  if (std::ranges::any_of(found, &FoundCalibration::is_hinted))
+    std::erase_if(found, [](const FoundCalibration& f) { return !f.is_hinted; });
+  else if (error)
+    return *error;
   if (found.empty()) return std::optional<Calibration>();
   std::ranges::stable_sort(found, {}, [](const FoundCalibration& f) { return is_of_color(f) ? 0 : 1; });
   const FoundCalibration& first = found.front();

@@ -74,7 +74,10 @@ bool is_separator(char c) {
 /// The words of a line such as "fx 517.3", whose name has no colon.
 std::optional<std::pair<std::string, std::string>> name_with_number(std::string_view line) {
   const auto words = split_tokens(line);
-  if (words.size() != 2 || line.find_first_of(":=") != line.npos || parse_number(words[0]) || !parse_number(words[1]))
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  if (words.size() != 2 || !std::ranges::all_of(words[0].substr(0, 1), is_letter) || !parse_number(words[1]) ||
+      std::ranges::any_of(line,
+                          [](char c) { return c == ':' || c == '=' || (is_separator(c) && c != ' ' && c != '\t'); }))
     return std::nullopt;
   return std::pair(std::string(words[0]), std::string(words[1]));
 }

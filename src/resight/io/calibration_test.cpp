@@ -35,6 +35,8 @@ TEST(Calibration, UsualForms) {
       {"k.yaml", "%YAML:1.0\nCamera.fx: 60.0\nCamera.fy: 61.0\nCamera.cx: 3.5\nCamera.cy: 2.5\nCamera.k1: 0.0\n"},
       {"k.ini", "[camera]\nfx = 60\nfy = 61\ncx = 3.5\ncy = 2.5\n"},
       {"k.txt", "fx 60\nfy 61\ncx 3.5\ncy 2.5\n"},
+      {"k.txt", "60, 61\n3.5, 2.5\n"},
+      {"k.txt", "[60; 61\n3.5; 2.5]\n"},
       {"cameras.txt", "# Camera list\n1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 60 61 3.5 2.5\n"},
       {"scene0000_00.txt",
        "m_colorWidth = 8\nm_calibrationColorIntrinsic = 60 0 3.5 0 0 61 2.5 0 0 0 1 0 0 0 0 1\n"
@@ -64,6 +66,12 @@ TEST(Calibration, UsualForms) {
           .error()
           .message,
       HasSubstr("several cameras"));
+}
+
+TEST(Calibration, OptionsMayHaveBlanks) {
+  const auto calibration = io::parse_calibration("60,61,3.5, 2.5");
+  ASSERT_TRUE(calibration.ok()) << calibration.error().message;
+  EXPECT_EQ(calibration->intrinsics, (io::Intrinsics{60, 61, 3.5, 2.5}));
 }
 
 TEST(Calibration, SurvivesDamage) {

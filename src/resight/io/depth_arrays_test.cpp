@@ -39,6 +39,24 @@ TEST(DepthArrays, SaysWhichArrayIsMissing) {
               HasSubstr("holds 2 arrays (a, b, ..), none of which is called depth"));
 }
 
+TEST(DepthArrays, ChecksumsAreCompared) {
+  TestDirectory directory;
+  std::string bytes = *read_file(stored("named.npz"));
+  const float value = 1.05F;  // of pixel (5, 0), which is not compressed
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof(value)));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  write_text(directory / "d.npz", bytes);
+  EXPECT_THAT(read_depth_array(directory / "d.npz", std::nullopt).error().message, HasSubstr("cannot be unpacked"));
+}
+
+TEST(DepthArrays, DeclaredSizesAreBounded) {
+  // Magic number and version, then an attribute of 2 GB.
+  const std::string bytes =
+      std::string("\x76\x2f\x31\x01\x02\0\0\0", 8) + std::string("name\0string\0\xf0\xff\xff\x7f", 16) + "x";
+  EXPECT_THAT(parse_depth_exr(bytes, "d.exr", std::nullopt).error().message, HasSubstr("cut off"));
+}
+
 TEST(DepthArrays, DamageIsAnError) {
   TestDirectory directory;
   Rng rng(3);

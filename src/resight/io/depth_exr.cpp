@@ -40,6 +40,23 @@ class ByteStream : public Imf::IStream {
   std::uint64_t position_ = 0;
 };
 
+/// Whether the attributes of the first header lie within the file. OpenEXR allocates what they declare.
+bool has_sound_header(std::string_view bytes) {
+  constexpr std::size_t kMagicAndVersion = 8;
+  std::size_t at = kMagicAndVersion;
+  while (at < bytes.size() && bytes[at] != '\0') {
+    const std::size_t end_of_name = bytes.find('\0', at);
+    const std::size_t end_of_type = end_of_name == bytes.npos ? bytes.npos : bytes.find('\0', end_of_name + 1);
+    if (end_of_type == bytes.npos || bytes.size() - end_of_type < 5) return false;
+    std::uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + end_of_type + 1, sizeof(size));
+    at = end_of_type + 5;
+    if (size > bytes.size() - at) return false;
+    at += size;
+  }
+  return at < bytes.size();
+}
+
 /// Empty if there are several channels and none has the name of depth.
 std::string find_depth_channel(const Imf::ChannelList& channels) {
   constexpr std::array kNames = {"Z", "depth", "Y", "V", "R"};
@@ -51,7 +68,7 @@ std::string find_depth_channel(const Imf::ChannelList& channels) {
   return ++second == channels.end() ? first.name() : "";
 }
 
-Result<Image<float>> read_channel(ByteStream& stream, std::string_view name) {
+Result<Image<float>> read_channel(ByteStream& stream, std::string_view name, bool has_unit) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
   Imf::InputFile file(stream, 0);
   const Imath::Box2i window = file.header().dataWindow();
@@ -63,6 +80,8 @@ Result<Image<float>> read_channel(ByteStream& stream, std::string_view name) {
   const std::string channel = find_depth_channel(file.header().channels());
   if (channel.empty()) return fail("holds no channel of depth (Z, depth, Y, V, R, or a single one)");
   const Imf::Channel& found = file.header().channels()[channel];
+  if (found.type == Imf::UINT && !has_unit)
+    return fail("holds whole numbers, whose unit is not known: give --depth-scale METRES per unit");
   if (found.xSampling != 1 || found.ySampling != 1) return fail("its channel of depth has fewer pixels than the image");
   Image<float> values(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN());
   Imf::FrameBuffer buffer;
@@ -77,8 +96,9 @@ Result<Image<float>> read_channel(ByteStream& stream, std::string_view name) {
 Result<Image<float>> parse_depth_exr(std::string_view bytes, std::string_view name,
                                      std::optional<double> metres_per_unit) {
   try {
+    if (!has_sound_header(bytes)) return Error{fmt::format("{}: is cut off, or no OpenEXR image", name)};
     ByteStream stream(bytes);
-    auto depth_m = read_channel(stream, name);
+    auto depth_m = read_channel(stream, name, metres_per_unit.has_value());
     if (!depth_m) return depth_m;
     const double scale = metres_per_unit.value_or(1);
     for (float& z_m : depth_m->data()) {

@@ -104,8 +104,12 @@ std::optional<NpyHeader> parse_npy_header(std::string_view bytes) {
   const std::size_t begin = version_1 ? 10 : 12;
   if (length > bytes.size() - begin) return std::nullopt;
   const std::string_view dictionary = bytes.substr(begin, length);
-  const auto type = std::ranges::find_if(
-      kNpyTypes, [&](const NamedNpyType& t) { return dictionary.find(t.name) != dictionary.npos; });
+  constexpr std::string_view kKey = "'descr': ";
+  const std::size_t key = dictionary.find(kKey);
+  if (key == dictionary.npos) return std::nullopt;
+  const std::string_view description = dictionary.substr(key + kKey.size());
+  const auto type =
+      std::ranges::find_if(kNpyTypes, [&](const NamedNpyType& t) { return description.starts_with(t.name); });
   const bool is_column_major = dictionary.find("'fortran_order': True") != dictionary.npos;
   const auto shape = parse_shape(dictionary);
   if (type == kNpyTypes.end() || !shape || shape->first <= 0 || shape->second <= 0 || shape->first > kMaxImageSide_px ||

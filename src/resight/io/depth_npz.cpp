@@ -16,6 +16,7 @@ namespace {
 
 constexpr zip_uint64_t kMaxArrayBytes = zip_uint64_t{8} * kMaxViewPixels + 4096;
 constexpr zip_int64_t kMaxEntries = 1000;
+constexpr zip_uint64_t kNeeded = ZIP_STAT_NAME | ZIP_STAT_SIZE;
 
 struct ZipCloser {
   void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -47,7 +48,7 @@ std::vector<NamedEntry> list_arrays(zip_t* archive) {
   for (zip_int64_t i = 0; i < num_entries; ++i) {
     zip_stat_t stat;
     const auto index = static_cast<zip_uint64_t>(i);
-    if (zip_stat_index(archive, index, 0, &stat) != 0 || (stat.valid & (ZIP_STAT_NAME | ZIP_STAT_SIZE)) == 0) continue;
+    if (zip_stat_index(archive, index, 0, &stat) != 0 || (stat.valid & kNeeded) != kNeeded) continue;
     std::string name = stat.name;
     if (name.ends_with(".npy")) arrays.push_back({name.substr(0, name.size() - 4), index, stat.size});
   }
@@ -72,7 +73,10 @@ Result<Image<float>> parse_depth_npz(std::string_view bytes, std::string_view na
   if (chosen->num_bytes > kMaxArrayBytes) return fail("its array is too large");
   const Entry entry(zip_fopen_index(archive.get(), chosen->index, 0));
   std::string array(chosen->num_bytes, '\0');
-  if (entry == nullptr || zip_fread(entry.get(), array.data(), array.size()) != static_cast<zip_int64_t>(array.size()))
+  char beyond = 0;  // The checksum is compared at the end of the entry.
+  if (entry == nullptr ||
+      zip_fread(entry.get(), array.data(), array.size()) != static_cast<zip_int64_t>(array.size()) ||
+      zip_fread(entry.get(), &beyond, 1) != 0)
     return fail("its array cannot be unpacked (damaged?)");
   return parse_depth_npy(array, name, metres_per_unit);
 }

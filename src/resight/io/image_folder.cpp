@@ -131,20 +131,31 @@ std::string describe_unit(const FileSeries& depth, const OpenSequenceOptions& op
   return "taken as millimetres (--depth-scale)";
 }
 
+/// Colour images in the folder of a series that belong to none of its views.
+std::size_t count_other_images(const std::vector<FileSeries>& all, const FileSeries& series) {
+  std::size_t count = 0;
+  for (const FileSeries& other : all)
+    if (other.kind == series.kind && other.folder == series.folder && other.pattern != series.pattern)
+      count += other.files.size();
+  return count;
+}
+
 void describe(SequenceTable& table, const PairedSeries& series, const OpenSequenceOptions& options,
-              const FolderCamera& camera) {
+              const FolderCamera& camera, std::size_t num_others) {
   table.notes.push_back(fmt::format("colour {}, depth {}, {}; intrinsics of {}", series.color.label(),
                                     series.depth.label(), describe_unit(series.depth, options, camera), camera.source));
   const std::size_t largest = std::max(series.color.files.size(), series.depth.files.size());
   if (series.pairs.size() < largest)
     table.notes.push_back(fmt::format("{} colour and {} depth images make {} views; the others are left out",
                                       series.color.files.size(), series.depth.files.size(), series.pairs.size()));
+  if (num_others > 0) table.notes.push_back(fmt::format("{} colour images with other names are left out", num_others));
 }
 
 SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera) {
   SequenceTable table;
   table.format = "images";
   table.depth_storage = DepthStorage::kByName;
+  table.may_enlarge_depth = true;
   table.lens = camera.calibration.lens;
   for (const ImagePair& pair : series.pairs) {
     ListedView view;
@@ -163,9 +174,11 @@ SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera)
 }  // namespace
 
 bool holds_poses(const fs::path& directory) {
-  return std::ranges::any_of(find_series(directory), [](const FileSeries& s) { return s.kind == SeriesKind::kPose; }) ||
-         std::ranges::any_of(list_files(directory),
-                             [](const std::string& n) { return is_pose_list_name(to_lower(n)); });
+  const auto is_list = [&](const std::string& name) {
+    return is_pose_list_name(to_lower(name)) && read_pose_list(directory / name, true).ok();
+  };
+  const auto is_series = [](const FileSeries& s) { return s.kind == SeriesKind::kPose && s.files.size() > 1; };
+  return std::ranges::any_of(find_series(directory), is_series) || std::ranges::any_of(list_files(directory), is_list);
 }
 
 bool is_image_folder(const fs::path& directory) {
@@ -182,7 +195,7 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
   if (!camera) return camera.error();
   SequenceTable table = make_table(**series, *camera);
   if (const auto done = set_depth_camera(table, options); !done) return done.error();
-  describe(table, **series, options, *camera);
+  describe(table, **series, options, *camera, count_other_images(all, (*series)->color));
   std::vector<std::string> keys;
   for (const ImagePair& pair : (*series)->pairs) keys.push_back(pair.key);
   if (options.poses.empty())
@@ -192,6 +205,7 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
     table.npy_unit_m = options.depth_scale_m;
     for (ListedView& view : table.views) view.metres_per_unit = *options.depth_scale_m;
   }
+  if (std::string note = describe_enlarged_depth(table); !note.empty()) table.notes.push_back(std::move(note));
   auto sequence = make_listed_sequence(std::move(table));
   if (const auto done = check_first_view(*sequence, *camera, directory); !done) return done.error();
   return sequence;

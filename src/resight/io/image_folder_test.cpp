@@ -141,11 +141,31 @@ TEST(ImageFolder, RegisteredDepthOfLowerResolution) {
   io::write_text(directory / "intrinsics.txt", "60 60 7.5 5.5\n");
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_THAT((*sequence)->notes(), testing::Contains(HasSubstr("taken as registered")));
   const RgbdFrame frame = (*sequence)->read_view(0).value();
   ASSERT_EQ(frame.depth_m.width(), 2 * kWidth);
   for (int v = 0; v < 2 * kHeight; ++v)
     for (int u = 0; u < 2 * kWidth; ++u)
       EXPECT_EQ(frame.depth_m(u, v), u / 2 == 5 && v / 2 == 3 ? 2 : 1) << u << " " << v;
+}
+
+TEST(ImageFolder, DepthOfMuchLowerResolutionHasNoGaps) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "color/0.jpg", Image<Rgb8>(20 * kWidth, 20 * kHeight)).ok());
+  ASSERT_TRUE(write_depth(directory / "depth/0.png", Image<float>(kWidth, kHeight, 1.0F), 0.001).ok());
+  io::write_text(directory / "intrinsics.txt", "600 600 79.5 59.5\n");
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->read_view(0)->depth_m, Image<float>(20 * kWidth, 20 * kHeight, 1.0F));
+}
+
+// The streams of a RealSense as they are: nearly the same aspect ratio, but another camera.
+TEST(ImageFolder, DepthOfAnotherAspectRatioIsRefused) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "color/0.jpg", Image<Rgb8>(1280, 720)).ok());
+  ASSERT_TRUE(write_depth(directory / "depth/0.png", Image<float>(848, 480, 1.0F), 0.001).ok());
+  io::write_text(directory / "intrinsics.txt", "900 900 639.5 359.5\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("848x480, but its colour image 1280x720"));
 }
 
 TEST(ImageFolder, DepthOfACameraBesideIsRegistered) {
@@ -169,6 +189,11 @@ TEST(ImageFolder, DepthOfACameraBesideIsRegistered) {
   ASSERT_EQ(frame.depth_m.width(), kWidth);
   EXPECT_NEAR(frame.depth_m(1, 2), 1.5, 1e-6);
   EXPECT_TRUE(std::isnan(frame.depth_m(7, 2))) << "beyond the right border of the depth camera";
+  options.depth_intrinsics = "60,60,500,5.5";
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--depth-intrinsics: the centre"));
+  options.depth_intrinsics = "60,60,5";
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--depth-intrinsics: 3 numbers"));
+  options.depth_intrinsics = "60,60,5.5,5.5";
   io::write_text(options.color_from_depth, "1 0 0 -100 0 1 0 0 0 0 1 0\n");
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("100 m apart (expected metres)"));
 }
@@ -180,6 +205,11 @@ TEST(ImageFolder, PosesBesideNumpyDepthAreRead) {
   EXPECT_EQ((*open_posed_sequence(directory.path()))->format(), "npy");
   EXPECT_THAT((*open_posed_sequence(directory.path()))->notes(), testing::Contains(HasSubstr("stand still")));
   const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1\n";
+  // Neither is a list of camera poses.
+  io::write_text(directory / "extrinsics.txt", rows);
+  io::write_text(directory / "object_poses.csv", "cup, 1, here, there\n");
+  EXPECT_EQ((*open_posed_sequence(directory.path()))->format(), "npy");
+  std::filesystem::remove(directory / "object_poses.csv");
   io::write_text(directory / "poses.txt", rows + rows + rows);
   const auto posed = open_posed_sequence(directory.path());
   ASSERT_TRUE(posed.ok()) << posed.error().message;
@@ -227,6 +257,16 @@ TEST(ImageFolder, NamesWithoutNumbersArePairedByName) {
   EXPECT_EQ(num_views("b"), 2);
   write_pair("c/color.png", "c/depth.png");
   EXPECT_EQ(num_views("c"), 1);
+  write_pair("e/color.png", "e/depth.png");
+  ASSERT_TRUE(write_depth(directory / "e/aligned_depth.png", Image<float>(kWidth, kHeight, 2.0F), 0.001).ok());
+  EXPECT_EQ(num_views("e"), 1);
+  EXPECT_EQ((*open_sequence(directory / "e"))->read_view(0)->depth_m(0, 0), 2) << "of two, the registered one";
+  write_pair("f/mug_color.png", "f/mug_depth.png");
+  write_pair("f/mug2_color.png", "f/mug2_depth.png");
+  write_pair("f/mug3_color.png", "f/mug3_depth.png");
+  EXPECT_EQ(num_views("f"), 2);
+  EXPECT_THAT((*open_sequence(directory / "f"))->notes(),
+              testing::Contains(HasSubstr("1 colour images with other names are left out")));
   write_pair("d/rgb/apple.png", "d/depth/bed.png");
   EXPECT_EQ(num_views("d"), 0) << "two views that have nothing to do with each other";
 }
@@ -281,6 +321,9 @@ TEST(ImageFolder, ViewsAreChosenByMotion) {
   ASSERT_EQ((*sequence)->num_views(), 3);
   EXPECT_EQ((*sequence)->view_name(1), "000002");
   EXPECT_EQ((*sequence)->view_name(2), "000004");
+  EXPECT_THAT((*sequence)->notes(), testing::Contains(HasSubstr("3 of 5 views are used (--min-motion)")));
+  options.views.min_motion_m = std::nan("");
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--min-motion must not be negative"));
 }
 
 TEST(ImageFolder, PoseFilesOfAllForms) {
@@ -310,7 +353,7 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
   ASSERT_EQ((*numbered_views)->num_views(), 2) << "by the column of numbers";
   EXPECT_EQ((*numbered_views)->read_pose(1)->translation.x(), 9);
   // Times are no numbers of views, even if some are whole.
-  io::write_text(directory / "given", "0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n1.0 3 0 0 0 0 0 1\n");
+  io::write_text(directory / "given", "1.0 3 0 0 0 0 0 1\n0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n");
   const auto in_order = open_posed_sequence(directory.path(), options);
   ASSERT_TRUE(in_order.ok()) << in_order.error().message;
   ASSERT_EQ((*in_order)->num_views(), 3);
@@ -319,6 +362,20 @@ TEST(ImageFolder, PoseFilesOfAllForms) {
   io::write_text(directory / "given", "0.0 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n");
   EXPECT_THAT(open_sequence(directory.path(), options).error().message,
               HasSubstr("2 poses with times, which the names of the images do not tell, for 3 views"));
+  io::write_text(directory / "given", "0.5 1 0 0 0 0 0 1\n0.5 2 0 0 0 0 0 1\n0.5 3 0 0 0 0 0 1\n");
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("no names, numbers or times"));
+  io::write_text(directory / "given", "a 1 0 0 0 0 0 1\nb 2 0 0 0 0 0 1\nc 3 0 0 0 0 0 1\n");
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("no names, numbers or times"));
+  // Names of files, in another order.
+  for (const char* prefix : {"", "rgb/", "pose-"}) {
+    std::string text;
+    for (const char* v : {"2", "0", "1"}) text += prefix + std::string("00000") + v + ".png " + v + " 0 0 0 0 0 1\n";
+    io::write_text(directory / "given", text);
+    const auto named = open_posed_sequence(directory.path(), options);
+    ASSERT_TRUE(named.ok()) << named.error().message << text;
+    ASSERT_EQ((*named)->num_views(), 3);
+    for (int v = 0; v < 3; ++v) EXPECT_EQ((*named)->read_pose(v)->translation.x(), v) << text;
+  }
   io::write_text(directory / "given", rows16);
   EXPECT_THAT(open_sequence(directory.path(), options).error().message,
               HasSubstr("1 poses without stamps for 3 views"));
@@ -330,12 +387,18 @@ TEST(ImageFolder, IntrinsicsAreFoundByContent) {
   io::TestDirectory directory;
   write_layout(directory.path(), kTwoFolders);
   io::write_text(directory / "notes.txt", "1 2 3 4\n");
-  io::write_text(directory / "boxes.csv", "10,20,30,40\n");
+  io::write_text(directory / "boxes.csv", "500,500,100,100\n");
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("no intrinsics"));
   io::write_text(directory / "params.json", R"({"fx": 60, "fy": 61, "cx": 7.5, "cy": 6})");
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   EXPECT_EQ((*sequence)->read_view(0)->camera.fx, 60);
+  // A name that says so wins, and any number of other files does not hide it.
+  for (int i = 100; i < 160; ++i) io::write_text(directory / ("frame-" + std::to_string(i) + ".txt"), "1 2 3\n");
+  io::write_text(directory / "kinect.txt", "70 71 3.5 2.5\n");
+  const auto named = open_sequence(directory.path());
+  ASSERT_TRUE(named.ok()) << named.error().message;
+  EXPECT_EQ((*named)->read_view(0)->camera.fx, 70);
 }
 
 }  // namespace

@@ -97,10 +97,18 @@ SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
 /// What tells views apart whose names have no number: "apple" of apple_rgb.png.
 std::string bare_stem(const std::string& name) {
   std::string stem = to_lower(fs::path(name).stem().string());
-  for (const std::string_view word : {"colour", "color", "rgb", "depth", "image", "img"})
+  for (const std::string_view word :
+       {"aligned", "registered", "to_color", "colour", "color", "rgb", "depth", "image", "img"})
     if (const std::size_t at = stem.find(word); at != stem.npos) stem.erase(at, word.size());
   std::erase_if(stem, [](char c) { return c == '_' || c == '-' || c == '.' || c == ' '; });
   return stem;
+}
+
+/// For names without numbers: what the pattern of their series says beside the extension.
+std::string series_word(std::string_view lower_name) {
+  if (has_any(lower_name, {"aligned", "registered", "to_color"})) return "*registered_depth*";
+  if (has_any(lower_name, {"depth"})) return "*depth*";
+  return has_any(lower_name, {"color", "colour", "rgb"}) ? "*color*" : "*";
 }
 
 /// Removes the numbers that are the same in all names, such as those of "color_640x480".
@@ -144,7 +152,8 @@ void add_series(const fs::path& folder, bool says_what, std::vector<FileSeries>&
     SeriesKind kind = SeriesKind::kOther;
     if (pattern.find('#') == pattern.npos && !is_no_view(to_lower(name))) {
       kind = kind_of(name);
-      if (kind == SeriesKind::kColor || kind == SeriesKind::kDepth) pattern = "*." + extension_of(name);
+      if (kind == SeriesKind::kColor || kind == SeriesKind::kDepth)
+        pattern = series_word(to_lower(name)) + "." + extension_of(name);
     }
     names[{pattern, kind}].push_back(name);
   }

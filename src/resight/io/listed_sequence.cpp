@@ -40,20 +40,30 @@ Result<Image<float>> read_unsaturated_depth(const fs::path& file, double metres_
 bool has_same_shape(const Image<Rgb8>& color, const Image<float>& depth) {
   const double of_color = static_cast<double>(color.width()) / color.height();
   const double of_depth = static_cast<double>(depth.width()) / depth.height();
-  return depth.width() < color.width() && std::abs(of_depth / of_color - 1) < 0.01;
+  return depth.width() < color.width() && std::abs(of_depth / of_color - 1) < 0.003;
 }
 
-/// Depth of a camera with fewer pixels, registered to the colours, as cameras of phones give it.
-Image<float> enlarge_depth(const Image<float>& depth_m, const Camera& color_camera) {
-  const double x = static_cast<double>(depth_m.width()) / color_camera.width;
-  const double y = static_cast<double>(depth_m.height()) / color_camera.height;
-  const Camera camera{depth_m.width(),
-                      depth_m.height(),
-                      x * color_camera.fx,
-                      y * color_camera.fy,
-                      x * (color_camera.cx + 0.5) - 0.5,
-                      y * (color_camera.cy + 0.5) - 0.5};
-  return register_depth(depth_m, camera, Rigid3::identity(), color_camera);
+/// Depth with fewer pixels than the colours, registered to them, as cameras of phones give it.
+Image<float> enlarge_depth(const Image<float>& depth_m, int width, int height) {
+  Image<float> large(width, height);
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) large(u, v) = depth_m(u * depth_m.width() / width, v * depth_m.height() / height);
+  return large;
+}
+
+Result<Image<float>> read_depth_image(const SequenceTable& table, const ListedView& view) {
+  switch (table.depth_storage) {
+    case DepthStorage::kNpy:
+      return read_depth_npy(view.depth, table.npy_unit_m);
+    case DepthStorage::kByName:
+      if (holds_depth_array(extension_of(view.depth))) return read_depth_array(view.depth, table.npy_unit_m);
+      return read_unsaturated_depth(view.depth, view.metres_per_unit);
+    case DepthStorage::kRotatedPng:
+      return read_rotated_depth(view.depth, view.metres_per_unit);
+    case DepthStorage::kPng:
+      break;
+  }
+  return read_depth(view.depth, view.metres_per_unit);
 }
 
 class ListedSequence final : public Sequence {
@@ -78,21 +88,12 @@ class ListedSequence final : public Sequence {
     const ListedView& listed = table_.views.at(view);
     auto color = read_color(listed.color, kMaxViewPixels);
     if (!color) return color.error();
-    auto depth = read_depth_image(listed);
+    auto depth = read_depth_image(table_, listed);
     if (!depth) return depth.error();
     const Intrinsics& k = listed.intrinsics;
     const Camera camera{color->width(), color->height(), k.fx, k.fy, k.cx, k.cy};
-    const bool has_same_size = color->width() == depth->width() && color->height() == depth->height();
-    if (table_.depth_camera) {
-      *depth = register_to_color(*depth, camera);
-    } else if (!has_same_size) {
-      if (!has_same_shape(*color, *depth))
-        return file_error(listed.depth,
-                          fmt::format("is {}x{}, but its colour image {}x{}; expected depth registered to colour, or "
-                                      "--depth-intrinsics and --color-from-depth",
-                                      depth->width(), depth->height(), color->width(), color->height()));
-      *depth = enlarge_depth(*depth, camera);
-    }
+    depth = fit_to_color(std::move(*depth), listed, *color, camera);
+    if (!depth) return depth.error();
     RgbdFrame frame{listed.name, camera, std::move(*color), std::move(*depth), listed.world_from_camera};
     if (const auto done = check_frame(frame); !done) return file_error(listed.color, done.error().message);
     if (!table_.lens.is_none()) {
@@ -106,33 +107,42 @@ class ListedSequence final : public Sequence {
   [[nodiscard]] SequenceTable& table() { return table_; }
 
  private:
-  [[nodiscard]] Image<float> register_to_color(const Image<float>& depth_m, const Camera& color_camera) const {
-    const DepthCamera& of_depth = *table_.depth_camera;
+  /// Depth as the colour camera would measure it.
+  [[nodiscard]] Result<Image<float>> fit_to_color(Image<float> depth_m, const ListedView& view,
+                                                  const Image<Rgb8>& color, const Camera& camera) const {
+    if (table_.depth_camera) return register_to_color(depth_m, camera);
+    if (color.width() == depth_m.width() && color.height() == depth_m.height()) return depth_m;
+    if (table_.may_enlarge_depth && has_same_shape(color, depth_m))
+      return enlarge_depth(depth_m, color.width(), color.height());
+    return file_error(view.depth,
+                      fmt::format("is {}x{}, but its colour image {}x{}; expected depth registered to colour, or "
+                                  "--depth-intrinsics and --color-from-depth",
+                                  depth_m.width(), depth_m.height(), color.width(), color.height()));
+  }
+
+  [[nodiscard]] Result<Image<float>> register_to_color(const Image<float>& depth_m, const Camera& color_camera) const {
+    const Calibration& of_depth = table_.depth_camera->calibration;
+    if (const auto fits = check_calibration(of_depth, depth_m.width(), depth_m.height(), "--depth-intrinsics"); !fits)
+      return fits.error();
     const Intrinsics& k = of_depth.intrinsics;
     const Camera camera{depth_m.width(), depth_m.height(), k.fx, k.fy, k.cx, k.cy};
     return register_depth(of_depth.lens.is_none() ? depth_m : undistort_depth(depth_m, camera, of_depth.lens), camera,
-                          of_depth.color_from_depth, color_camera);
-  }
-
-  [[nodiscard]] Result<Image<float>> read_depth_image(const ListedView& view) const {
-    switch (table_.depth_storage) {
-      case DepthStorage::kNpy:
-        return read_depth_npy(view.depth, table_.npy_unit_m);
-      case DepthStorage::kByName:
-        if (holds_depth_array(extension_of(view.depth))) return read_depth_array(view.depth, table_.npy_unit_m);
-        return read_unsaturated_depth(view.depth, view.metres_per_unit);
-      case DepthStorage::kRotatedPng:
-        return read_rotated_depth(view.depth, view.metres_per_unit);
-      case DepthStorage::kPng:
-        break;
-    }
-    return read_depth(view.depth, view.metres_per_unit);
+                          table_.depth_camera->color_from_depth, color_camera);
   }
 
   SequenceTable table_;
 };
 
 }  // namespace
+
+std::string describe_enlarged_depth(const SequenceTable& table) {
+  if (table.depth_camera || table.views.empty()) return "";
+  const auto color = read_color(table.views.front().color, kMaxViewPixels);
+  const auto depth = read_depth_image(table, table.views.front());
+  if (!color.ok() || !depth.ok() || !has_same_shape(*color, *depth)) return "";
+  return fmt::format("depth of {}x{} is taken as registered to the colours of {}x{} (otherwise --depth-intrinsics)",
+                     depth->width(), depth->height(), color->width(), color->height());
+}
 
 std::unique_ptr<Sequence> make_listed_sequence(SequenceTable table) {
   return std::make_unique<ListedSequence>(std::move(table));

@@ -49,8 +49,11 @@ Result<void> assign_in_order(SequenceTable& table, const std::vector<StampedPose
 /// Poses with stamps, by what may tell their view.
 class StampedPoses {
  public:
-  explicit StampedPoses(std::vector<StampedPose> list) : by_time_(std::move(list)) {
-    for (const StampedPose& pose : by_time_) by_name_.emplace(pose.stamp, pose.world_from_camera);
+  explicit StampedPoses(std::vector<StampedPose> list) : num_poses_(list.size()), by_time_(std::move(list)) {
+    for (const StampedPose& pose : by_time_) {
+      by_name_.emplace(pose.stamp, pose.world_from_camera);
+      if (std::isnan(pose.time_s)) by_name_.emplace(fs::path(pose.stamp).stem().string(), pose.world_from_camera);
+    }
     number_poses();
     std::erase_if(by_time_, [](const StampedPose& pose) { return std::isnan(pose.time_s); });
     std::ranges::stable_sort(by_time_, {}, &StampedPose::time_s);
@@ -58,6 +61,12 @@ class StampedPoses {
 
   [[nodiscard]] bool has_name(const ListedView& view) const { return by_name_.contains(view.name); }
   [[nodiscard]] bool has_numbers() const { return !by_number_.empty(); }
+  /// In the order of time, if each has another one; otherwise empty.
+  [[nodiscard]] std::vector<StampedPose> by_time() const {
+    const auto same = [](const StampedPose& a, const StampedPose& b) { return a.time_s == b.time_s; };
+    const bool is_order = by_time_.size() == num_poses_ && std::ranges::adjacent_find(by_time_, same) == by_time_.end();
+    return is_order ? by_time_ : std::vector<StampedPose>();
+  }
 
   [[nodiscard]] std::optional<Rigid3> find(const ListedView& view) const {
     if (const auto it = by_name_.find(view.name); it != by_name_.end()) return it->second;
@@ -68,17 +77,21 @@ class StampedPoses {
   }
 
  private:
-  /// Numbers of views have a column of their own, or are whole stamps. If one is not whole, they are times.
+  /// Numbers of views have a column of their own, are at the end of words ("rgb/frame-000003.png"), or are whole
+  /// stamps. If one is not whole, they are times.
   void number_poses() {
-    const bool has_column = std::ranges::none_of(by_time_, [](const StampedPose& p) { return std::isnan(p.number); });
+    const bool has_column = std::ranges::any_of(by_time_, [](const StampedPose& p) { return !std::isnan(p.number); });
     for (const StampedPose& pose : by_time_) {
-      const double number = has_column ? pose.number : pose.time_s;
+      double number = has_column ? pose.number : pose.time_s;
+      if (const auto end = trailing_number(fs::path(pose.stamp).stem().string()); std::isnan(pose.time_s) && end)
+        number = *end;
       if (std::isnan(number)) continue;
       if (number != std::floor(number)) return by_number_.clear();
       by_number_.emplace(number, pose.world_from_camera);
     }
   }
 
+  std::size_t num_poses_;
   std::vector<StampedPose> by_time_;
   std::map<std::string, Rigid3, std::less<>> by_name_;
   std::map<double, Rigid3> by_number_;
@@ -96,10 +109,13 @@ Result<void> assign_poses(SequenceTable& table, const fs::path& file) {
                             return !std::isnan(view.time_s) || stamped.has_name(view);
                           });
   if (!tells_view) {
+    const std::vector<StampedPose> by_time = stamped.by_time();
+    if (by_time.empty())
+      return file_error(file, "holds no pose of any view: its stamps are no names, numbers or times");
     table.notes.push_back(
         fmt::format("the names of the images tell no times: the poses of {} are taken in the order of the views",
                     file.filename().string()));
-    return assign_in_order(table, *list, file, "with times, which the names of the images do not tell,");
+    return assign_in_order(table, by_time, file, "with times, which the names of the images do not tell,");
   }
   std::vector<std::optional<Rigid3>> poses;
   for (const ListedView& view : table.views) poses.push_back(stamped.find(view));

@@ -127,7 +127,7 @@ Result<Image<float>> decode_raw_depth(const ImageMessage& image, std::optional<d
   return depth_m;
 }
 
-/// Infinite disparities have no depth.
+/// Some publishers leave the limits at 0.
 Result<Image<float>> decode_disparity_depth(std::string_view bytes, const RecordedTopic& topic) {
   const auto message = decode_disparity(bytes, topic.layout, topic.name);
   if (!message) return message.error();
@@ -137,8 +137,10 @@ Result<Image<float>> decode_disparity_depth(std::string_view bytes, const Record
         "{}: a disparity image without focal length or baseline, or of another encoding than 32FC1", topic.name)};
   auto depth_m = decode_raw_depth(message->image, 1, topic.name);
   if (!depth_m) return depth_m;
+  const bool has_limits = message->max_disparity_px > message->min_disparity_px;
   for (float& value : depth_m->data()) {
-    const bool is_measured = value >= message->min_disparity_px && value <= message->max_disparity_px;
+    const bool is_measured =
+        value > 0 && (!has_limits || (value >= message->min_disparity_px && value <= message->max_disparity_px));
     value = is_measured ? to_depth(unit / static_cast<double>(value), 1) : std::numeric_limits<float>::quiet_NaN();
   }
   return depth_m;

@@ -20,7 +20,7 @@ constexpr double kMaxBaseline_m = 1;
 bool gives_something(const OpenSequenceOptions& options) {
   return !options.intrinsics.empty() || !options.depth_intrinsics.empty() || !options.color_from_depth.empty() ||
          options.depth_scale_m || !options.poses.empty() || options.pose_convention != PoseConvention::kCameraToWorld ||
-         options.views.every != 1 || options.views.min_motion_m > 0 || options.views.from_s || options.views.to_s;
+         options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s || options.views.to_s;
 }
 
 Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
@@ -42,6 +42,7 @@ Result<void> choose_moved_views(SequenceTable& table, double min_motion_m) {
   for (ListedView& view : table.views)
     if (kept.empty() || motion_m(kept.back().world_from_camera, view.world_from_camera) >= min_motion_m)
       kept.push_back(std::move(view));
+  table.notes.push_back(fmt::format("{} of {} views are used (--min-motion)", kept.size(), table.views.size()));
   table.views = std::move(kept);
   return {};
 }
@@ -60,6 +61,7 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   }
   if (kept.empty()) return Error{"no view lies between --from and --until"};
   table.views = std::move(kept);
+  if (!(choice.min_motion_m >= 0)) return Error{"--min-motion must not be negative"};
   return choice.min_motion_m > 0 ? choose_moved_views(table, choice.min_motion_m) : Result<void>();
 }
 
@@ -70,14 +72,14 @@ Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& o
   if (table.is_recording) return Error{"holds the depth camera itself: --depth-intrinsics does not apply"};
   if (options.depth_intrinsics.empty() || options.color_from_depth.empty())
     return Error{"--depth-intrinsics and --color-from-depth need each other"};
-  const auto calibration = parse_calibration(options.depth_intrinsics);
+  const auto calibration = parse_calibration(options.depth_intrinsics, "--depth-intrinsics");
   if (!calibration) return calibration.error();
   const auto color_from_depth = read_pose(options.color_from_depth);
   if (!color_from_depth) return color_from_depth.error();
   if (color_from_depth->translation.norm() > kMaxBaseline_m)
     return file_error(options.color_from_depth, fmt::format("its cameras are {:.3g} m apart (expected metres)",
                                                             color_from_depth->translation.norm()));
-  table.depth_camera = DepthCamera{calibration->intrinsics, calibration->lens, *color_from_depth};
+  table.depth_camera = DepthCamera{*calibration, *color_from_depth};
   return {};
 }
 

@@ -92,15 +92,16 @@ std::vector<fs::path> list_parts(const fs::path& folder) {
 std::vector<std::string> list_missing_parts(const fs::path& folder) {
   std::vector<std::string> missing;
   const auto text = read_file(folder / "metadata.yaml", 1U << 20);
-  const std::size_t list = text.ok() ? text->find("relative_file_paths:") : std::string::npos;
+  constexpr std::string_view kKey = "relative_file_paths:";
+  const std::size_t list = text.ok() ? text->find(kKey) : std::string::npos;
   if (list == std::string::npos) return missing;
-  std::istringstream lines(text->substr(text->find('\n', list)));
+  std::istringstream lines(text->substr(list + kKey.size()));
   std::string line;
   std::getline(lines, line);  // the rest of the line of the key
   while (std::getline(lines, line)) {
     const std::size_t dash = line.find_first_not_of(' ');
     if (dash == std::string::npos || line[dash] != '-') break;
-    const std::size_t begin = line.find_first_not_of(" \"'", dash + 1);
+    const std::size_t begin = line.find_first_not_of(" \"'\r", dash + 1);
     if (begin == std::string::npos) continue;
     const std::string name = line.substr(begin, line.find_last_not_of(" \"'\r") + 1 - begin);
     std::error_code ignored;

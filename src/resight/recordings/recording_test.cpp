@@ -191,6 +191,8 @@ TEST(Recording, MissingPartsAreNamed) {
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_THAT((*recording)->damage(), HasSubstr("1 of the files of metadata.yaml is missing (bag_1.db3)"));
   EXPECT_FALSE((*recording)->messages().empty());
+  std::ofstream(folder / "metadata.yaml") << "a:\n  relative_file_paths:";
+  EXPECT_EQ((*open_recording(folder))->damage(), "");
   fs::remove_all(folder);
 }
 

@@ -40,7 +40,8 @@ struct Calibration {
 [[nodiscard]] Result<Calibration> read_calibration(const std::filesystem::path& file);
 
 /// The value of --intrinsics: "fx,fy,cx,cy" (with distortion coefficients after it) or a file.
-[[nodiscard]] Result<Calibration> parse_calibration(std::string_view numbers_or_file);
+[[nodiscard]] Result<Calibration> parse_calibration(std::string_view numbers_or_file,
+                                                    std::string_view option = "--intrinsics");
 
 /// The calibration in a folder or in its sub-folder for intrinsics, found by name and content. None if no file holds
 /// one; an error if several differ, or if a file that by its name must hold one cannot be read. `source` becomes the

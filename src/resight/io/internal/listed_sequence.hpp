@@ -23,8 +23,7 @@ enum class DepthStorage {
 
 /// A depth camera beside the colour camera.
 struct DepthCamera {
-  Intrinsics intrinsics;
-  LensDistortion lens;
+  Calibration calibration;
   Rigid3 color_from_depth;
 };
 
@@ -49,10 +48,10 @@ struct SequenceTable {
   bool has_ground_truth = false;
   bool is_recording = false;  ///< The table only lists times and poses.
   DepthStorage depth_storage = DepthStorage::kPng;
-  std::optional<double> npy_unit_m;  ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
-  LensDistortion lens;               ///< Of both images. The views that are read are without distortion.
-  /// None: the depth is registered to the colours, maybe at a lower resolution.
-  std::optional<DepthCamera> depth_camera;
+  std::optional<double> npy_unit_m;         ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
+  LensDistortion lens;                      ///< Of both images. The views that are read are without distortion.
+  std::optional<DepthCamera> depth_camera;  ///< None: the depth is registered to the colours.
+  bool may_enlarge_depth = false;           ///< Registered depth may have fewer pixels than the colours.
   std::vector<ListedView> views;
   std::vector<std::string> notes;
 };
@@ -66,6 +65,9 @@ struct SequenceTable {
 /// Sets the poses of views from a file: by the name of the view, by its time, or by its place in the order. Views
 /// without a pose are left out, with a note.
 [[nodiscard]] Result<void> assign_poses(SequenceTable& table, const std::filesystem::path& file);
+
+/// A note for the user, if the depth of the first view has fewer pixels than its colours. Empty otherwise.
+[[nodiscard]] std::string describe_enlarged_depth(const SequenceTable& table);
 
 /// Sets the depth camera that the options give, if they do.
 [[nodiscard]] Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options);
