@@ -148,7 +148,8 @@ void describe(SequenceTable& table, const PairedSeries& series, const OpenSequen
   if (series.pairs.size() < largest)
     table.notes.push_back(fmt::format("{} colour and {} depth images make {} views; the others are left out",
                                       series.color.files.size(), series.depth.files.size(), series.pairs.size()));
-  if (num_others > 0) table.notes.push_back(fmt::format("{} colour images with other names are left out", num_others));
+  if (num_others > 0)
+    table.notes.push_back(fmt::format("colour images with other names, which are left out: {}", num_others));
 }
 
 SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera) {

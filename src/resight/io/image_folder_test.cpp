@@ -265,8 +265,7 @@ TEST(ImageFolder, NamesWithoutNumbersArePairedByName) {
   write_pair("f/mug2_color.png", "f/mug2_depth.png");
   write_pair("f/mug3_color.png", "f/mug3_depth.png");
   EXPECT_EQ(num_views("f"), 2);
-  EXPECT_THAT((*open_sequence(directory / "f"))->notes(),
-              testing::Contains(HasSubstr("1 colour images with other names are left out")));
+  EXPECT_THAT((*open_sequence(directory / "f"))->notes(), testing::Contains(HasSubstr("which are left out: 1")));
   write_pair("d/rgb/apple.png", "d/depth/bed.png");
   EXPECT_EQ(num_views("d"), 0) << "two views that have nothing to do with each other";
 }

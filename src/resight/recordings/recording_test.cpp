@@ -166,6 +166,40 @@ TEST(Recording, EverythingBeforeACutIsRead) {
   }
 }
 
+/// Messages of a topic, as another reader counts them.
+struct TopicSummary {
+  std::int64_t count = 0, bytes = 0, first_ns = 0, last_ns = 0;
+  friend bool operator==(const TopicSummary&, const TopicSummary&) = default;
+};
+
+std::map<std::string, TopicSummary> summarize(const Recording& recording) {
+  std::map<std::string, TopicSummary> topics;
+  for (const MessageEntry& entry : recording.messages()) {
+    TopicSummary& topic = topics[recording.topics()[static_cast<std::size_t>(entry.topic)].name];
+    topic.first_ns = topic.count == 0 ? entry.time_ns : std::min(topic.first_ns, entry.time_ns);
+    topic.last_ns = topic.count == 0 ? entry.time_ns : std::max(topic.last_ns, entry.time_ns);
+    ++topic.count;
+    topic.bytes += static_cast<std::int64_t>(recording.read(entry, kMaxMessageBytes)->size());
+  }
+  return topics;
+}
+
+/// bag_messages.txt is what @foxglove/rosbag reads (read_bags.mjs).
+TEST(Recording, AgreesWithAnotherReader) {
+  std::map<std::string, std::map<std::string, TopicSummary>> expected;
+  std::ifstream list(recorded("bag_messages.txt"));
+  std::string bag, topic;
+  TopicSummary summary;
+  while (list >> bag >> topic >> summary.count >> summary.bytes >> summary.first_ns >> summary.last_ns)
+    expected[bag][topic] = summary;
+  ASSERT_EQ(expected.size(), 4U);
+  for (const auto& [name, topics] : expected) {
+    const auto recording = open_recording(recorded(name));
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(summarize(**recording), topics) << name;
+  }
+}
+
 TEST(Recording, CutsAreNamed) {
   TemporaryFile file;
   const std::string bytes = read_bytes(recorded("none.bag"));
