@@ -32,6 +32,7 @@ enum class McapOp : std::uint8_t {
 
 constexpr std::uint64_t kRecordHeaderBytes = 9;
 constexpr std::uint64_t kFooterBytes = 20;
+constexpr std::uint64_t kChunkHeadBytes = 8 + 8 + 8 + 4 + 4 + 32 + 8;  ///< With a name of up to 32 bytes.
 constexpr std::uint64_t kMaxSummaryBytes = std::uint64_t{1} << 28;
 constexpr std::uint32_t kOutsideChunks = 0;  ///< Part of messages that lie in no chunk; the chunks begin at 1.
 
@@ -89,6 +90,7 @@ class McapFile final : public IndexedRecording {
   [[nodiscard]] Result<void> read_message_indexes(std::uint64_t begin, std::uint64_t bytes, std::uint32_t part);
   [[nodiscard]] Result<std::uint32_t> add_chunk(const McapRecord& record);
   [[nodiscard]] Result<void> scan();
+  [[nodiscard]] std::optional<std::uint64_t> content_of_cut_chunk(std::uint64_t offset) const;
   [[nodiscard]] Result<void> scan_record(const McapRecord& record);
   [[nodiscard]] Result<void> scan_chunk(std::uint32_t part);
   [[nodiscard]] Result<void> add_schema(std::string_view content);
@@ -157,8 +159,7 @@ Result<void> McapFile::add_message(std::uint16_t channel, std::uint64_t time, st
 }
 
 Result<std::uint32_t> McapFile::add_chunk(const McapRecord& record) {
-  constexpr std::uint64_t kHeadBytes = 8 + 8 + 8 + 4 + 4 + 32 + 8;  // with a name of up to 32 bytes
-  const auto bytes = file_.read(record.offset, std::min(record.bytes, kHeadBytes));
+  const auto bytes = file_.read(record.offset, std::min(record.bytes, kChunkHeadBytes));
   if (!bytes) return bytes.error();
   const auto head = parse_chunk_head(*bytes);
   if (!head || head->stored_bytes > record.bytes - head->head_bytes) return fail("a chunk record is damaged");
@@ -290,10 +291,25 @@ Result<void> McapFile::scan_record(const McapRecord& record) {
   return record.op == McapOp::kSchema ? add_schema(*content) : add_channel(*content);
 }
 
+/// Where the records of an uncompressed chunk begin that the file ends in. They are records like those between chunks.
+std::optional<std::uint64_t> McapFile::content_of_cut_chunk(std::uint64_t offset) const {
+  const auto bytes = file_.read(offset, std::min(kRecordHeaderBytes + kChunkHeadBytes, file_.size() - offset));
+  if (!bytes || bytes->size() < kRecordHeaderBytes) return std::nullopt;
+  if (static_cast<McapOp>(bytes->front()) != McapOp::kChunk) return std::nullopt;
+  const auto head = parse_chunk_head(std::string_view(*bytes).substr(kRecordHeaderBytes));
+  if (!head || !head->compression.empty()) return std::nullopt;
+  return offset + kRecordHeaderBytes + head->head_bytes;
+}
+
 Result<void> McapFile::scan() {
   for (std::uint64_t offset = kMcapMagic.size();;) {
     const auto record = record_at(offset);
-    if (!record) return record.error();
+    if (!record) {
+      const auto content = content_of_cut_chunk(offset);
+      if (!content) return record.error();
+      offset = *content;
+      continue;
+    }
     if (record->op == McapOp::kDataEnd || record->op == McapOp::kFooter) return {};
     if (static_cast<std::uint8_t>(record->op) == 0)
       return fail(fmt::format("the record at byte {} is damaged", offset));

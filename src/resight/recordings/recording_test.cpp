@@ -209,6 +209,18 @@ TEST(Recording, CutsAreNamed) {
   EXPECT_GT((*recording)->messages().size(), 2U);
 }
 
+TEST(Recording, AnUncompressedChunkIsReadUpToTheCut) {
+  // All messages lie in one chunk.
+  TemporaryFile file;
+  const std::string bytes = read_bytes(recorded("none.mcap"));
+  const auto whole = read_all(**open_recording(recorded("none.mcap")));
+  const auto recording = open_recording(file.write(bytes.substr(0, bytes.size() / 2)));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_THAT((*recording)->damage(), HasSubstr("ends within the record"));
+  EXPECT_GT((*recording)->messages().size(), 3U);
+  EXPECT_LT((*recording)->messages().size(), whole.size());
+}
+
 TEST(Recording, MissingPartsAreNamed) {
   const fs::path folder = fs::temp_directory_path() / "resight_recordings_MissingParts";
   fs::remove_all(folder);
