@@ -70,6 +70,15 @@ Result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t 
   if (input->size() > max_bytes)
     return file_error(
         file, std::to_string(input->size()) + " bytes are too many (at most " + std::to_string(max_bytes) + ")");
+  // A sparse file of gigabytes takes no space on the disk, but all of it in memory.
+  constexpr std::uintmax_t kLarge = std::uintmax_t{1} << 26;
+  constexpr std::size_t kStart = 4096;
+  if (input->size() > kLarge) {
+    const auto start = read_file_start(file, kStart);
+    if (!start) return start.error();
+    if (start->find_first_not_of('\0') == std::string::npos)
+      return file_error(file, "begins with zeros only (a hole in a sparse or damaged file?)");
+  }
   return read_text(*input, input->size());
 }
 

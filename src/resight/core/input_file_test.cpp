@@ -32,6 +32,15 @@ TEST_F(InputFileTest, FilesAreReadToTheByte) {
   EXPECT_EQ(read_file(folder_ / "link")->size(), 7U);
 }
 
+TEST_F(InputFileTest, AHoleIsNotReadIntoMemory) {
+  const fs::path file = folder_ / "sparse";
+  std::ofstream(file) << "";
+  fs::resize_file(file, std::uintmax_t{1} << 40);
+  EXPECT_NE(read_file(file, std::uintmax_t{1} << 41).error().message.find("begins with zeros only"), std::string::npos);
+  fs::resize_file(file, 1 << 20);
+  EXPECT_EQ(read_file(file, 1 << 20)->size(), std::size_t{1} << 20) << "a small file may hold zeros";
+}
+
 TEST_F(InputFileTest, SizesAreCheckedBeforeReading) {
   EXPECT_TRUE(read_file(folder_ / "text", 7).ok());
   EXPECT_THAT(read_file(folder_ / "text", 6).error().message, HasSubstr("text: 7 bytes are too many (at most 6)"));

@@ -274,6 +274,24 @@ TEST(CheckQuickly, SeesWhatTheFirstViewsShow) {
   }
 }
 
+TEST(CheckQuickly, SaysWhichUnitIsWrong) {
+  const auto found = [](double pose_factor, float depth_factor) {
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 6; ++v) {
+      frames.push_back(good_sequence().read_view(v).value());
+      // A small scene, so that no depth is too far by itself.
+      frames.back().world_from_camera.translation *= 0.2 * pose_factor;
+      for (float& z_m : frames.back().depth_m.data()) z_m *= 0.2F * depth_factor;
+    }
+    const std::vector<Finding> findings = check_quickly(test::MemorySequence(std::move(frames)), true);
+    return findings.size() == 1 ? findings.front().message : std::to_string(findings.size()) + " findings";
+  };
+  EXPECT_EQ(found(1, 1), "0 findings");
+  EXPECT_NE(found(1000, 1).find("poses are in millimetres"), std::string::npos) << found(1000, 1);
+  EXPECT_NE(found(0.001, 1).find("in metres where millimetres"), std::string::npos) << found(0.001, 1);
+  EXPECT_NE(found(1, 10).find("depth is a tenth of what it says"), std::string::npos) << found(1, 10);
+}
+
 TEST(CheckQuickly, LeavesPosesAloneThatAreNotUsed) {
   EXPECT_TRUE(check_quickly(test::BrokenSequence(good_sequence(), "poses_inverted"), false).empty());
 }

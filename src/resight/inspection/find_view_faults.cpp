@@ -113,7 +113,7 @@ void add_camera_faults(const Camera& camera, int view, std::vector<Finding>& fin
   const double y_px = camera.cy - 0.5 * (camera.height - 1);
   const double offset = std::max(std::abs(x_px) / camera.width, std::abs(y_px) / camera.height);
   if (offset <= kMaxCenterOffset) return;
-  add(fmt::format("the principal point ({:.0f}, {:.0f}) is not near the middle of {}x{} images", camera.cx, camera.cy,
+  add(fmt::format("the principal point ({:.6g}, {:.6g}) is not near the middle of {}x{} images", camera.cx, camera.cy,
                   camera.width, camera.height),
       offset, kMaxCenterOffset, "");
 }

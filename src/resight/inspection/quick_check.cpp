@@ -16,7 +16,7 @@ constexpr int kStep_px = 8;
 constexpr double kSameDepth = 0.05;  // Depths of one surface differ by less; those of unrelated views rarely agree.
 constexpr double kMinMove_rad = 0.2;
 constexpr double kMinMove = 0.05;       // Of the median depth.
-constexpr double kMaxGivenShare = 0.5;  // Good poses: 0.8 and more of what both views see.
+constexpr double kMaxGivenShare = 0.6;  // Good poses: 0.8 and more of what both views see.
 constexpr double kMinOtherShare = 0.75;
 constexpr int kMinPixels = 300;
 
@@ -47,38 +47,55 @@ std::optional<int> find_moved_view(const Sequence& sequence, const Rigid3& first
   return std::nullopt;
 }
 
+/// Another reading of the poses or of the depth. Depth of another unit is the same as translations of another unit.
+struct Reading {
+  const char* fault;
+  const char* condition;
+  const char* remedy;
+  Rigid3 b_from_a;
+};
+
+std::vector<Reading> other_readings(const Rigid3& from_a, const Rigid3& from_b) {
+  const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  const Rigid3 y_up = Rigid3::from_rotation(flip);
+  const auto longer = [&](double factor) {
+    Rigid3 b_from_a = from_b.inverse() * from_a;
+    b_from_a.translation *= factor;
+    return b_from_a;
+  };
+  return {
+      {"pose_convention", "the poses are world to camera", "--pose-convention world-to-camera",
+       from_b * from_a.inverse()},
+      {"pose_convention", "the poses are those of a camera with y up", "--pose-convention opengl",
+       (from_b * y_up).inverse() * (from_a * y_up)},
+      {"pose_unit", "the poses are in millimetres", "divide the translations by 1000", longer(1e-3)},
+      {"pose_unit", "the poses are in metres where millimetres are expected", "multiply the translations by 1000",
+       longer(1e3)},
+      {"depth_scale", "the depth is a tenth of what it says", "--depth-scale, a tenth of the present one", longer(10)},
+      {"depth_scale", "the depth is ten times what it says", "--depth-scale, ten times the present one", longer(0.1)}};
+}
+
 void check_poses(const RgbdFrame& a, const RgbdFrame& b, int view, std::vector<Finding>& findings) {
   const Rigid3& from_a = a.world_from_camera;
   const Rigid3& from_b = b.world_from_camera;
   const double given = agreeing_share(a, b, from_b.inverse() * from_a);
   if (given > kMaxGivenShare) return;
-  Rigid3 shorter = from_b.inverse() * from_a;
-  shorter.translation *= 1e-3;
-  const double inverted = agreeing_share(a, b, from_b * from_a.inverse());
-  const double in_mm = agreeing_share(a, b, shorter);
-  const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  const Rigid3 y_up = Rigid3::from_rotation(flip);
-  const double opengl = agreeing_share(a, b, (from_b * y_up).inverse() * (from_a * y_up));
-  const double other = std::max({inverted, in_mm, opengl});
-  if (other < kMinOtherShare) return;
-  const bool is_inverted = inverted == other;
-  const bool is_in_mm = !is_inverted && in_mm == other;
-  findings.push_back({.fault = is_in_mm ? "pose_unit" : "pose_convention",
-                      .message = fmt::format(
-                          "the depths of two views agree at {:.0f} % of the pixels, and at {:.0f} % if the poses are "
-                          "{}",
-                          100 * given, 100 * other,
-                          is_in_mm      ? "in millimetres"
-                          : is_inverted ? "world to camera"
-                                        : "those of a camera with y up"),
-                      .remedy = is_in_mm      ? "divide the translations by 1000"
-                                : is_inverted ? "--pose-convention world-to-camera"
-                                              : "--pose-convention opengl",
-                      .value = other,
-                      .unit = "",
-                      .threshold = kMinOtherShare,
-                      .margin = other / kMinOtherShare,
-                      .view = view});
+  const std::vector<Reading> readings = other_readings(from_a, from_b);
+  std::vector<double> shares;
+  for (const Reading& reading : readings) shares.push_back(agreeing_share(a, b, reading.b_from_a));
+  const auto best = std::ranges::max_element(shares);
+  if (*best < kMinOtherShare) return;
+  const Reading& reading = readings[static_cast<std::size_t>(best - shares.begin())];
+  findings.push_back(
+      {.fault = reading.fault,
+       .message = fmt::format("the depths of two views agree at {:.0f} % of the pixels, and at {:.0f} % if {}",
+                              100 * given, 100 * *best, reading.condition),
+       .remedy = reading.remedy,
+       .value = *best,
+       .unit = "",
+       .threshold = kMinOtherShare,
+       .margin = *best / kMinOtherShare,
+       .view = view});
 }
 
 }  // namespace

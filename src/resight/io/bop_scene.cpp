@@ -102,7 +102,9 @@ Result<GroundTruthObject> parse_object(const nlohmann::json& entry, const Names&
 
 Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
   const fs::path file = scene / "scene_gt.json";
-  table.has_ground_truth = is_file(file);
+  // A dangling link or a pipe is ground truth that cannot be read, not none.
+  std::error_code ignored;
+  table.has_ground_truth = fs::exists(fs::symlink_status(file, ignored));
   if (!table.has_ground_truth) return {};
   const auto truth = read_json(file);
   if (!truth) return truth.error();

@@ -144,6 +144,16 @@ TEST(BopScene, BadContent) {
   EXPECT_THAT(open_sequence(scene).error().message, HasSubstr("depth image is missing"));
 }
 
+TEST(BopScene, TruthThatCannotBeReadIsNotAbsent) {
+  io::TestDirectory directory;
+  const auto scene = directory / "000001";
+  write_scene(scene, 1, true);
+  std::filesystem::remove(scene / "scene_gt.json");
+  EXPECT_FALSE((*open_sequence(scene))->has_ground_truth());
+  std::filesystem::create_symlink("nowhere", scene / "scene_gt.json");
+  EXPECT_THAT(open_sequence(scene).error().message, HasSubstr("scene_gt.json"));
+}
+
 TEST(BopScene, WriterTakesIdsOfTheModels) {
   io::TestDirectory directory;
   io::write_text(directory / "models/models_info.json", R"({"1": {"name": "box"}, "4": {"name": "mug"}})");
