@@ -222,6 +222,15 @@ TEST_F(FilesTest, WhatWasBegunBesideIsRemovedAlsoWhenTheFolderExistsMeanwhile) {
   EXPECT_THAT(entries(), ElementsAre("out"));
 }
 
+// Nothing can be made in /proc, and nobody is writing there.
+TEST_F(FilesTest, APlaceThatTakesNoFilesSaysSo) {
+  for (const std::string& message : {write_file("/proc/resight_test", "x").error().message,
+                                     PendingDirectory::create("/proc/resight_test").error().message}) {
+    EXPECT_THAT(message, HasSubstr("/proc/resight_test"));
+    EXPECT_THAT(message, Not(HasSubstr("another command")));
+  }
+}
+
 TEST_F(FilesTest, TwoCannotFillOneFolderAtOnce) {
   auto first = PendingDirectory::create(folder_ / "out", ExistingFolder::kFill);
   ASSERT_TRUE(first.ok());

@@ -90,6 +90,7 @@ Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bo
   is_in_use = false;
   OpenedPlace opened;
   constexpr int kMaxAttempts = 100;  // Each fails only if another process interferes.
+  bool is_refused = false;           // Folders such as /proc take no file, and say that it is missing.
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     if (opened.first_made.empty()) opened.first_made = first_missing_folder(path.parent_path());
     std::error_code error;
@@ -99,7 +100,8 @@ Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bo
       return Error{error.message()};
     }
     opened.descriptor = create_place(path, kind);
-    if (opened.descriptor < 0 && errno == ENOENT) continue;  // its folder was removed meanwhile
+    is_refused = opened.descriptor < 0 && errno == ENOENT;
+    if (is_refused) continue;  // its folder was removed meanwhile
     if (opened.descriptor < 0 && errno == EEXIST) {
       if (auto cleared = PendingPlace::clear(path); !cleared) {
         is_in_use = cleared.error().message == kInUse;
@@ -115,6 +117,7 @@ Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bo
     if (lock_place(opened.descriptor) && is_named(path, opened.descriptor)) return opened;
     ::close(opened.descriptor);
   }
+  if (is_refused) return to_error(ENOENT);
   is_in_use = true;
   return Error{kInUse};
 }
