@@ -22,7 +22,7 @@ double distorted_angle(const std::array<double, 8>& k, double theta) {
 }
 
 /// "Brown Conrady", "rs2_distortion_brown_conrady" and "brown_conrady" are one name.
-std::string without_case(std::string_view model) {
+std::string normalize_name(std::string_view model) {
   std::string name(model);
   std::ranges::transform(name, name.begin(), [](char c) {
     if (c == ' ' || c == '-') return '_';
@@ -48,7 +48,7 @@ bool is_equidistant_name(std::string_view model) {
 }  // namespace
 
 Result<LensDistortion> LensDistortion::make(std::string_view given_model, std::span<const double> coefficients) {
-  const std::string model = without_case(given_model);
+  const std::string model = normalize_name(given_model);
   LensDistortion lens;
   if (!std::ranges::all_of(coefficients, [](double k) { return std::isfinite(k); }))
     return Error{"a distortion coefficient is NaN or infinite"};

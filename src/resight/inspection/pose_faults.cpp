@@ -104,7 +104,7 @@ bool add_scale(const PoseContext& c) {
   c.add(is_unit ? "pose_unit" : "depth_scale",
         fmt::format("the motion that depth shows is {:.4g} times that of the poses (+- {:.1f} %)", scale,
                     100 * fit.log_scale.standard_error),
-        is_unit && scale < 1 ? "divide the translations by 1000: poses are in metres"
+        is_unit && scale < 1 ? "divide the translations by 1000: they are in millimetres where metres are expected"
         : is_unit            ? "multiply the translations by 1000: they are in metres where millimetres are expected"
                   : fmt::format("--depth-scale {:.3g} times the present one, if the poses are right", 1 / scale),
         scale, "", std::exp(limit), std::abs(log_scale) / limit);

@@ -146,7 +146,7 @@ void set_keys(FileSeries& series, const std::vector<std::string>& names) {
 void add_series(const fs::path& folder, bool says_what, std::vector<FileSeries>& all) {
   const std::string prefix = says_what ? to_lower(folder_name(folder)) + "/" : "";
   const auto kind_of = [&](const std::string& name) { return kind_of_image(folder / name, prefix + to_lower(name)); };
-  std::map<std::pair<std::string, SeriesKind>, std::vector<std::string>> names;  // Of numbered names, without a kind.
+  std::map<std::pair<std::string, SeriesKind>, std::vector<std::string>> names;  // Numbered names have no kind yet.
   for (const std::string& name : list_files(folder)) {
     std::string pattern = split_digits(name).pattern;
     SeriesKind kind = SeriesKind::kOther;

@@ -53,8 +53,6 @@ Image<float> enlarge_depth(const Image<float>& depth_m, int width, int height) {
 
 Result<Image<float>> read_depth_image(const SequenceTable& table, const ListedView& view) {
   switch (table.depth_storage) {
-    case DepthStorage::kNpy:
-      return read_depth_npy(view.depth, table.npy_unit_m);
     case DepthStorage::kByName:
       if (holds_depth_array(extension_of(view.depth))) return read_depth_array(view.depth, table.npy_unit_m);
       return read_unsaturated_depth(view.depth, view.metres_per_unit);

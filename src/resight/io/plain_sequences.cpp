@@ -165,7 +165,7 @@ SequenceResult open_npy_sequence(const fs::path& directory, const OpenSequenceOp
   SequenceTable table;
   table.format = "npy";
   if (options.poses.empty()) table.notes.emplace_back("no file of poses: the camera is taken to stand still (--poses)");
-  table.depth_storage = DepthStorage::kNpy;
+  table.depth_storage = DepthStorage::kByName;
   for (const std::string& stem : list_stems(directory / "rgb", ".png")) {
     ListedView view = make_view(directory / "rgb", stem, ".png", "", static_cast<int>(table.views.size()));
     view.depth = directory / "depth" / (stem + ".npy");

@@ -17,8 +17,7 @@ namespace resight::io {
 enum class DepthStorage {
   kPng,         ///< 16-bit PNG.
   kRotatedPng,  ///< 16-bit PNG, each value rotated right by 3 bits.
-  kNpy,         ///< NumPy array of floating-point metres.
-  kByName,      ///< A number array or kPng by the extension; the largest 16-bit value is no return, too.
+  kByName,  ///< A number array (npy, npz, exr) or kPng by the extension; the largest 16-bit value is no return, too.
 };
 
 /// A depth camera beside the colour camera.

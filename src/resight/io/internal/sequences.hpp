@@ -37,7 +37,7 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] bool is_image_folder(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_image_folder(const std::filesystem::path& directory,
                                                const OpenSequenceOptions& options);
-/// Whether files in such a folder are named like camera poses.
+/// Whether such a folder has camera poses that open_image_folder() reads.
 [[nodiscard]] bool holds_poses(const std::filesystem::path& directory);
 /// One sentence about the images in a folder that is no sequence. Empty if there are none.
 [[nodiscard]] std::string describe_image_folder(const std::filesystem::path& directory);
