@@ -176,6 +176,9 @@ void run_evaluate(const EvaluateArguments& arguments) {
   check_output_folder(arguments.out, {arguments.dataset, arguments.models}, kEvaluationFiles);
   for (const char* folder : {"runs", "worst"})
     value_or_throw(check_writable_folder(arguments.out / folder, ExistingFolder::kFill));
+  // Another command that is filling the folder would refuse the tables after all the work.
+  const double wait_s = arguments.num_shards > 1 ? kMergeWait_s : 0;
+  static_cast<void>(value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill, wait_s)));
   Evaluation evaluation(arguments);
   if (!arguments.merge) evaluation.compute();
   evaluation.conclude();

@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
@@ -37,7 +38,7 @@ struct Arguments {
   CheckArguments check;
   bool is_sound = true;  ///< Result of `check`.
   EvaluateArguments evaluate;
-  std::string shard;
+  std::optional<std::string> shard;
   ViewArguments view;
   AnnotateArguments annotate;
   DemoArguments demo;
@@ -289,7 +290,7 @@ std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound
   return [&a, &is_sound] { is_sound = run_check(a); };
 }
 
-std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::string& shard) {
+std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::optional<std::string>& shard) {
   CLI::App* command = app.add_subcommand(
       "evaluate", "Score presets on a data set with ground truth: recognition over K, ghosts, changes, losses, times");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
@@ -314,7 +315,7 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::str
       ->check(kSeeds);
   add_threads(command, a.num_threads);
   return [&a, &shard] {
-    if (!shard.empty()) parse_shard(shard, a.shard, a.num_shards);
+    if (shard) parse_shard(*shard, a.shard, a.num_shards);
     run_evaluate(a);
   };
 }

@@ -15,8 +15,7 @@ const Row kRows[] = {
     {"ChangesTuw", kNothing, kChangesTuw, 0, "", "out/cloud_02.png"},
     {"ChangesTum", kNothing, kChangesTum, 0, "", "out"},
     {"Convert", kNothing, kConvert, 0, "", "out"},
-    {"Evaluate", kNothing, "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out", 0, "",
-     "out/results.json"},
+    {"Evaluate", kNothing, kEvaluate, 0, "", "out/results.json"},
     {"Train", kNothing, kTrain, 0, "", "new.resight"},
 
     // The command line.
@@ -76,6 +75,7 @@ const Row kRows[] = {
      "--previous-views: '3-1'"},
     {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
      "--shard: '3/2'"},
+    {"EmptyShard", kNothing, "evaluate --models models.resight --dataset views --shard '' --out out", 2, "--shard: ''"},
 
     // Settings files.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},

@@ -77,6 +77,8 @@ struct Row {
 inline constexpr const char* kRecognize = "recognize --models models.resight --sequence views --out out";
 inline constexpr const char* kRecognizeTuw = "recognize --models models.resight --sequence tuw --out out";
 inline constexpr const char* kChanges = "changes --sequence views --out out";
+inline constexpr const char* kEvaluate =
+    "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out";
 inline constexpr const char* kChangesTuw = "changes --sequence tuw --out out";
 inline constexpr const char* kChangesTum = "changes --sequence tum --out out";
 inline constexpr const char* kConvert = "convert views out --to tuw";

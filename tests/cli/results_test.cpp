@@ -79,12 +79,13 @@ TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
 TEST_F(CommandLineResults, AFolderIsWrittenByOneCommandAtATime) {
   const auto other = PendingDirectory::create(folder_ / "out", ExistingFolder::kFill);
   ASSERT_TRUE(other.ok());
-  for (const char* command : {kConvert, kRecognize, kChanges}) {
+  for (const char* command : {kConvert, kRecognize, kChanges, kEvaluate}) {
     const Outcome outcome = run(folder_, command);
     EXPECT_EQ(outcome.status, 2) << command;
     EXPECT_THAT(testing::PrintToString(outcome.errors), testing::HasSubstr("another command is writing it")) << command;
   }
   EXPECT_TRUE(fs::is_empty(other->path()));
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "evaluated before it was refused";
 }
 
 TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) {

@@ -90,6 +90,9 @@ Result<void> check_writable(const fs::path& path) {
   if (::access(folder.c_str(), W_OK) != 0 || (is_file && ::access(target.parent_path().c_str(), W_OK | X_OK) != 0))
     return file_error(
         path, errno == EROFS ? "cannot be written (the disk is read-only)" : "cannot be written (no permission)");
+  // Some file systems, such as /proc, take nothing whatever the permissions say: only a trial tells.
+  if (auto taken = PendingPlace::try_out(is_file ? target.parent_path() : folder); !taken)
+    return file_error(path, "cannot be written (" + taken.error().message + ")");
   return {};
 }
 

@@ -16,8 +16,9 @@ namespace resight {
 /// The last component of a path. Paths such as "a/b/" and "." are made absolute first.
 [[nodiscard]] std::string folder_name(const std::filesystem::path& directory);
 
-/// Checks before long work whether a file or folder can be created under this name, parent folders included. Changes
-/// nothing. An existing file may be overwritten and an existing folder may be filled.
+/// Checks before long work whether a file or folder can be created under this name, parent folders included. Tries it
+/// out under a hidden temporary name, of which nothing remains. An existing file may be overwritten and an existing
+/// folder may be filled, also one that another process is writing.
 [[nodiscard]] Result<void> check_writable(const std::filesystem::path& path);
 
 /// Writes `bytes` under a hidden temporary name beside `file`, then renames it. Creates the folder if it is missing.

@@ -224,8 +224,9 @@ TEST_F(FilesTest, WhatWasBegunBesideIsRemovedAlsoWhenTheFolderExistsMeanwhile) {
 
 // Nothing can be made in /proc, and nobody is writing there.
 TEST_F(FilesTest, APlaceThatTakesNoFilesSaysSo) {
-  for (const std::string& message : {write_file("/proc/resight_test", "x").error().message,
-                                     PendingDirectory::create("/proc/resight_test").error().message}) {
+  for (const std::string& message :
+       {write_file("/proc/resight_test", "x").error().message, check_writable("/proc/resight_test").error().message,
+        PendingDirectory::create("/proc/resight_test").error().message}) {
     EXPECT_THAT(message, HasSubstr("/proc/resight_test"));
     EXPECT_THAT(message, Not(HasSubstr("another command")));
   }

@@ -14,6 +14,8 @@
 namespace resight {
 namespace {
 
+constexpr std::size_t kMaxBytesPerCall = std::size_t{1} << 30;
+
 std::string describe_failure(int code) {
   if (code == ENOENT || code == ENOTDIR) return "no such file";
   return "cannot be opened (" + std::generic_category().message(code) + ")";
@@ -32,11 +34,16 @@ Result<InputFile> InputFile::open(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return file_error(file, errno == ENXIO ? "is not a file" : describe_failure(errno));
   InputFile input(file, descriptor, 0);
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) return file_error(file, describe_failure(errno));
-  if (!S_ISREG(status.st_mode)) return file_error(file, "is not a file");
-  input.size_ = static_cast<std::uintmax_t>(status.st_size);
+  if (const auto done = input.update_size(); !done) return done.error();
   return input;
+}
+
+Result<void> InputFile::update_size() {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) return file_error(file_, describe_failure(errno));
+  if (!S_ISREG(status.st_mode)) return file_error(file_, "is not a file");
+  size_ = static_cast<std::uintmax_t>(status.st_size);
+  return {};
 }
 
 InputFile::InputFile(InputFile&& other) noexcept
@@ -49,7 +56,7 @@ InputFile::~InputFile() {
 Result<void> InputFile::read(void* bytes, std::size_t num_bytes) {
   auto* target = static_cast<char*>(bytes);
   while (num_bytes > 0) {
-    const ssize_t count = ::read(descriptor_, target, std::min<std::size_t>(num_bytes, std::size_t{1} << 30));
+    const ssize_t count = ::read(descriptor_, target, std::min(num_bytes, kMaxBytesPerCall));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return file_error(file_, "cannot be read to its end");
     target += count;
@@ -58,9 +65,17 @@ Result<void> InputFile::read(void* bytes, std::size_t num_bytes) {
   return {};
 }
 
-Result<void> InputFile::seek(std::uintmax_t offset) {
-  if (offset > size_ || ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0)
-    return file_error(file_, "cannot be read to its end");
+Result<void> InputFile::read_at(std::uintmax_t offset, void* bytes, std::size_t num_bytes) const {
+  auto* target = static_cast<char*>(bytes);
+  while (num_bytes > 0) {
+    const ssize_t count =
+        ::pread(descriptor_, target, std::min(num_bytes, kMaxBytesPerCall), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return file_error(file_, "cannot be read to its end");
+    target += count;
+    offset += static_cast<std::uintmax_t>(count);
+    num_bytes -= static_cast<std::size_t>(count);
+  }
   return {};
 }
 

@@ -20,12 +20,14 @@ class InputFile {
   InputFile& operator=(InputFile&& other) = delete;
   ~InputFile();
 
-  /// The size in bytes when the file was opened.
+  /// The size in bytes when the file was opened, or at the last update_size().
   [[nodiscard]] std::uintmax_t size() const { return size_; }
+  /// Finds the size of a file that is still being written.
+  [[nodiscard]] Result<void> update_size();
   /// Reads the next bytes. Fails if there are fewer.
   [[nodiscard]] Result<void> read(void* bytes, std::size_t num_bytes);
-  /// Goes to a byte, counted from the start, from which read() goes on.
-  [[nodiscard]] Result<void> seek(std::uintmax_t offset);
+  /// Reads bytes from a place, counted from the start of the file. read() goes on where it was.
+  [[nodiscard]] Result<void> read_at(std::uintmax_t offset, void* bytes, std::size_t num_bytes) const;
 
  private:
   InputFile(std::filesystem::path file, int descriptor, std::uintmax_t size)

@@ -176,6 +176,11 @@ Result<std::unique_ptr<PendingPlace>> PendingPlace::create(const fs::path& folde
   }
 }
 
+Result<void> PendingPlace::try_out(const fs::path& folder) {
+  const auto place = create(folder, "", Kind::kFolder, 0);
+  return place || place.error().message == kInUse ? Result<void>() : place.error();
+}
+
 PendingPlace::PendingPlace(fs::path path, int descriptor, fs::path first_made)
     : path_(std::move(path)), descriptor_(descriptor), first_made_(std::move(first_made)) {}
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/trace_file.hpp"
 
-#include <fstream>
+#include <algorithm>
 
-#include "resight/core/input_file.hpp"
 #include "resight/io/internal/member_reader.hpp"
 
 namespace resight {
@@ -93,30 +92,17 @@ StoredTrace read_trace(const MemberReader& reader) {
 
 /// Calls `on_line` with offset and size of each whole line from the line that starts at `begin`.
 template <typename OnLine>
-Result<void> find_lines(const std::filesystem::path& path, std::uint64_t begin, const OnLine& on_line) {
-  auto file = InputFile::open(path);
-  if (!file) return file.error();
-  if (const auto done = file->seek(begin); !done) return done;
+Result<void> find_lines(const InputFile& file, std::uint64_t begin, const OnLine& on_line) {
   std::string block;
-  for (std::uint64_t offset = begin; offset < file->size(); offset += block.size()) {
-    block.resize(std::min<std::uint64_t>(1 << 20, file->size() - offset));
-    if (const auto done = file->read(block.data(), block.size()); !done) return done;
+  for (std::uint64_t offset = begin; offset < file.size(); offset += block.size()) {
+    block.resize(std::min<std::uint64_t>(1 << 20, file.size() - offset));
+    if (const auto done = file.read_at(offset, block.data(), block.size()); !done) return done;
     for (std::size_t end = block.find('\n'); end != block.npos; end = block.find('\n', end + 1)) {
       on_line(begin, offset + end - begin);
       begin = offset + end + 1;
     }
   }
   return {};
-}
-
-Result<std::string> read_part(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t size) {
-  if (size > kMaxLineBytes) return file_error(path, "holds a line that is longer than one of ours");
-  std::string line(size, '\0');
-  std::ifstream in(path, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(offset));
-  in.read(line.data(), static_cast<std::streamsize>(size));
-  if (!in) return file_error(path, "cannot be read");
-  return line;
 }
 
 }  // namespace
@@ -136,12 +122,19 @@ TraceFile TraceFile::follow(std::filesystem::path file) {
 }
 
 Result<void> TraceFile::find_new_views() {
+  if (!content_) {
+    auto opened = InputFile::open(file_);
+    if (!opened) return opened.error();
+    content_ = std::make_shared<InputFile>(*std::move(opened));
+  }
+  if (const auto done = content_->update_size(); !done) return done;
+  if (content_->size() < end_offset_) return file_error(file_, "has become shorter");
   std::vector<Line> found;
   const auto add = [&](std::uint64_t offset, std::uint64_t size) { found.push_back({offset, size}); };
-  if (const auto done = find_lines(file_, end_offset_, add); !done) return done;
+  if (const auto done = find_lines(*content_, end_offset_, add); !done) return done;
   if (end_offset_ == 0) {
     if (found.empty()) return file_error(file_, "is no trace of 'resight recognize --trace'");
-    const auto header = read_part(file_, found.front().offset, found.front().size);
+    const auto header = read_line(found.front());
     if (!header) return header.error();
     const auto content = io::parse_json(*header);
     if (!content || member(*content, "format") != kTraceFormat)
@@ -156,10 +149,17 @@ Result<void> TraceFile::find_new_views() {
   return {};
 }
 
+Result<std::string> TraceFile::read_line(const Line& line) const {
+  if (line.size > kMaxLineBytes) return file_error(file_, "holds a line that is longer than one of ours");
+  std::string bytes(line.size, '\0');
+  if (const auto done = content_->read_at(line.offset, bytes.data(), bytes.size()); !done) return done.error();
+  return bytes;
+}
+
 Result<StoredTrace> TraceFile::read(int view, const std::string& name) const {
   if (view >= num_views()) return file_error(file_, fmt::format("has no line of view '{}'", name));
   const Line& line = lines_[static_cast<std::size_t>(view)];
-  const auto text = read_part(file_, line.offset, line.size);
+  const auto text = read_line(line);
   if (!text) return text.error();
   const auto content = io::parse_json(*text);
   if (!content) return file_error(file_, fmt::format("line {}: {}", view + 2, content.error().message));

@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "resight/core/input_file.hpp"
 #include "resight/core/result.hpp"
 #include "resight/geometry/rigid3.hpp"
 
@@ -101,7 +103,10 @@ class TraceFile {
     std::uint64_t offset = 0;
     std::uint64_t size = 0;
   };
+  [[nodiscard]] Result<std::string> read_line(const Line& line) const;
   std::filesystem::path file_;
+  std::shared_ptr<InputFile>
+      content_;                   ///< Stays open: the file may be renamed once it is complete. Null: not found yet.
   std::vector<Line> lines_;       ///< One per view.
   std::uint64_t end_offset_ = 0;  ///< Of the last whole line, its line break included; 0: the header is not read yet.
 };

@@ -186,8 +186,12 @@ TEST_F(StoredTraces, AreFollowedWhileTheyAreWritten) {
   EXPECT_EQ(trace.num_views(), 2);
   const auto read = trace.read(1, "view4");
   EXPECT_TRUE(read.ok()) << read.error().message;
-  store("");
+  fs::rename(folder_ / kTraceFile, folder_ / "complete.jsonl");
+  EXPECT_TRUE(trace.read(1, "view4").ok()) << "a file that is complete goes to its place";
+  EXPECT_TRUE(trace.find_new_views().ok());
+  fs::resize_file(folder_ / "complete.jsonl", 0);
   EXPECT_FALSE(trace.find_new_views().ok()) << "the file was cut";
+  EXPECT_FALSE(trace.read(1, "view4").ok());
 }
 
 TEST_F(StoredTraces, BelongToTheirResults) {

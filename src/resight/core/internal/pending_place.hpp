@@ -33,6 +33,9 @@ class PendingPlace {
   /// Whether it is no longer there to be removed: finish() has succeeded.
   [[nodiscard]] bool is_finished() const { return is_finished_; }
 
+  /// Creates a place in the folder, under a name that no output has, and removes it.
+  [[nodiscard]] static Result<void> try_out(const std::filesystem::path& folder);
+
   /// The name of the place for a final name.
   [[nodiscard]] static std::string name_for(const std::string& final_name);
   /// Removes what a process that no longer lives has left under this name. Fails if the place is in use, or not ours.
