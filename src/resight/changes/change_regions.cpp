@@ -15,8 +15,8 @@ namespace {
 
 // Points of one surface are up to 1.7 voxels apart (the diagonal); noise and grazing angles leave further gaps.
 constexpr double kMaxGap_voxels = 4;
-// A smaller region beside a larger one in the image is a fragment at a depth edge, and belongs to it.
-constexpr std::size_t kFewPoints = 10;
+// A region beside one of ten times as many points in the image is a fragment at a depth edge, and belongs to it.
+constexpr std::size_t kMinTimesLarger = 10;
 constexpr int kFragmentGap_px = 2;
 
 // Indices of the points of each region, ascending.
@@ -82,7 +82,8 @@ std::vector<ChangeRegion> join_fragments(std::vector<ChangeRegion> regions, cons
   std::vector<ChangeRegion> joined;
   for (ChangeRegion& region : regions) {
     const int larger = region.pixels.empty() ? kNone : largest_at(region.pixels.front());
-    if (region.surface_in_world.size() < kFewPoints && larger != kNone) {
+    const std::size_t size = region.surface_in_world.size();
+    if (larger != kNone && kMinTimesLarger * size < joined[static_cast<std::size_t>(larger)].surface_in_world.size()) {
       ChangeRegion& home = joined[static_cast<std::size_t>(larger)];
       home.surface_in_world.append(region.surface_in_world);
       home.pixels.insert(home.pixels.end(), region.pixels.begin(), region.pixels.end());

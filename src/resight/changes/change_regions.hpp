@@ -21,7 +21,8 @@ struct ChangeRegion {
 
 /// Groups changed points of a view (at its corrected pose) into regions: points are connected if they are at most
 /// four voxels apart. Holes in the depth and occluding things therefore do not part a region, as they would in the
-/// image. Novel regions first; each kind from the largest number of points to the smallest. `voxel_m` as in
+/// image. A region that touches one of ten times as many points in the image is a fragment at its depth edges, and is
+/// joined to it. Novel regions first; each kind from the largest number of points to the smallest. `voxel_m` as in
 /// DetectChangesOptions.
 [[nodiscard]] std::vector<ChangeRegion> find_change_regions(const RgbdFrame& frame, const ChangeResult& changes,
                                                             double voxel_m);

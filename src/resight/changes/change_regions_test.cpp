@@ -73,6 +73,30 @@ TEST(ChangeRegions, GapsOfFourVoxelsAreBridged) {
   EXPECT_EQ(regions[1].surface_in_world.size(), 1U);
 }
 
+// At depth edges, measurements lie between the thing and what is behind it. Something small beside something large that
+// does not touch it in the image stays.
+TEST(ChangeRegions, AFragmentBelongsToTheThingThatItTouches) {
+  RgbdFrame frame = see(table(), usual_pose()).frame;
+  frame.world_from_camera = Rigid3::identity();
+  ChangeResult changes;
+  changes.novel_mask = Image<std::uint8_t>(frame.camera.width, frame.camera.height);
+  const auto add = [&](int begin_u, int end_u, double z_m) {
+    for (int v = 100; v < 120; ++v)
+      for (int u = begin_u; u < end_u; ++u) {
+        changes.novel_mask(u, v) = 1;
+        const Eigen::Vector2d slope((u - frame.camera.cx) / frame.camera.fx, (v - frame.camera.cy) / frame.camera.fy);
+        changes.novel_in_world.points.push_back((z_m * slope.homogeneous()).cast<float>());
+      }
+  };
+  add(100, 140, 1.0);
+  add(140, 142, 1.1);  // touches it
+  add(150, 152, 1.0);
+  const std::vector<ChangeRegion> regions = find_change_regions(frame, changes, kVoxel_m);
+  ASSERT_EQ(regions.size(), 2U);
+  EXPECT_EQ(regions[0].pixels.size(), 42U * 20U);
+  EXPECT_EQ(regions[1].pixels.size(), 2U * 20U);
+}
+
 TEST(ChangeRegions, NoChangesAreNoRegions) {
   EXPECT_TRUE(find_change_regions(see(table(), usual_pose()).frame, {}, kVoxel_m).empty());
 }

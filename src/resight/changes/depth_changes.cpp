@@ -2,6 +2,7 @@
 #include "resight/changes/depth_changes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -15,6 +16,16 @@ namespace {
 constexpr int kMinRadius_px = 2;
 constexpr int kMaxGap_px = 2;     // Within a region: the pixels of one view do not cover all of another's.
 constexpr int kMinAroundGap = 6;  // Of 25 pixels: a quarter. So many are met if the camera comes twice as near.
+
+/// Calls `visit` with each pixel that is at most kMaxGap_px rows and columns away.
+template <typename Visit>
+void visit_neighbours(const Image<std::uint8_t>& image, std::size_t pixel, const Visit& visit) {
+  const int row = static_cast<int>(pixel) / image.width();
+  const int column = static_cast<int>(pixel) % image.width();
+  for (int v = std::max(row - kMaxGap_px, 0); v <= std::min(row + kMaxGap_px, image.height() - 1); ++v)
+    for (int u = std::max(column - kMaxGap_px, 0); u <= std::min(column + kMaxGap_px, image.width() - 1); ++u)
+      visit(image.index(u, v));
+}
 
 /// What a view and an earlier one say about each other.
 struct PairEvidence {
@@ -74,6 +85,45 @@ Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvi
     if (explained[i] != 0) novel[i] = 0;
   }
   return novel;
+}
+
+/// Whether two pixels show one surface: each lies in the tangent plane of the other, within the noise.
+bool is_continued(const PreparedView& view, std::size_t a, std::size_t b, double max_sigmas) {
+  if (!view.cloud.has_normal(a) || !view.cloud.has_normal(b)) return false;
+  const Eigen::Vector3f step = view.cloud.point(b) - view.cloud.point(a);
+  const float distance_m = std::max(std::abs(view.cloud.normal(a).dot(step)), std::abs(view.cloud.normal(b).dot(step)));
+  return distance_m <= static_cast<float>(max_sigmas) * std::hypot(view.noise.normal_m[a], view.noise.normal_m[b]);
+}
+
+/// Whether a novel region fills a hole: the newest earlier view measured nothing at most of its pixels, and most of
+/// its border goes on into surface that this view has seen as it is now.
+bool fills_hole(const PreparedView& view, const PreparedView& newest, const PairEvidence& pair, double sigmas,
+                const Image<std::uint8_t>& novel, std::span<const int> region) {
+  std::size_t num_in_holes = 0;
+  for (const int i : region) {
+    const int seen_at = pair.of_view.pixels[static_cast<std::size_t>(i)];
+    num_in_holes += seen_at >= 0 && !newest.cloud.has_point(static_cast<std::size_t>(seen_at)) ? 1U : 0U;
+  }
+  if (2 * num_in_holes <= region.size()) return false;
+  int num_bordering = 0;
+  int num_continued = 0;
+  for (const int i : region) {
+    visit_neighbours(novel, static_cast<std::size_t>(i), [&](std::size_t j) {
+      if (novel[j] != 0 || !view.cloud.has_point(j)) return;
+      ++num_bordering;
+      if (pair.of_view.evidence[j] != Evidence::kPresent) return;
+      num_continued += is_continued(view, static_cast<std::size_t>(i), j, sigmas * pair.noise_scale) ? 1 : 0;
+    });
+  }
+  return 2 * num_continued > num_bordering;
+}
+
+void drop_filled_holes(const PreparedView& view, const PreparedView& newest, const PairEvidence& pair, double sigmas,
+                       Image<std::uint8_t>& novel) {
+  const Image<std::uint8_t> all = novel;
+  for (const std::vector<int>& region : find_pixel_components(all, kMaxGap_px))
+    if (fills_hole(view, newest, pair, sigmas, all, region))
+      for (const int i : region) novel[static_cast<std::size_t>(i)] = 0;
 }
 
 /// Mean of weigh_contradictions() over the earlier views that see through a novel surface; 0 at other pixels.
@@ -167,16 +217,6 @@ class RemovedSurface {
   Image<float> contradictions_;
 };
 
-/// Calls `visit` with each pixel that is at most kMaxGap_px rows and columns away.
-template <typename Visit>
-void visit_neighbours(const Image<std::uint8_t>& image, std::size_t pixel, const Visit& visit) {
-  const int row = static_cast<int>(pixel) / image.width();
-  const int column = static_cast<int>(pixel) % image.width();
-  for (int v = std::max(row - kMaxGap_px, 0); v <= std::min(row + kMaxGap_px, image.height() - 1); ++v)
-    for (int u = std::max(column - kMaxGap_px, 0); u <= std::min(column + kMaxGap_px, image.width() - 1); ++u)
-      visit(image.index(u, v));
-}
-
 void RemovedSurface::fill_gaps() {
   Image<std::uint8_t> is_tested(removed_);
   std::vector<std::size_t> gaps;
@@ -205,6 +245,7 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
   parallel_for(pairs.size(), num_threads,
                [&](std::size_t e) { pairs[e] = compare_both_ways(view, *earlier_views[e], options, num_threads); });
   changes.novel = find_novel(view, pairs, changes.num_explained);
+  if (!pairs.empty()) drop_filled_holes(view, *earlier_views.back(), pairs.back(), options.sigmas, changes.novel);
   drop_weak_regions(measure_novel(view, earlier_views, pairs, options, changes.novel), options.min_region_px,
                     changes.novel);
 

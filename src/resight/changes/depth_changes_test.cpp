@@ -109,6 +109,49 @@ TEST(DepthChanges, ARemovedBoxIsSeenThrough) {
   }
 }
 
+/// The view without depth where `lacks_depth` says so.
+template <typename LacksDepth>
+PreparedView without_depth(const PreparedView& view, const LacksDepth& lacks_depth) {
+  RgbdFrame frame = view.frame;
+  for (std::size_t i = 0; i < frame.depth_m.size(); ++i)
+    if (lacks_depth(i)) frame.depth_m[i] = std::nanf("");
+  return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+}
+
+int count_novel(const std::vector<PreparedView>& earlier, const PreparedView& view) {
+  std::vector<const PreparedView*> views;
+  for (const PreparedView& e : earlier) views.push_back(&e);
+  return count(find_depth_changes(view, views, {}, 1).novel);
+}
+
+// Depth comes and goes on shiny surfaces. The carton was reported when it came, and its hole was not free space.
+TEST(DepthChanges, AHoleThatFillsIsNotNovel) {
+  const PreparedView carton = see(scene_with({kCarton}));
+  const PreparedView before = see(table());
+  const auto is_spot = [&](std::size_t i) {
+    const std::size_t u = i % 320;
+    const std::size_t v = i / 320;
+    return u >= 145 && u < 165 && v >= 95 && v < 110;
+  };
+  const PreparedView holed = without_depth(carton, is_spot);
+  EXPECT_GT(count_novel({before}, holed), 1500);
+  EXPECT_GT(count_novel({before}, carton), count_novel({before}, holed) + 200) << "the spot is on the carton";
+  EXPECT_EQ(count_novel({before, holed}, carton), 0);
+}
+
+// A thing without depth is not there to be continued.
+TEST(DepthChanges, AThingWhoseDepthComesLaterIsNovel) {
+  const PreparedView before = see(table());
+  for (const double half_height_m : {0.1, 0.02, 0.01}) {
+    const PreparedView after = see(scene_with({{{0, 0, half_height_m}, {0.08, 0.05, half_height_m}, 0.4}}));
+    const PreparedView unseen = without_depth(
+        after, [&](std::size_t i) { return std::abs(after.frame.depth_m[i] - before.frame.depth_m[i]) > 0.002F; });
+    EXPECT_EQ(count_novel({before}, unseen), 0);
+    EXPECT_EQ(count_novel({before, unseen}, after), count_novel({before}, after)) << half_height_m;
+    EXPECT_GT(count_novel({before}, after), 500);
+  }
+}
+
 TEST(DepthChanges, TheRemovedMaskHasNoGaps) {
   // A nearer camera has more pixels of the box than the one that saw it, and noise scatters these.
   const Rigid3 nearer = look_at({0, -0.6, 0.55}, {0, 0, 0.1});
