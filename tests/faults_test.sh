@@ -24,12 +24,12 @@ declare -A arguments=(
   [changes]="--sequence ../data/test/000001 --out out"
   [track]="--sequence ../data/test/000001 --out out.txt --fused out.ply --write-sequence posed"
   [evaluate]="--models ../models.resight --dataset ../data --presets mvr -k 0,1 --out out"
-  [model]="--sequence ../recording/side_1 --out out"
+  [model]="--sequence ../side --every 4 --out out"
 )
 arguments[recognize_again]=${arguments[recognize]}
 arguments[changes_again]=${arguments[changes]}
 commands=(simulate convert convert_models train recognize recognize_again changes changes_again track evaluate)
-((rounds >= 5)) && commands+=(convert_rendered model) # these take up to half a minute per round
+((rounds >= 5)) && commands+=(convert_rendered model) # these take longer
 ((${#chosen[@]} > 0)) && commands=("${chosen[@]}")
 faults=(kill interrupt file_limit read_only full_disk)
 
@@ -37,7 +37,10 @@ write_scene 3 -110 -90 false >scene.toml
 run simulate scene.toml --out data --format bop --seed 1
 run train data/models --out models.resight
 mkdir meshes && cp data/models/obj_000002.ply meshes
-[[ " ${commands[*]} " == *" model "* ]] && run simulate --preset turntable-recording --out recording
+if [[ " ${commands[*]} " == *" model "* ]]; then
+  run simulate --preset turntable-recording --out recording
+  run convert recording/side_1 side --to bop # of which views can be left out
+fi
 
 can_mount=true
 unshare -m mount -t tmpfs none "$work" 2>/dev/null || can_mount=false

@@ -450,7 +450,9 @@ int main(int argc, char** argv) {
   resight::keep_freed_memory();
   resight::app::clean_up_when_interrupted();
   try {
-    return run_program(argc, argv);
+    const int status = run_program(argc, argv);
+    if (finish_output()) return status;
+    print_error_line("", "the output could not be written to the terminal, pipe or file (is the disk full?)");
   } catch (const std::exception& error) {
     print_error_line("failed: ", error.what());
   } catch (...) {

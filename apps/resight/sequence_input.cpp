@@ -26,6 +26,13 @@ const std::map<std::string, PoseConvention> kConventions = {{"camera-to-world", 
                                                             {"world-to-camera", PoseConvention::kWorldToCamera},
                                                             {"opengl", PoseConvention::kOpenGl}};
 
+// CLI11 takes nan to be in every range.
+const CLI::Validator kNumber(
+    [](const std::string& text) {
+      return text.find_first_of("nN") == text.npos ? std::string() : text + " is not a number";
+    },
+    "");
+
 std::vector<std::string> sensor_names() {
   std::vector<std::string> names;
   for (const DepthSensor& sensor : depth_sensors()) names.emplace_back(sensor.name);
@@ -45,7 +52,7 @@ void add_recording_options(CLI::App* command, RecordingTopics& topics) {
       ->add_option_function<double>(
           "--max-time-difference-ms", [&topics](double value) { topics.max_time_difference_s = 1e-3 * value; },
           "Between a colour image and its depth image [20]")
-      ->check(CLI::Range(0.0, 1e4))
+      ->check(CLI::Range(0.0, 1e4) & kNumber)
       ->group(group);
 }
 
@@ -98,7 +105,7 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
       ->add_option("--min-motion", options.views.min_motion_m,
                    "Takes a view only if the camera, or what is 1 m in front of it, has moved by this since the last "
                    "one, metres [0]")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(CLI::Range(0.0, 100.0) & kNumber)
       ->group(group);
   command->add_option("--from", options.views.from_s, "Takes views from this time on, seconds since the first")
       ->group(group);

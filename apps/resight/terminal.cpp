@@ -16,6 +16,8 @@ void print_text(std::string_view text) {
   }
 }
 
+bool finish_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
 void print_error_line(std::string_view kind, std::string_view what) {
   std::fprintf(stderr, "resight: %s%s\n", printable(kind).c_str(), printable(what).c_str());
 }

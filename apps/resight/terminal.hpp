@@ -16,6 +16,9 @@ namespace resight::app {
 
 /// Prints to standard output. Line ends in `text` stay.
 void print_text(std::string_view text);
+/// Writes out what was printed. False if not all of it could be written.
+[[nodiscard]] bool finish_output();
+
 /// Prints "resight: <kind><what>" as one line to standard error.
 void print_error_line(std::string_view kind, std::string_view what);
 

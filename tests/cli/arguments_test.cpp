@@ -5,6 +5,13 @@
 namespace resight::cli_test {
 namespace {
 
+std::string make_long_key() {
+  std::string key = "# keys of a.a.a\na";
+  for (int i = 0; i < 50000; ++i) key += ".a";
+  return key + " = 1\n";
+}
+const std::string kLongKey = make_long_key();
+
 const Row kRows[] = {
     // The valid data are accepted, so the other rows fail because of what they damage.
     {"Version", kNothing, "--version", 0, ""},
@@ -36,6 +43,7 @@ const Row kRows[] = {
     {"DeadlineThatIsNoNumber", kNothing,
      "recognize --models models.resight --sequence views --out out --deadline-ms nan", 2,
      "nan is not a number above 0"},
+    {"TimeDifferenceOfNan", kNothing, "info views --max-time-difference-ms nan", 2, "nan is not a number"},
     {"NameWithEscapeSequences", kNothing,
      "changes --sequence \"$(printf 'no\\033[31mwhere\\nresight: done')\" --out out", 2,
      "no\\\\x1b\\[31mwhere\\\\x0aresight: done: no such"},
@@ -79,6 +87,8 @@ const Row kRows[] = {
 
     // Settings files.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
+    {"ConfigWithAKeyOfManyParts", write("c.toml", kLongKey.c_str()),
+     "changes --sequence views --out out --config c.toml", 2, "line 2: a key has more than 100 parts"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
     {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
      "c\\.toml: line 1"},

@@ -97,6 +97,12 @@ TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) 
   EXPECT_FALSE(fs::exists(folder_ / "out/summary.json"));
 }
 
+TEST_F(CommandLineResults, OutputThatIsLostIsAnError) {
+  const std::string command = "cd " + folder_.string() + " && " RESIGHT_PROGRAM " options >/dev/full 2>errors";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_THAT(read_text(folder_ / "errors"), testing::HasSubstr("resight: the output could not be written"));
+}
+
 TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {
   write_text(folder_ / "meshes/z.ply", "ply\n");
   EXPECT_EQ(run(folder_, kTrain).status, 2);

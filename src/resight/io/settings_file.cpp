@@ -8,6 +8,7 @@
 #include <map>
 
 #include "resight/core/input_file.hpp"
+#include "resight/io/toml_keys.hpp"
 
 namespace resight {
 namespace {
@@ -53,6 +54,7 @@ Result<void> assign_settings(const std::filesystem::path& file, const std::funct
   const auto fail = [&](const std::string& what) { return Error{fmt::format("{}: {}", file.string(), what)}; };
   const auto text = read_file(file);
   if (!text) return text.error();
+  if (const auto checked = check_toml_keys(*text); !checked) return fail(checked.error().message);
   toml::table table;
   try {
     table = toml::parse(*text);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <model_library_generated.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -90,6 +91,27 @@ bool read_all(const flatbuffers::Vector<const Stored*>* stored, std::vector<Valu
   return true;
 }
 
+std::size_t count_bytes(const schema::Surface* surface) {
+  if (surface == nullptr || surface->points() == nullptr || surface->normals() == nullptr) return 0;
+  const std::size_t num_colors = surface->colors() != nullptr ? surface->colors()->size() : 0;
+  return sizeof(float) * (std::size_t{surface->points()->size()} + surface->normals()->size()) + num_colors;
+}
+
+std::size_t count_bytes(const schema::Features* features) {
+  if (features == nullptr || features->points() == nullptr || features->normals() == nullptr) return 0;
+  const std::size_t num_codes = features->descriptors() != nullptr ? features->descriptors()->size() : 0;
+  return sizeof(float) * (std::size_t{features->points()->size()} + features->normals()->size()) + num_codes;
+}
+
+/// Whether centre and diameter can be those of the surface. Views are cropped to them.
+bool fits_surface(const ObjectModel& object) {
+  if (object.surface.empty()) return true;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : object.surface.points) box.extend(p);
+  const float diagonal_m = box.diagonal().norm() + kMaxVoxel_m / 100;
+  return object.diameter_m <= 2 * diagonal_m && (object.center - box.center()).norm() <= diagonal_m;
+}
+
 // Decodes one object. Returns the name of the damaged part, or an empty string.
 std::string read(const schema::Object& stored, ObjectModel& object) {
   object.name = stored.name()->str();
@@ -108,7 +130,7 @@ std::string read(const schema::Object& stored, ObjectModel& object) {
   object.center = {stored.center()->x(), stored.center()->y(), stored.center()->z()};
   object.diameter_m = stored.diameter_m();
   if (!are_near({object.center})) return "centre";
-  return object.diameter_m >= 0 && object.diameter_m <= kMaxDiameter_m ? "" : "diameter";
+  return object.diameter_m >= 0 && object.diameter_m <= kMaxDiameter_m && fits_surface(object) ? "" : "diameter";
 }
 
 }  // namespace
@@ -130,6 +152,11 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
     if (const auto checked = check_object_name(name); !checked) return Error{"damaged: " + checked.error().message};
     if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
   }
+  // Objects could share one surface, and a small file fill the memory.
+  std::size_t num_bytes = 0;
+  for (const schema::Object* object : objects)
+    num_bytes += count_bytes(object->surface()) + count_bytes(object->sift()) + count_bytes(object->shot());
+  if (num_bytes > payload.size()) return Error{"damaged: its objects hold more than the file does"};
   library.objects.resize(objects.size());
   std::vector<std::string> damaged_parts(objects.size());
   parallel_for(objects.size(), num_hardware_threads(), [&](std::size_t i) {

@@ -288,6 +288,9 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].offset.x() = 1e12; }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].center.x() = 1e12F; }, "centre"},
       {[](ModelLibrary& l) { l.objects[0].diameter_m = 1e12F; }, "diameter"},
+      // Views are cropped to the object: a wrong size would need all memory.
+      {[](ModelLibrary& l) { l.objects[0].diameter_m = 40; }, "diameter"},
+      {[](ModelLibrary& l) { l.objects[0].center.x() = 40; }, "diameter"},
       {[](ModelLibrary& l) { l.surface_voxel_m = 1e-12F; }, "voxel size"},
       {[](ModelLibrary& l) { l.objects[0].name = "../mug"; }, "'../mug'"},
       {[](ModelLibrary& l) { l.objects[0].name = "mug\x1b[2J"; }, "'mug\\x1b[2J'"},

@@ -17,8 +17,10 @@ namespace {
 constexpr double kMinMahalanobis_sq = 22.5;
 // A given motion is not off by more standard deviations: then it is the alignment that is wrong.
 constexpr double kMaxSigmas = 4;
-// An aligned pose must fit the views before better than the given one, by a tenth. A still camera stays still.
-constexpr double kMaxCostRatio = 0.9;
+// A camera that does not move by its given poses stands on something. What changes in front of it must not move it: an
+// aligned pose must fit the views before better by a tenth. That a moving camera stays where it was said to be needs no
+// such doubt: exact poses pass the test above, and those of trackers drift.
+constexpr double kMaxCostRatioOfStill = 0.9;
 // Grey levels (Steinbruecker et al. 2011). Along planes, only brightness tells how the camera moved; but it misleads
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
 constexpr double kBrightnessSigma = 12;
@@ -59,7 +61,8 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   // Poses of a tracker drift: the motion since the last view is known better than the pose.
   const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
-  AlignedView best = as_given;
+  AlignedView best = evaluate_alignment(view, targets, moved, align_);
+  if (as_given.cost <= best.cost) best = as_given;
   for (const Rigid3& start : {moved, given}) {
     for (const double brightness_sigma : {0.0, kBrightnessSigma}) {
       AlignViewOptions align = align_;
@@ -70,7 +73,8 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
     }
     if (is_same_pose(moved, given)) break;
   }
-  const bool is_off = best.cost < kMaxCostRatio * as_given.cost && is_surprising(best, given);
+  const double max_cost = as_given.cost * (is_same_pose(views_.back().given, given) ? kMaxCostRatioOfStill : 1);
+  const bool is_off = best.cost < max_cost && is_surprising(best, given);
   const Rigid3& corrected = is_off ? best.world_from_camera : given;
   return {corrected, measure(best, corrected, given)};
 }

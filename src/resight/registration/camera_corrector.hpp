@@ -9,7 +9,7 @@ namespace resight {
 
 struct CorrectCameraOptions {
   bool correct = false;
-  int num_views = 3;
+  int num_views = 8;
   double sigma_m = 0.01;
   double sigma_rad = 0.0175;
   double min_overlap = 0.2;
@@ -47,8 +47,8 @@ struct CorrectedCamera {
 
 /// Corrects given camera poses view by view. Each view is aligned to the preceding views at their corrected
 /// poses, from its given pose and from the given motion since the last view: the poses of a tracker drift. Robust
-/// weights keep changed regions from pulling. A pose that agrees with its alignment, or fits nearly as well, is
-/// returned unchanged, bit for bit.
+/// weights keep changed regions from pulling. A pose that agrees with its alignment, within what the surfaces tell, is
+/// returned unchanged, bit for bit; so is that of a camera that has not moved, unless it fits clearly worse.
 class CameraCorrector {
  public:
   explicit CameraCorrector(const CorrectCameraOptions& options = {});

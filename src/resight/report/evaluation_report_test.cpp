@@ -109,6 +109,14 @@ TEST(EvaluationReport, VerificationTimesAreThoseOfEachView) {
   EXPECT_NE(text.find("\n000001,mvr,5,0,1,20,"), std::string::npos) << text;
 }
 
+TEST(EvaluationReport, NamesOfFoldersDoNotBreakRows) {
+  std::vector<EvaluatedRun> runs{make_evaluated_run("mvr", 5)};
+  runs[0].sequence = "a,\"b\"\n\x1b[31m";
+  const std::string text = format_verification_times(runs);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 3);
+  EXPECT_NE(text.find("\n\"a,\"\"b\"\"\\x0a\\x1b[31m\",mvr,5,"), std::string::npos) << text;
+}
+
 TEST(EvaluationReport, NamesDoNotBreakTables) {
   std::vector<EvaluatedRun> runs = make_runs();
   int renamed = 0;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 
+#include "resight/core/printable.hpp"
 #include "resight/report/evaluation_report.hpp"
 #include "resight/report/internal/evaluation_text.hpp"
 
@@ -82,6 +83,15 @@ std::string stage_table(const ConfigurationSummary& c) {
          fmt::format("| all | {:.2f} | {:.2f} |\n", 1e3 * c.times.stages.total_wall_s() / c.num_views, all_cpu_ms(c));
 }
 
+/// Folders may have any name.
+std::string to_csv_field(const std::string& name) {
+  const std::string shown = printable(name);
+  if (shown.find_first_of(",\"") == shown.npos) return shown;
+  std::string quoted = "\"";
+  for (const char c : shown) quoted += c == '"' ? std::string(2, c) : std::string(1, c);
+  return quoted + "\"";
+}
+
 }  // namespace
 
 std::string format_evaluation_times(const EvaluationHeader& header,
@@ -99,8 +109,9 @@ std::string format_verification_times(std::span<const EvaluatedRun> runs) {
   for (const EvaluatedRun& run : runs)
     for (std::size_t v = 0; v < run.views.size(); ++v) {
       const StageTime time = time_of(run.views[v].times, "verification");
-      text += fmt::format("{},{},{},{},{},{},{:.6f},{:.6f}\n", run.sequence, run.preset, run.num_previous_views,
-                          run.is_clustered ? 1 : 0, v, run.views[v].counts.clustered, time.wall_s, time.cpu_s);
+      text += fmt::format("{},{},{},{},{},{},{:.6f},{:.6f}\n", to_csv_field(run.sequence), run.preset,
+                          run.num_previous_views, run.is_clustered ? 1 : 0, v, run.views[v].counts.clustered,
+                          time.wall_s, time.cpu_s);
     }
   return text;
 }

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "resight/core/input_file.hpp"
+#include "resight/io/toml_keys.hpp"
 #include "resight/simulation/camera_drift.hpp"
 #include "resight/simulation/internal/toml_fields.hpp"
 #include "resight/simulation/scene_script.hpp"
@@ -242,6 +243,7 @@ Result<SceneScript> read_scene_script(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& what) { return Error{path.string() + ": " + what}; };
   const auto text = read_file(path);
   if (!text) return text.error();
+  if (const auto checked = check_toml_keys(*text); !checked) return fail(checked.error().message);
   toml::table table;
   try {
     table = toml::parse(*text);
