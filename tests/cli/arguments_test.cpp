@@ -6,7 +6,7 @@ namespace resight::cli_test {
 namespace {
 
 std::string make_long_key() {
-  std::string key = "# keys of a.a.a\na";
+  std::string key = "# " + std::string(200, '.') + "\na";
   for (int i = 0; i < 50000; ++i) key += ".a";
   return key + " = 1\n";
 }

@@ -17,9 +17,9 @@ namespace {
 constexpr double kMinMahalanobis_sq = 22.5;
 // A given motion is not off by more standard deviations: then it is the alignment that is wrong.
 constexpr double kMaxSigmas = 4;
-// A camera that does not move by its given poses stands on something. What changes in front of it must not move it: an
-// aligned pose must fit the views before better by a tenth. That a moving camera stays where it was said to be needs no
-// such doubt: exact poses pass the test above, and those of trackers drift.
+// A camera whose given pose does not change stands still. What changes in front of it must not move it: an aligned pose
+// must fit the views before better by a tenth. This rule is not for a moving camera: exact poses pass the test above,
+// and poses of a tracker drift.
 constexpr double kMaxCostRatioOfStill = 0.9;
 // Grey levels (Steinbruecker et al. 2011). Along planes, only brightness tells how the camera moved; but it misleads
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
@@ -61,15 +61,17 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   // Poses of a tracker drift: the motion since the last view is known better than the pose.
   const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
-  AlignedView best = evaluate_alignment(view, targets, moved, align_);
-  if (as_given.cost <= best.cost) best = as_given;
+  AlignedView best = as_given;
+  const auto consider = [&](const AlignedView& found) {
+    if (found.overlap >= std::max(options_.min_overlap, as_given.overlap) && found.cost < best.cost) best = found;
+  };
+  if (!is_same_pose(moved, given)) consider(evaluate_alignment(view, targets, moved, align_));
   for (const Rigid3& start : {moved, given}) {
     for (const double brightness_sigma : {0.0, kBrightnessSigma}) {
       AlignViewOptions align = align_;
       align.brightness_sigma = brightness_sigma;
       const AlignedView aligned = align_view(view, targets, start, align);
-      if (aligned.overlap < std::max(options_.min_overlap, as_given.overlap) || is_too_far(aligned, start)) continue;
-      if (aligned.cost < best.cost) best = aligned;
+      if (!is_too_far(aligned, start)) consider(aligned);
     }
     if (is_same_pose(moved, given)) break;
   }
