@@ -36,6 +36,8 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
           voxel_downsample(sample_surface(*source.mesh, kSamplesPerSquareMetre), kSurfaceVoxel_m);
       value_or_throw(write_tuw_model(folder.path(), source.name, render_turntable(*source.mesh, options), &surface,
                                      source.symmetries, source.bop_id));
+    } else if (source.views.empty()) {
+      throw InputError(file_error(models[m].path, "is a cloud without views, of which a TUW model consists").message);
     } else {
       value_or_throw(write_tuw_model(folder.path(), source.name, source.views,
                                      source.surface ? &*source.surface : nullptr, source.symmetries, source.bop_id));

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "interrupts.hpp"
+#include "resight/core/files.hpp"
 #include "resight/inspection/find_faults.hpp"
 
 namespace resight::app {

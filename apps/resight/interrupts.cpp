@@ -14,7 +14,7 @@
 namespace resight::app {
 namespace {
 
-constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+constexpr int kInterrupts[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
 
 std::atomic<int> interrupt_number = 0;
 std::atomic<bool> may_stop = false;

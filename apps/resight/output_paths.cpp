@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "commands.hpp"
 #include "resight/core/files.hpp"
@@ -39,6 +40,23 @@ bool has_results(const fs::path& folder) {
                              [&](const char* name) { return fs::exists(folder / name, error); });
 }
 
+/// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our
+/// results lie in the folder and one level below.
+void check_names_of_folders(const fs::path& out) {
+  constexpr std::array<std::string_view, 8> kExtensions = {".csv",   ".html", ".jpg", ".json",
+                                                           ".jsonl", ".md",   ".png", ".svg"};
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(out, fs::directory_options::skip_permission_denied, error), end;
+       !error && it != end; it.increment(error)) {
+    if (it.depth() > 0) it.disable_recursion_pending();
+    std::error_code unknown;
+    const std::string extension = it->path().extension().string();
+    const bool is_file_name = std::ranges::find(kExtensions, extension) != kExtensions.end();
+    if (is_file_name && it->is_directory(unknown))
+      refuse_output(it->path(), "is a folder (a file of this name may be written)");
+  }
+}
+
 }  // namespace
 
 void check_output_file(const fs::path& out, std::string_view signature, std::string_view kind, const Paths& inputs) {
@@ -67,12 +85,10 @@ bool is_within(const fs::path& path, const fs::path& folder) {
   return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
 }
 
-void check_output_folder(const fs::path& out, const Paths& inputs, std::span<const char* const> files) {
+void check_output_folder(const fs::path& out, const Paths& inputs) {
   check_not_input(out, inputs);
   value_or_throw(check_writable_folder(out, ExistingFolder::kFill));
-  for (const char* name : files)
-    if (std::error_code none; fs::is_directory(out / name, none))
-      refuse_output(out / name, "is a folder (a file of this name is to be written)");
+  check_names_of_folders(out);
   if (check_writable_folder(out, ExistingFolder::kRefuse).ok() || has_results(out)) return;
   for (const fs::path& input : inputs)
     if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");

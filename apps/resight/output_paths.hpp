@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,10 +19,9 @@ void check_output_file(const std::filesystem::path& out, std::string_view signat
 /// For a file to write that must not exist.
 void check_new_file(const std::filesystem::path& out);
 
-/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it. `files`:
-/// names of results, which no folder may have.
-void check_output_folder(const std::filesystem::path& out, const Paths& inputs,
-                         std::span<const char* const> files = {});
+/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it. It may not
+/// hold a folder that is called like a result (report.html).
+void check_output_folder(const std::filesystem::path& out, const Paths& inputs);
 
 /// For a folder to write, which must be empty or not exist.
 void check_new_folder(const std::filesystem::path& out);

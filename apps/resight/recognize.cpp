@@ -148,8 +148,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   if (arguments.follow.idle_timeout_s && !is_live) throw InputError("--idle-timeout-s needs --follow or --camera");
   if (arguments.camera.empty() == arguments.sequence.empty()) throw InputError("give either --sequence or --camera");
   check_output_folder(arguments.out,
-                      {arguments.camera.empty() ? arguments.sequence : arguments.models, arguments.models},
-                      kResultFiles);
+                      {arguments.camera.empty() ? arguments.sequence : arguments.models, arguments.models});
   value_or_throw(check_writable_folder(arguments.out / kReportPages, ExistingFolder::kFill));
   RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);

@@ -2,36 +2,18 @@
 #include "sequence_input.hpp"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <map>
 
 #include "commands.hpp"
+#include "number_validator.hpp"
 #include "resight/inspection/quick_check.hpp"
 
 namespace resight::app {
 namespace {
 
-const CLI::Validator kDepthScales(
-    [](const std::string& text) {
-      double value = 0;
-      const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-      const bool is_number = code == std::errc() && end == text.data() + text.size();
-      return is_number && value > 1e-7 && value <= 1
-                 ? std::string()
-                 : text + " is not a number of metres per unit, such as 0.001 (millimetres) or 0.0002 (5000 per metre)";
-    },
-    "METRES");
-
 const std::map<std::string, PoseConvention> kConventions = {{"camera-to-world", PoseConvention::kCameraToWorld},
                                                             {"world-to-camera", PoseConvention::kWorldToCamera},
                                                             {"opengl", PoseConvention::kOpenGl}};
-
-// CLI11 takes nan to be in every range.
-const CLI::Validator kNumber(
-    [](const std::string& text) {
-      return text.find_first_of("nN") == text.npos ? std::string() : text + " is not a number";
-    },
-    "");
 
 std::vector<std::string> sensor_names() {
   std::vector<std::string> names;
@@ -52,7 +34,7 @@ void add_recording_options(CLI::App* command, RecordingTopics& topics) {
       ->add_option_function<double>(
           "--max-time-difference-ms", [&topics](double value) { topics.max_time_difference_s = 1e-3 * value; },
           "Between a colour image and its depth image [20]")
-      ->check(CLI::Range(0.0, 1e4) & kNumber)
+      ->check(number_up_to(1e4))
       ->group(group);
 }
 
@@ -82,7 +64,9 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
                    "the colour camera, metres")
       ->group(group);
   command->add_option("--depth-scale", options.depth_scale_m, "Metres per unit of stored depth, such as 0.001")
-      ->check(kDepthScales)
+      ->check(number_validator([](double value) { return value > 1e-7 && value <= 1; },
+                               "a number of metres per unit, such as 0.001 (millimetres) or 0.0002 (5000 per metre)",
+                               "METRES"))
       ->group(group);
   command
       ->add_option_function<std::string>(
@@ -105,7 +89,7 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
       ->add_option("--min-motion", options.views.min_motion_m,
                    "Takes a view only if the camera, or what is 1 m in front of it, has moved by this since the last "
                    "one, metres [0]")
-      ->check(CLI::Range(0.0, 100.0) & kNumber)
+      ->check(number_up_to(100))
       ->group(group);
   command->add_option("--from", options.views.from_s, "Takes views from this time on, seconds since the first")
       ->group(group);

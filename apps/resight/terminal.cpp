@@ -19,7 +19,11 @@ void print_text(std::string_view text) {
 bool finish_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 void print_error_line(std::string_view kind, std::string_view what) {
-  std::fprintf(stderr, "resight: %s%s\n", printable(kind).c_str(), printable(what).c_str());
+  // Files may have keys and names of any length.
+  constexpr std::size_t kMaxBytes = 2000;
+  std::string shown = printable(what.substr(0, kMaxBytes));
+  if (what.size() > kMaxBytes) shown += " ...";
+  std::fprintf(stderr, "resight: %s%s\n", printable(kind).c_str(), shown.c_str());
 }
 
 }  // namespace resight::app

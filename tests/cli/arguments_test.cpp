@@ -11,6 +11,7 @@ std::string make_long_key() {
   return key + " = 1\n";
 }
 const std::string kLongKey = make_long_key();
+const std::string kLongUnknownKey = std::string(50000, 'k') + " = 1\n";
 
 const Row kRows[] = {
     // The valid data are accepted, so the other rows fail because of what they damage.
@@ -83,12 +84,17 @@ const Row kRows[] = {
      "--previous-views: '3-1'"},
     {"BrokenShard", kNothing, "evaluate --models models.resight --dataset views --shard 3/2 --out out", 2,
      "--shard: '3/2'"},
+    {"EmptyIntrinsics", kNothing, "changes --sequence views --out out --intrinsics ''", 2, "--intrinsics: ''"},
     {"EmptyShard", kNothing, "evaluate --models models.resight --dataset views --shard '' --out out", 2, "--shard: ''"},
 
     // Settings files.
     {"MissingConfig", kNothing, "changes --sequence views --out out --config no.toml", 2, "no\\.toml: no such file"},
     {"ConfigWithAKeyOfManyParts", write("c.toml", kLongKey.c_str()),
      "changes --sequence views --out out --config c.toml", 2, "line 2: a key has more than 100 parts"},
+    {"FileOfTheKernelAsConfig", kNothing, "changes --sequence views --out out --config /proc/self/status", 2,
+     "/proc/self/status: is not a file"},
+    {"ConfigWithALongUnknownKey", write("c.toml", kLongUnknownKey.c_str()),
+     "changes --sequence views --out out --config c.toml", 2, "unknown key k{100}\\.\\. of 50000 bytes"},
     {"FolderAsConfig", kNothing, "changes --sequence views --out out --config empty", 2, "empty: "},
     {"ConfigThatIsNoToml", write("c.toml", "[changes\n"), "changes --sequence views --out out --config c.toml", 2,
      "c\\.toml: line 1"},

@@ -38,6 +38,8 @@ const Row kRows[] = {
      "evaluate --models models.resight --dataset tuw -k 0 --out out", 2,
      "tuw\\.changes: view 0 has no annotation of 'cube' with instance 3"},
     {"ConvertABrokenMesh", cut("meshes/cube.ply", 0.9), "convert meshes out --to bop", 2, "cube\\.ply: "},
+    {"ConvertACloudToViews", write("thing/3D_model.pcd", kUnorganizedPcd), "convert thing out --to tuw", 2,
+     "3D_model\\.pcd: is a cloud without views"},
     {"ConvertABrokenMeshToViews", cut("meshes/cube.ply", 0.9), "convert meshes out --to tuw", 2, "cube\\.ply: "},
     {"ViewNothing", kNothing, "view", 2, "view: inputs is required"},
     {"ViewMissing", kNothing, "view nowhere --no-open", 2, "nowhere: no such file or directory"},

@@ -16,6 +16,13 @@ TriangleMesh make_cube_with(float x) {
   return cube;
 }
 
+/// A cube of which only edges are left.
+TriangleMesh make_lines() {
+  TriangleMesh cube = make_cube(1);
+  for (auto& face : cube.faces) face[2] = face[1];
+  return cube;
+}
+
 ModelLibrary make_stale_library() {
   ModelLibrary stale = make_library(40);
   ++stale.options_hash;
@@ -56,6 +63,9 @@ const Row kRows[] = {
     {"TruncatedMesh", cut("meshes/cube.ply", 0.9), kTrain, 2, "cube\\.ply: "},
     {"LastMeshIsTruncated", both(mesh("meshes/z.ply", [] { return make_cube(1); }), cut("meshes/z.ply", 0.9)), kTrain,
      2, "z\\.ply: "},
+    {"LastMeshHasNoSurface", mesh("meshes/z.ply", make_lines), kTrain, 2, "z\\.ply: has no surface"},
+    {"MeshThatIsALinkToNowhere", link("meshes/z.ply", "nowhere"), kTrain, 2, "z\\.ply: no such file"},
+    {"MeshThatIsAPipe", pipe("meshes/z.ply"), kTrain, 2, "z\\.ply: is not a file"},
     {"MeshInMillimetres", mesh("meshes/cube.ply", [] { return make_cube(1000); }), kTrain, 2,
      "cube\\.ply: .*looks like millimetres"},
     {"BopMeshInMetres", mesh("meshes/obj_000001.ply", [] { return make_cube(1); }), kTrain, 2,

@@ -43,6 +43,9 @@ Result<void> InputFile::update_size() {
   if (::fstat(descriptor_, &status) != 0) return file_error(file_, describe_failure(errno));
   if (!S_ISREG(status.st_mode)) return file_error(file_, "is not a file");
   size_ = static_cast<std::uintmax_t>(status.st_size);
+  // Files of the kernel, as in /proc, are not read as empty ones.
+  char byte = 0;
+  if (size_ == 0 && ::pread(descriptor_, &byte, 1, 0) != 0) return file_error(file_, "is not a file");
   return {};
 }
 

@@ -154,6 +154,11 @@ Result<void> PendingPlace::clear(const fs::path& path) {
   return cleared;
 }
 
+Result<void> PendingPlace::clear_unused(const fs::path& path) {
+  auto cleared = clear(path);
+  return cleared || cleared.error().message == kInUse ? Result<void>() : cleared;
+}
+
 Result<std::unique_ptr<PendingPlace>> PendingPlace::create(const fs::path& folder, const std::string& name, Kind kind,
                                                            double wait_s) {
   const fs::path path = folder / name_for(name);

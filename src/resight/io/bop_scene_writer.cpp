@@ -17,13 +17,13 @@ namespace {
 
 class BopSequenceWriter final : public SequenceWriter {
  public:
-  BopSequenceWriter(PendingDirectory directory, std::map<std::string, int> ids)
-      : directory_(std::move(directory)), scene_(directory_.path(), std::move(ids)) {}
+  BopSequenceWriter(PendingDirectory directory, std::map<std::string, int> ids, const SequenceContent& content)
+      : directory_(std::move(directory)), scene_(directory_.path(), std::move(ids)), content_(content) {}
 
   [[nodiscard]] Result<void> write_view(const RgbdFrame& frame,
                                         const std::vector<GroundTruthObject>& ground_truth) override {
     if (const auto done = check_frame(frame); !done) return done;
-    const auto id = scene_.write_view(frame, ground_truth, true);
+    const auto id = scene_.write_view(frame, ground_truth, content_.has_poses);
     if (!id) return id.error();
     names_.push_back(bop_number(*id));
     return {};
@@ -34,13 +34,14 @@ class BopSequenceWriter final : public SequenceWriter {
   }
   [[nodiscard]] Result<void> finish() override {
     if (scene_.num_views() == 0) return file_error(directory_.final_path(), "no view was written");
-    if (const auto done = scene_.finish(); !done) return done;
+    if (const auto done = scene_.finish(content_.has_ground_truth); !done) return done;
     return directory_.commit();
   }
 
  private:
   PendingDirectory directory_;
   BopSceneWriter scene_;
+  SequenceContent content_;
   std::vector<std::string> names_;
 };
 
@@ -119,13 +120,14 @@ Result<void> BopSceneWriter::write_object_mask(int image_id, int index, const Im
   return write_mask(directory_ / "mask_visib" / file, mask);
 }
 
-Result<void> BopSceneWriter::finish() const {
+Result<void> BopSceneWriter::finish(bool with_ground_truth) const {
   if (const auto done = write_json(directory_ / "scene_camera.json", cameras_); !done) return done;
+  if (!with_ground_truth) return {};
   if (const auto done = write_json(directory_ / "scene_gt.json", truth_); !done) return done;
   return write_json(directory_ / "scene_gt_info.json", info_);
 }
 
-Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const fs::path& directory) {
+Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const fs::path& directory, const SequenceContent& content) {
   std::map<std::string, int> ids;
   if (const auto models = find_models_info(directory)) {
     const auto infos = read_models_info(*models);
@@ -134,7 +136,8 @@ Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const fs::path& directo
   }
   auto pending = PendingDirectory::create(directory);
   if (!pending) return pending.error();
-  return std::unique_ptr<SequenceWriter>(std::make_unique<BopSequenceWriter>(std::move(*pending), std::move(ids)));
+  return std::unique_ptr<SequenceWriter>(
+      std::make_unique<BopSequenceWriter>(std::move(*pending), std::move(ids), content));
 }
 
 }  // namespace resight::io

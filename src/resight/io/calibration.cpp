@@ -39,7 +39,7 @@ bool is_named_for_calibration(std::string_view lower_name) {
 
 /// A name that may say so. Of others, only the content counts.
 bool hints_at_calibration(std::string_view lower_name) {
-  constexpr std::array<std::string_view, 6> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt"};
+  constexpr std::array<std::string_view, 7> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt", "transforms"};
   return is_named_for_calibration(lower_name) ||
          std::ranges::any_of(kHints, [&](std::string_view hint) { return lower_name.find(hint) != lower_name.npos; });
 }

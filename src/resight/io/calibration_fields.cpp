@@ -30,10 +30,10 @@ std::optional<double> find_scalar(const CalibrationFields& fields, FieldNames na
 }
 
 std::optional<std::vector<double>> find_matrix(const CalibrationFields& fields) {
-  const auto fx = find_scalar(fields, {"fx", "fl_x", "focal_x"});
-  const auto fy = find_scalar(fields, {"fy", "fl_y", "focal_y"});
-  const auto cx = find_scalar(fields, {"cx", "ppx", "c_x", "principal_x"});
-  const auto cy = find_scalar(fields, {"cy", "ppy", "c_y", "principal_y"});
+  const auto fx = find_scalar(fields, {"fx", "fl_x", "focal_x", "fx_color"});
+  const auto fy = find_scalar(fields, {"fy", "fl_y", "focal_y", "fy_color"});
+  const auto cx = find_scalar(fields, {"cx", "ppx", "c_x", "principal_x", "mx_color"});
+  const auto cy = find_scalar(fields, {"cy", "ppy", "c_y", "principal_y", "my_color"});
   if (fx && fy && cx && cy) return std::vector<double>{*fx, *fy, *cx, *cy};
   const std::vector<double>* matrix = find_numbers(
       fields, {"camera_matrix", "intrinsic_matrix", "cam_k", "k", "intrinsics", "intrinsic", "color_intrinsic",
@@ -41,11 +41,29 @@ std::optional<std::vector<double>> find_matrix(const CalibrationFields& fields) 
   return matrix == nullptr ? std::nullopt : std::optional(*matrix);
 }
 
-std::vector<double> find_coefficients(const CalibrationFields& fields) {
+/// The distortion model in the words of LensDistortion::make(); empty if the file leaves it open. Files call a fisheye
+/// by several words under several names (nerfstudio: OPENCV_FISHEYE, ORB-SLAM3: KannalaBrandt8).
+std::string find_lens_model(const CalibrationFields& fields) {
+  if (const auto ros = fields.words.find("distortion_model"); ros != fields.words.end()) return ros->second;
+  for (const char* name : {"camera_model", "lens_model", "model", "type"}) {
+    const auto it = fields.words.find(name);
+    if (it == fields.words.end()) continue;
+    const std::string word = to_lower(it->second);
+    for (const char* fisheye : {"fisheye", "equidistant", "kannala"})
+      if (word.find(fisheye) != word.npos) return "equidistant";
+  }
+  return "";
+}
+
+std::vector<double> find_coefficients(const CalibrationFields& fields, std::string_view model) {
   if (const auto* list = find_numbers(
           fields, {"distortion_coefficients", "distortion_coeffs", "dist_coeffs", "distortion", "coeffs", "dist", "d"}))
     return *list;
   std::vector<double> coefficients;
+  if (model == "equidistant") {
+    for (const char* name : {"k1", "k2", "k3", "k4"}) coefficients.push_back(find_scalar(fields, {name}).value_or(0));
+    return coefficients;
+  }
   for (const char* name : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"})
     coefficients.push_back(find_scalar(fields, {name}).value_or(0));
   return coefficients;
@@ -82,6 +100,12 @@ std::optional<std::pair<std::string, std::string>> name_with_number(std::string_
   return std::pair(std::string(words[0]), std::string(words[1]));
 }
 
+/// A line "- 525.0" of a list in YAML without its dash.
+std::string_view without_dash(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first != line.npos && line.substr(first).starts_with("- ") ? line.substr(first + 2) : line;
+}
+
 /// Words of a text without comments. The end of a name becomes the word ":".
 std::vector<std::string> split_words(std::string_view text) {
   std::vector<std::string> words(1);
@@ -90,7 +114,7 @@ std::vector<std::string> split_words(std::string_view text) {
   };
   while (!text.empty()) {
     std::string_view line = cut_line(text);
-    line = line.substr(0, line.find('#'));
+    line = without_dash(line.substr(0, line.find('#')));
     if (const auto pair = name_with_number(line)) {
       words.insert(words.end() - 1, {pair->first, ":", pair->second});
       continue;
@@ -135,7 +159,7 @@ Result<void> collect_json(const nlohmann::json& json, const std::string& where, 
   if (json.is_array() && !json.empty() && json.front().is_object())
     return collect_json(json.front(), where, depth + 1, found, file);
   if (!json.is_object()) return {};
-  const auto calibration = calibration_from_fields(fields_of(json), file);
+  const auto calibration = calibration_from_json(json, file);
   if (!calibration) return calibration.error();
   if (*calibration) found.push_back({to_lower(where), **calibration});
   for (const auto& [name, value] : json.items())
@@ -186,17 +210,22 @@ Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFiel
   if (!matrix || matrix->size() < 4) return std::optional<Calibration>();
   auto calibration = calibration_from_numbers(*matrix, what);
   if (!calibration) return calibration.error();
-  const auto word = fields.words.find("distortion_model");
-  const auto lens = LensDistortion::make(word == fields.words.end() ? "" : word->second, find_coefficients(fields));
+  const std::string model = find_lens_model(fields);
+  const auto lens = LensDistortion::make(model, find_coefficients(fields, model));
   if (!lens) return Error{fmt::format("{}: {}", what, lens.error().message)};
   if (calibration->lens.is_none()) calibration->lens = *lens;
   const auto to_size = [](std::optional<double> size) {
     return size && *size > 0 && *size < 1e6 ? static_cast<int>(*size) : 0;
   };
-  calibration->width = to_size(find_scalar(fields, {"width", "image_width", "w"}));
-  calibration->height = to_size(find_scalar(fields, {"height", "image_height", "h"}));
+  calibration->width = to_size(find_scalar(fields, {"width", "image_width", "w", "colorwidth"}));
+  calibration->height = to_size(find_scalar(fields, {"height", "image_height", "h", "colorheight"}));
   calibration->metres_per_unit = find_depth_unit(fields);
   return std::optional(*calibration);
+}
+
+Result<std::optional<Calibration>> calibration_from_json(const nlohmann::json& object, std::string_view what) {
+  if (!object.is_object()) return std::optional<Calibration>();
+  return calibration_from_fields(fields_of(object), what);
 }
 
 Result<Calibration> read_json_calibration(const fs::path& file) {

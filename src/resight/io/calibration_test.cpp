@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/internal/calibration.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "resight/io/internal/test_data.hpp"
@@ -37,6 +38,8 @@ TEST(Calibration, UsualForms) {
       {"k.txt", "fx 60\nfy 61\ncx 3.5\ncy 2.5\n"},
       {"k.txt", "60, 61\n3.5, 2.5\n"},
       {"k.txt", "[60; 61\n3.5; 2.5]\n"},
+      {"k.yaml", "image_width: 8\nk:\n- 60.0\n- 0.0\n- 3.5\n- 0.0\n- 61.0\n- 2.5\n- 0.0\n- 0.0\n- 1.0\nd: [0, 0]\n"},
+      {"scene0000_00.txt", "fx_color = 60\nfx_depth = 9\nfy_color = 61\nmx_color = 3.5\nmy_color = 2.5\n"},
       {"cameras.txt", "# Camera list\n1 PINHOLE 8 6 60 61 3.5 2.5\n2 PINHOLE 8 6 60 61 3.5 2.5\n"},
       {"scene0000_00.txt",
        "m_colorWidth = 8\nm_calibrationColorIntrinsic = 60 0 3.5 0 0 61 2.5 0 0 0 1 0 0 0 0 1\n"
@@ -51,6 +54,22 @@ TEST(Calibration, UsualForms) {
   const auto distorted = read("d.yaml", "fx: 60\nfy: 61\ncx: 3.5\ncy: 2.5\nk1: 0.1\nk2: 0.01\np1: 0\np2: 0\n");
   ASSERT_TRUE(distorted.ok()) << distorted.error().message;
   EXPECT_FALSE(distorted->lens.is_none());
+  // Each of these words means the same lens; the names of the coefficients alone would mean another one.
+  const auto fisheye = LensDistortion::make("equidistant", std::vector<double>{0.1, 0.01, 0.02, 0.03});
+  for (const auto& [name, model] : {std::pair{"f.json", R"("camera_model": "OPENCV_FISHEYE", )"},
+                                    {"f.json", R"("model": "fisheye", )"},
+                                    {"f.yaml", "Camera.type: \"KannalaBrandt8\"\n"},
+                                    {"f.yaml", "distortion_model: equidistant\n"}}) {
+    const bool is_json = std::string_view(name) == "f.json";
+    const std::string text =
+        is_json ? fmt::format(R"({{{} "fx": 60, "fy": 61, "cx": 3.5, "cy": 2.5, "k1": 0.1, "k2": 0.01, "k3": 0.02,
+                                  "k4": 0.03}})",
+                              model)
+                : fmt::format("{}fx: 60\nfy: 61\ncx: 3.5\ncy: 2.5\nk1: 0.1\nk2: 0.01\nk3: 0.02\nk4: 0.03\n", model);
+    const auto bent = read(name, text);
+    ASSERT_TRUE(bent.ok()) << bent.error().message;
+    EXPECT_EQ(bent->lens, *fisheye) << model;
+  }
   const auto opencv = read("cameras.txt", "1 OPENCV 8 6 60 61 3.5 2.5 0.1 0.01 0 0\n");
   ASSERT_TRUE(opencv.ok()) << opencv.error().message;
   EXPECT_EQ(opencv->lens, *LensDistortion::make("plumb_bob", std::vector<double>{0.1, 0.01, 0, 0}));

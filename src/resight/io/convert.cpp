@@ -114,7 +114,10 @@ Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::
                                            DatasetFormat format, const ChangeFiles& changes) {
   const auto kept = read_kept_changes(sequence, changes);
   if (!kept) return kept.error();
-  const auto writer = create_sequence(directory, format);
+  if (format == DatasetFormat::kTuw && !sequence.has_poses() && sequence.num_views() > 1)
+    return Error{"the views have no camera poses, which TUW files hold: give --poses FILE or fixed, or convert to bop"};
+  const auto writer = create_sequence(
+      directory, format, {.has_poses = sequence.has_poses(), .has_ground_truth = sequence.has_ground_truth()});
   if (!writer) return writer.error();
   ConversionSummary summary;
   for (int i = 0; i < sequence.num_views(); ++i) {

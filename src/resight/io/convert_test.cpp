@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "resight/io/bop_models.hpp"
+#include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/tuw_models.hpp"
 
@@ -78,6 +79,30 @@ TEST_P(SequenceRoundTrip, ThereAndBack) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, SequenceRoundTrip, testing::Values(DatasetFormat::kTuw, DatasetFormat::kBop));
+
+TEST(ConvertSequence, WhatIsUnknownIsLeftOut) {
+  io::TestDirectory directory;
+  for (const char* name : {"1", "2"}) {
+    const RgbdFrame frame = io::random_frame("0", 1);
+    ASSERT_TRUE(write_color(directory / "in" / "rgb" / (std::string(name) + ".png"), frame.color).ok());
+    ASSERT_TRUE(write_depth(directory / "in" / "depth" / (std::string(name) + ".png"), frame.depth_m, 0.001).ok());
+  }
+  io::write_text(directory / "in" / "intrinsics.txt", "50 50 23.5 17.5\n");
+  const auto views = open_sequence(directory / "in");
+  ASSERT_TRUE(views.ok()) << views.error().message;
+  ASSERT_TRUE(convert_sequence(**views, directory / "bop", DatasetFormat::kBop).ok());
+  const auto bop = open_sequence(directory / "bop");
+  ASSERT_TRUE(bop.ok()) << bop.error().message;
+  EXPECT_FALSE((*bop)->has_poses());
+  EXPECT_FALSE((*bop)->has_ground_truth());
+  const auto tuw = convert_sequence(**views, directory / "tuw", DatasetFormat::kTuw);
+  ASSERT_FALSE(tuw.ok());
+  EXPECT_THAT(tuw.error().message, HasSubstr("no camera poses"));
+  EXPECT_FALSE(std::filesystem::exists(directory / "tuw"));
+  OpenSequenceOptions fixed;
+  fixed.poses = "fixed";
+  EXPECT_TRUE(convert_sequence(**open_sequence(directory / "in", fixed), directory / "tuw", DatasetFormat::kTuw).ok());
+}
 
 TEST(ConvertSequence, DepthIsRoundedToTenthsOfMillimetres) {
   io::TestDirectory directory;

@@ -15,8 +15,7 @@ std::vector<std::string> list_entries(const fs::path& directory, bool directorie
   for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error)) {
     std::string name = it->path().filename().string();
     std::error_code ignored;
-    if (!name.empty() && name[0] != '.' && (directories ? it->is_directory(ignored) : it->is_regular_file(ignored)))
-      names.push_back(std::move(name));
+    if (!name.empty() && name[0] != '.' && it->is_directory(ignored) == directories) names.push_back(std::move(name));
   }
   std::ranges::sort(names, natural_less);
   return names;

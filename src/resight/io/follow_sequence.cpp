@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "resight/core/files.hpp"
+
 namespace resight {
 namespace {
 
@@ -22,6 +24,11 @@ std::optional<FollowedView> SequenceFollower::poll() {
   const auto sequence = open_posed_sequence(folder_, open_);
   if (!sequence.ok()) {
     why_none_ = sequence.error().message;
+    return std::nullopt;
+  }
+  // A single view needs no pose elsewhere, but here others may come, and its pose may be on its way.
+  if (!(*sequence)->has_poses()) {
+    why_none_ = file_error(folder_, "holds no camera pose (give --poses fixed if the camera stands)").message;
     return std::nullopt;
   }
   notes_ = (*sequence)->notes();

@@ -123,6 +123,20 @@ TEST(FollowSequence, AViewThatStaysDamagedIsLeftOut) {
   EXPECT_THAT(follower.take_left_out(), IsEmpty());
 }
 
+TEST(FollowSequence, TheFirstViewWaitsForItsPose) {
+  const WrittenFolder folder;
+  OpenSequenceOptions options = fixed_camera();
+  options.poses.clear();
+  SequenceFollower follower(folder.path(), options, in_order());
+  folder.write(1);
+  EXPECT_FALSE(follower.poll());
+  EXPECT_THAT(follower.why_none(), HasSubstr("no camera pose (give --poses fixed"));
+  io::write_text(folder.path() / "pose_1.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n");
+  const auto view = follower.poll();
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->frame.world_from_camera.translation.z(), 0.5);
+}
+
 TEST(FollowSequence, AViewWithoutItsPoseIsNotComplete) {
   const WrittenFolder folder;
   OpenSequenceOptions options = fixed_camera();

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/depth_check.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_series.hpp"
+#include "resight/io/internal/json_poses.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
@@ -21,28 +23,69 @@ namespace {
 constexpr double kMillimetre_m = 1e-3;
 
 struct FolderCamera {
-  Calibration calibration;
+  Calibration calibration;  ///< Of the first view.
   std::string source;
+  std::map<std::string, Calibration> of_views;  ///< By name, if they may differ.
 };
 
+/// Calibrations of single views by their names, as of cameras whose focus changes. Empty unless every view has one.
+Result<std::map<std::string, Calibration>> find_view_calibrations(const fs::path& folder,
+                                                                  const std::vector<FileSeries>& all,
+                                                                  const std::vector<ImagePair>& pairs) {
+  std::map<std::string, Calibration> found;
+  for (const FileSeries& series : all) {
+    if (series.kind != SeriesKind::kPose || extension_of(series.pattern) != "json") continue;
+    // Of other JSON files per view, such as labels, even damaged ones do not matter.
+    const auto first = read_view_camera(series.files.begin()->second.file);
+    if (!first || !first->calibration) continue;
+    for (const ImagePair& pair : pairs) {
+      const auto it = series.files.find(pair.key);
+      if (it == series.files.end()) continue;
+      const auto camera = read_view_camera(it->second.file);
+      if (!camera) return camera.error();
+      if (camera->calibration) found.emplace(pair.color.name, *camera->calibration);
+    }
+  }
+  if (const fs::path list = folder / "transforms.json"; found.empty() && is_file(list)) {
+    auto of_frames = read_frame_calibrations(list);
+    if (!of_frames) return of_frames;
+    found = std::move(*of_frames);
+  }
+  const bool is_complete = std::ranges::all_of(pairs, [&](const ImagePair& p) { return found.contains(p.color.name); });
+  if (!is_complete) found.clear();
+  return found;
+}
+
 Result<FolderCamera> find_folder_camera(const fs::path& folder, const OpenSequenceOptions& options,
-                                        const PairedSeries& series) {
+                                        const std::vector<FileSeries>& all, const PairedSeries& series) {
   if (!options.intrinsics.empty()) {
     const auto given = parse_calibration(options.intrinsics);
     if (!given) return given.error();
-    return FolderCamera{*given, "--intrinsics"};
+    return FolderCamera{*given, "--intrinsics", {}};
+  }
+  auto of_views = find_view_calibrations(folder, all, series.pairs);
+  if (!of_views) return of_views.error();
+  if (!of_views->empty()) {
+    const Calibration first = of_views->at(series.pairs.front().color.name);
+    return FolderCamera{first, "each view", std::move(*of_views)};
   }
   fs::path source;
   const auto found = find_calibration(folder, source);
   if (!found) return found.error();
-  if (*found) return FolderCamera{**found, source.filename().string()};
+  if (*found) return FolderCamera{**found, source.filename().string(), {}};
   return file_error(folder, fmt::format("found {} colour and {} depth images, no intrinsics: give --intrinsics "
                                         "fx,fy,cx,cy or FILE",
                                         series.color.files.size(), series.depth.files.size()));
 }
 
-/// Sixteen or twelve numbers (a matrix), or seven (tx ty tz qx qy qz qw). None if the pose is NaN: not tracked.
+/// Sixteen or twelve numbers (a matrix), or seven (tx ty tz qx qy qz qw), or JSON. None if the pose is NaN: not
+/// tracked.
 Result<std::optional<Rigid3>> read_view_pose(const fs::path& file) {
+  if (extension_of(file) == "json") {
+    const auto camera = read_view_camera(file);
+    if (!camera) return camera.error();
+    return camera->world_from_camera;
+  }
   auto text = read_file(file, 1U << 16);
   if (!text) return text.error();
   std::ranges::replace(*text, ',', ' ');
@@ -58,6 +101,11 @@ Result<std::optional<Rigid3>> read_view_pose(const fs::path& file) {
   const auto pose = parse_pose(*text, file.string());
   if (!pose) return pose.error();
   return std::optional(*pose);
+}
+
+void note_poses(SequenceTable& table, const std::string& source) {
+  table.notes.push_back(fmt::format(
+      "poses: {}{}", source, table.poses_tell_convention ? "" : ", taken as camera to world (--pose-convention)"));
 }
 
 /// Reads one file of poses per view. Views whose file is missing or says NaN are left out.
@@ -78,8 +126,31 @@ Result<void> read_poses_per_view(SequenceTable& table, const FileSeries& series,
         fmt::format("{} of {} views have no pose and are left out", keys.size() - kept.size(), keys.size()));
   table.views = std::move(kept);
   table.has_poses = true;
-  table.notes.push_back(fmt::format("poses: {}, taken as camera to world (--pose-convention)", series.label()));
+  table.poses_tell_convention = extension_of(series.pattern) == "json";
+  note_poses(table, series.label());
   return {};
+}
+
+/// The best series of poses, one file per view; null if there is none.
+const FileSeries* find_pose_series(const std::vector<FileSeries>& all, std::size_t num_views) {
+  const FileSeries* best = nullptr;
+  for (const FileSeries& series : all) {
+    if (series.kind != SeriesKind::kPose || (series.files.size() < 2 && num_views != 1)) continue;
+    if (best != nullptr && series.files.size() <= best->files.size()) continue;
+    if (extension_of(series.pattern) == "json") {
+      const auto camera = read_view_camera(series.files.begin()->second.file);
+      if (!camera || !camera->world_from_camera) continue;
+    }
+    best = &series;
+  }
+  return best;
+}
+
+/// Only the content tells whether a JSON file holds poses.
+bool may_be_json_poses(const std::string& lower_name) {
+  return extension_of(lower_name) == "json" &&
+         (lower_name.starts_with("transforms") || lower_name.starts_with("metadata") ||
+          lower_name.find("pose") != lower_name.npos);
 }
 
 bool is_pose_list_name(const std::string& lower_name) {
@@ -94,21 +165,17 @@ bool is_pose_list_name(const std::string& lower_name) {
 Result<void> find_poses(SequenceTable& table, const fs::path& folder, const std::vector<FileSeries>& all,
                         const std::vector<std::string>& keys) {
   table.has_poses = false;
-  const FileSeries* best = nullptr;
-  for (const FileSeries& series : all)
-    if (series.kind == SeriesKind::kPose && (series.files.size() > 1 || keys.size() == 1))
-      if (best == nullptr || series.files.size() > best->files.size()) best = &series;
-  if (best != nullptr) return read_poses_per_view(table, *best, keys);
+  if (const FileSeries* series = find_pose_series(all, keys.size())) return read_poses_per_view(table, *series, keys);
   std::vector<fs::path> lists;
   for (const std::string& name : list_files(folder))
-    if (is_pose_list_name(to_lower(name))) lists.push_back(folder / name);
+    if (is_pose_list_name(to_lower(name)) || (may_be_json_poses(to_lower(name)) && holds_json_poses(folder / name)))
+      lists.push_back(folder / name);
   if (lists.size() > 1)
     return file_error(folder, fmt::format("holds several files of poses ({}, {}): choose one by --poses FILE",
                                           lists[0].filename().string(), lists[1].filename().string()));
   if (lists.empty()) return {};
   if (const auto done = assign_poses(table, lists.front()); !done) return done;
-  table.notes.push_back(
-      fmt::format("poses: {}, taken as camera to world (--pose-convention)", lists.front().filename().string()));
+  note_poses(table, lists.front().filename().string());
   return {};
 }
 
@@ -164,7 +231,8 @@ SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera)
     view.image_id = static_cast<int>(table.views.size());
     view.color = pair.color.file;
     view.depth = pair.depth.file;
-    view.intrinsics = camera.calibration.intrinsics;
+    const auto own = camera.of_views.find(view.name);
+    view.intrinsics = (own == camera.of_views.end() ? camera.calibration : own->second).intrinsics;
     view.metres_per_unit = camera.calibration.metres_per_unit.value_or(kMillimetre_m);
     view.time_s = pair.depth.time_s;
     table.views.push_back(std::move(view));
@@ -192,7 +260,7 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
   const auto series = pair_series(all, directory);
   if (!series) return series.error();
   require(series->has_value(), "open_image_folder: the folder holds no images");
-  const auto camera = find_folder_camera(directory, options, **series);
+  const auto camera = find_folder_camera(directory, options, all, **series);
   if (!camera) return camera.error();
   SequenceTable table = make_table(**series, *camera);
   if (const auto done = set_depth_camera(table, options); !done) return done.error();
@@ -201,7 +269,6 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
   for (const ImagePair& pair : (*series)->pairs) keys.push_back(pair.key);
   if (options.poses.empty())
     if (const auto done = find_poses(table, directory, all, keys); !done) return done.error();
-  if (!table.has_poses) table.has_poses = table.views.size() == 1;
   if (options.depth_scale_m) {
     table.npy_unit_m = options.depth_scale_m;
     for (ListedView& view : table.views) view.metres_per_unit = *options.depth_scale_m;

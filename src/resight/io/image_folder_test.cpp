@@ -238,6 +238,23 @@ TEST(ImageFolder, NamesThatAreTimes) {
   EXPECT_NEAR((*sequence)->read_pose(2)->translation.x(), 3, 1e-6);
 }
 
+TEST(ImageFolder, NamesThatAreMillisecondsWithFractions) {
+  io::TestDirectory directory;
+  for (const auto& [color, depth] : {std::pair{"1600000000000.12012", "1600000000005.12012"},
+                                     {"1600000000033.42017", "1600000000038.42017"},
+                                     {"1600000000066.72021", "1600000000097.72021"}}) {
+    ASSERT_TRUE(
+        write_color(directory / (std::string("rec_Color_") + color + ".png"), Image<Rgb8>(kWidth, kHeight)).ok());
+    ASSERT_TRUE(write_depth(directory / (std::string("rec_Depth_") + depth + ".png"),
+                            Image<float>(kWidth, kHeight, 1.5F), 0.001)
+                    .ok());
+  }
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->num_views(), 2) << "the last two images are 31 ms apart";
+}
+
 TEST(ImageFolder, NamesWithoutNumbersArePairedByName) {
   io::TestDirectory directory;
   const auto write_pair = [&](const std::string& color, const std::string& depth) {

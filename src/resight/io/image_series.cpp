@@ -28,7 +28,8 @@ bool is_no_view(std::string_view lower_name) {
 }
 
 bool is_view_folder(std::string_view lower_name) {
-  return has_any(lower_name, {"rgb", "color", "colour", "depth", "image", "img", "pose", "frame", "result", "raw"}) ||
+  return has_any(lower_name,
+                 {"rgb", "color", "colour", "depth", "image", "img", "pose", "camera", "frame", "result", "raw"}) ||
          lower_name == "cam0" || lower_name == "data" || lower_name == "views";
 }
 
@@ -61,11 +62,14 @@ std::string without_zeros(std::string_view digits) {
   return std::string(digits.substr(begin));
 }
 
-/// The time that a name such as 1305031102.175304 (seconds) or 1305031102175304000 (nanoseconds) tells.
+/// The time that a name such as 1305031102.175304 (seconds), 1305031102175.304 (milliseconds) or 1305031102175304000
+/// (nanoseconds) tells.
 double time_of_digits(const std::vector<std::string>& digits) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (digits.size() == 2 && digits[0].size() >= 9 && digits[0].size() <= 11)
     return parse_number(digits[0] + "." + digits[1]).value_or(kNone);
+  if (digits.size() == 2 && digits[0].size() == 13)
+    return parse_number(digits[0] + "." + digits[1]).value_or(kNone) * 1e-3;
   if (digits.size() != 1) return kNone;
   const double number = parse_number(digits[0]).value_or(kNone);
   if (digits[0].size() == 19) return number * 1e-9;
@@ -85,6 +89,9 @@ SeriesKind kind_of_image(const fs::path& file, const std::string& lower_name) {
   if (holds_depth_array(extension)) return has_any(lower_name, {"pose"}) ? SeriesKind::kOther : SeriesKind::kDepth;
   if (extension == "jpg" || extension == "jpeg") return SeriesKind::kColor;
   if (extension == "txt") return has_any(lower_name, {"pose", "extrinsic"}) ? SeriesKind::kPose : SeriesKind::kOther;
+  // A camera per view, if its content agrees.
+  if (extension == "json")
+    return has_any(lower_name, {"pose", "camera", "frame"}) ? SeriesKind::kPose : SeriesKind::kOther;
   if (extension != "png") return SeriesKind::kOther;
   const auto start = read_file_start(file, 33);
   if (!start || start->size() < 33 || !start->starts_with("\x89PNG")) return SeriesKind::kOther;

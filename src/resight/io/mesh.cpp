@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "resight/geometry/limits.hpp"
@@ -51,6 +52,14 @@ std::string guess_unit(double size_m, double metres_per_unit) {
   return "check its unit";
 }
 
+/// Whether any face is more than a line.
+bool has_area(const TriangleMesh& mesh) {
+  return std::ranges::any_of(mesh.faces, [&](const std::array<int, 3>& f) {
+    const Eigen::Vector3d a = mesh.vertices[f[0]].cast<double>();
+    return (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a).squaredNorm() > 0;
+  });
+}
+
 }  // namespace
 
 void ReadMeshOptions::check() const {
@@ -93,6 +102,7 @@ Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOpti
   for (Eigen::Vector2f& uv : mesh.uvs)
     if (!uv.allFinite()) uv.setZero();
   if (const auto done = check_size(mesh.vertices, options, file); !done) return done.error();
+  if (!has_area(mesh)) return io::file_error(file, "has no surface: its faces are lines and points");
   const auto is_unit = [](const Eigen::Vector3f& n) { return std::abs(n.squaredNorm() - 1) < 1e-3F; };
   if (mesh.normals.empty() || !std::ranges::all_of(mesh.normals, is_unit)) compute_vertex_normals(mesh);
   return result;

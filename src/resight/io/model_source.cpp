@@ -83,12 +83,14 @@ bool is_common_name(std::string_view name) {
   return std::ranges::find(kCommon, io::to_lower(name)) != kCommon.end();
 }
 
-/// Models of one common name are called by the nearest folder above them that tells them apart.
+/// Models of one common name are called by the nearest folder above them that tells them apart. "textured" and
+/// "google_16k" name no object in any case.
 void name_by_folder(Locations& all) {
   std::map<std::string, int> counts;
   for (const ModelLocation& location : all) ++counts[location.name];
   for (ModelLocation& location : all) {
-    if (counts[location.name] < 2 || !is_common_name(location.name)) continue;
+    const bool may_be_meant = !location.name.starts_with("textured") && !location.name.starts_with("google_");
+    if ((counts[location.name] < 2 && may_be_meant) || !is_common_name(location.name)) continue;
     path folder = io::fs::absolute(location.path).lexically_normal();
     while (folder.has_stem() && is_common_name(folder.stem().string())) folder = folder.parent_path();
     if (folder.has_stem()) location.name = io::folder_name(folder);

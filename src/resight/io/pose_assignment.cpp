@@ -100,6 +100,7 @@ class StampedPoses {
 }  // namespace
 
 Result<void> assign_poses(SequenceTable& table, const fs::path& file) {
+  table.poses_tell_convention = extension_of(file) == "json";
   const auto list = read_pose_list(file, true);
   if (!list) return list.error();
   if (list->empty()) return file_error(file, "holds no poses");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace resight::io {
 namespace {
@@ -58,11 +59,11 @@ RecordingScan scan_recording(const Recording& recording, const ViewTopics& topic
   return scan;
 }
 
-std::vector<RecordedPair> pair_images(const RecordingScan& scan, double max_difference_s) {
+RecordedPairs pair_images(const RecordingScan& scan, double max_difference_s) {
   auto by_header = pair_by(&header_stamp, scan.colors, scan.depths, max_difference_s);
   auto by_recording = pair_by(&recorded_stamp, scan.colors, scan.depths, max_difference_s);
   const bool clocks_differ = by_header.size() * 4 < by_recording.size();
-  return clocks_differ ? by_recording : by_header;
+  return {clocks_differ ? std::move(by_recording) : std::move(by_header), clocks_differ};
 }
 
 }  // namespace resight::io

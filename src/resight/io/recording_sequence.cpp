@@ -208,8 +208,10 @@ Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   describe(*poses, options);
   const std::string& damage = recording_->damage().empty() ? scan.damage : recording_->damage();
   if (!damage.empty()) notes_.push_back("damaged, what can be read is used: " + damage);
-  const auto pairs = pair_images(scan, options.topics.max_time_difference_s);
-  if (const auto done = find_views(pairs, *poses, options); !done) return done;
+  const RecordedPairs images = pair_images(scan, options.topics.max_time_difference_s);
+  if (images.by_recording_times)
+    notes_.emplace_back("the times in the headers do not fit together: images are paired by the times of recording");
+  if (const auto done = find_views(images.pairs, *poses, options); !done) return done;
   const auto first = read_view(0);
   if (!first) return Error{first.error().message};
   return check_depth_unit(*first);

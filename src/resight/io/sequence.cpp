@@ -64,6 +64,18 @@ std::vector<path> find_sequences_below(const path& directory) {
   return found.empty() ? training : found;
 }
 
+/// The folder, or one in it, whose files cannot be listed, with the reason. Empty if there is none.
+std::string describe_locked_folder(const path& directory) {
+  std::vector<path> folders{directory};
+  for (const std::string& name : io::list_directories(directory)) folders.push_back(directory / name);
+  for (const path& folder : folders) {
+    std::error_code error;
+    const io::fs::directory_iterator files(folder, error);
+    if (error) return fmt::format("{} cannot be read ({})", folder.string(), error.message());
+  }
+  return "";
+}
+
 constexpr std::string_view kExpectedSequences =
     "expected a BOP scene (scene_camera.json), a TUM recording (rgb, depth, associations.txt or rgb.txt and "
     "depth.txt), "
@@ -82,6 +94,7 @@ Result<path> find_sequence_folder(const path& directory) {
   if (below.size() > 1)
     return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
                                                  below.front().string()));
+  if (const std::string locked = describe_locked_folder(directory); !locked.empty()) return Error{locked};
   const std::string images = io::describe_image_folder(directory);
   return io::file_error(directory, images.empty() ? fmt::format("no sequence found; {}", kExpectedSequences)
                                                   : fmt::format("no sequence found: {} (docs/your-camera.md)", images));
@@ -126,8 +139,9 @@ Result<std::unique_ptr<Sequence>> open_posed_sequence(const path& directory, con
   return sequence;
 }
 
-Result<std::unique_ptr<SequenceWriter>> create_sequence(const path& directory, DatasetFormat format) {
-  return format == DatasetFormat::kBop ? io::create_bop_scene(directory) : io::create_tuw_sequence(directory);
+Result<std::unique_ptr<SequenceWriter>> create_sequence(const path& directory, DatasetFormat format,
+                                                        const SequenceContent& content) {
+  return format == DatasetFormat::kBop ? io::create_bop_scene(directory, content) : io::create_tuw_sequence(directory);
 }
 
 }  // namespace resight

@@ -79,8 +79,14 @@ class SequenceWriter {
 };
 /// Formats that can be written (docs/formats.md).
 enum class DatasetFormat { kTuw, kBop };
+/// What is known of the views that are written. What is not is left out, and not invented.
+struct SequenceContent {
+  bool has_poses = true;  ///< TUW cannot leave poses out.
+  bool has_ground_truth = true;
+};
 /// Starts a sequence in `directory`. Fails if the folder exists and is not empty, or cannot be written.
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_sequence(const std::filesystem::path& directory,
-                                                                      DatasetFormat format);
+                                                                      DatasetFormat format,
+                                                                      const SequenceContent& content = {});
 
 }  // namespace resight

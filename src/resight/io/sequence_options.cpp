@@ -109,8 +109,10 @@ Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& opti
   } else if (!options.poses.empty()) {
     if (const auto done = assign_poses(table, options.poses); !done) return done;
   }
+  if (table.poses_tell_convention && options.pose_convention == PoseConvention::kWorldToCamera)
+    return Error{"--pose-convention world-to-camera does not apply: JSON files of poses have camera to world"};
   // Transforms of a recording have one convention.
-  if (options.poses != "fixed" && (!table.is_recording || !options.poses.empty()))
+  if (!table.poses_tell_convention && options.poses != "fixed" && (!table.is_recording || !options.poses.empty()))
     for (ListedView& view : table.views)
       view.world_from_camera = to_world_from_camera(view.world_from_camera, options.pose_convention);
   return choose_views(table, options.views);

@@ -35,6 +35,9 @@ OptionValue value_of(const toml::node& node) {
 // What is wrong, or an empty text.
 std::string assign(const std::vector<Option>& options, const std::string& key, const toml::node& node) {
   const auto option = std::ranges::find(options, key, &Option::key);
+  constexpr std::size_t kMaxKeyBytes = 100;  // No option has a longer one.
+  if (option == options.end() && key.size() > kMaxKeyBytes)
+    return fmt::format("unknown key {}.. of {} bytes", key.substr(0, kMaxKeyBytes), key.size());
   if (option == options.end()) return fmt::format("unknown key {} (did you mean {}?)", key, nearest_key(options, key));
   if (!option->condition.empty()) return fmt::format("{} has no effect unless {}", key, option->condition);
   const std::string expected = assign_option(*option, value_of(node));

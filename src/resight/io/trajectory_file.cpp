@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/json_poses.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/pose_text.hpp"
 
@@ -103,6 +104,7 @@ Result<std::vector<StampedPose>> from_matrix_rows(const std::vector<PoseRow>& ro
 }  // namespace
 
 Result<std::vector<StampedPose>> read_pose_list(const fs::path& file, bool may_be_untracked) {
+  if (extension_of(file) == "json") return read_json_poses(file);
   auto text = read_file(file);
   if (!text) return text.error();
   std::vector<PoseRow> rows = split_rows(std::move(*text));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/image_header.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
@@ -116,11 +117,30 @@ Result<Calibration> find_tum_calibration(const fs::path& directory, const OpenSe
         "intrinsics: those published for freiburg{} of the TUM data set, by the folder's name (--intrinsics)", i + 1));
     Calibration calibration;
     calibration.intrinsics = kPublished[i];
+    calibration.width = 640;
+    calibration.height = 480;
     return calibration;
   }
   return file_error(directory,
                     "holds no camera.txt, and its name is none of the TUM data set (freiburg1, ..): give "
                     "--intrinsics fx,fy,cx,cy or FILE");
+}
+
+/// groundtruth.txt, or the file of ICL-NUIM, such as livingRoom0n.gt.freiburg. Empty if there is none.
+fs::path find_tum_poses(const fs::path& directory) {
+  if (is_file(directory / "groundtruth.txt")) return directory / "groundtruth.txt";
+  for (const std::string& name : list_files(directory))
+    if (name.ends_with(".gt.freiburg")) return directory / name;
+  return {};
+}
+
+/// Published intrinsics are for one size.
+Result<void> check_image_size(const Calibration& calibration, const fs::path& image, const fs::path& directory) {
+  constexpr std::size_t kHeaderBytes = std::size_t{1} << 16;
+  const auto start = read_file_start(image, kHeaderBytes);
+  const auto header = start.ok() ? parse_image_header(*start) : std::nullopt;
+  if (!header) return {};  // Told when the view is read.
+  return check_calibration(calibration, header->width, header->height, directory.string());
 }
 
 }  // namespace
@@ -140,9 +160,10 @@ SequenceResult open_tum_sequence(const fs::path& directory, const OpenSequenceOp
   if (!calibration) return calibration.error();
   table.format = "tum";
   table.lens = calibration->lens;
-  table.has_poses = options.poses.empty() && is_file(directory / "groundtruth.txt");
+  const fs::path pose_file = find_tum_poses(directory);
+  table.has_poses = options.poses.empty() && !pose_file.empty();
   Result<std::vector<StampedPose>> poses = std::vector<StampedPose>{};
-  if (table.has_poses) poses = read_pose_list(directory / "groundtruth.txt", false);
+  if (table.has_poses) poses = read_pose_list(pose_file, false);
   if (!poses) return poses.error();
   std::ranges::stable_sort(*poses, {}, &StampedPose::time_s);
   for (const auto& [color, depth] : *pairs) {
@@ -161,8 +182,11 @@ SequenceResult open_tum_sequence(const fs::path& directory, const OpenSequenceOp
     table.views.push_back(std::move(view));
   }
   if (table.views.empty())
-    return file_error(directory, pairs->empty() ? "its lists name no pair of images"
-                                                : "no image has a pose near in time in groundtruth.txt");
+    return file_error(directory, pairs->empty()
+                                     ? std::string("its lists name no pair of images")
+                                     : "no image has a pose near in time in " + pose_file.filename().string());
+  if (const auto fits = check_image_size(*calibration, table.views.front().color, directory); !fits)
+    return fits.error();
   return make_listed_sequence(std::move(table));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
@@ -11,14 +12,14 @@ namespace {
 using testing::HasSubstr;
 
 /// Without intrinsics.
-void write_recording(const std::filesystem::path& directory) {
+void write_recording(const std::filesystem::path& directory, int width = 4, int height = 3) {
   std::string rgb = "# colour\n";
   std::string depth = "# depth\n";
   for (int i = 0; i < 4; ++i) {
     const std::string c = std::to_string(10 + i) + ".500";
     const std::string d = std::to_string(10 + i) + ".510";
-    ASSERT_TRUE(write_color(directory / "rgb" / (c + ".png"), Image<Rgb8>(4, 3)).ok());
-    ASSERT_TRUE(write_depth(directory / "depth" / (d + ".png"), Image<float>(4, 3, 1.25F), 1.0 / 5000).ok());
+    ASSERT_TRUE(write_color(directory / "rgb" / (c + ".png"), Image<Rgb8>(width, height)).ok());
+    ASSERT_TRUE(write_depth(directory / "depth" / (d + ".png"), Image<float>(width, height, 1.25F), 1.0 / 5000).ok());
     rgb += c + " rgb/" + c + ".png\n";
     if (i != 2) depth += d + " depth/" + d + ".png\n";
   }
@@ -56,6 +57,8 @@ TEST(Tum, AssociatesAndInterpolates) {
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   ASSERT_EQ((*sequence)->num_views(), 2);
+  std::filesystem::rename(directory / "groundtruth.txt", directory / "livingRoom0n.gt.freiburg");
+  EXPECT_EQ((*open_sequence(directory.path()))->num_views(), 2) << "the name of ICL-NUIM";
   const auto frame = (*sequence)->read_view(0);
   ASSERT_TRUE(frame.ok()) << frame.error().message;
   EXPECT_EQ(frame->name, "10.500");
@@ -68,11 +71,14 @@ TEST(Tum, AssociatesAndInterpolates) {
 
 TEST(Tum, Intrinsics) {
   io::TestDirectory directory;
-  write_recording(directory / "rgbd_dataset_freiburg3_long");
+  write_recording(directory / "rgbd_dataset_freiburg3_long", 640, 480);
   EXPECT_EQ((*open_sequence(directory / "rgbd_dataset_freiburg3_long"))->read_view(0)->camera.fx, 535.4);
   io::write_text(directory / "rgbd_dataset_freiburg3_long/camera.txt", "500 501 2 1\n");
   EXPECT_EQ((*open_sequence(directory / "rgbd_dataset_freiburg3_long"))->read_view(0)->camera,
-            (Camera{4, 3, 500, 501, 2, 1}));
+            (Camera{640, 480, 500, 501, 2, 1}));
+  write_recording(directory / "freiburg1", 1280, 960);
+  EXPECT_THAT(open_sequence(directory / "freiburg1").error().message,
+              HasSubstr("intrinsics are for images of 640x480"));
   io::write_text(directory / "rgbd_dataset_freiburg3_long/camera.txt", "0 501 2 1\n");
   EXPECT_THAT(open_sequence(directory / "rgbd_dataset_freiburg3_long").error().message,
               HasSubstr("camera.txt: the focal"));
@@ -102,6 +108,16 @@ TEST(Tum, BadLists) {
   }
   io::write_text(directory / "associations.txt", "1 rgb/a.png 1 ../a.png\n");
   EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("out of the folder"));
+}
+
+TEST(OpenSequence, AFolderWithoutPermissionIsNamed) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  io::TestDirectory directory;
+  write_recording(directory.path());
+  std::filesystem::permissions(directory / "rgb", std::filesystem::perms::none);
+  std::filesystem::remove(directory / "rgb.txt");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("rgb cannot be read (Permission denied)"));
+  std::filesystem::permissions(directory / "rgb", std::filesystem::perms::owner_all);
 }
 
 TEST(OpenSequence, NothingThere) {

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "resight/core/check.hpp"
+#include "resight/core/names.hpp"
+#include "resight/io/images.hpp"
 #include "resight/simulation/room.hpp"
 #include "resight/simulation/seeded_objects.hpp"
 
@@ -53,8 +55,8 @@ class ScriptChecker {
     };
     if (script_.name.empty() || !std::ranges::all_of(script_.name, is_plain))
       return Error{"name: '" + script_.name + "' (must be letters, digits, _ or -: it names a folder)"};
-    if (!script_.camera.is_valid())
-      return Error{"camera: invalid intrinsics (size and focal lengths must be positive)"};
+    if (const auto named = check_object_name(script_.name); !named) return Error{"name: " + named.error().message};
+    if (auto p = check_intrinsics()) return p;
     if (script_.world_from_camera.empty()) return Error{"camera: there is no view (give orbit or pose)"};
     for (const Rigid3& pose : script_.world_from_camera)
       if (!pose.is_rigid()) return Error{"camera: a pose is not a rigid motion"};
@@ -63,8 +65,27 @@ class ScriptChecker {
       return Error{"camera: there must be as many reported as true poses"};
     for (const Rigid3& pose : script_.reported_world_from_camera)
       if (!pose.is_rigid()) return Error{"camera: a reported pose is not a rigid motion"};
-    if (script_.room_size_m && !(script_.room_size_m->minCoeff() > 0)) return Error{"room.size_m: must be > 0"};
+    if (script_.room_size_m) return check_size(*script_.room_size_m, "room");
     return {};
+  }
+
+  Problem check_intrinsics() {
+    const Camera& camera = script_.camera;
+    if (!camera.is_valid()) return Error{"camera: invalid intrinsics (size and focal lengths must be positive)"};
+    if (std::max(camera.width, camera.height) > kMaxImageSide_px ||
+        std::int64_t{camera.width} * camera.height > kMaxViewPixels)
+      return Error{"camera: " + std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                   " pixels are too many (at most " + std::to_string(kMaxImageSide_px) + " a side, and " +
+                   std::to_string(kMaxViewPixels) + ")"};
+    if (camera.fx < 0.01 * camera.width || camera.fy < 0.01 * camera.height)
+      return Error{"camera: a focal length is less than a hundredth of the size of the image"};
+    return {};
+  }
+
+  // Thinner or larger boxes are slips of units, and rounding would spoil them.
+  static Problem check_size(const Eigen::Vector3d& size_m, const std::string& where) {
+    if (size_m.minCoeff() >= 0.001 && size_m.maxCoeff() <= 1000) return {};
+    return Error{where + ".size_m: must be > 0, in 0.001..1000"};
   }
 
   Problem check_furniture() {
@@ -73,7 +94,7 @@ class ScriptChecker {
       const std::string where = "furniture[" + std::to_string(i) + "]";
       if (!contains(furniture_kinds(), f.kind))
         return Error{where + ".kind: unknown kind '" + f.kind + "' (known: " + join(furniture_kinds()) + ")"};
-      if (!(f.size_m.minCoeff() > 0)) return Error{where + ".size_m: must be > 0"};
+      if (auto p = check_size(f.size_m, where)) return p;
       if (auto p = add_key(f.key, where)) return p;
       if (auto p = check_placement(f.placement, f.key, where)) return p;
       present_.insert(f.key);
@@ -88,6 +109,8 @@ class ScriptChecker {
       const std::string where = "object[" + std::to_string(i) + "]";
       if (o.mesh.empty() && !contains(models_, o.model))
         return Error{where + ".model: unknown object '" + o.model + "' (known: " + join(models_) + "; or give mesh)"};
+      if (const auto named = check_object_name(o.model); !named)
+        return Error{where + ".model: " + named.error().message};
       if (auto p = add_key(o.key, where)) return p;
       objects_.insert(o.key);
       if (!o.start) continue;
@@ -134,6 +157,7 @@ class ScriptChecker {
 
   Problem add_key(const std::string& key, const std::string& where) {
     if (key.empty()) return Error{where + ".key: is missing"};
+    if (const auto named = check_object_name(key); !named) return Error{where + ".key: " + named.error().message};
     if (!keys_.insert(key).second) return Error{where + ".key: '" + key + "' is used twice"};
     return {};
   }

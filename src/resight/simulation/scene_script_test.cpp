@@ -152,7 +152,19 @@ TEST_F(SceneFile, ErrorsNameFileKeyAndRule) {
       {"radius_m = 1.5", "radius_m = 1e-9", {"camera.orbit.radius_m", "straight up or down"}},
       {"[camera.orbit]\nradius_m = 1.5\nstart_deg = -90\nend_deg = 0\nviews = 4",
        "[[camera.pose]]\neye_m = [0, -1, 1e61]\ntarget_m = [0, 0, 1]",
+       {"camera.pose[0].eye_m", "between"}},
+      {"[camera.orbit]\nradius_m = 1.5\nstart_deg = -90\nend_deg = 0\nviews = 4",
+       "[[camera.pose]]\neye_m = [0, 0, 5]\ntarget_m = [0, 0, 1]",
        {"camera.pose[0].target_m", "straight above or below"}},
+      {"x_m = 0.1", "x_m = 1e308", {"object[0].x_m", "between"}},
+      {"width = 320", "width = 2147483647", {"camera", "too many"}},
+      {"width = 320", "width = 16385", {"camera", "16385 x 240", "16384 a side"}},
+      {"width = 320\nheight = 240", "width = 16384\nheight = 16384", {"camera", "too many", "16777216"}},
+      {"width = 320", "width = 320\nfx = 1e-300", {"camera", "hundredth"}},
+      {"kind = \"table\"", "kind = \"table\"\nsize_m = [1, 2, 1e308]", {"furniture[0].size_m", "between"}},
+      {"kind = \"table\"", "kind = \"table\"\nsize_m = [1, 2, 1001]", {"furniture[0].size_m", "1000"}},
+      {"name = \"small\"", "name = \"small\"\n[room]\nsize_m = [1e-9, 5, 3]", {"room.size_m", "0.001"}},
+      {"model = \"vase\"", "key = \"a/b\"\nmodel = \"vase\"", {"object[1].key"}},
       {"width = 320", "width = -2147483648", {"camera", "positive"}},
       {"width = 320", "width = -3", {"camera", "positive"}},
       {"[camera.orbit]", "[camera.orbits]", {"camera.orbits", "not a known key"}},
@@ -167,6 +179,17 @@ TEST_F(SceneFile, ErrorsNameFileKeyAndRule) {
     for (const char* part : c.message)
       EXPECT_NE(script.error().message.find(part), std::string::npos) << script.error().message;
     EXPECT_EQ(script.error().message.find('\n'), std::string::npos) << script.error().message;
+  }
+}
+
+TEST_F(SceneFile, LongNamesAreRefused) {
+  const std::string name(300, 'n');
+  for (const auto& [what, by] : {std::pair{"name = \"small\"", "name = \"" + name + "\""},
+                                 {"model = \"mug\"", "model = \"" + name + "\"\nmesh = \"mug.ply\""},
+                                 {"kind = \"table\"", "kind = \"table\"\nkey = \"" + name + "\""}}) {
+    const auto script = read(replaced(kGood, what, by));
+    ASSERT_FALSE(script.ok()) << what;
+    EXPECT_NE(script.error().message.find("200"), std::string::npos) << script.error().message;
   }
 }
 

@@ -14,10 +14,10 @@ void TomlFields::read(const std::string& key, double& target) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
   const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (value && std::isfinite(*value)) {
+  if (value && std::abs(*value) <= kMaxNumber) {
     target = *value;
   } else {
-    fail(key, "must be a finite number");
+    fail(key, value && std::isfinite(*value) ? kNumberLimits : "must be a finite number");
   }
 }
 

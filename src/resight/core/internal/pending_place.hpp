@@ -35,6 +35,8 @@ class PendingPlace {
 
   /// Creates a place in the folder, under a name that no output has, and removes it.
   [[nodiscard]] static Result<void> try_out(const std::filesystem::path& folder);
+  /// Same as clear(), but a place in use is no failure.
+  [[nodiscard]] static Result<void> clear_unused(const std::filesystem::path& path);
 
   /// The name of the place for a final name.
   [[nodiscard]] static std::string name_for(const std::string& final_name);

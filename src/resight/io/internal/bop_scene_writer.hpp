@@ -25,7 +25,7 @@ class BopSceneWriter {
   /// Writes the mask of the `index`-th object of the view.
   [[nodiscard]] Result<void> write_object_mask(int image_id, int index, const Image<std::uint8_t>& mask) const;
   /// Writes the JSON files.
-  [[nodiscard]] Result<void> finish() const;
+  [[nodiscard]] Result<void> finish(bool with_ground_truth = true) const;
   [[nodiscard]] int num_views() const { return num_views_; }
 
  private:

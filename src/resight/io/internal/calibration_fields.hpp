@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,10 @@ struct CalibrationFields {
 /// None if the fields hold no intrinsics.
 [[nodiscard]] Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFields& fields,
                                                                          std::string_view what);
+
+/// The same for the members of a JSON object, without those inside others. None for other values.
+[[nodiscard]] Result<std::optional<Calibration>> calibration_from_json(const nlohmann::json& object,
+                                                                       std::string_view what);
 
 /// The calibration anywhere in a JSON file; of several, that of the colour camera.
 [[nodiscard]] Result<Calibration> read_json_calibration(const std::filesystem::path& file);

@@ -45,7 +45,8 @@ struct SequenceTable {
   int scene_id = 0;
   bool has_poses = true;
   bool has_ground_truth = false;
-  bool is_recording = false;  ///< The table only lists times and poses.
+  bool is_recording = false;           ///< The table only lists times and poses.
+  bool poses_tell_convention = false;  ///< The format of their file defines it.
   DepthStorage depth_storage = DepthStorage::kPng;
   std::optional<double> npy_unit_m;         ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
   LensDistortion lens;                      ///< Of both images. The views that are read are without distortion.

@@ -36,8 +36,13 @@ struct RecordedPair {
   std::int64_t depth_stamp_ns = 0;
 };
 
+struct RecordedPairs {
+  std::vector<RecordedPair> pairs;  ///< In the order of time.
+  bool by_recording_times = false;
+};
+
 /// Pairs the images by the times in their headers, in the order of time. If these do not fit together (clocks of two
 /// devices), by the times of recording. A depth image belongs to one colour image.
-[[nodiscard]] std::vector<RecordedPair> pair_images(const RecordingScan& scan, double max_difference_s);
+[[nodiscard]] RecordedPairs pair_images(const RecordingScan& scan, double max_difference_s);
 
 }  // namespace resight::io

@@ -47,6 +47,7 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
                                                      const OpenSequenceOptions& options);
 
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_tuw_sequence(const std::filesystem::path& directory);
-[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const std::filesystem::path& directory);
+[[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const std::filesystem::path& directory,
+                                                                       const SequenceContent& content);
 
 }  // namespace resight::io

@@ -15,6 +15,10 @@
 
 namespace resight {
 
+/// Largest number of a scene script, whatever its unit: products of a few are finite, also in single precision.
+inline constexpr double kMaxNumber = 1e6;
+inline constexpr const char* kNumberLimits = "must lie between -1000000 and 1000000";
+
 /// Reads the fields of one TOML table. Keeps the first mistake with its place and rule; later reads then leave their
 /// targets unchanged. Unread keys are also mistakes (finish()).
 class TomlFields {
@@ -80,6 +84,10 @@ std::optional<std::array<double, N>> TomlFields::read_numbers(const std::string&
     const auto number = list->get(i)->value<double>();
     good = number && std::isfinite(*number);
     if (good) numbers[i] = *number;
+    if (good && std::abs(*number) > kMaxNumber) {
+      fail(key, kNumberLimits);
+      return std::nullopt;
+    }
   }
   if (good) return numbers;
   fail(key, "must be a list of " + std::to_string(N) + " numbers");
