@@ -6,6 +6,7 @@
 #include "resight/core/printable.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/calibration.hpp"
+#include "resight/io/internal/json_poses.hpp"
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
@@ -41,6 +42,23 @@ void read_trajectory(std::string_view bytes) {
   (void)io::read_pose_list(file, true);
   const auto poses = io::read_pose_list(file, false);
   if (poses) (void)io::interpolate_pose(*poses, 1.55);
+}
+
+Seeds make_json_pose_seeds() {
+  const std::string matrix = "[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]";
+  return {R"({"fl_x":60,"fl_y":60,"cx":4,"cy":3,"frames":[{"file_path":"rgb/0.jpg","transform_matrix":)" + matrix +
+              R"(,"fl_x":60,"fl_y":61,"cx":4,"cy":3}]})",
+          R"({"K":[60,0,0,0,60,0,4,3,1],"poses":[[0,0,0,1,1,2,3],[0,0,0,1,1,2,4]]})",
+          R"({"fx":60,"fy":60,"cx":4,"cy":3,"t_00":1,"t_01":0,"t_02":0,"t_03":1,"t_10":0,"t_11":1,"t_12":0,"t_13":2,)"
+          R"("t_20":0,"t_21":0,"t_22":1,"t_23":3})",
+          R"({"intrinsics":[60,0,4,0,60,3,0,0,1],"cameraPoseARFrame":[1,0,0,1,0,1,0,2,0,0,1,3,0,0,0,1]})"};
+}
+void read_json_poses(std::string_view bytes) {
+  const auto file = write_scratch("poses.json", bytes);
+  (void)io::holds_json_poses(file);
+  (void)io::read_json_poses(file);
+  (void)io::read_frame_calibrations(file);
+  (void)io::read_view_camera(file);
 }
 
 Seeds make_calibration_seeds() {
@@ -94,6 +112,7 @@ std::vector<FuzzReader> dataset_readers() {
          if (chains) (void)resolve_changes(*chains, {"cloud_01", "cloud_02", "cloud_003"}, "fuzz");
        }},
       {"trajectory", make_trajectory_seeds, read_trajectory},
+      {"json_poses", make_json_pose_seeds, read_json_poses},
       {"calibration", make_calibration_seeds, read_calibration_file},
       {"names",
        [] {

@@ -279,6 +279,13 @@ SequenceResult open_image_folder(const fs::path& directory, const OpenSequenceOp
   return sequence;
 }
 
-std::string describe_image_folder(const fs::path& directory) { return describe_images(find_series(directory)); }
+std::string describe_image_folder(const fs::path& directory) {
+  const std::string images = describe_images(find_series(directory));
+  for (const std::string& name : list_files(directory))
+    for (const char* video : {"mp4", "mov", "mkv", "avi"})
+      if (!images.empty() && extension_of(name) == video)
+        return images + fmt::format("; {} is a video, which is not read (extract its images)", name);
+  return images;
+}
 
 }  // namespace resight::io

@@ -82,6 +82,8 @@ TEST(ImageFolder, SaysWhatIsMissing) {
               HasSubstr("found 3 colour and 3 depth images, no intrinsics: give --intrinsics fx,fy,cx,cy or FILE"));
   std::filesystem::remove_all(directory / "a/depth");
   EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("found 3 colour images, but no depth"));
+  io::write_text(directory / "a/rgb.mp4", "x");
+  EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("rgb.mp4 is a video, which is not read"));
   ASSERT_TRUE(write_color(directory / "a/depth/000000.png", Image<Rgb8>(kWidth, kHeight)).ok());
   EXPECT_THAT(open_sequence(directory / "a").error().message, HasSubstr("pictures of depth, no depth"));
   std::filesystem::remove_all(directory / "a/depth");

@@ -30,7 +30,7 @@ bool is_no_view(std::string_view lower_name) {
 bool is_view_folder(std::string_view lower_name) {
   return has_any(lower_name,
                  {"rgb", "color", "colour", "depth", "image", "img", "pose", "camera", "frame", "result", "raw"}) ||
-         lower_name == "cam0" || lower_name == "data" || lower_name == "views";
+         lower_name.starts_with("cam") || lower_name == "data" || lower_name == "views";
 }
 
 /// The runs of digits of a name, with their places.

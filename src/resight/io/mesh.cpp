@@ -47,7 +47,7 @@ Result<MeshFile> import_mesh(const std::filesystem::path& file) {
 std::string guess_unit(double size_m, double metres_per_unit) {
   const double size_units = size_m / metres_per_unit;
   if (metres_per_unit == 0.001 && size_m < 0.005)
-    return "looks like metres; a BOP models folder is in millimetres unless --mesh-unit says otherwise";
+    return "looks like metres, not millimetres as in a BOP models folder (--mesh-unit m)";
   if (metres_per_unit == 1.0 && size_units >= 5 && size_units <= 5000) return "looks like millimetres (--mesh-unit mm)";
   return "check its unit";
 }

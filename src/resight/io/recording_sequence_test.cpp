@@ -20,7 +20,7 @@ std::filesystem::path recorded(const std::string& name) {
 // The scene of tests/data/recordings/README.md.
 TEST(RecordingSequence, ViewsOfAllContainers) {
   for (const char* name : {"none.bag", "lz4.bag", "bz2.bag", "none.mcap", "zstd.mcap", "lz4.mcap", "no_chunks.mcap",
-                           "no_index.mcap", "ros2.db3"}) {
+                           "no_index.mcap", "ros2.db3", "ros2_zstd.db3"}) {
     const auto sequence = open_posed_sequence(recorded(name));
     ASSERT_TRUE(sequence.ok()) << sequence.error().message;
     ASSERT_EQ((*sequence)->num_views(), 4) << name;

@@ -103,4 +103,10 @@ Result<std::string> decompress(std::string_view compression, std::string_view by
   return output;
 }
 
+Result<std::string> decompress_start(std::string_view bytes, std::size_t max_bytes) {
+  auto output = decompress_zstd(bytes, max_bytes);
+  if (output.ok() && output->size() > max_bytes) output->resize(max_bytes);
+  return output;
+}
+
 }  // namespace resight::recordings

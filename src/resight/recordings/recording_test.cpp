@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 fs::path recorded(const std::string& name) { return fs::path(RESIGHT_SOURCE_DIR) / "tests/data/recordings" / name; }
 
 const std::vector<std::string> kRos1 = {"none.bag", "lz4.bag", "bz2.bag"};
-const std::vector<std::string> kRos2 = {"none.mcap",      "zstd.mcap",     "lz4.mcap",
-                                        "no_chunks.mcap", "no_index.mcap", "ros2.db3"};
+const std::vector<std::string> kRos2 = {"none.mcap",     "zstd.mcap", "lz4.mcap",     "no_chunks.mcap",
+                                        "no_index.mcap", "ros2.db3",  "ros2_zstd.db3"};
 
 std::vector<std::string> all_recordings() {
   std::vector<std::string> all = kRos1;

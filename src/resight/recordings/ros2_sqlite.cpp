@@ -8,6 +8,7 @@
 #include "resight/core/files.hpp"
 #include "resight/core/printable.hpp"
 #include "resight/recordings/internal/containers.hpp"
+#include "resight/recordings/internal/decompress.hpp"
 #include "resight/recordings/internal/random_access_file.hpp"
 
 /// ROS 2 bags in SQLite: tables `topics` and `messages`.
@@ -53,6 +54,7 @@ class Ros2Sqlite final : public IndexedRecording {
 
  private:
   [[nodiscard]] Result<Statement> prepare(const char* sql) const;
+  [[nodiscard]] Result<std::string> read_blob(const MessageEntry& entry, std::size_t max_bytes) const;
   [[nodiscard]] Result<void> read_topics();
   [[nodiscard]] Error fail() const {
     return file_error(file_,
@@ -108,8 +110,20 @@ Result<void> Ros2Sqlite::build_index() {
 }
 
 Result<std::string> Ros2Sqlite::read(const MessageEntry& entry, std::size_t max_bytes) const {
+  // Bags may compress each message. No message in CDR begins like this.
+  constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";
   const std::lock_guard lock(mutex_);
   checks_ = 0;
+  auto bytes = read_blob(entry, max_bytes);
+  if (!bytes || !bytes->starts_with(kZstdMagic)) return bytes;
+  const auto whole = read_blob(entry, kMaxMessageBytes);
+  if (!whole) return whole;
+  auto message = decompress_start(*whole, max_bytes);
+  if (!message) return file_error(file_, message.error().message);
+  return message;
+}
+
+Result<std::string> Ros2Sqlite::read_blob(const MessageEntry& entry, std::size_t max_bytes) const {
   const auto statement = prepare("SELECT substr(data, 1, ?2) FROM messages WHERE id = ?1");
   if (!statement) return statement.error();
   sqlite3_bind_int64(statement->get(), 1, static_cast<sqlite3_int64>(entry.offset));

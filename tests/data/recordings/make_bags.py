@@ -8,6 +8,7 @@ import base64
 import json
 import sqlite3
 import struct
+import subprocess
 import sys
 
 import genpy
@@ -98,7 +99,11 @@ def write_realsense(name):
             bag.write(color_prefix + "/image/data", color(i, "0"), stamp(100 + 0.1 * i))
 
 
-def write_ros2(name, messages):
+def compressed(data):
+    return subprocess.run(["zstd", "-q", "-c"], input=data, capture_output=True, check=True).stdout
+
+
+def write_ros2(name, messages, encode=bytes):
     database = sqlite3.connect(name)
     database.executescript(
         """CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
@@ -117,7 +122,7 @@ def write_ros2(name, messages):
             )
         database.execute(
             "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
-            (topics[message["topic"]], int(message["time"]), base64.b64decode(message["data"])),
+            (topics[message["topic"]], int(message["time"]), encode(base64.b64decode(message["data"]))),
         )
     database.commit()
     database.execute("VACUUM")
@@ -129,4 +134,6 @@ write_ros1("bz2.bag", rosbag.Compression.BZ2)
 write_ros1("lz4.bag", rosbag.Compression.LZ4)
 write_realsense("realsense.bag")
 with open(sys.argv[1]) as file:
-    write_ros2("ros2.db3", json.load(file))
+    messages = json.load(file)
+write_ros2("ros2.db3", messages)
+write_ros2("ros2_zstd.db3", messages, compressed)
