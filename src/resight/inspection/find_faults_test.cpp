@@ -290,6 +290,8 @@ TEST(CheckQuickly, SaysWhichUnitIsWrong) {
   EXPECT_NE(found(1000, 1).find("poses are in millimetres"), std::string::npos) << found(1000, 1);
   EXPECT_NE(found(0.001, 1).find("in metres where millimetres"), std::string::npos) << found(0.001, 1);
   EXPECT_NE(found(1, 10).find("depth is a tenth of what it says"), std::string::npos) << found(1, 10);
+  EXPECT_NE(found(1, 5).find("depth is a fifth of what it says"), std::string::npos) << found(1, 5);
+  EXPECT_NE(found(5, 1).find("depth is five times what it says"), std::string::npos) << found(5, 1);
 }
 
 TEST(CheckQuickly, LeavesPosesAloneThatAreNotUsed) {

@@ -72,7 +72,11 @@ std::vector<Reading> other_readings(const Rigid3& from_a, const Rigid3& from_b) 
       {"pose_unit", "the poses are in metres where millimetres are expected", "multiply the translations by 1000",
        longer(1e3)},
       {"depth_scale", "the depth is a tenth of what it says", "--depth-scale, a tenth of the present one", longer(10)},
-      {"depth_scale", "the depth is ten times what it says", "--depth-scale, ten times the present one", longer(0.1)}};
+      {"depth_scale", "the depth is ten times what it says", "--depth-scale, ten times the present one", longer(0.1)},
+      // Millimetres and the unit of TUM, 0.2 mm, are often confused.
+      {"depth_scale", "the depth is a fifth of what it says", "--depth-scale, a fifth of the present one", longer(5)},
+      {"depth_scale", "the depth is five times what it says", "--depth-scale, five times the present one",
+       longer(0.2)}};
 }
 
 void check_poses(const RgbdFrame& a, const RgbdFrame& b, int view, std::vector<Finding>& findings) {
