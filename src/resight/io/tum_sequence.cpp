@@ -136,8 +136,8 @@ fs::path find_tum_poses(const fs::path& directory) {
 
 /// Published intrinsics are for one size.
 Result<void> check_image_size(const Calibration& calibration, const fs::path& image, const fs::path& directory) {
-  constexpr std::size_t kHeaderBytes = std::size_t{1} << 16;
-  const auto start = read_file_start(image, kHeaderBytes);
+  constexpr std::size_t kBytesOfHeader = std::size_t{1} << 16;
+  const auto start = read_file_start(image, kBytesOfHeader);
   const auto header = start.ok() ? parse_image_header(*start) : std::nullopt;
   if (!header) return {};  // Told when the view is read.
   return check_calibration(calibration, header->width, header->height, directory.string());
