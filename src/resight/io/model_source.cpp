@@ -84,7 +84,7 @@ bool is_common_name(std::string_view name) {
 }
 
 /// Models of one common name are called by the nearest folder above them that tells them apart. "textured" and
-/// "google_16k" name no object in any case.
+/// "google_16k" are never names of objects.
 void name_by_folder(Locations& all) {
   std::map<std::string, int> counts;
   for (const ModelLocation& location : all) ++counts[location.name];

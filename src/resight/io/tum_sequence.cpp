@@ -139,7 +139,7 @@ Result<void> check_image_size(const Calibration& calibration, const fs::path& im
   constexpr std::size_t kBytesOfHeader = std::size_t{1} << 16;
   const auto start = read_file_start(image, kBytesOfHeader);
   const auto header = start.ok() ? parse_image_header(*start) : std::nullopt;
-  if (!header) return {};  // Told when the view is read.
+  if (!header) return {};  // read_view() reports a damaged image.
   return check_calibration(calibration, header->width, header->height, directory.string());
 }
 
