@@ -8,6 +8,7 @@
 
 #include "resight/io/internal/calibration_fields.hpp"
 #include "resight/io/internal/json.hpp"
+#include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/pose_text.hpp"
 
 namespace resight::io {
@@ -15,19 +16,10 @@ namespace {
 
 constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 
-/// From a pose of a camera with y up that looks along -z.
-Rigid3 look_forward(const Rigid3& world_from_camera) {
-  const Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return world_from_camera * Rigid3::from_rotation(flip);
-}
+Rigid3 look_forward(const Rigid3& pose) { return to_world_from_camera(pose, PoseConvention::kOpenGl); }
 
 Result<Rigid3> pose_from_numbers(const std::vector<double>& numbers, std::string_view what) {
-  if (numbers.size() != 12 && numbers.size() != 16)
-    return Error{fmt::format("{}: expected a pose of 12 or 16 numbers, found {}", what, numbers.size())};
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
-  const auto pose = rigid_from_matrix(matrix, what);
+  const auto pose = rigid_from_numbers(numbers, what);
   if (!pose) return pose.error();
   return look_forward(*pose);
 }

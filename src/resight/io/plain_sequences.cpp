@@ -65,9 +65,7 @@ Result<Intrinsics> read_meta_yml(const fs::path& file) {
 Result<Rigid3> parse_matrix(const nlohmann::json& json, std::string_view what) {
   const auto numbers = as_numbers(json);
   if (!numbers || numbers->size() != 16) return Error{fmt::format("{}: expected a 4x4 matrix", what)};
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[i];
-  return rigid_from_matrix(matrix, what);
+  return rigid_from_numbers(*numbers, what);
 }
 
 /// Reads derived/pseudo_gt.json {"frames": {"<view>": [{"object": .., "camera_from_object": 4x4}]}}.

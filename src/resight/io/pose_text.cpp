@@ -34,6 +34,15 @@ Result<Rigid3> rigid_from_matrix(const Eigen::Matrix4d& matrix, std::string_view
   return pose;
 }
 
+Result<Rigid3> rigid_from_numbers(std::span<const double> numbers, std::string_view what) {
+  if (numbers.size() != 16 && numbers.size() != 12)
+    return Error{fmt::format("{}: expected a pose of 12 or 16 numbers, found {}", what, numbers.size())};
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
+  return rigid_from_matrix(matrix, what);
+}
+
 Result<Rigid3> rigid_from_quaternion(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation,
                                      std::string_view what) {
   const double norm = rotation.norm();
@@ -54,10 +63,7 @@ Result<Rigid3> parse_pose(std::string_view text, std::string_view what) {
   if (!numbers || (numbers->size() != 16 && numbers->size() != 12))
     return Error{std::string(what) + ": expected a pose of 16 numbers (a 4x4 matrix, row by row)" +
                  (numbers ? fmt::format(", found {}", numbers->size()) : "")};
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < numbers->size(); ++i)
-    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = (*numbers)[i];
-  return rigid_from_matrix(matrix, what);
+  return rigid_from_numbers(*numbers, what);
 }
 
 Result<Rigid3> read_pose(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,10 @@ inline constexpr double kPoseTolerance = 1e-2;
 /// than 1e-9. Fails (with `what` at the start of the message) for NaN, scale, shear, reflection, or a last row other
 /// than 0 0 0 1.
 [[nodiscard]] Result<Rigid3> rigid_from_matrix(const Eigen::Matrix4d& matrix, std::string_view what);
+
+/// The rigid motion of a matrix of sixteen numbers in row-major order; with twelve, the last row is 0 0 0 1. Same
+/// errors, and an error for another count.
+[[nodiscard]] Result<Rigid3> rigid_from_numbers(std::span<const double> numbers, std::string_view what);
 
 /// From a quaternion. Its norm may deviate from 1 by kPoseTolerance.
 [[nodiscard]] Result<Rigid3> rigid_from_quaternion(const Eigen::Quaterniond& rotation,

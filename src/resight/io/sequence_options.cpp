@@ -23,13 +23,6 @@ bool gives_something(const OpenSequenceOptions& options) {
          options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s || options.views.to_s;
 }
 
-Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
-  if (convention == PoseConvention::kWorldToCamera) return pose.inverse();
-  if (convention == PoseConvention::kCameraToWorld) return pose;
-  Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return pose * Rigid3::from_rotation(flip);
-}
-
 /// Of the camera, or of the point 1 m in front of it, whichever is larger.
 double motion_m(const Rigid3& from, const Rigid3& to) {
   const Eigen::Vector3d ahead(0, 0, 1);
@@ -66,6 +59,13 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
 }
 
 }  // namespace
+
+Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
+  if (convention == PoseConvention::kWorldToCamera) return pose.inverse();
+  if (convention == PoseConvention::kCameraToWorld) return pose;
+  Eigen::Matrix3d flip = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  return pose * Rigid3::from_rotation(flip);
+}
 
 Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options) {
   if (options.depth_intrinsics.empty() && options.color_from_depth.empty()) return {};

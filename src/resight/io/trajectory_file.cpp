@@ -64,10 +64,7 @@ Result<std::vector<StampedPose>> from_stamped_rows(const std::vector<PoseRow>& r
 }
 
 Result<Rigid3> from_matrix_numbers(const std::vector<double>& numbers, const fs::path& file, int line) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    matrix(static_cast<int>(i / 4), static_cast<int>(i % 4)) = numbers[i];
-  return rigid_from_matrix(matrix, fmt::format("{}: line {}", file.string(), line));
+  return rigid_from_numbers(numbers, fmt::format("{}: line {}", file.string(), line));
 }
 
 /// Matrices of four rows. Rows of other lengths between them are headers.

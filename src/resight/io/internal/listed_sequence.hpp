@@ -69,6 +69,9 @@ struct SequenceTable {
 /// A note for the user, if the depth of the first view has fewer pixels than its colours. Empty otherwise.
 [[nodiscard]] std::string describe_enlarged_depth(const SequenceTable& table);
 
+/// The pose of a camera that looks along z and has y down, from a pose of this convention.
+[[nodiscard]] Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention);
+
 /// Sets the depth camera that the options give, if they do.
 [[nodiscard]] Result<void> set_depth_camera(SequenceTable& table, const OpenSequenceOptions& options);
 
