@@ -8,6 +8,8 @@ namespace resight::cli_test {
 namespace {
 
 const std::string kLongName(300, 'a');
+const std::string kRecognizeVeryLongName =
+    "recognize --models " + std::string(50000, 'a') + " --sequence views --out out";
 const std::string kRecognizeLongName = "recognize --models " + kLongName + " --sequence views --out out";
 
 TriangleMesh make_cube_with(float x) {
@@ -42,6 +44,7 @@ const Row kRows[] = {
     {"LibraryThatIsALoop", link("loop", "loop"), "recognize --models loop --sequence views --out out", 2,
      "loop: cannot be opened"},
     {"LibraryWithALongName", kNothing, kRecognizeLongName.c_str(), 2, "aaa: cannot be opened"},
+    {"MessageOfAVeryLongName", kNothing, kRecognizeVeryLongName.c_str(), 2, "model library a{1986} \\.\\.\\.$"},
     {"PipeAsLibrary", pipe("models.resight"), kRecognize, 2, "models\\.resight: is not a file"},
     {"EvaluateAFolderAsLibrary", kNothing, "evaluate --models empty --dataset views --out out", 2,
      "empty: is not a file"},

@@ -35,19 +35,6 @@ struct EvaluationHeader {
 /// Formats the time of verification in every view of every run as CSV, and the number of hypotheses verified in it
 /// (paper, Fig. 7).
 [[nodiscard]] std::string format_verification_times(std::span<const EvaluatedRun> runs);
-/// The files that write_evaluation() writes.
-inline constexpr const char* kEvaluationFiles[] = {"results.json",
-                                                   "times.json",
-                                                   "tables.md",
-                                                   "times.md",
-                                                   "worst.md",
-                                                   "precision.svg",
-                                                   "recall.svg",
-                                                   "f.svg",
-                                                   "ghosts.svg",
-                                                   "view_time.svg",
-                                                   "verification_time.svg",
-                                                   "verification_times.csv"};
 
 /// Writes results.json, times.json, tables.md, times.md, worst.md, verification_times.csv, and the plots precision.svg,
 /// recall.svg, f.svg, ghosts.svg (paper, Fig. 5), view_time.svg and verification_time.svg (Fig. 7: the longest

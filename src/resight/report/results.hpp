@@ -28,9 +28,6 @@ namespace resight {
 /// memory.
 [[nodiscard]] std::string format_summary_json(const ReportRun& run);
 
-/// The files that write_results() writes.
-inline constexpr const char* kResultFiles[] = {"detections.csv", "detections.json", "changes.json", "summary.json"};
-
 /// Writes detections.csv, detections.json, changes.json and summary.json to `directory`, which is created if necessary.
 /// Each file appears under its name only when it is complete, replacing an older one.
 [[nodiscard]] Result<void> write_results(const std::filesystem::path& directory, const ReportRun& run,
