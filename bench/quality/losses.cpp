@@ -23,9 +23,9 @@ using namespace resight;
 
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
-      "  {} fit {:.3f} visible {} of it {:.3f} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} newest "
-      "{:.2f} through {:.3f} silhouette {:.3f} ",
-      to_string(e.verdict), e.fit, e.num_visible, e.visible_share, e.explained_share, e.appearance.pattern_similarity,
+      "  {} score {:.4f} fit {:.3f} visible {} of it {:.3f} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} "
+      "newest {:.2f} through {:.3f} silhouette {:.3f} ",
+      to_string(e.verdict), e.score, e.fit, e.num_visible, e.visible_share, e.explained_share, e.appearance.pattern_similarity,
       e.appearance.shared_texture, e.appearance.texture_contrast, e.appearance.newest_similarity, e.seen_through_share,
       e.appearance.silhouette_error);
   fmt::print("matches {} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane {:.0f} unary {:.0f}\n",
@@ -89,9 +89,8 @@ int main(int argc, char** argv) {
       if (uncertainty.is_known())
         errors_in_sigmas.push_back(m.difference.center_distance_m /
                                    std::sqrt(uncertainty.covariance.bottomRightCorner<3, 3>().trace()));
-      fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg score {:.4f}", v, truth[m.truth].object,
-                 1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad,
-                 update.detections[m.detection].score);
+      fmt::print("view {:2} right  {:16} {:.1f} mm {:.1f} deg", v, truth[m.truth].object,
+                 1e3 * m.difference.center_distance_m, 57.2958 * m.difference.rotation_rad);
       print_evidence(trace.evidence_of(update.detections[m.detection].hypothesis_id));
     }
     for (const int t : matched.false_negatives) {
@@ -101,7 +100,7 @@ int main(int argc, char** argv) {
     }
     for (const int d : matched.false_positives) {
       const Detection& detection = update.detections[d];
-      fmt::print("view {:2} WRONG  {:16} score {:.4f}", v, library.objects[detection.object].name, detection.score);
+      fmt::print("view {:2} WRONG  {:16}", v, library.objects[detection.object].name);
       print_evidence(trace.evidence_of(detection.hypothesis_id));
     }
     for (const ObjectEvent& e : update.events)

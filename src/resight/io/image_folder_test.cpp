@@ -8,6 +8,7 @@ namespace resight {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr int kWidth = 8;
 constexpr int kHeight = 6;
@@ -57,9 +58,11 @@ const FolderLayout kOneFolder{"", "color_", ".jpg", "", "depth_", ".png", 1, 3};
 const FolderLayout kNumpy{"rgb", "img", ".png", "depth", "img", ".npy", 4, 3};
 const FolderLayout kReplica{"results", "frame", ".jpg", "results", "depth", ".png", 6, 3};
 const FolderLayout kWithSize{"", "c", "_640x480.png", "", "d", "_16.png", 3, 3};
+const FolderLayout kUnnamedFolders{"a", "", ".png", "b", "", ".png", 3, 3};
 
 TEST(ImageFolder, UsualLayouts) {
-  for (const FolderLayout& layout : {kTwoFolders, kSevenScenes, kOneFolder, kNumpy, kReplica, kWithSize}) {
+  for (const FolderLayout& layout :
+       {kTwoFolders, kSevenScenes, kOneFolder, kNumpy, kReplica, kWithSize, kUnnamedFolders}) {
     io::TestDirectory directory;
     write_layout(directory.path(), layout);
     io::write_text(directory / "intrinsics.txt", kMatrix);
@@ -94,6 +97,13 @@ TEST(ImageFolder, SaysWhatIsMissing) {
   EXPECT_THAT(open_sequence(directory / "b").error().message, HasSubstr("another image size"));
   io::write_text(directory / "b/camera.yaml", "fx: 60\nfy: 61\ncx: 3\n");
   EXPECT_THAT(open_sequence(directory / "b").error().message, HasSubstr("camera.yaml: holds no intrinsics"));
+}
+
+TEST(ImageFolder, FoldersOfWholeSequencesAreNotMixed) {
+  io::TestDirectory directory;
+  write_layout(directory / "walk_1", kOneFolder);
+  write_layout(directory / "walk_2", kOneFolder);
+  EXPECT_THAT(open_sequence(directory.path()).error().message, Not(HasSubstr("colour")));
 }
 
 TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {

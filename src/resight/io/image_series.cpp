@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
@@ -209,6 +210,10 @@ int rank_of(const FileSeries& series) {
          (holds_depth_array(extension_of(series.pattern)) ? 1 : 0);
 }
 
+bool holds_kind(const std::vector<FileSeries>& all, SeriesKind kind) {
+  return std::ranges::any_of(all, [&](const FileSeries& series) { return series.kind == kind; });
+}
+
 struct Candidate {
   PairedSeries paired;
   int rank = 0;
@@ -227,6 +232,15 @@ std::vector<FileSeries> find_series(const fs::path& folder) {
   add_series(folder, false, all);
   for (const std::string& name : list_directories(folder))
     if (is_view_folder(to_lower(name)) && !is_no_view(to_lower(name))) add_series(folder / name, true, all);
+  if (holds_kind(all, SeriesKind::kColor) && holds_kind(all, SeriesKind::kDepth)) return all;
+  for (const std::string& name : list_directories(folder)) {
+    if (is_view_folder(to_lower(name)) || is_no_view(to_lower(name))) continue;
+    std::vector<FileSeries> of_folder;
+    add_series(folder / name, true, of_folder);
+    // A folder that holds both is a sequence of its own.
+    if (holds_kind(of_folder, SeriesKind::kColor) == holds_kind(of_folder, SeriesKind::kDepth)) continue;
+    std::ranges::move(of_folder, std::back_inserter(all));
+  }
   return all;
 }
 

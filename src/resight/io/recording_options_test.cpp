@@ -110,6 +110,21 @@ TEST_F(RecordingOptions, OdometryAndPoses) {
   }
 }
 
+TEST_F(RecordingOptions, FramesThatNothingConnects) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  const auto notes = [&] {
+    const auto sequence = open();
+    return sequence.ok() ? (*sequence)->notes() : std::vector<std::string>{sequence.error().message};
+  };
+  EXPECT_THAT(notes(), Contains("no camera poses: no transform of the frame 'camera' changes"));
+  for (int i = 0; i < 4; ++i)
+    recording_.add(
+        "/tf", "tf2_msgs/TFMessage", 10 + 0.1 * i,
+        recordings::transform_message(10 + 0.1 * i, "odom", "base", Rigid3::from_translation({0.5 * i, 0, 0})));
+  EXPECT_THAT(notes(), Contains(HasSubstr("nothing fixes it to a frame that moves (base): was /tf_static recorded?")));
+}
+
 TEST_F(RecordingOptions, SeveralTopicsMustBeChosen) {
   add_views(recording_,
             {.color = "/a/rgb/image_raw", .depth = "/a/depth/image_raw", .color_frame = "a", .depth_frame = "a"});

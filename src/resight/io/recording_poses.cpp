@@ -17,6 +17,14 @@ bool is_world_name(std::string_view frame) {
   return frame == "world" || frame == "map" || frame == "odom" || frame == "earth" || frame == "vicon";
 }
 
+/// For messages: as many names as fit into a line.
+std::string list_frames(const std::vector<std::string>& frames) {
+  std::string names;
+  for (const std::string& frame : frames)
+    if (names.size() < 300) names += (names.empty() ? "" : ", ") + printable(frame);
+  return names.empty() ? "none" : names;
+}
+
 }  // namespace
 
 Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const RecordingScan& scan,
@@ -64,11 +72,8 @@ Result<void> RecordedPoses::choose_frames(const RecordingTopics& given) {
   }
   if (!transforms_.knows(given.world_frame) || !transforms_.knows(camera_frame_) ||
       transforms_.root_of(given.world_frame) != root) {
-    std::string names;
-    for (const std::string& frame : transforms_.frames())
-      if (names.size() < 300) names += (names.empty() ? "" : ", ") + printable(frame);
     return Error{fmt::format("no transforms connect the frames '{}' and '{}'; frames: {}", given.world_frame,
-                             printable(camera_frame_), names.empty() ? "none" : names)};
+                             printable(camera_frame_), list_frames(transforms_.frames()))};
   }
   world_frame_ = given.world_frame;
   return {};
@@ -122,7 +127,14 @@ std::optional<Rigid3> RecordedPoses::color_from_depth(const ViewTopics& topics) 
 }
 
 std::string RecordedPoses::describe() const {
-  if (!has_poses()) return "no camera poses: no transform of the frame '" + printable(camera_frame_) + "' changes";
+  if (!has_poses()) {
+    const std::vector<std::string> moving = transforms_.moving_frames();
+    const std::string why =
+        fmt::format("no camera poses: no transform of the frame '{}' changes", printable(camera_frame_));
+    if (moving.empty() || transforms_.is_moving(camera_frame_)) return why;
+    return fmt::format("{}, and nothing fixes it to a frame that moves ({}): was /tf_static recorded? (--camera-frame)",
+                       why, list_frames(moving));
+  }
   if (!pose_topic_.empty())
     return fmt::format("poses: {}, taken as those of {}", printable(pose_topic_), printable(posed_frame_));
   return fmt::format("poses: {} in {}", printable(camera_frame_), printable(world_frame_));

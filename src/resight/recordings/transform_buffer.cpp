@@ -109,4 +109,10 @@ std::vector<std::string> TransformBuffer::frames() const {
   return {names.begin(), names.end()};
 }
 
+std::vector<std::string> TransformBuffer::moving_frames() const {
+  std::vector<std::string> moving = frames();
+  std::erase_if(moving, [&](const std::string& frame) { return !is_moving(frame); });
+  return moving;
+}
+
 }  // namespace resight

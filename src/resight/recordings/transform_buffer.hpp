@@ -31,6 +31,8 @@ class TransformBuffer {
                                            double max_gap_s) const;
   /// All frames, in the order of their names.
   [[nodiscard]] std::vector<std::string> frames() const;
+  /// Those that move against their root.
+  [[nodiscard]] std::vector<std::string> moving_frames() const;
 
  private:
   struct Edge {
