@@ -106,6 +106,17 @@ TEST(ImageFolder, FoldersOfWholeSequencesAreNotMixed) {
   EXPECT_THAT(open_sequence(directory.path()).error().message, Not(HasSubstr("colour")));
 }
 
+TEST(ImageFolder, InfraredIsNotTakenForDepth) {
+  for (const char* folder : {"ir", "left_16"}) {
+    io::TestDirectory directory;
+    write_layout(directory.path(), {"color", "", ".jpg", folder, "", ".png", 6, 3});
+    EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("found 3 colour images, but no depth"));
+  }
+  io::TestDirectory directory;
+  write_layout(directory.path(), {"a", "", ".jpg", "ir", "", ".png", 6, 3});
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("found 3 colour images, but no depth"));
+}
+
 TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   io::TestDirectory directory;
   write_layout(directory.path(), kTwoFolders);

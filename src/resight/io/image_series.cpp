@@ -25,7 +25,8 @@ bool has_any(std::string_view text, std::initializer_list<std::string_view> word
 /// Names of labels, masks and pictures of results, which are not views.
 bool is_no_view(std::string_view lower_name) {
   return has_any(lower_name, {"mask", "label", "seg", "instance", "semantic", "class", "normal", "conf", "overlay",
-                              "infra", "_ir", "ir_", "preview", "vis"});
+                              "infra", "_ir", "ir_", "dispar", "amplitude", "preview", "vis"}) ||
+         lower_name == "ir";
 }
 
 bool is_view_folder(std::string_view lower_name) {
@@ -232,7 +233,8 @@ std::vector<FileSeries> find_series(const fs::path& folder) {
   add_series(folder, false, all);
   for (const std::string& name : list_directories(folder))
     if (is_view_folder(to_lower(name)) && !is_no_view(to_lower(name))) add_series(folder / name, true, all);
-  if (holds_kind(all, SeriesKind::kColor) && holds_kind(all, SeriesKind::kDepth)) return all;
+  // Beside named images, images of any other folder would be a guess: infrared has 16 bits, too.
+  if (holds_kind(all, SeriesKind::kColor) || holds_kind(all, SeriesKind::kDepth)) return all;
   for (const std::string& name : list_directories(folder)) {
     if (is_view_folder(to_lower(name)) || is_no_view(to_lower(name))) continue;
     std::vector<FileSeries> of_folder;

@@ -131,7 +131,7 @@ std::string RecordedPoses::describe() const {
     const std::vector<std::string> moving = transforms_.moving_frames();
     const std::string why =
         fmt::format("no camera poses: no transform of the frame '{}' changes", printable(camera_frame_));
-    if (moving.empty() || transforms_.is_moving(camera_frame_)) return why;
+    if (moving.empty()) return why;
     return fmt::format("{}, and nothing fixes it to a frame that moves ({}): was /tf_static recorded? (--camera-frame)",
                        why, list_frames(moving));
   }

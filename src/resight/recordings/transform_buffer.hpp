@@ -31,7 +31,7 @@ class TransformBuffer {
                                            double max_gap_s) const;
   /// All frames, in the order of their names.
   [[nodiscard]] std::vector<std::string> frames() const;
-  /// Those that move against their root.
+  /// The frames that move against their root, in the same order.
   [[nodiscard]] std::vector<std::string> moving_frames() const;
 
  private:

@@ -45,7 +45,7 @@ struct PairedSeries {
 };
 
 /// The series in a folder and in those of its sub-folders whose names say that they hold images, poses or intrinsics.
-/// If colour or depth is missing, also in those that hold only one of the two.
+/// If no images are there, those in sub-folders of any name that hold only colour or only depth.
 [[nodiscard]] std::vector<FileSeries> find_series(const std::filesystem::path& folder);
 
 /// Finds the colour and the depth series that belong together. None if there are none; an error if several are equally
