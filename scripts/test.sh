@@ -28,10 +28,17 @@ check_format() {
   find src apps examples tests bench fuzz \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
 }
 run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
-count_tests() {  # "412 tests passed, 0 failed, 3 skipped", from the log of run_tests
-  awk '/tests passed,/ { total = $NF; failed = $4 } /\*\*\*Skipped/ { ++skipped }
-       END { printf "%d tests passed, %d failed, %d skipped\n", total - failed - skipped, failed, skipped }' \
-    "$log_dir/tests.log"
+# "412 tests passed, 0 failed, 3 skipped": the cases of GoogleTest, and each other program as one.
+count_tests() {
+  awk '/^\[  (PASSED |SKIPPED) \] [0-9]+ test/ { count[$2] += $4; cases = 1 }
+       /^\[  FAILED  \] .* \([0-9]+ ms\)$/ { ++failed }
+       /^Test (Passed|Failed|timeout)/ {
+         if ($2 == "Passed.") count["PASSED"] += !cases
+         else count["FAILED"] += failed ? failed : 1
+         cases = failed = 0
+       }
+       END { printf "%d tests passed, %d failed, %d skipped\n", count["PASSED"], count["FAILED"], count["SKIPPED"] }' \
+    build/ci/Testing/Temporary/LastTest.log
 }
 
 # The committed page must be the one that its sources give. Pictures of the page are in build/logs/viewer.

@@ -13,7 +13,7 @@ std::string make_long_key() {
 const std::string kLongKey = make_long_key();
 const std::string kLongUnknownKey = std::string(50000, 'k') + " = 1\n";
 
-const Row kRows[] = {
+const Row kArgumentRows[] = {
     // The valid data are accepted, so the other rows fail because of what they damage.
     {"Version", kNothing, "--version", 0, ""},
     {"Help", kNothing, "recognize --help", 0, ""},
@@ -108,7 +108,7 @@ const Row kRows[] = {
     {"EndlessConfig", kNothing, "changes --sequence views --out out --config /dev/zero", 2, "/dev/zero: is not a file"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Arguments, CommandLine, testing::ValuesIn(kRows), name_of_row);
+INSTANTIATE_TEST_SUITE_P(Arguments, CommandLine, testing::ValuesIn(kArgumentRows), name_of_row);
 
 }  // namespace
 }  // namespace resight::cli_test

@@ -23,6 +23,8 @@ using Json = nlohmann::json;
 inline constexpr int kWidth = 64;
 inline constexpr int kHeight = 48;
 inline constexpr int kViews = 3;
+/// No file system takes it.
+inline const std::string kLongName(300, 'a');
 inline constexpr const char* kUnorganizedPcd =
     "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
     "0 0 0\n.1 0 0\n0 .1 0\n0 0 .1\n";

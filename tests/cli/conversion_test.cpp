@@ -9,7 +9,7 @@ constexpr const char* kEventOfView9 = R"({"events": [{"view": 9, "kind": "added"
 constexpr const char* kEventOfHostileName =
     R"({"events": [{"view": 1, "kind": "added", "object": "../../x", "known": true}]})";
 
-const Row kRows[] = {
+const Row kConversionRows[] = {
     // Conversion and scenes.
     {"ConvertMissing", kNothing, "convert nowhere out --to bop", 2, "nowhere: no such file or folder"},
     {"ConvertNothing", kNothing, "convert empty out --to bop", 2, "empty: "},
@@ -64,7 +64,7 @@ const Row kRows[] = {
     {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
 };
 
-INSTANTIATE_TEST_SUITE_P(Conversion, CommandLine, testing::ValuesIn(kRows), name_of_row);
+INSTANTIATE_TEST_SUITE_P(Conversion, CommandLine, testing::ValuesIn(kConversionRows), name_of_row);
 
 }  // namespace
 }  // namespace resight::cli_test

@@ -7,7 +7,6 @@
 namespace resight::cli_test {
 namespace {
 
-const std::string kLongName(300, 'a');
 const std::string kRecognizeVeryLongName =
     "recognize --models " + std::string(50000, 'a') + " --sequence views --out out";
 const std::string kRecognizeLongName = "recognize --models " + kLongName + " --sequence views --out out";
@@ -37,7 +36,7 @@ ModelLibrary make_empty_library() {
   return empty;
 }
 
-const Row kRows[] = {
+const Row kLibraryRows[] = {
     // Model libraries.
     {"MissingLibrary", remove("models.resight"), kRecognize, 2, "models\\.resight: no such file"},
     {"FolderAsLibrary", kNothing, "recognize --models empty --sequence views --out out", 2, "empty: is not a file"},
@@ -97,7 +96,7 @@ const Row kRows[] = {
      kTrain, 0, "warning: .*cube\\.ply: its texture is left out: .*no\\.png", "new.resight"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Libraries, CommandLine, testing::ValuesIn(kRows), name_of_row);
+INSTANTIATE_TEST_SUITE_P(Libraries, CommandLine, testing::ValuesIn(kLibraryRows), name_of_row);
 
 }  // namespace
 }  // namespace resight::cli_test

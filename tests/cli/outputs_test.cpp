@@ -5,10 +5,9 @@
 namespace resight::cli_test {
 namespace {
 
-const std::string kLongName(300, 'a');
 const std::string kTrainToLongName = "train meshes --out " + kLongName;
 
-const Row kRows[] = {
+const Row kOutputRows[] = {
     // Output paths.
     {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
      "file/out: "},
@@ -93,7 +92,7 @@ const Row kRows[] = {
     {"DemoOntoAFile", kNothing, "demo --out file", 2, "file"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Outputs, CommandLine, testing::ValuesIn(kRows), name_of_row);
+INSTANTIATE_TEST_SUITE_P(Outputs, CommandLine, testing::ValuesIn(kOutputRows), name_of_row);
 
 }  // namespace
 }  // namespace resight::cli_test

@@ -5,11 +5,10 @@
 namespace resight::cli_test {
 namespace {
 
-const std::string kLongName(300, 'a');
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
 
-const Row kRows[] = {
+const Row kSequenceRows[] = {
     // What the user says about a sequence.
     {"TumWithoutCamera", remove("tum/camera.txt"), "changes --sequence tum --out out", 2,
      "tum: holds no camera\\.txt.*--intrinsics fx,fy,cx,cy"},
@@ -165,7 +164,7 @@ const Row kRows[] = {
     {"TumWithAMissingImage", remove("tum/depth/2.0.png"), kChangesTum, 2, "2\\.0\\.png: "},
 };
 
-INSTANTIATE_TEST_SUITE_P(Sequences, CommandLine, testing::ValuesIn(kRows), name_of_row);
+INSTANTIATE_TEST_SUITE_P(Sequences, CommandLine, testing::ValuesIn(kSequenceRows), name_of_row);
 
 }  // namespace
 }  // namespace resight::cli_test
