@@ -186,12 +186,12 @@ function(resight_write_module_graph)
   file(CONFIGURE OUTPUT modules.dot CONTENT "digraph modules {\n@edges@\n}\n" @ONLY)
 endfunction()
 
-# resight_add_test(NAME SOURCES file... LIBS lib... [DEFINITIONS definition...] [LABEL label] [TIMEOUT s] [PROCESSORS n]):
-# the GoogleTest executable resight_NAME_test and one ctest entry for all of its cases, because the start of a program
-# with the libraries of OpenCV takes longer than most cases.
+# resight_add_test(NAME SOURCES file... LIBS lib... [DEFINITIONS definition...] [LABEL label] [TIMEOUT s]): the GoogleTest
+# executable resight_NAME_test and one ctest entry for all of its cases, because the start of a program with the
+# libraries of OpenCV takes longer than most cases.
 function(resight_add_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;PROCESSORS" "SOURCES;LIBS;DEFINITIONS" ${ARGN})
-  foreach(default LABEL=unit TIMEOUT=600 PROCESSORS=1)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBS;DEFINITIONS" ${ARGN})
+  foreach(default LABEL=unit TIMEOUT=600)
     string(REGEX MATCH "(.*)=(.*)" _ ${default})
     if(NOT ARG_${CMAKE_MATCH_1})
       set(ARG_${CMAKE_MATCH_1} ${CMAKE_MATCH_2})
@@ -206,5 +206,5 @@ function(resight_add_test name)
   target_compile_definitions(${target} PRIVATE RESIGHT_SHARED_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data"
                                                RESIGHT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ${ARG_DEFINITIONS})
   add_test(NAME ${name} COMMAND ${target} --gtest_brief=1)
-  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${ARG_PROCESSORS})
+  set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()

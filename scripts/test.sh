@@ -1,21 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # All checks of the continuous integration, from a clean clone: packages, format, build with warnings as errors, tests,
-# the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, every public header alone,
-# installation and a project that uses it, the program, the tests of the modules that read files of others and a short
-# run of the fuzz targets under AddressSanitizer and UndefinedBehaviorSanitizer, the program under ThreadSanitizer.
+# the page of `resight view` (types, lint, tests, the same bundle, in a browser), clang-tidy, installation and a project
+# that uses it, the program, the tests of the modules that read files of others and a short run of the fuzz targets under
+# AddressSanitizer and UndefinedBehaviorSanitizer, the tests of threads under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
-#   scripts/test.sh --long  all of these, and the tests of all modules under all sanitizers: before a release
+#   scripts/test.sh --long  before a release: all of these, every public header alone, the program under ThreadSanitizer,
+#                           and the tests of all modules under all sanitizers
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
+long=0
 asan_modules=(core recordings io models evaluation report annotation viewer)  # They read files of others.
 tsan_modules=(core)
 for option in "$@"; do
   case "$option" in
     --fast) fast=1 ;;
     --long)
+      long=1
       mapfile -t asan_modules < <(ls src/resight/*/*_test.cpp | cut -d/ -f3 | uniq)
       tsan_modules=("${asan_modules[@]}") ;;
     *) echo "test.sh: unknown option '$option' (expected --fast or --long)" >&2; exit 2 ;;
@@ -97,15 +100,12 @@ run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   run_modules asan-ubsan "${asan_modules[@]}" && tests/threads_test.sh build/asan-ubsan/apps/resight/resight
 }
-build_tsan() {
-  # shellcheck disable=SC2046
-  cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF &&
-    cmake --build build/tsan -j "$num_jobs" --target resight_app $(test_targets "${tsan_modules[@]}")
+build_tsan() {  # build_tsan TARGET...
+  cmake --preset tsan -DRESIGHT_BUILD_EXAMPLES=OFF && cmake --build build/tsan -j "$num_jobs" --target "$@"
 }
-run_tsan() {
-  export TSAN_OPTIONS="halt_on_error=1 suppressions=$PWD/tests/tsan_suppressions.txt"
-  run_modules tsan "${tsan_modules[@]}" && tests/threads_test.sh build/tsan/apps/resight/resight
-}
+tsan_options="halt_on_error=1 suppressions=$PWD/tests/tsan_suppressions.txt"
+run_tsan() { TSAN_OPTIONS=$tsan_options run_modules tsan "${tsan_modules[@]}"; }
+run_tsan_program() { TSAN_OPTIONS=$tsan_options tests/threads_test.sh build/tsan/apps/resight/resight; }
 
 step "format" check_format
 step "configure" cmake --preset ci
@@ -116,12 +116,17 @@ if ((!fast)); then
   step "viewer in a browser" run_viewer
   step "clang-tidy" run_clang_tidy
   step "picture of the modules" scripts/draw_modules.sh --check
-  step "each public header compiles alone" check_headers
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan
   step "tests and program with ASan and UBSan" run_asan
   step "readers with mutated files" scripts/fuzz.sh --short
-  step "build with TSan" build_tsan
-  step "tests and program with TSan" run_tsan
+  # shellcheck disable=SC2046
+  step "build with TSan" build_tsan $(test_targets "${tsan_modules[@]}")
+  step "tests with TSan" run_tsan
+fi
+if ((long)); then
+  step "each public header compiles alone" check_headers
+  step "build the program with TSan" build_tsan resight_app
+  step "program with TSan" run_tsan_program
 fi
 count_tests
