@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses: right or wrong at K = 0
-// and 5. Groups of sequences are divided by "--" and count the same. The calibration error of a group is that of scores
-// whose weights were fitted without the sequence, and so is the log loss. Those of the preset itself are beside them.
+// Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses, and the odds of further
+// instances: right or wrong at K = 0 and 5. Groups of sequences are divided by "--" and count the same. The calibration
+// error of a group is that of scores whose weights were fitted without the sequence, and so is the log loss. Those of
+// the preset itself are beside them.
 //   bench_fit_scores default val.resight val/test/000001 val.resight val/test/000002 -- tc.resight
 //   table-camera/test/000001
 #include <fmt/format.h>
@@ -9,7 +10,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,21 +28,30 @@ namespace {
 
 using namespace resight;
 
-constexpr int kNumWeights = std::tuple_size_v<ScoreCues> + 1;  // With the offset.
+constexpr int kNumWeights = std::tuple_size_v<ScoreCues> + 2;  // With the offset and the log odds.
+constexpr int kFurtherOdds = kNumWeights - 1;
+constexpr std::size_t kMaxInstances = 10;  // Of an object in a view: 2^10 subsets.
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
-constexpr const char* kNames[kNumWeights] = {"gain",          "correspondence", "fit",          "visible",    "texture",
-                                             "beside planes", "newest",         "seen through", "silhouette", "offset"};
+using Hessian = Eigen::Matrix<double, kNumWeights, kNumWeights>;
+constexpr const char* kNames[kNumWeights] = {
+    "gain",   "correspondence", "fit",        "visible", "texture", "beside planes",
+    "newest", "seen through",   "silhouette", "hue",     "offset",  "log of further odds"};
 
 struct Sample {
-  Weights cues;
+  Weights cues;      // 0 for the odds of further instances.
   double score = 0;  // Of the preset.
   bool right = false;
+};
+
+// The detections of one object in one view.
+struct SampleSet {
+  std::vector<Sample> samples;
   int group = 0;
   int sequence = 0;
 };
 
 void add_samples(const char* library_path, const char* path, RecognizerConfig config, int group, int number,
-                 std::vector<Sample>& samples) {
+                 std::vector<SampleSet>& sets) {
   const auto sequence = open_or_exit(path);
   const ModelLibrary library = value_or_exit(load_library(library_path));
   SceneRecognizer recognizer(library, std::move(config));
@@ -47,60 +59,95 @@ void add_samples(const char* library_path, const char* path, RecognizerConfig co
   const auto add_view = [&](const RgbdFrame& /*frame*/, const SceneUpdate& update) {
     const auto truth = value_or_exit(sequence->read_ground_truth(update.view));
     const auto matched = match_detections(truth, to_detected_objects(update, library), library, {});
+    std::map<int, SampleSet> by_object;
     const auto add = [&](int d, bool right) {
       const Detection& detection = update.detections[d];
       const ScoreCues cues = score_cues(trace.evidence_of(detection.hypothesis_id));
-      Sample& sample = samples.emplace_back(Sample{Weights::Ones(), detection.score, right, group, number});
+      Sample sample{Weights::Zero(), detection.score, right};
       std::ranges::copy(cues, sample.cues.data());
+      sample.cues[cues.size()] = 1;
+      SampleSet& set = by_object[detection.object];
+      if (set.samples.size() < kMaxInstances) set.samples.push_back(sample);
     };
     for (const DetectionMatch& m : matched.matches) add(m.detection, true);
     for (const int d : matched.false_positives) add(d, false);
+    for (auto& [object, set] : by_object) sets.push_back({std::move(set.samples), group, number});
   };
   (void)value_or_exit(recognize_sequence(recognizer, *sequence, add_view, &trace));
 }
 
-double probability(const Weights& weights, const Weights& cues) { return 1 / (1 + std::exp(-weights.dot(cues))); }
+// The statistics of every subset that may be right, and how likely it is: instance_prior.hpp.
+struct SubsetModel {
+  Eigen::Matrix<double, kNumWeights, Eigen::Dynamic> statistics;
+  Eigen::VectorXd probabilities;
+  unsigned right = 0;  // The subset that is.
+
+  SubsetModel(const SampleSet& set, const Weights& is_used, const Weights& weights) {
+    const std::size_t n = set.samples.size();
+    statistics.setZero(kNumWeights, 1 << n);
+    for (std::size_t i = 0; i < n; ++i) right |= set.samples[i].right ? 1U << i : 0;
+    for (unsigned subset = 0; subset < 1U << n; ++subset) {
+      for (std::size_t i = 0; i < n; ++i)
+        if ((subset >> i & 1U) != 0) statistics.col(subset) += set.samples[i].cues.cwiseProduct(is_used);
+      statistics(kFurtherOdds, subset) = is_used[kFurtherOdds] * std::max(0, std::popcount(subset) - 1);
+    }
+    const Eigen::VectorXd log_weights = statistics.transpose() * weights;
+    probabilities = (log_weights.array() - log_weights.maxCoeff()).exp();
+    probabilities /= probabilities.sum();
+  }
+
+  [[nodiscard]] double probability(std::size_t sample) const {
+    double sum = 0;
+    for (unsigned subset = 0; subset < probabilities.size(); ++subset)
+      if ((subset >> sample & 1U) != 0) sum += probabilities[subset];
+    return sum;
+  }
+};
 
 double log_loss(double score, bool right) { return -std::log(std::clamp(right ? score : 1 - score, 1e-9, 1.0)); }
 
-// Logistic regression by Newton's method, with a little ridge. `is_used`: cues that count. Leaves out a sequence.
-Weights fit(const std::vector<Sample>& samples, const Weights& is_used, int left_out) {
+// The likeliest weights by Newton's method, with a little ridge. `is_used`: cues that count. Leaves out a sequence.
+Weights fit(const std::vector<SampleSet>& sets, const Weights& is_used, int left_out) {
   std::vector<double> num_in_group;
-  for (const Sample& s : samples) {
+  for (const SampleSet& s : sets) {
     num_in_group.resize(std::max<std::size_t>(num_in_group.size(), s.group + 1));
-    if (s.sequence != left_out) ++num_in_group[s.group];
+    if (s.sequence != left_out) num_in_group[s.group] += static_cast<double>(s.samples.size());
   }
   Weights weights = Weights::Zero();
   for (int i = 0; i < 50; ++i) {
-    Eigen::Matrix<double, kNumWeights, kNumWeights> h = Eigen::Matrix<double, kNumWeights, kNumWeights>::Identity();
-    h *= 1e-6;
+    Hessian h = 1e-6 * Hessian::Identity();
     Weights g = -1e-6 * weights;
-    for (const Sample& s : samples) {
+    for (const SampleSet& s : sets) {
       if (s.sequence == left_out) continue;
-      const Weights cues = s.cues.cwiseProduct(is_used);
-      const double p = probability(weights, cues);
+      const SubsetModel model(s, is_used, weights);
+      const Weights mean = model.statistics * model.probabilities;
+      const auto centered = (model.statistics.colwise() - mean).eval();
       const double count = 1 / num_in_group[s.group];
-      h += count * p * (1 - p) * cues * cues.transpose();
-      g += count * ((s.right ? 1 : 0) - p) * cues;
+      h += count * centered * model.probabilities.asDiagonal() * centered.transpose();
+      g += count * (model.statistics.col(model.right) - mean);
     }
     weights += h.ldlt().solve(g);
   }
   return weights;
 }
 
-void print_calibration(const std::vector<Sample>& samples, const Weights& is_used, int num_sequences, int num_groups) {
+void print_calibration(const std::vector<SampleSet>& sets, const Weights& is_used, int num_sequences, int num_groups) {
   std::vector<Reliability> fitted(num_groups), current(num_groups);
   std::vector<double> fitted_loss(num_groups), current_loss(num_groups), num_samples(num_groups);
   for (int left_out = 0; left_out < num_sequences; ++left_out) {
-    const Weights weights = fit(samples, is_used, left_out);
-    for (const Sample& s : samples) {
+    const Weights weights = fit(sets, is_used, left_out);
+    for (const SampleSet& s : sets) {
       if (s.sequence != left_out) continue;
-      const double score = probability(weights, s.cues.cwiseProduct(is_used));
-      fitted[s.group].add(score, s.right);
-      current[s.group].add(s.score, s.right);
-      fitted_loss[s.group] += log_loss(score, s.right);
-      current_loss[s.group] += log_loss(s.score, s.right);
-      ++num_samples[s.group];
+      const SubsetModel model(s, is_used, weights);
+      for (std::size_t i = 0; i < s.samples.size(); ++i) {
+        const Sample& sample = s.samples[i];
+        const double score = model.probability(i);
+        fitted[s.group].add(score, sample.right);
+        current[s.group].add(sample.score, sample.right);
+        fitted_loss[s.group] += log_loss(score, sample.right);
+        current_loss[s.group] += log_loss(sample.score, sample.right);
+        ++num_samples[s.group];
+      }
     }
   }
   for (int g = 0; g < num_groups; ++g)
@@ -123,20 +170,20 @@ int main(int argc, char** argv) {
   Weights is_used;
   is_used << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
       score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight,
-      score.silhouette_weight, 1;
+      score.silhouette_weight, score.hue_weight, 1, config.detections.further_instance_odds != 1;
   is_used = (is_used.array() != 0).cast<double>();
-  std::vector<Sample> samples;
+  std::vector<SampleSet> sets;
   int group = 0, number = 0;
   for (int a = 2; a + 1 < argc; a += 2) {
     if (std::string(argv[a]) == "--") ++group, ++a;
     for (const int num_previous_views : {0, 5}) {
       config.num_previous_views = num_previous_views;
-      add_samples(argv[a], argv[a + 1], config, group, number, samples);
+      add_samples(argv[a], argv[a + 1], config, group, number, sets);
     }
     ++number;
   }
-  const Weights weights = fit(samples, is_used, -1);
+  const Weights weights = fit(sets, is_used, -1);
   for (int c = 0; c < kNumWeights; ++c) fmt::print("{} {:.2f}\n", kNames[c], weights[c]);
-  print_calibration(samples, is_used, number, group + 1);
+  print_calibration(sets, is_used, number, group + 1);
   return 0;
 }

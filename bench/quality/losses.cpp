@@ -24,10 +24,10 @@ using namespace resight;
 void print_evidence(const HypothesisEvidence& e) {
   fmt::print(
       "  {} score {:.4f} fit {:.3f} visible {} of it {:.3f} explained {:.2f} pattern {:.2f} contrast {:.2f} of {:.2f} "
-      "newest {:.2f} through {:.3f} silhouette {:.3f} ",
+      "newest {:.2f} hue {:.3f} through {:.3f} silhouette {:.3f} ",
       to_string(e.verdict), e.score, e.fit, e.num_visible, e.visible_share, e.explained_share,
       e.appearance.pattern_similarity, e.appearance.shared_texture, e.appearance.texture_contrast,
-      e.appearance.newest_similarity, e.seen_through_share, e.appearance.silhouette_error);
+      e.appearance.newest_similarity, e.appearance.hue_similarity, e.seen_through_share, e.appearance.silhouette_error);
   fmt::print("matches {} | scene {:.0f} outlier {:.0f} clutter {:.0f} plane {:.0f} unary {:.0f}\n",
              e.num_correspondences, e.costs.explained_scene, e.costs.outlier, e.costs.clutter, e.costs.plane,
              e.costs.unary);

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "resight/recognition/instance_prior.hpp"
 #include "resight/verification/appearance_check.hpp"
 
 namespace resight {
@@ -50,6 +51,7 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     detection.views = evidence_of_views(verified, h, window);
     confirm_by_colors(detection, window.back().raw, library, config);
   }
+  apply_instance_prior(detections, config.detections.further_instance_odds);
   return detections;
 }
 

@@ -61,8 +61,9 @@ void set_default(RecognizerConfig& config) {
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
   config.detections.min_score = 0.3;
+  config.detections.further_instance_odds = 0.2;
   config.verify.selection.score_power = 0.5;
-  config.verify.score = {.offset = -14.74,
+  config.verify.score = {.offset = -34.6,
                          .correspondence_weight = 0.6,
                          .fit_weight = 5.3,
                          .visible_weight = 0.8,
@@ -70,7 +71,8 @@ void set_default(RecognizerConfig& config) {
                          .beside_planes_weight = 4.25,
                          .newest_weight = 4.35,
                          .seen_through_weight = 10.3,
-                         .silhouette_weight = 1.11};
+                         .silhouette_weight = 1.11,
+                         .hue_weight = 20};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.

@@ -114,6 +114,7 @@ inline void declare(OptionVisitor& v, ChangeOptions& o) {
 struct DetectionOptions {
   double min_reported_share = 0;
   double min_score = 0;
+  double further_instance_odds = 1;
 };
 
 inline void declare(OptionVisitor& v, DetectionOptions& o) {
@@ -126,6 +127,10 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
       "An object that is less likely right (verify.score) is tracked, but no detection of this view. 0: every object "
       "is one.",
       "ours");
+  v.field("further_instance_odds", o.further_instance_odds, between(1e-6, 1),
+          "Prior odds of each instance of an object after the first, as a share of the odds of the first: most of what "
+          "looks like a second instance is a look-alike. 1: as likely as the first.",
+          "fitted");
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the

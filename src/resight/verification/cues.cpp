@@ -10,6 +10,7 @@
 #include "resight/appearance/appearance_match.hpp"
 #include "resight/segmentation/surface_continuation.hpp"
 #include "resight/verification/acceptance.hpp"
+#include "resight/verification/hue_similarity.hpp"
 #include "resight/verification/hypothesis_score.hpp"
 #include "resight/verification/newest_view_appearance.hpp"
 #include "resight/verification/pose_refinement.hpp"
@@ -140,6 +141,9 @@ struct CueComputer::Impl {
     cues_.evidence.appearance.pattern_similarity = match.similarity;
     cues_.evidence.appearance.texture_contrast = match.texture_contrast;
     cues_.evidence.appearance.shared_texture = match.shared_texture;
+    if (match.texture_contrast >= kMinTextureContrast)
+      cues_.evidence.appearance.hue_similarity =
+          hue_similarity(places, model_colors, scene_colors, options_.appearance);
   }
 
   // -log of the colour similarity.

@@ -32,13 +32,15 @@ ScoreCues score_cues(const HypothesisEvidence& evidence) {
           share_beside_planes(evidence.costs),
           evidence.appearance.newest_similarity,
           -evidence.seen_through_share,
-          -std::log(0.02 + evidence.appearance.silhouette_error)};
+          -std::log(0.02 + evidence.appearance.silhouette_error),
+          evidence.appearance.hue_similarity};
 }
 
 double hypothesis_score(const HypothesisEvidence& evidence, const HypothesisScoreOptions& options) {
   const ScoreCues weights = {options.gain_weight,    options.correspondence_weight, options.fit_weight,
                              options.visible_weight, options.texture_weight,        options.beside_planes_weight,
-                             options.newest_weight,  options.seen_through_weight,   options.silhouette_weight};
+                             options.newest_weight,  options.seen_through_weight,   options.silhouette_weight,
+                             options.hue_weight};
   const ScoreCues cues = score_cues(evidence);
   return 1 / (1 + std::exp(-std::inner_product(cues.begin(), cues.end(), weights.begin(), options.offset)));
 }

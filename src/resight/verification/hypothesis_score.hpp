@@ -10,7 +10,7 @@ namespace resight {
 /// Weights of a logistic regression; all 0: 0.5 for any evidence. `bench_fit_scores` fits them. Those of `default` are
 /// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
 /// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
-/// The offset and the weight of the silhouette were fitted afterwards, with the others held.
+/// The weights of the silhouette and of the hue, and the offset, were fitted afterwards, with the others held.
 /// docs/results.md says how well the scores generalise.
 struct HypothesisScoreOptions {
   double offset = 0;
@@ -23,6 +23,7 @@ struct HypothesisScoreOptions {
   double newest_weight = 0;
   double seen_through_weight = 0;
   double silhouette_weight = 0;
+  double hue_weight = 0;
   void check() const { check_options("HypothesisScoreOptions", *this); }
 };
 
@@ -48,10 +49,15 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
           "Counts against it: of log(0.02 + share of the points that lie where the newest view has no depth, and shows "
           "other colours).",
           "fitted");
+  v.field(
+      "hue_weight", o.hue_weight, between(0, 100),
+      "Of the cosine similarity of its hues to those of the scene, if it is textured: another print of the same shape "
+      "has other hues.",
+      "fitted");
 }
 
 /// What the weights of HypothesisScoreOptions weigh, in their order.
-using ScoreCues = std::array<double, 9>;
+using ScoreCues = std::array<double, 10>;
 [[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
 
 /// How likely a hypothesis with enough support and the right appearance is right, in [0, 1]: of the accepted ones with

@@ -24,6 +24,7 @@ HypothesisEvidence some_evidence() {
   evidence.costs.outlier = 25;  // gains 500 - 125 - 25
   evidence.seen_through_share = 0.1;
   evidence.appearance.silhouette_error = 0.05;
+  evidence.appearance.hue_similarity = 0.9;
   return evidence;
 }
 
@@ -36,11 +37,13 @@ constexpr HypothesisScoreOptions kSome{.offset = -4,
                                        .beside_planes_weight = 3,
                                        .newest_weight = 2.5,
                                        .seen_through_weight = 2,
-                                       .silhouette_weight = 1.1};
+                                       .silhouette_weight = 1.1,
+                                       .hue_weight = 6};
 
 TEST(HypothesisScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) +
-                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1 - 1.1 * std::log(0.02 + 0.05);
+                          1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1 - 1.1 * std::log(0.02 + 0.05) +
+                          6 * 0.9;
   EXPECT_NEAR(hypothesis_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 

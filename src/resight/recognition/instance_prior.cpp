@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/recognition/instance_prior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace resight {
+namespace {
+
+constexpr double kMaxScore = 1 - 1e-12;  // Of finite odds.
+
+double odds_of(const Detection& detection) {
+  const double score = std::min(detection.score, kMaxScore);
+  return score / (1 - score);
+}
+
+}  // namespace
+
+// With a = further_instance_odds, odds o and A = product of (1 + a o), all subsets sum up to 1 + (A - 1) / a, and those
+// with detection i to o_i A / (1 + a o_i).
+void apply_instance_prior(std::vector<Detection>& detections, double further_instance_odds) {
+  std::map<int, double> log_products;  // By object.
+  std::map<int, int> num_instances;
+  for (const Detection& detection : detections) {
+    log_products[detection.object] += std::log1p(further_instance_odds * odds_of(detection));
+    ++num_instances[detection.object];
+  }
+  for (Detection& detection : detections) {
+    if (num_instances[detection.object] == 1) continue;
+    const double further_odds = further_instance_odds * odds_of(detection);
+    const double others = (1 - further_instance_odds) * std::exp(-log_products[detection.object]);
+    detection.score = further_odds / (1 + further_odds) / (1 - others);
+  }
+}
+
+}  // namespace resight
