@@ -2,7 +2,7 @@
 // Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses, and the odds of further
 // instances: right or wrong at K = 0 and 5. Groups of sequences are divided by "--" and count the same. The calibration
 // error of a group is that of scores whose weights were fitted without the sequence, and so is the log loss. Those of
-// the preset itself are beside them.
+// the preset itself are beside them. only= holds all other weights as the preset has them.
 //   bench_fit_scores default val.resight val/test/000001 val.resight val/test/000002 -- tc.resight
 //   table-camera/test/000001
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,14 @@ constexpr std::size_t kMaxInstances = 10;  // Of an object in a view: 2^10 subse
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
 using Hessian = Eigen::Matrix<double, kNumWeights, kNumWeights>;
 constexpr const char* kNames[kNumWeights] = {
-    "gain",   "correspondence", "fit",        "visible", "texture", "beside planes",
-    "newest", "seen through",   "silhouette", "hue",     "offset",  "log of further odds"};
+    "gain",   "correspondence", "fit",        "visible", "texture", "beside_planes",
+    "newest", "seen_through",   "silhouette", "hue",     "offset",  "log_further_odds"};
+
+// What the fit starts from, and the weights that it changes.
+struct Fit {
+  Weights start = Weights::Zero();
+  Weights is_free = Weights::Zero();  // 0 or 1.
+};
 
 struct Sample {
   Weights cues;      // 0 for the odds of further instances.
@@ -82,14 +89,14 @@ struct SubsetModel {
   Eigen::VectorXd probabilities;
   unsigned right = 0;  // The subset that is.
 
-  SubsetModel(const SampleSet& set, const Weights& is_used, const Weights& weights) {
+  SubsetModel(const SampleSet& set, const Weights& weights) {
     const std::size_t n = set.samples.size();
     statistics.setZero(kNumWeights, 1 << n);
     for (std::size_t i = 0; i < n; ++i) right |= set.samples[i].right ? 1U << i : 0;
     for (unsigned subset = 0; subset < 1U << n; ++subset) {
       for (std::size_t i = 0; i < n; ++i)
-        if ((subset >> i & 1U) != 0) statistics.col(subset) += set.samples[i].cues.cwiseProduct(is_used);
-      statistics(kFurtherOdds, subset) = is_used[kFurtherOdds] * std::max(0, std::popcount(subset) - 1);
+        if ((subset >> i & 1U) != 0) statistics.col(subset) += set.samples[i].cues;
+      statistics(kFurtherOdds, subset) = std::max(0, std::popcount(subset) - 1);
     }
     const Eigen::VectorXd log_weights = statistics.transpose() * weights;
     probabilities = (log_weights.array() - log_weights.maxCoeff()).exp();
@@ -106,39 +113,41 @@ struct SubsetModel {
 
 double log_loss(double score, bool right) { return -std::log(std::clamp(right ? score : 1 - score, 1e-9, 1.0)); }
 
-// The likeliest weights by Newton's method, with a little ridge. `is_used`: cues that count. Leaves out a sequence.
-Weights fit(const std::vector<SampleSet>& sets, const Weights& is_used, int left_out) {
+// The likeliest weights by Newton's method, with a little ridge. Leaves out a sequence.
+Weights fit_weights(const std::vector<SampleSet>& sets, const Fit& fit, int left_out) {
   std::vector<double> num_in_group;
   for (const SampleSet& s : sets) {
     num_in_group.resize(std::max<std::size_t>(num_in_group.size(), s.group + 1));
     if (s.sequence != left_out) num_in_group[s.group] += static_cast<double>(s.samples.size());
   }
-  Weights weights = Weights::Zero();
+  Weights weights = fit.start;
   for (int i = 0; i < 50; ++i) {
-    Hessian h = 1e-6 * Hessian::Identity();
-    Weights g = -1e-6 * weights;
+    Hessian h = Hessian::Zero();
+    Weights g = -1e-6 * (weights - fit.start);
     for (const SampleSet& s : sets) {
       if (s.sequence == left_out) continue;
-      const SubsetModel model(s, is_used, weights);
+      const SubsetModel model(s, weights);
       const Weights mean = model.statistics * model.probabilities;
       const auto centered = (model.statistics.colwise() - mean).eval();
       const double count = 1 / num_in_group[s.group];
       h += count * centered * model.probabilities.asDiagonal() * centered.transpose();
       g += count * (model.statistics.col(model.right) - mean);
     }
-    weights += h.ldlt().solve(g);
+    h = fit.is_free.asDiagonal() * h * fit.is_free.asDiagonal();
+    h += 1e-6 * Hessian::Identity();
+    weights += h.ldlt().solve(fit.is_free.cwiseProduct(g));
   }
   return weights;
 }
 
-void print_calibration(const std::vector<SampleSet>& sets, const Weights& is_used, int num_sequences, int num_groups) {
+void print_calibration(const std::vector<SampleSet>& sets, const Fit& fit, int num_sequences, int num_groups) {
   std::vector<Reliability> fitted(num_groups), current(num_groups);
   std::vector<double> fitted_loss(num_groups), current_loss(num_groups), num_samples(num_groups);
   for (int left_out = 0; left_out < num_sequences; ++left_out) {
-    const Weights weights = fit(sets, is_used, left_out);
+    const Weights weights = fit_weights(sets, fit, left_out);
     for (const SampleSet& s : sets) {
       if (s.sequence != left_out) continue;
-      const SubsetModel model(s, is_used, weights);
+      const SubsetModel model(s, weights);
       for (std::size_t i = 0; i < s.samples.size(); ++i) {
         const Sample& sample = s.samples[i];
         const double score = model.probability(i);
@@ -158,23 +167,42 @@ void print_calibration(const std::vector<SampleSet>& sets, const Weights& is_use
         current_loss[g] / num_samples[g]);
 }
 
+// All weights that the preset uses, from nothing; or those of "only=NAME,...", with the others as the preset has them.
+Fit what_to_fit(const RecognizerConfig& config, const std::string& only) {
+  const HypothesisScoreOptions& score = config.verify.score;
+  Weights preset;
+  preset << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
+      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight,
+      score.silhouette_weight, score.hue_weight, score.offset, std::log(config.detections.further_instance_odds);
+  Fit fit;
+  if (only.empty()) {
+    fit.is_free = (preset.array() != 0).cast<double>();
+    return fit;
+  }
+  fit.start = preset;
+  std::istringstream names(only);
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto* const found = std::ranges::find(kNames, name);
+    if (found == std::end(kNames)) exit_with(fmt::format("there is no weight '{}'", name));
+    fit.is_free[found - std::begin(kNames)] = 1;
+  }
+  return fit;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4)
-    exit_with("usage: bench_fit_scores PRESET LIBRARY SEQUENCE [LIBRARY SEQUENCE]... [-- LIBRARY SEQUENCE...]");
+  const std::string only = argc > 2 && std::string(argv[2]).starts_with("only=") ? std::string(argv[2] + 5) : "";
+  const int first = only.empty() ? 2 : 3;
+  if (argc < first + 2)
+    exit_with("usage: bench_fit_scores PRESET [only=WEIGHT,...] LIBRARY SEQUENCE... [-- LIBRARY SEQUENCE...]");
   RecognizerConfig config = preset_or_exit(argv[1]);
   config.set_num_threads(2);
   config.detections.min_score = 0;
-  const HypothesisScoreOptions& score = config.verify.score;
-  Weights is_used;
-  is_used << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
-      score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight,
-      score.silhouette_weight, score.hue_weight, 1, config.detections.further_instance_odds != 1;
-  is_used = (is_used.array() != 0).cast<double>();
+  const Fit fit = what_to_fit(config, only);
   std::vector<SampleSet> sets;
   int group = 0, number = 0;
-  for (int a = 2; a + 1 < argc; a += 2) {
+  for (int a = first; a + 1 < argc; a += 2) {
     if (std::string(argv[a]) == "--") ++group, ++a;
     for (const int num_previous_views : {0, 5}) {
       config.num_previous_views = num_previous_views;
@@ -182,8 +210,8 @@ int main(int argc, char** argv) {
     }
     ++number;
   }
-  const Weights weights = fit(sets, is_used, -1);
+  const Weights weights = fit_weights(sets, fit, -1);
   for (int c = 0; c < kNumWeights; ++c) fmt::print("{} {:.2f}\n", kNames[c], weights[c]);
-  print_calibration(sets, is_used, number, group + 1);
+  print_calibration(sets, fit, number, group + 1);
   return 0;
 }
