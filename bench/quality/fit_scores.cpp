@@ -2,7 +2,7 @@
 // Fits the weights of the scores of detections (HypothesisScoreOptions) that a preset uses, and the odds of further
 // instances: right or wrong at K = 0 and 5. Groups of sequences are divided by "--" and count the same. The calibration
 // error of a group is that of scores whose weights were fitted without the sequence, and so is the log loss. Those of
-// the preset itself are beside them. only= holds all other weights as the preset has them.
+// the preset itself are beside them. With only=, all other weights stay as the preset has them.
 //   bench_fit_scores default val.resight val/test/000001 val.resight val/test/000002 -- tc.resight
 //   table-camera/test/000001
 #include <fmt/format.h>
@@ -50,11 +50,29 @@ struct Sample {
   bool right = false;
 };
 
-// The detections of one object in one view.
+// The detections of one object in one view. Any subset of them can be right (instance_prior.hpp).
 struct SampleSet {
   std::vector<Sample> samples;
   int group = 0;
   int sequence = 0;
+  Eigen::Matrix<double, kNumWeights, Eigen::Dynamic> cues_of_subset{};  // Sums; the log of its probability is linear.
+  unsigned right_subset = 0;
+
+  void sum_over_subsets() {
+    const std::size_t n = samples.size();
+    cues_of_subset.setZero(kNumWeights, 1 << n);
+    for (std::size_t i = 0; i < n; ++i) right_subset |= samples[i].right ? 1U << i : 0;
+    for (unsigned subset = 0; subset < 1U << n; ++subset) {
+      for (std::size_t i = 0; i < n; ++i)
+        if ((subset >> i & 1U) != 0) cues_of_subset.col(subset) += samples[i].cues;
+      cues_of_subset(kFurtherOdds, subset) = std::max(0, std::popcount(subset) - 1);
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd subset_probabilities(const Weights& weights) const {
+    const Eigen::VectorXd log_odds = cues_of_subset.transpose() * weights;
+    const Eigen::VectorXd odds = (log_odds.array() - log_odds.maxCoeff()).exp();
+    return odds / odds.sum();
+  }
 };
 
 void add_samples(const char* library_path, const char* path, RecognizerConfig config, int group, int number,
@@ -73,43 +91,25 @@ void add_samples(const char* library_path, const char* path, RecognizerConfig co
       Sample sample{Weights::Zero(), detection.score, right};
       std::ranges::copy(cues, sample.cues.data());
       sample.cues[cues.size()] = 1;
-      SampleSet& set = by_object[detection.object];
+      SampleSet& set = by_object.try_emplace(detection.object, SampleSet{{}, group, number}).first->second;
       if (set.samples.size() < kMaxInstances) set.samples.push_back(sample);
     };
     for (const DetectionMatch& m : matched.matches) add(m.detection, true);
     for (const int d : matched.false_positives) add(d, false);
-    for (auto& [object, set] : by_object) sets.push_back({std::move(set.samples), group, number});
+    for (auto& [object, set] : by_object) {
+      set.sum_over_subsets();
+      sets.push_back(std::move(set));
+    }
   };
   (void)value_or_exit(recognize_sequence(recognizer, *sequence, add_view, &trace));
 }
 
-// The statistics of every subset that may be right, and how likely it is: instance_prior.hpp.
-struct SubsetModel {
-  Eigen::Matrix<double, kNumWeights, Eigen::Dynamic> statistics;
-  Eigen::VectorXd probabilities;
-  unsigned right = 0;  // The subset that is.
-
-  SubsetModel(const SampleSet& set, const Weights& weights) {
-    const std::size_t n = set.samples.size();
-    statistics.setZero(kNumWeights, 1 << n);
-    for (std::size_t i = 0; i < n; ++i) right |= set.samples[i].right ? 1U << i : 0;
-    for (unsigned subset = 0; subset < 1U << n; ++subset) {
-      for (std::size_t i = 0; i < n; ++i)
-        if ((subset >> i & 1U) != 0) statistics.col(subset) += set.samples[i].cues;
-      statistics(kFurtherOdds, subset) = std::max(0, std::popcount(subset) - 1);
-    }
-    const Eigen::VectorXd log_weights = statistics.transpose() * weights;
-    probabilities = (log_weights.array() - log_weights.maxCoeff()).exp();
-    probabilities /= probabilities.sum();
-  }
-
-  [[nodiscard]] double probability(std::size_t sample) const {
-    double sum = 0;
-    for (unsigned subset = 0; subset < probabilities.size(); ++subset)
-      if ((subset >> sample & 1U) != 0) sum += probabilities[subset];
-    return sum;
-  }
-};
+double probability_of_sample(const Eigen::VectorXd& subset_probabilities, std::size_t sample) {
+  double sum = 0;
+  for (unsigned subset = 0; subset < subset_probabilities.size(); ++subset)
+    if ((subset >> sample & 1U) != 0) sum += subset_probabilities[subset];
+  return sum;
+}
 
 double log_loss(double score, bool right) { return -std::log(std::clamp(right ? score : 1 - score, 1e-9, 1.0)); }
 
@@ -126,12 +126,12 @@ Weights fit_weights(const std::vector<SampleSet>& sets, const Fit& fit, int left
     Weights g = -1e-6 * (weights - fit.start);
     for (const SampleSet& s : sets) {
       if (s.sequence == left_out) continue;
-      const SubsetModel model(s, weights);
-      const Weights mean = model.statistics * model.probabilities;
-      const auto centered = (model.statistics.colwise() - mean).eval();
+      const Eigen::VectorXd probabilities = s.subset_probabilities(weights);
+      const Weights mean = s.cues_of_subset * probabilities;
+      const auto centered = (s.cues_of_subset.colwise() - mean).eval();
       const double count = 1 / num_in_group[s.group];
-      h += count * centered * model.probabilities.asDiagonal() * centered.transpose();
-      g += count * (model.statistics.col(model.right) - mean);
+      h += count * centered * probabilities.asDiagonal() * centered.transpose();
+      g += count * (s.cues_of_subset.col(s.right_subset) - mean);
     }
     h = fit.is_free.asDiagonal() * h * fit.is_free.asDiagonal();
     h += 1e-6 * Hessian::Identity();
@@ -147,10 +147,10 @@ void print_calibration(const std::vector<SampleSet>& sets, const Fit& fit, int n
     const Weights weights = fit_weights(sets, fit, left_out);
     for (const SampleSet& s : sets) {
       if (s.sequence != left_out) continue;
-      const SubsetModel model(s, weights);
+      const Eigen::VectorXd probabilities = s.subset_probabilities(weights);
       for (std::size_t i = 0; i < s.samples.size(); ++i) {
         const Sample& sample = s.samples[i];
-        const double score = model.probability(i);
+        const double score = probability_of_sample(probabilities, i);
         fitted[s.group].add(score, sample.right);
         current[s.group].add(sample.score, sample.right);
         fitted_loss[s.group] += log_loss(score, sample.right);

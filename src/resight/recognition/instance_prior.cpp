@@ -8,7 +8,7 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxScore = 1 - 1e-12;  // Of finite odds.
+constexpr double kMaxScore = 1 - 1e-12;  // Keeps the odds finite.
 
 double odds_of(const Detection& detection) {
   const double score = std::min(detection.score, kMaxScore);
@@ -17,8 +17,8 @@ double odds_of(const Detection& detection) {
 
 }  // namespace
 
-// With a = further_instance_odds, odds o and A = product of (1 + a o), all subsets sum up to 1 + (A - 1) / a, and those
-// with detection i to o_i A / (1 + a o_i).
+// With a = further_instance_odds, odds o_i = s_i / (1 - s_i) and A = the product of all 1 + a o_i, the terms of all
+// subsets sum to 1 + (A - 1) / a, and those of the subsets with detection i to o_i A / (1 + a o_i).
 void apply_instance_prior(std::vector<Detection>& detections, double further_instance_odds) {
   std::map<int, double> log_products;  // By object.
   std::map<int, int> num_instances;

@@ -128,8 +128,8 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
       "is one.",
       "ours");
   v.field("further_instance_odds", o.further_instance_odds, between(1e-6, 1),
-          "Prior odds of each instance of an object after the first, as a share of the odds of the first: most of what "
-          "looks like a second instance is a look-alike. 1: as likely as the first.",
+          "Prior odds of each further instance of an object, as a share of those of the first: look-alikes pass for "
+          "further instances. 1: as likely as the first, for scenes with many copies.",
           "fitted");
 }
 

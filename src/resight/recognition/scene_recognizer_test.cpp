@@ -125,6 +125,36 @@ TEST(SceneRecognizer, AnUnlikelyObjectIsTrackedButNotDetected) {
   for (std::size_t e = 0; e < all[1].events.size(); ++e) EXPECT_EQ(few[1].events[e].kind, all[1].events[e].kind);
 }
 
+TEST(SceneRecognizer, ASecondInstanceNeedsMoreEvidence) {
+  BoxScene c;
+  Solid second = c.world.solids[0];
+  second.world_from_object.translation += Eigen::Vector3d(0.25, 0.1, 0);
+  c.world.solids.push_back(second);
+  ViewHypotheses both;
+  both.world_from_camera = c.cameras[0];
+  for (const Solid& box : c.world.solids) {
+    Hypothesis& hypothesis = both.hypotheses.emplace_back(make_hypothesis(kBox, box.world_from_object));
+    hypothesis.id = both.hypotheses.size();
+    hypothesis.origin_view = 0;
+    hypothesis.origin_views = {0};
+  }
+  const auto scores = [&](double further_instance_odds) {
+    c.config.detections.further_instance_odds = further_instance_odds;
+    c.store = std::make_shared<ViewHypothesisStore>();
+    c.store->add(0, ViewHypotheses(both));
+    SceneRecognizer recognizer(c.library, c.config, c.store);
+    std::vector<double> found;
+    for (const Detection& d : recognizer.add_view(render(c.world, c.cameras[0]).frame).detections)
+      found.push_back(d.score);
+    return found;
+  };
+  const std::vector<double> alone = scores(1);
+  const std::vector<double> together = scores(0.2);
+  ASSERT_EQ(alone.size(), 2U);
+  ASSERT_EQ(together.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(together[i], alone[i]);
+}
+
 TEST(SceneRecognizer, AnObjectWithoutDepthIsConfirmedByItsTexture) {
   const BoxScene c;
   for (const bool has_colors : {true, false}) {

@@ -35,8 +35,8 @@ struct Detection {
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
-  double score = 0;          ///< Probability that it is right, in [0, 1] (HypothesisScoreOptions).
-  double fit = 0;            ///< How well its visible points are explained, in [0, 1].
+  double score = 0;  ///< Probability that it is right, in [0, 1]: HypothesisScoreOptions, apply_instance_prior().
+  double fit = 0;    ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
   /// What the object history needs of it.

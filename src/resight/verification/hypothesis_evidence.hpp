@@ -33,7 +33,7 @@ struct AppearanceEvidence {
   double pattern_similarity = 1;  ///< pattern_similarity() of the colours of model and scene.
   /// The same with the colours of the newest view that sees enough of the model; 1 if not compared.
   double newest_similarity = 1;
-  double hue_similarity = 1;    ///< hue_similarity() of model and scene; 1 if it is not textured.
+  double hue_similarity = 1;    ///< hue_similarity() of model and scene; 1 for an untextured model.
   double shared_texture = 0;    ///< PatternMatch::shared_texture, at most texture_contrast.
   double texture_contrast = 0;  ///< Texture of the visible model itself, in even light.
   /// NewestViewAppearance::silhouette_error(), for hypotheses with enough support and the right appearance.

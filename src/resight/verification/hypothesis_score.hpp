@@ -10,7 +10,8 @@ namespace resight {
 /// Weights of a logistic regression; all 0: 0.5 for any evidence. `bench_fit_scores` fits them. Those of `default` are
 /// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
 /// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
-/// The weights of the silhouette and of the hue, and the offset, were fitted afterwards, with the others held.
+/// Later fits held these weights and added those of the silhouette and of the hue, each with a new offset;
+/// docs/ablation.md names their seeds.
 /// docs/results.md says how well the scores generalise.
 struct HypothesisScoreOptions {
   double offset = 0;
@@ -49,11 +50,9 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
           "Counts against it: of log(0.02 + share of the points that lie where the newest view has no depth, and shows "
           "other colours).",
           "fitted");
-  v.field(
-      "hue_weight", o.hue_weight, between(0, 100),
-      "Of the cosine similarity of its hues to those of the scene, if it is textured: another print of the same shape "
-      "has other hues.",
-      "fitted");
+  v.field("hue_weight", o.hue_weight, between(0, 100),
+          "Of the hue similarity of model and scene, 1 for an untextured model: look-alikes often have other colours.",
+          "fitted");
 }
 
 /// What the weights of HypothesisScoreOptions weigh, in their order.

@@ -151,6 +151,28 @@ TEST(VerifyTexture, ADifferentTextureIsRejected) {
   EXPECT_LT(result.evidence[0].appearance.pattern_similarity, result.evidence[1].appearance.pattern_similarity - 0.2);
 }
 
+TEST(VerifyTexture, ALookAlikeHasOtherHues) {
+  Solid box{Shape::kBox, {0.1, 0.1, 0.1}, checks({200, 60, 60}, {230, 220, 120}, 0.03), on_table(0, 0, 0.05)};
+  ModelLibrary library;
+  library.objects = {make_model("textured", box)};
+  Solid red_box = box;
+  red_box.paint = plain({150, 90, 90});
+  library.objects.push_back(make_model("untextured", red_box));
+  const auto hue_similarity_of = [&](int object, const Paint& seen) {
+    box.paint = seen;
+    const Fixture f({.solids = {box}}, circle_of_cameras(4));
+    VerifyOptions options{.acceptance = {.min_explained_share = 0}};
+    options.appearance.pattern_radius_m = 0.015;
+    const std::vector<Hypothesis> one = {make_hypothesis(object, box.world_from_object)};
+    return f.verify(one, library, options).evidence[0].appearance.hue_similarity;
+  };
+  const double same = hue_similarity_of(0, box.paint);
+  const double other = hue_similarity_of(0, checks({90, 60, 200}, {120, 220, 230}, 0.03));
+  EXPECT_GT(same, 0.98);
+  EXPECT_LT(other, 0.8);
+  EXPECT_EQ(hue_similarity_of(1, plain({90, 150, 90})), 1) << "untextured";
+}
+
 // A low box, taken for a higher one of the same colour. There is depth on the box only, so that only colours tell what
 // is beyond its contour.
 class SilhouetteTest : public testing::Test {
