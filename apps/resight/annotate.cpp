@@ -114,7 +114,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   shown.is_annotated = true;
   const auto scene = value_or_throw(SceneData::create(std::move(shown)));
   ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open}, &service);
-  session.server().run_until_interrupted();
+  session.open_until_interrupted();
   clean_up_when_interrupted();
   value_or_throw(service.save());
   print("{}\n", export_folder.string());

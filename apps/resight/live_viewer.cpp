@@ -37,8 +37,10 @@ LiveViewer::LiveViewer(const Sequence& sequence, const ModelLibrary& library, co
                        const std::string& preset, std::optional<TraceFile> trace)
     : library_(library),
       scene_(value_or_throw(SceneData::create(make_live_scene(sequence, library, title, preset, std::move(trace))))),
-      session_(*scene_, {.port = 0, .no_open = false}),
-      thread_([this] { session_.server().run(); }) {}
+      session_(*scene_, {.port = 0, .no_open = false}) {
+  session_.open();
+  thread_ = std::thread([this] { session_.server().run(); });
+}
 
 LiveViewer::~LiveViewer() { stop(); }
 
@@ -62,6 +64,7 @@ void LiveViewer::finish(const ReportRun& run, std::optional<TraceFile> trace) {
   scene_->finish(std::move(events), std::move(trace));
   tell_revision();
   stop();
+  session_.server().catch_interrupts();
   std::fflush(stdout);  // a program that waits for the results may read it through a pipe
   session_.server().run_until_interrupted();
 }

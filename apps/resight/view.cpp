@@ -8,7 +8,7 @@ namespace resight::app {
 void run_view(const ViewArguments& arguments) {
   const auto scene = value_or_throw(SceneData::create(open_viewer_scene(arguments)));
   ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open});
-  session.server().run_until_interrupted();
+  session.open_until_interrupted();
 }
 
 }  // namespace resight::app

@@ -11,12 +11,21 @@
 namespace resight::app {
 
 ViewerSession::ViewerSession(SceneData& scene, const ViewerSessionOptions& options, AnnotationService* annotation)
-    : token_(make_access_token()),
-      server_(value_or_throw(HttpServer::listen(options.port, make_viewer_handler(scene, token_, annotation)))) {
+    : no_open_(options.no_open),
+      token_(make_access_token()),
+      server_(value_or_throw(HttpServer::listen(options.port, make_viewer_handler(scene, token_, annotation)))) {}
+
+void ViewerSession::open() {
   const std::string address = fmt::format("http://127.0.0.1:{}/#token={}", server_.port(), token_);
   print("{}\n(for this user only; Ctrl-C ends it)\n", address);
   std::fflush(stdout);  // a program that waits for the address may read it through a pipe
-  if (!options.no_open) browser_.emplace(address);
+  if (!no_open_) browser_.emplace(address);
+}
+
+void ViewerSession::open_until_interrupted() {
+  server_.catch_interrupts();  // Before the address is out, because whoever reads it may interrupt at once.
+  open();
+  server_.run_until_interrupted();
 }
 
 }  // namespace resight::app

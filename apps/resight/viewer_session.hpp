@@ -16,15 +16,19 @@ struct ViewerSessionOptions {
   bool no_open = false;    ///< Do not open a browser.
 };
 
-/// A server of one scene under a secret address, which is printed and opened in the browser. Throws an InputError if
-/// the port is taken.
+/// A server of one scene under a secret address.
 class ViewerSession {
  public:
-  /// `scene` and `annotation` must outlive the session.
+  /// Throws an InputError if the port is taken. `scene` and `annotation` must outlive the session.
   ViewerSession(SceneData& scene, const ViewerSessionOptions& options, AnnotationService* annotation = nullptr);
+  /// Prints the address, and opens it in the browser.
+  void open();
+  /// Same, and answers requests until the process gets SIGINT or SIGTERM.
+  void open_until_interrupted();
   [[nodiscard]] HttpServer& server() { return server_; }
 
  private:
+  bool no_open_;
   std::string token_;
   HttpServer server_;
   std::optional<BrowserLaunch> browser_;

@@ -242,12 +242,17 @@ class HttpServer::Impl {
     context_.run();
     context_.restart();
   }
-  void run_until_interrupted() {
-    asio::signal_set signals(context_, SIGINT, SIGTERM);
-    signals.async_wait([this](ErrorCode error, int) {
+  void catch_interrupts() {
+    if (interrupts_) return;
+    interrupts_.emplace(context_, SIGINT, SIGTERM);
+    interrupts_->async_wait([this](ErrorCode error, int) {
       if (!error) context_.stop();
     });
+  }
+  void run_until_interrupted() {
+    catch_interrupts();
     run();
+    interrupts_.reset();
   }
   void stop() {
     asio::post(context_, [this] { context_.stop(); });
@@ -287,6 +292,7 @@ class HttpServer::Impl {
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer retry_{context_};
+  std::optional<asio::signal_set> interrupts_;
 };
 
 HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -303,6 +309,7 @@ Result<HttpServer> HttpServer::listen(std::uint16_t port, HttpHandler handler, c
 std::uint16_t HttpServer::port() const { return impl_->port(); }
 int HttpServer::num_connections() const { return impl_->num_connections(); }
 void HttpServer::run() { impl_->run(); }
+void HttpServer::catch_interrupts() { impl_->catch_interrupts(); }
 void HttpServer::run_until_interrupted() { impl_->run_until_interrupted(); }
 void HttpServer::stop() { impl_->stop(); }
 void HttpServer::send_event(const std::string& data) { impl_->send_event(data); }

@@ -36,7 +36,9 @@ class HttpServer {
 
   /// Answers requests until stop() is called. May be called again afterwards; open connections persist.
   void run();
-  /// Same, until the process gets SIGINT or SIGTERM.
+  /// From now on, SIGINT and SIGTERM only end run_until_interrupted(), also if they come before it is called.
+  void catch_interrupts();
+  /// Answers requests until the process gets SIGINT or SIGTERM.
   void run_until_interrupted();
   /// May be called from any thread.
   void stop();

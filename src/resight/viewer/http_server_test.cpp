@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
 #include <vector>
 
@@ -50,6 +51,16 @@ TEST(HttpServer, AnswersRequestsOnOneConnection) {
   EXPECT_EQ(status_of(first), 200);
   EXPECT_EQ(body_of(first), "GET /a localhost:1 t 0");
   EXPECT_EQ(body_of(connection.ask("POST /c HTTP/1.1\r\nHost: h\r\nContent-Length: 3\r\n\r\nxyz")), "POST /c h  3");
+}
+
+TEST(HttpServer, AnInterruptBeforeItRunsIsNotLost) {
+  HttpServer server = HttpServer::listen(0, echo).value();
+  server.catch_interrupts();
+  std::raise(SIGINT);
+  server.run_until_interrupted();
+  server.catch_interrupts();  // Nothing of the last time is left.
+  std::raise(SIGTERM);
+  server.run_until_interrupted();
 }
 
 TEST(HttpServer, ForbidsWhatThePageDoesNotNeed) {
