@@ -197,7 +197,7 @@ END
 
 ## Changes before a still camera
 
-By pixel, by object and by region against class pictures (\`bench_real_changes still\`). \`plain\`: depth difference of
+By pixel, by object and by region against class masks (\`bench_real_changes still\`). \`plain\`: depth difference of
 12 mm between neighbouring views. Thin: 5 to 20 mm high. "False pixels on the same class": false pixels where an object
 of the same class was before, moved across itself or exchanged. Pictures of all misses and false reports are in
 \`$parts/pictures\`.

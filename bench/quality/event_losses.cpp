@@ -3,7 +3,7 @@
 // prints what the views show of each unreported change, and each wrong event.
 //   resight recognize --models models.resight --sequence validation/test/000001 --config all.toml --out run
 //   bench_event_losses validation/test/000001 models.resight run/detections.json validation/test/000001.events.json
-// all.toml: detections.min_reported_share = 0, because the history also uses what the newest view does not show.
+// all.toml: detections.min_reported_share = 0 and min_score = 0, because the history also uses what is not reported.
 #include <fmt/format.h>
 
 #include <algorithm>

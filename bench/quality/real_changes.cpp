@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Change detection on real recordings, with camera poses corrected as the preset does. Prints tables in Markdown.
 //   bench_real_changes still SEQUENCE LABELS_DIR [preset] [config.toml|-] [K] [--pictures DIR]
-// A still camera, with a class picture LABELS_DIR/<view>.png per view: compares the changes of each view with those of
-// the class pictures, beside a plain depth difference of 12 mm. --pictures: sheets of all misses and false reports.
+// A still camera, with a class mask LABELS_DIR/<view>.png per view: compares the changes of each view with those of
+// the class masks, beside a plain depth difference of 12 mm. --pictures: sheets of all misses and false reports.
 //   bench_real_changes static SEQUENCE [preset] [config.toml|-] [K]
 // A camera in a static scene: whatever is reported as changed is false.
 // SEQUENCE@SENSOR assumes the depth noise of that kind of camera (`--sensor`).

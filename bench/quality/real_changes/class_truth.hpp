@@ -14,7 +14,7 @@ namespace resight::bench {
 /// Class of each pixel as 0xrrggbb; 0 is the background.
 using ClassImage = Image<std::int32_t>;
 
-/// Reads a class picture: grey values, or the colours of a palette.
+/// Reads a class mask: grey values, or the colours of a palette.
 [[nodiscard]] Result<ClassImage> read_classes(const std::filesystem::path& file);
 
 /// A view of a still camera with its classes.
@@ -42,7 +42,7 @@ struct SideTruth {
   std::vector<ChangedObject> objects;
 };
 
-/// What class pictures and depth say about the changes between two views.
+/// What class masks and depth say about the changes between two views.
 struct ChangeTruth {
   std::array<SideTruth, 2> sides;         ///< By Side.
   std::vector<Region> unchanged_objects;  ///< Pixels that count.
