@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "interrupts.hpp"
+
 namespace resight::app {
 namespace {
 
@@ -25,11 +27,12 @@ std::filesystem::path write_redirect(const std::string& address) {
   std::string name = (folder / "resight-view-XXXXXX.html").string();
   const int file = error ? -1 : ::mkostemps(name.data(), 5, O_CLOEXEC);  // readable by this user only
   if (file < 0) return {};
+  remove_when_interrupted(name);  // Before it holds the secret.
   const std::string page = "<!doctype html><meta charset=utf-8><title>resight</title><script>location.replace(\"" +
                            address + "\")</script><a href=\"" + address + "\">resight</a>\n";
   const bool is_written = ::write(file, page.data(), page.size()) == static_cast<ssize_t>(page.size());
   ::close(file);
-  if (!is_written) ::unlink(name.c_str());
+  if (!is_written) remove_temporary_file(name);
   return is_written ? std::filesystem::path(name) : std::filesystem::path();
 }
 
@@ -57,8 +60,7 @@ BrowserLaunch::BrowserLaunch(const std::string& address) {
 }
 
 BrowserLaunch::~BrowserLaunch() {
-  std::error_code ignored;
-  if (!redirect_.empty()) std::filesystem::remove(redirect_, ignored);
+  if (!redirect_.empty()) remove_temporary_file(redirect_);
 }
 
 }  // namespace resight::app

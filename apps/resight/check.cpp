@@ -25,14 +25,6 @@ using CheckJson = nlohmann::ordered_json;
 
 std::string picture_name(const Finding& finding) { return finding.fault + ".png"; }
 
-void write_pictures(const CheckArguments& arguments, const std::vector<Finding>& findings,
-                    const SequenceMeasurements& measured, const Sequence& sequence) {
-  auto folder = value_or_throw(PendingDirectory::create(*arguments.out, ExistingFolder::kFill));
-  for (const Finding& f : findings)
-    value_or_throw(write_color(folder.path() / picture_name(f), draw_finding(f, measured, sequence)));
-  value_or_throw(folder.commit());
-}
-
 CheckJson to_json(const Finding& f, const Sequence& sequence, bool has_picture) {
   CheckJson json = {
       {"fault", f.fault}, {"message", f.message},     {"remedy", f.remedy}, {"value", f.value},
@@ -88,7 +80,7 @@ CheckJson soundness(const CheckReport& report) {
   return report.unmeasured.empty() ? CheckJson(true) : CheckJson(nullptr);
 }
 
-void print_json(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
+std::string format_json(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
   CheckJson json = {{"path", arguments.sequence.string()},
                     {"sound", soundness(report)},
                     {"inspected_views", report.measured.views.size()},
@@ -97,7 +89,16 @@ void print_json(const CheckArguments& arguments, const CheckReport& report, cons
                     {"facts", report.facts},
                     {"not_measured", report.unmeasured}};
   for (const Finding& f : report.findings) json["findings"].push_back(to_json(f, sequence, arguments.out.has_value()));
-  print_text(to_json_text(json, kIndentedJson) + "\n");
+  return to_json_text(json, kIndentedJson) + "\n";
+}
+
+/// Also without findings: the list tells which pictures are of this check, and the next one that it may write here.
+void write_findings(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
+  auto folder = value_or_throw(PendingDirectory::create(*arguments.out, ExistingFolder::kFill));
+  for (const Finding& f : report.findings)
+    value_or_throw(write_color(folder.path() / picture_name(f), draw_finding(f, report.measured, sequence)));
+  value_or_throw(write_file(folder.path() / "findings.json", format_json(arguments, report, sequence)));
+  value_or_throw(folder.commit());
 }
 
 void print_lines(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
@@ -120,9 +121,9 @@ bool run_check(const CheckArguments& arguments) {
   if (arguments.out) check_output_folder(*arguments.out, {arguments.sequence});
   const auto sequence = open_input(arguments.sequence, arguments.input);
   const CheckReport report = check_sequence(arguments, *sequence);
-  if (arguments.out && !report.findings.empty()) write_pictures(arguments, report.findings, report.measured, *sequence);
+  if (arguments.out) write_findings(arguments, report, *sequence);
   if (arguments.as_json)
-    print_json(arguments, report, *sequence);
+    print_text(format_json(arguments, report, *sequence));
   else
     print_lines(arguments, report, *sequence);
   return report.findings.empty();

@@ -239,7 +239,7 @@ std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound
   command->add_option("sequence", a.sequence, "Sequence folder or recording (detected)")->required();
   command->add_option("--models", a.models,
                       "Model library: also compare the sizes of its objects with those in the views");
-  command->add_option("--out", a.out, "Folder for a picture of each finding");
+  command->add_option("--out", a.out, "Folder for findings.json and a picture of each finding");
   command->add_option("--views", a.max_views, "Largest number of inspected views, spread over the sequence")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();

@@ -134,7 +134,7 @@ struct CheckArguments {
   std::filesystem::path sequence;
   OpenSequenceOptions input;
   std::optional<std::filesystem::path> models;  ///< Library whose objects tell the scale.
-  std::optional<std::filesystem::path> out;     ///< Folder for pictures.
+  std::optional<std::filesystem::path> out;     ///< Folder for the findings with pictures.
   int max_views = 24;
   bool as_json = false;
   int num_threads = 1;

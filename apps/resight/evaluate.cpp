@@ -26,15 +26,6 @@ namespace {
 constexpr double kMergeWait_s = 60;
 constexpr int kNumPictures = 5;  // Of the worst views per configuration.
 
-// The stored run of a unit, unless it is missing or stems from other settings, models or another version.
-std::optional<EvaluatedRun> stored_run(const std::filesystem::path& file, const std::string& fingerprint) {
-  const auto text = read_file(file);
-  if (!text) return std::nullopt;
-  auto run = parse_run(*text, file.string());
-  if (!run.ok() || run->fingerprint != fingerprint) return std::nullopt;
-  return std::move(run).value();
-}
-
 class Evaluation {
  public:
   explicit Evaluation(const EvaluateArguments& arguments)
@@ -48,7 +39,7 @@ class Evaluation {
   void compute() {
     std::vector<const EvaluationUnit*> mine;
     for (const EvaluationUnit& unit : plan_.units)
-      if (unit.shard == arguments_.shard && !stored_run(file_of(unit), unit.fingerprint)) mine.push_back(&unit);
+      if (unit.shard == arguments_.shard && !stored_run(unit)) mine.push_back(&unit);
     if (mine.empty()) return;
     std::size_t num_views = 0;
     for (const EvaluationUnit* unit : mine) {
@@ -72,7 +63,7 @@ class Evaluation {
     std::vector<EvaluatedRun> runs;
     std::vector<const EvaluationUnit*> missing;
     for (const EvaluationUnit& unit : plan_.units) {
-      auto run = stored_run(file_of(unit), unit.fingerprint);
+      auto run = stored_run(unit);
       if (run) run->sequence = unit.sequence.name;  // JSON cannot hold every name of a folder
       if (run) runs.push_back(std::move(*run));
       if (!run) missing.push_back(&unit);
@@ -91,6 +82,28 @@ class Evaluation {
  private:
   [[nodiscard]] std::filesystem::path file_of(const EvaluationUnit& unit) const {
     return arguments_.out / "runs" / (unit.name + ".json");
+  }
+
+  // Anybody may have written a stored run: views and objects that are not there would end the work late.
+  [[nodiscard]] bool belongs_to(const EvaluationUnit& unit, const EvaluatedRun& run) const {
+    const auto is_known = [this](const EvaluatedDetection& d) { return library_.find(d.object) >= 0; };
+    const RecognizerConfig& config = unit.config;
+    return run.fingerprint == unit.fingerprint && run.preset == config.preset &&
+           run.num_previous_views == config.num_previous_views &&
+           run.is_clustered == config.hypotheses.cluster.has_value() &&
+           static_cast<int>(run.views.size()) == unit.sequence.num_views &&
+           std::ranges::all_of(
+               run.views, [&](const EvaluatedView& view) { return std::ranges::all_of(view.detections, is_known); });
+  }
+
+  // The stored run of a unit, unless it is missing or stems from other settings, models or another version.
+  [[nodiscard]] std::optional<EvaluatedRun> stored_run(const EvaluationUnit& unit) const {
+    const std::filesystem::path file = file_of(unit);
+    const auto text = read_file(file);
+    if (!text) return std::nullopt;
+    auto run = parse_run(*text, file.string());
+    if (!run.ok() || !belongs_to(unit, *run)) return std::nullopt;
+    return std::move(run).value();
   }
 
   void compute_group(std::span<const EvaluationUnit* const> units, Progress& progress, int& done) {

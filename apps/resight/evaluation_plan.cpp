@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "folder_files.hpp"
@@ -40,12 +41,29 @@ EvaluationSequence describe(const fs::path& folder, const Sequence& opened) {
   EvaluationSequence sequence;
   sequence.folder = folder;
   sequence.name = folder.filename().string();
+  sequence.num_views = opened.num_views();
   std::vector<std::string> views;
   for (int i = 0; i < opened.num_views(); ++i) views.push_back(opened.view_name(i));
   sequence.changes = find_change_files(folder, views);
   sequence.annotations = find_tuw_annotation_directory(folder, views);
   sequence.unknown_models = folder.parent_path().parent_path() / "unknown" / "models";
   return sequence;
+}
+
+// Runs are stored by these names. Folders of the same name are told apart by their paths from the root.
+void make_names_unique(const fs::path& root, std::vector<EvaluationSequence>& sequences) {
+  std::map<std::string, int> num_folders;
+  for (const EvaluationSequence& sequence : sequences) ++num_folders[sequence.name];
+  std::set<std::string> taken;
+  for (EvaluationSequence& sequence : sequences) {
+    if (num_folders.at(sequence.name) > 1) {
+      sequence.name = sequence.folder.lexically_relative(root).string();
+      std::ranges::replace(sequence.name, '/', '_');
+    }
+    if (!taken.insert(sequence.name).second)
+      throw InputError(
+          fmt::format("{}: several sequences would be called '{}' (rename a folder)", root.string(), sequence.name));
+  }
 }
 
 // Finds the sequences: the data set itself, or those in its folder test/, or those directly below it.
@@ -77,6 +95,7 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
       print_warning(opened.error().message);
   }
   if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
+  make_names_unique(root, sequences);
   return sequences;
 }
 

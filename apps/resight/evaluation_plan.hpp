@@ -11,8 +11,9 @@
 namespace resight::app {
 
 struct EvaluationSequence {
-  std::string name;  ///< Name of its folder.
+  std::string name;  ///< Unique: name of its folder or, if others have it, too, their path with '_' for '/'.
   std::filesystem::path folder;
+  int num_views = 0;
   std::filesystem::path annotations;     ///< Folder of the TUW annotations; `folder` if there are none.
   ChangeFiles changes;                   ///< What it holds of the true changes.
   std::filesystem::path unknown_models;  ///< May not exist.

@@ -10,6 +10,7 @@
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/core/json_text.hpp"
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/model_source.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recordings/recording.hpp"
@@ -184,6 +185,7 @@ Described describe_recorded(const InfoArguments& arguments) {
 
 Described describe(const InfoArguments& arguments) {
   const std::filesystem::path& path = arguments.path;
+  value_or_throw(check_finished(path));
   const auto start = read_file_start(path, kLibrarySignature.size());
   if (start.ok() && *start == kLibrarySignature)
     return {"model library", describe_library(value_or_throw(load_library(path, TrainOptions{}.hash())))};

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include "resight/core/files.hpp"
@@ -20,6 +22,22 @@ std::atomic<int> interrupt_number = 0;
 std::atomic<bool> may_stop = false;
 std::atomic<bool> stop_requested = false;
 sem_t has_interrupt;  // Unlike a condition variable, a handler may post it.
+
+struct TemporaryFiles {
+  std::mutex mutex;
+  std::set<std::filesystem::path> files;
+};
+
+/// Never destroyed: an interruption may come while the process ends.
+TemporaryFiles& temporary_files() {
+  static TemporaryFiles& only = *new TemporaryFiles;  // NOLINT(cppcoreguidelines-owning-memory)
+  return only;
+}
+
+void remove_temporary_files() {
+  temporary_files().mutex.lock();  // for ever
+  for (const std::filesystem::path& file : temporary_files().files) ::unlink(file.c_str());
+}
 
 /// A handler may not remove folders itself, because few functions are safe in it.
 void post_interrupt(int number) {
@@ -43,6 +61,7 @@ bool request_stop(int number) {
     while (::sem_wait(&has_interrupt) != 0) {
     }
   } while (request_stop(interrupt_number));
+  remove_temporary_files();
   remove_pending_files();
   const int number = interrupt_number;
   std::signal(number, SIG_DFL);
@@ -73,6 +92,17 @@ void clean_up_when_interrupted() {
     action.sa_flags = SA_RESTART;
     ::sigaction(number, &action, nullptr);
   }
+}
+
+void remove_when_interrupted(const std::filesystem::path& file) {
+  const std::lock_guard lock(temporary_files().mutex);
+  temporary_files().files.insert(file);
+}
+
+void remove_temporary_file(const std::filesystem::path& file) {
+  const std::lock_guard lock(temporary_files().mutex);
+  ::unlink(file.c_str());
+  temporary_files().files.erase(file);
 }
 
 void stop_when_interrupted() { may_stop = true; }

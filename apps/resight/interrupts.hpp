@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
 
 namespace resight::app {
 
@@ -7,6 +8,12 @@ namespace resight::app {
 /// pipe), and a limit on the size of files is an error like a full disk. Signals that the caller of the program ignores
 /// stay ignored, as under nohup. To be called again after others have handled these signals.
 void clean_up_when_interrupted();
+
+/// Counts a file that lies outside of the outputs among the temporary ones. May be called from any thread; one that
+/// comes while a signal ends the program waits for the end.
+void remove_when_interrupted(const std::filesystem::path& file);
+/// Removes such a file now.
+void remove_temporary_file(const std::filesystem::path& file);
 
 /// From now on, the first Ctrl-C or SIGTERM only makes is_stop_requested() true. The second one ends the program as
 /// described above.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "line_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <system_error>
 
@@ -8,6 +11,13 @@
 #include "resight/core/files.hpp"
 
 namespace resight::app {
+namespace {
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& file, int code) {
+  throw InputError(file_error(file, "cannot be written (" + std::generic_category().message(code) + ")").message);
+}
+
+}  // namespace
 
 void LineFile::add(const std::string& line) {
   const std::string bytes = line + "\n";
@@ -18,10 +28,17 @@ void LineFile::add(const std::string& line) {
   } else {
     out_ << bytes << std::flush;
   }
-  if (!out_)
-    throw InputError(
-        file_error(file_, "cannot be written (" + std::generic_category().message(errno != 0 ? errno : EIO) + ")")
-            .message);
+  if (!out_) fail_to_write(file_, errno != 0 ? errno : EIO);
+}
+
+void LineFile::sync() {
+  if (!out_.is_open()) return;
+  // A stream does not tell its descriptor, but any descriptor of a file will do.
+  const int descriptor = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_to_write(file_, errno);
+  const int code = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  ::close(descriptor);
+  if (code != 0) fail_to_write(file_, code);
 }
 
 void LineFile::remove() {

@@ -14,6 +14,8 @@ class LineFile {
 
   /// Appends a line. The first one replaces the file of a run before. Throws an InputError if it cannot be written.
   void add(const std::string& line);
+  /// Waits until all lines are on the disk. Throws an InputError if they cannot be written.
+  void sync();
   void remove();
 
  private:

@@ -17,6 +17,9 @@
 namespace resight::app {
 namespace {
 
+// All views are kept in memory, and those of similar directions are aligned pair by pair.
+constexpr int kMaxModelViews = 150;
+
 // For recordings that can be read but yield no model: not an error of the command line.
 template <typename T>
 T value_or_fail(Result<T> result) {
@@ -28,8 +31,11 @@ std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder, const Op
   const std::unique_ptr<Sequence> sequence = open_input(folder, input);
   if (sequence->num_views() < 2)
     throw InputError(file_error(folder, "has only one view (several were expected)").message);
+  const int step = (sequence->num_views() + kMaxModelViews - 1) / kMaxModelViews;
+  if (step > 1) print("{}: {} views, takes one of {}\n", folder.string(), sequence->num_views(), step);
   std::vector<RgbdFrame> frames;
-  for (int view = 0; view < sequence->num_views(); ++view) frames.push_back(value_or_throw(sequence->read_view(view)));
+  for (int view = 0; view < sequence->num_views(); view += step)
+    frames.push_back(value_or_throw(sequence->read_view(view)));
   return frames;
 }
 

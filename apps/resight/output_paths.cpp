@@ -32,12 +32,13 @@ void check_not_input(const fs::path& out, const Paths& inputs) {
   }
 }
 
-/// Whether `recognize`, `changes` or `evaluate` has written into the folder.
+/// Whether `recognize`, `changes`, `evaluate`, `check` or `annotate` has written into the folder.
 bool has_results(const fs::path& folder) {
   std::error_code error;
-  return std::ranges::any_of(std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs",
-                                                                "finished_views.jsonl"},
-                             [&](const char* name) { return fs::exists(folder / name, error); });
+  return std::ranges::any_of(
+      std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs", "finished_views.jsonl",
+                                         "findings.json", "annotation.jsonl"},
+      [&](const char* name) { return fs::exists(folder / name, error); });
 }
 
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our

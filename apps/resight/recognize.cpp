@@ -39,10 +39,15 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
 // For a run that is interrupted or fails; the complete results take its place.
 constexpr const char* kFinishedViews = "finished_views.jsonl";
 
-/// The trace of a run before must not be taken for one of this run.
-void forget_trace(const std::filesystem::path& out) {
-  std::error_code ignored;
-  std::filesystem::remove(out / kTraceFile, ignored);
+/// Moves the results to their place. The trace of a run before must not be taken for one of this run, but may only go
+/// together with the other old results: an empty one replaces it, and is removed afterwards.
+void commit_results(const RecognizeArguments& arguments, PendingDirectory& folder) {
+  const std::filesystem::path trace = arguments.out / kTraceFile;
+  std::error_code error;
+  const bool has_old_trace = !arguments.trace && std::filesystem::exists(trace, error);
+  if (has_old_trace) value_or_throw(write_file(folder.path() / kTraceFile, ""));
+  value_or_throw(folder.commit());
+  if (has_old_trace) std::filesystem::remove(trace, error);
 }
 
 /// Keeps a view that is finished, and prints it.
@@ -64,8 +69,7 @@ void write_run(const RecognizeArguments& arguments, ReportRun& run, const ModelL
   const std::string title = "resight: " + (has_folder ? folder_name(arguments.sequence) : arguments.camera);
   value_or_throw(write_results(folder.path(), run, library));
   value_or_throw(write_report(folder.path() / "report.html", title, std::span(&run, 1), library));
-  if (!arguments.trace) forget_trace(arguments.out);
-  value_or_throw(folder.commit());
+  commit_results(arguments, folder);
   remove_old_pages(arguments.out, static_cast<int>(run.views.size()));
   finished.remove();
   if (!arguments.stream) print_summary(run, arguments.out);
@@ -99,7 +103,10 @@ class RunFiles {
   }
   /// Where the trace is before the results are complete.
   [[nodiscard]] std::filesystem::path trace_file() const { return folder_.path() / kTraceFile; }
-  void complete(ReportRun& run) { write_run(*arguments_, run, *library_, folder_, finished_); }
+  void complete(ReportRun& run) {
+    trace_.sync();
+    write_run(*arguments_, run, *library_, folder_, finished_);
+  }
 
  private:
   const RecognizeArguments* arguments_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+
 #include "camera_run.hpp"
 #include "commands.hpp"
 #include "fused_cloud.hpp"
@@ -33,6 +36,24 @@ std::vector<TrajectoryPose> poses_of(const CameraTrack& track, int component) {
 std::filesystem::path file_of_component(const std::filesystem::path& out, int component) {
   if (component == 0) return out;
   return out.parent_path() / fmt::format("{}_component{}{}", out.stem().string(), component, out.extension().string());
+}
+
+// Those of all components that are there: an earlier run may have had more of them, and a user may have removed some.
+Paths list_component_files(const std::filesystem::path& out) {
+  namespace fs = std::filesystem;
+  const std::string begin = out.stem().string() + "_component";
+  Paths files;
+  std::error_code error;
+  for (fs::directory_iterator it(out.has_parent_path() ? out.parent_path() : fs::path("."), error), end;
+       !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    int component = 0;
+    if (name.starts_with(begin)) std::from_chars(name.data() + begin.size(), name.data() + name.size(), component);
+    if (component > 0 && name == file_of_component(out, component).filename().string())
+      files.push_back(file_of_component(out, component));
+  }
+  std::ranges::sort(files);
+  return files;
 }
 
 // poses_objects.txt
@@ -80,14 +101,25 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
         1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
 }
 
+// Intrinsics may be a text, which names no file.
+Paths list_inputs(const TrackArguments& arguments) {
+  Paths inputs{arguments.sequence};
+  if (arguments.models) inputs.push_back(*arguments.models);
+  if (arguments.poses != "auto" && arguments.poses != "refine") inputs.emplace_back(arguments.poses);
+  const OpenSequenceOptions& input = arguments.input;
+  for (const std::string& file : {input.intrinsics, input.depth_intrinsics, input.color_from_depth})
+    if (!file.empty()) inputs.emplace_back(file);
+  return inputs;
+}
+
 // Poses of a run before may be replaced, those of further components included.
 void check_outputs(const TrackArguments& arguments) {
+  const Paths inputs = list_inputs(arguments);
   const auto check = [&](const std::filesystem::path& file, const char* signature) {
-    check_output_file(file, signature, "file of 'resight track'", {arguments.sequence});
+    check_output_file(file, signature, "file of 'resight track'", inputs);
   };
   check(arguments.out, kPosesComment);
-  for (int component = 1; std::filesystem::exists(file_of_component(arguments.out, component)); ++component)
-    check(file_of_component(arguments.out, component), kPosesComment);
+  for (const std::filesystem::path& file : list_component_files(arguments.out)) check(file, kPosesComment);
   if (arguments.models) check(file_of_objects(arguments.out), kObjectsComment);
   if (arguments.posed) {
     check_new_folder(*arguments.posed);
@@ -99,9 +131,9 @@ void check_outputs(const TrackArguments& arguments) {
   if (arguments.fused->extension() != ".ply")
     throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
   const bool is_again = std::filesystem::exists(*arguments.fused);  // The picture belongs to the cloud.
-  check_output_file(*arguments.fused, kFusedSignature, "point cloud of 'resight track'", {arguments.sequence});
+  check_output_file(*arguments.fused, kFusedSignature, "point cloud of 'resight track'", inputs);
   const std::filesystem::path picture = picture_of_cloud(*arguments.fused);
-  if (is_again) check_output_file(picture, kPngSignature, "picture", {arguments.sequence});
+  if (is_again) check_output_file(picture, kPngSignature, "picture", inputs);
   if (!is_again) check_new_file(picture);
 }
 

@@ -56,6 +56,7 @@ using Spoil = std::function<void(const fs::path& folder)>;
 [[nodiscard]] Spoil link(const char* path, const char* target);
 [[nodiscard]] Spoil both(const Spoil& first, const Spoil& second);
 [[nodiscard]] Spoil move(const char* from, const char* to);
+[[nodiscard]] Spoil copy(const char* from, const char* to);
 [[nodiscard]] Spoil remove_texts(const char* path);
 [[nodiscard]] Spoil small_image(const char* path);
 [[nodiscard]] Spoil no_depth_at_all();

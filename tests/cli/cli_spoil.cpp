@@ -71,6 +71,12 @@ Spoil move(const char* from, const char* to) {
     fs::rename(folder / from, folder / to);
   };
 }
+Spoil copy(const char* from, const char* to) {
+  return [=](const fs::path& folder) {
+    fs::create_directories((folder / to).parent_path());
+    fs::copy(folder / from, folder / to, fs::copy_options::recursive);
+  };
+}
 Spoil remove_texts(const char* path) {
   return [=](const fs::path& folder) {
     std::vector<fs::path> texts;

@@ -7,6 +7,9 @@ namespace {
 
 const std::string kTrainToLongName = "train meshes --out " + kLongName;
 
+constexpr const char* kTrackedPoses =
+    "# world_from_camera of 3 of 3 views\n000000 0 0 0 0 0 0 1\n000001 0 0 0 0 0 0 1\n000002 0 0 0 0 0 0 1\n";
+
 const Row kOutputRows[] = {
     // Output paths.
     {"RecognizeBelowAFile", kNothing, "recognize --models models.resight --sequence views --out file/out", 2,
@@ -28,6 +31,14 @@ const Row kOutputRows[] = {
      "scene_camera\\.json: exists already"},
     {"TrackBesideAForeignJournal", write("poses.txt.partial", "notes\n"), "track --sequence views --out poses.txt", 2,
      "poses\\.txt\\.partial: exists already"},
+    {"TrackOverItsPoses", write("poses.txt", kTrackedPoses), "track --sequence views --poses poses.txt --out poses.txt",
+     2, "poses\\.txt: is an input"},
+    {"TrackOverItsPosesWithAComponent", write("poses_component1.txt", kTrackedPoses),
+     "track --sequence views --poses poses_component1.txt --out poses.txt", 2, "poses_component1\\.txt: is an input"},
+    {"TrackOverItsIntrinsics", write("poses.txt", "# world_from_camera of mine\n60 60 31.5 23.5\n"),
+     "track --sequence tum --intrinsics poses.txt --out poses.txt", 2, "poses\\.txt: is an input"},
+    {"TrackOverAForeignComponent", write("poses_component2.txt", "mine\n"), "track --sequence views --out poses.txt", 2,
+     "poses_component2\\.txt: exists already"},
     {"TrackWithAPictureOverAnImage", kNothing, "track --sequence views --out poses.txt --fused views/rgb/000000.ply", 2,
      "000000\\.png: exists already"},
     {"TrackWithAForeignCloud", write("cloud.ply", "ply\nformat ascii 1.0\n"),
@@ -42,6 +53,9 @@ const Row kOutputRows[] = {
      "views/rgb: is a folder of the input"},
     {"ChangesInANewFolderOfTheSequence", kNothing, "changes --sequence views --out views/changes", 0, "",
      "views/changes/changes.json"},
+    {"AnnotateAProjectInTheSequence", write("views/annotation/annotation.jsonl", "of others\n"),
+     "annotate --models models.resight --sequence views --out views/annotation --no-open", 2,
+     "annotation\\.jsonl: belongs to another sequence"},
     {"RecognizeToNowhere", kNothing, "recognize --models models.resight --sequence views --out ''", 2,
      "--out: '' \\(a value was expected"},
     {"ChangesToALinkToNowhere", link("dangling", "nowhere"), "changes --sequence views --out dangling", 2,
@@ -93,6 +107,18 @@ const Row kOutputRows[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Outputs, CommandLine, testing::ValuesIn(kOutputRows), name_of_row);
+
+TEST_F(CommandLineResults, ModelTakesSomeOfManyViews) {
+  fs::create_directories(folder_ / "many");
+  for (int view = 100; view < 401; ++view) {
+    const std::string number = std::to_string(view);
+    fs::create_hard_link(folder_ / "views/rgb/000000.png", folder_ / "many" / ("color_" + number + ".png"));
+    fs::create_hard_link(folder_ / "views/depth/000000.png", folder_ / "many" / ("depth_" + number + ".png"));
+  }
+  const Outcome outcome = run(folder_, "model --sequence many --intrinsics 60,60,31.5,23.5 --out out");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.output, testing::HasSubstr("many: 301 views, takes one of 3\n"));
+}
 
 }  // namespace
 }  // namespace resight::cli_test

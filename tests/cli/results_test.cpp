@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run writes, and what is left of one that fails or is interrupted.
+#include <sys/wait.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <regex>
@@ -10,6 +12,12 @@
 
 namespace resight::cli_test {
 namespace {
+
+/// Runs a script of the shell in a folder, and returns its status.
+int run_script(const fs::path& folder, const std::string& script) {
+  const int code = std::system(std::string("cd ").append(folder.string()).append(" && ").append(script).c_str());
+  return WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code);
+}
 
 TEST_F(CommandLineResults, TheReportIsTitledAfterTheSequence) {
   const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views/ --out out");
@@ -55,6 +63,22 @@ TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {
   EXPECT_EQ(num_views, kViews);
   EXPECT_EQ(detections(), without);
   EXPECT_FALSE(fs::exists(folder_ / "out/trace.jsonl")) << "it would be taken for one of the new run";
+}
+
+TEST_F(CommandLineResults, ATraceStaysIfNewResultsCannotTakeItsPlace) {
+  ASSERT_EQ(run(folder_, "recognize --models models.resight --sequence views --out out --trace").status, 0);
+  const std::string before = read_text(folder_ / "out/trace.jsonl");
+  ASSERT_FALSE(before.empty());
+  // While the program waits for more views, a folder takes the place of a file.
+  EXPECT_EQ(
+      run_script(folder_,
+                 "{ " RESIGHT_PROGRAM
+                 " recognize --models models.resight --sequence views --out out --follow >told 2>&1 </dev/null & } "
+                 "&& for i in $(seq 600); do [ -s out/finished_views.jsonl ] && break; sleep 0.1; done; "
+                 "rm out/summary.json; mkdir out/summary.json; kill -TERM $!; wait $!"),
+      2);
+  EXPECT_THAT(read_text(folder_ / "told"), testing::HasSubstr("is a folder where a file is to be written"));
+  EXPECT_EQ(read_text(folder_ / "out/trace.jsonl"), before);
 }
 
 TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
@@ -117,6 +141,75 @@ TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
   EXPECT_TRUE(fs::exists(folder_ / "out/worst.md"));
 }
 
+TEST_F(CommandLineResults, SequencesOfTheSameNameAreEvaluatedApart) {
+  copy("views", "set/kitchen/views")(folder_);
+  copy("views", "set/office/views")(folder_);
+  copy("views", "set/desk")(folder_);
+  const Outcome outcome = run(folder_, "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out");
+  ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
+  std::vector<std::string> runs;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out/runs"))
+    runs.push_back(entry.path().filename().string());
+  EXPECT_THAT(
+      runs, testing::UnorderedElementsAre("desk.mvr.k0.json", "kitchen_views.mvr.k0.json", "office_views.mvr.k0.json"));
+}
+
+TEST_F(CommandLineResults, AStoredRunOfOtherViewsOrObjectsIsComputedAgain) {
+  ASSERT_EQ(run(folder_, kEvaluate).status, 0);
+  const fs::path file = folder_ / "out/runs/views.mvr.k0.json";
+  const Json good = Json::parse(read_text(file));
+  const auto replace_run = [&](const Json& stored) {
+    write_text(file, stored.dump());
+    EXPECT_EQ(run(folder_, kEvaluate).status, 0);
+    EXPECT_EQ(Json::parse(read_text(file))["views"].size(), good["views"].size());
+    EXPECT_THAT(read_text(file), testing::Not(testing::HasSubstr("strange")));
+  };
+  Json more_views = good;  // The last one would be among the worst.
+  more_views["views"].push_back(good["views"][0]);
+  more_views["views"].back()["score"] = {0, 9, 9};
+  replace_run(more_views);
+  Json other_object = good;
+  other_object["views"][0]["score"] = {0, 9, 9};
+  const Json detection = {{"object", "strange"},
+                          {"camera_from_object", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1}},
+                          {"score", 0.5},
+                          {"verdict", "false positive"}};
+  other_object["views"][0]["detections"] = Json::array({detection});
+  replace_run(other_object);
+  Json other_preset = good;
+  other_preset["preset"] = "strange";
+  replace_run(other_preset);
+}
+
+TEST_F(CommandLineResults, FindingsInTheSequenceAreReplaced) {
+  no_depth_at_all()(folder_);
+  for (int i = 0; i < 2; ++i) {
+    const Outcome outcome = run(folder_, "check views --out views/pictures --json");
+    EXPECT_EQ(outcome.status, 1) << testing::PrintToString(outcome.errors);
+    EXPECT_TRUE(fs::exists(folder_ / "views/pictures/no_depth.png"));
+    EXPECT_EQ(read_text(folder_ / "views/pictures/findings.json"), outcome.output);
+  }
+  fs::copy(root_ / "good/views/depth", folder_ / "views/depth",
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  EXPECT_EQ(run(folder_, "check views --out views/pictures").status, 0);
+  const Json report = Json::parse(read_text(folder_ / "views/pictures/findings.json"));
+  EXPECT_EQ(report["findings"], Json::array()) << "the picture would pass for one of this check";
+}
+
+TEST_F(CommandLineResults, NoSecretAddressIsLeftBehindBySignals) {
+  fs::create_directory(folder_ / "tmp");
+  // A desktop without a browser.
+  EXPECT_EQ(
+      run_script(folder_,
+                 "{ TMPDIR=$PWD/tmp DISPLAY=:0 PATH=/nowhere " RESIGHT_PROGRAM
+                 " view views >told 2>&1 </dev/null & } && for i in $(seq 600); do [ -s tmp/resight-view-*.html ] "
+                 "&& break; sleep 0.1; done; cat tmp/* >seen; kill -PIPE $!; wait $!"),
+      128 + SIGPIPE)
+      << read_text(folder_ / "told");
+  EXPECT_THAT(read_text(folder_ / "seen"), testing::HasSubstr("#token="));
+  EXPECT_EQ(list(folder_ / "tmp"), std::vector<std::string>{});
+}
+
 TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {
   ASSERT_EQ(run(folder_, "recognize --models models.resight --sequence views --out out").status, 0);
   for (const char* input : {"out", "views", "models.resight", "meshes"}) {
@@ -124,7 +217,7 @@ TEST_F(CommandLineResults, ViewPrintsItsAddressAndEndsWhenInterrupted) {
     const std::string command = "cd " + folder_.string() + " && rm -f told && { " RESIGHT_PROGRAM " view --no-open " +
                                 std::string(input) +
                                 " >told 2>&1 </dev/null & } && for i in $(seq 600); do grep -q Ctrl-C told && break; "
-                                "sleep 0.1; done; sleep 0.5; kill -INT $!; wait $!";
+                                "sleep 0.1; done; kill -INT $!; wait $!";
     EXPECT_EQ(std::system(command.c_str()), 0) << input;
     EXPECT_TRUE(std::regex_match(read_text(folder_ / "told"),
                                  std::regex("http://127\\.0\\.0\\.1:[0-9]+/#token=[0-9a-f]{32}\n.*Ctrl-C.*\n")))

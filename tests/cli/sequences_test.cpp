@@ -33,6 +33,8 @@ const Row kSequenceRows[] = {
     {"InfoOfALibrary", kNothing, "info models.resight --json", 0, ""},
     {"InfoOfModels", kNothing, "info meshes", 0, ""},
     {"InfoOfNothing", kNothing, "info empty", 2, "empty: no sequence found"},
+    {"InfoOfUnfinishedResults", both(write("res/summary.json", "{}"), write("res/.resight-unfinished", "")), "info res",
+     2, "res: is not finished"},
     {"InfoOfATruncatedLibrary", cut("models.resight", 0.7), "info models.resight", 2, "models\\.resight: truncated"},
 
     // Sequences.
@@ -51,6 +53,11 @@ const Row kSequenceRows[] = {
     {"TruthWithOtherNames", both(move("views", "set/test/views"), write("set/models/models_info.json", kOtherNames)),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0,
      "views: the library has other names .* found by obj_id", "out/results.json"},
+    {"EvaluateSequencesThatCannotBeToldApart",
+     both(both(copy("views", "set/kitchen/views"), copy("views", "set/office/views")),
+          copy("views", "set/kitchen_views")),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2,
+     "set: several sequences would be called 'kitchen_views'"},
     {"EvaluateBesideAModel", both(move("views", "set/views"), write("set/thing/3D_model.pcd", kUnorganizedPcd)),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0, "", "out/results.json"},
     {"ConvertOneModel", write("thing/3D_model.pcd", kUnorganizedPcd), "convert thing out --to bop", 0, "",

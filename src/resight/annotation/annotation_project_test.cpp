@@ -189,6 +189,19 @@ TEST_F(AnnotationProjectTest, ACutOffLastLineIsDropped) {
   EXPECT_EQ(project->document().objects.size(), 2U);
 }
 
+TEST_F(AnnotationProjectTest, NothingIsLeftOfACutOffFirstLine) {
+  std::ofstream(journal()) << std::string(500, 'x');
+  {
+    const auto project = open();
+    ASSERT_NE(project, nullptr);
+    EXPECT_TRUE(project->was_cut_off());
+  }
+  EXPECT_EQ(read_file(journal())->find('x'), std::string::npos);
+  const auto project = open();
+  ASSERT_NE(project, nullptr);
+  EXPECT_FALSE(project->was_cut_off());
+}
+
 TEST_F(AnnotationProjectTest, DamageBeforeTheLastLineIsAnError) {
   {
     const auto project = open();

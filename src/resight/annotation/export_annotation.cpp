@@ -97,12 +97,27 @@ Result<void> move_masks(const fs::path& from, const fs::path& to) {
   return {};
 }
 
-/// Removes an earlier export.
-Result<void> clear_export(const fs::path& folder) {
+/// Puts a finished export into the place of an earlier one. At any moment, one of them is whole.
+Result<void> replace_export(const fs::path& pending, const fs::path& folder) {
   if (auto done = check_export_folder(folder); !done) return done;
+  const auto beside = [&](const char* state) {
+    return folder.parent_path() / fmt::format(".{}.resight-{}", folder.filename().string(), state);
+  };
+  const fs::path ready = beside("new"), old = beside("old");
   std::error_code error;
-  fs::remove_all(folder, error);
+  for (const fs::path& left : {ready, old}) fs::remove_all(left, error);
+  // The hidden folder lies inside the existing one, so it is moved out before that one is.
+  fs::rename(pending, ready, error);
+  if (error) return file_error(ready, "cannot be written (" + error.message() + ")");
+  if (fs::exists(folder)) fs::rename(folder, old, error);
   if (error) return file_error(folder, "cannot be replaced (" + error.message() + ")");
+  fs::rename(ready, folder, error);
+  if (error) {
+    std::error_code ignored;
+    fs::rename(old, folder, ignored);
+    return file_error(folder, "cannot be written (" + error.message() + ")");
+  }
+  fs::remove_all(old, error);
   return {};
 }
 
@@ -147,15 +162,7 @@ Result<ExportSummary> export_annotation(const AnnotationDocument& document, cons
       !done)
     return done.error();
   if (const auto done = write_file(pending->path() / kMark, "may be replaced\n"); !done) return done.error();
-  // The hidden folder lies inside an existing one, so it is moved out before that one is removed.
-  const fs::path ready = folder.parent_path() / ("." + folder.filename().string() + ".new");
-  std::error_code error;
-  fs::remove_all(ready, error);
-  fs::rename(pending->path(), ready, error);
-  if (error) return file_error(ready, "cannot be written (" + error.message() + ")");
-  if (const auto done = clear_export(folder); !done) return done.error();
-  fs::rename(ready, folder, error);
-  if (error) return file_error(folder, "cannot be written (" + error.message() + ")");
+  if (const auto done = replace_export(pending->path(), folder); !done) return done.error();
   return ExportSummary{.num_views = views.num_views(),
                        .num_objects = truth.num_objects(),
                        .num_events = static_cast<int>(events.size())};

@@ -94,6 +94,17 @@ TEST_F(ExportAnnotationTest, AnExportReplacesAnEarlierOneAndNothingElse) {
   EXPECT_TRUE(fs::exists(folder_ / "export" / "thesis.tex"));
 }
 
+// Killed between the two renames, the command has left no export but both halves of the exchange.
+TEST_F(ExportAnnotationTest, AnExchangeThatWasKilledIsMended) {
+  write();
+  fs::rename(folder_ / "export", folder_ / ".export.resight-old");
+  fs::create_directories(folder_ / ".export.resight-new" / "bop");
+  write();
+  EXPECT_TRUE(fs::exists(folder_ / "export" / "bop" / "small" / "scene_gt.json"));
+  EXPECT_FALSE(fs::exists(folder_ / ".export.resight-old"));
+  EXPECT_FALSE(fs::exists(folder_ / ".export.resight-new"));
+}
+
 TEST_F(ExportAnnotationTest, AcceptedRegionsHaveTheirMasks) {
   const AnnotatedObject& first = scene_->document.objects.begin()->second;
   const auto judge = [&](const RegionKey& region, RegionVerdict verdict, std::optional<PixelRuns> mask) {

@@ -7,10 +7,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/disjoint_sets.hpp"
 
 namespace resight {
 namespace {
@@ -123,27 +123,19 @@ PoseGraph adjust_pose_graph(std::vector<Rigid3> world_from_node, std::span<const
 
 std::vector<int> find_connected_components(std::size_t num_nodes, std::span<const PoseEdge> edges) {
   check_edges(num_nodes, edges);
-  std::vector<int> root(num_nodes);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find_root = [&](int node) {
-    while (root[static_cast<std::size_t>(node)] != node) node = root[static_cast<std::size_t>(node)];
-    return node;
-  };
-  for (const PoseEdge& edge : edges) {
-    const int a = find_root(edge.a), b = find_root(edge.b);
-    root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
+  DisjointSets sets(num_nodes);
+  for (const PoseEdge& edge : edges) sets.join(edge.a, edge.b);
   std::vector<int> sizes(num_nodes, 0);
-  for (std::size_t n = 0; n < num_nodes; ++n) ++sizes[static_cast<std::size_t>(find_root(static_cast<int>(n)))];
+  for (std::size_t n = 0; n < num_nodes; ++n) ++sizes[static_cast<std::size_t>(sets.root(static_cast<int>(n)))];
   std::vector<int> roots;
   for (std::size_t n = 0; n < num_nodes; ++n)
-    if (root[n] == static_cast<int>(n)) roots.push_back(static_cast<int>(n));
+    if (sizes[n] > 0) roots.push_back(static_cast<int>(n));
   std::ranges::stable_sort(roots, std::greater<>(), [&](int r) { return sizes[static_cast<std::size_t>(r)]; });
   std::vector<int> number(num_nodes, 0);
   for (std::size_t p = 0; p < roots.size(); ++p) number[static_cast<std::size_t>(roots[p])] = static_cast<int>(p);
   std::vector<int> components;
   for (std::size_t n = 0; n < num_nodes; ++n)
-    components.push_back(number[static_cast<std::size_t>(find_root(static_cast<int>(n)))]);
+    components.push_back(number[static_cast<std::size_t>(sets.root(static_cast<int>(n)))]);
   return components;
 }
 

@@ -186,7 +186,6 @@ std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const Align
 // Searches the most recent keyframes first, then the others.
 std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& view, const ViewFeatures& features) const {
   const std::size_t num_recent = std::min(keyframes.size(), static_cast<std::size_t>(options.num_targets));
-  std::vector<std::optional<Join>> joins(keyframes.size());
   const auto try_all = [&](std::size_t begin, std::size_t end) {
     std::optional<Join> best;
     for (std::size_t k = begin; k < end; ++k) {

@@ -3,36 +3,13 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "resight/core/check.hpp"
+#include "resight/core/disjoint_sets.hpp"
 #include "resight/geometry/cell_grid.hpp"
 
 namespace resight {
 namespace {
-
-/// Union-find over cells; the root of a set is its smallest member.
-class CellSets {
- public:
-  explicit CellSets(int size) : parent_(static_cast<std::size_t>(size)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 bool touch(std::span<const Eigen::Vector3f> a, std::span<const Eigen::Vector3f> b, float distance_sq) {
   for (const Eigen::Vector3f& p : a)
@@ -43,7 +20,7 @@ bool touch(std::span<const Eigen::Vector3f> a, std::span<const Eigen::Vector3f> 
 
 /// Joins a cell with those of its neighbours that hold a point near enough. Cells have a diagonal of the distance: what
 /// shares a cell is joined already, and neighbours are at most two cells away.
-void join_neighbors(const CellGrid& grid, int cell, float distance_sq, CellSets& sets) {
+void join_neighbors(const CellGrid& grid, int cell, float distance_sq, DisjointSets& sets) {
   constexpr int kReach = 2;
   const auto points = grid.points_of(cell);
   const Eigen::Vector3i c = grid.cell_of(points.front());
@@ -66,7 +43,7 @@ std::vector<std::vector<int>> cluster_points(std::span<const Eigen::Vector3f> po
   // A shade smaller, so that rounding cannot put two points of a cell farther apart than the distance.
   const CellGrid grid(points, distance_m / std::numbers::sqrt3 * (1.0 - 1e-5));
   const auto distance = static_cast<float>(distance_m);
-  CellSets sets(grid.num_cells());
+  DisjointSets sets(static_cast<std::size_t>(grid.num_cells()));
   for (int cell = 0; cell < grid.num_cells(); ++cell) join_neighbors(grid, cell, distance * distance, sets);
 
   std::vector<int> set_of_point(points.size(), -1);

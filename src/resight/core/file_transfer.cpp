@@ -77,7 +77,7 @@ Result<void> FileTransfer::run() {
   if (auto begun = begin(); !begun) return begun;
   for (std::size_t i = 0; i < files_.size(); ++i)
     if (const std::error_code error = move(i); error) {
-      while (i-- > 0) move_back(i);
+      for (std::size_t moved = i; moved-- > 0;) move_back(moved);
       remove_new_folders();
       std::error_code ignored;
       fs::remove(to_ / kTransferJournal, ignored);
@@ -221,16 +221,15 @@ bool FileTransfer::read_journal() {
 Result<void> FileTransfer::undo(const fs::path& to) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(to / kTransferJournal, error))) return {};
+  const Error mixture = file_error(to, "holds a mixture of old and new files, which a command has left; delete it");
   FileTransfer transfer({}, to);
-  if (!transfer.read_journal())
-    return file_error(to, "holds a mixture of old and new files, which a command has left; delete it");
+  if (!transfer.read_journal()) return mixture;
   const FolderLock hidden(transfer.from_);
-  if (hidden.is_there()) {
-    if (!hidden.lock()) return {};  // It is still at work, which the next step notices.
-    for (std::size_t i = transfer.files_.size(); i-- > 0;) transfer.move_back(i);
-    transfer.remove_new_folders();
-    fs::remove(transfer.replaced_, error);
-  }
+  if (!hidden.is_there()) return mixture;  // Somebody has removed what was to be moved back.
+  if (!hidden.lock()) return {};           // It is still at work, which the next step notices.
+  for (std::size_t i = transfer.files_.size(); i-- > 0;) transfer.move_back(i);
+  transfer.remove_new_folders();
+  fs::remove(transfer.replaced_, error);
   fs::remove(to / kTransferJournal, error);
   if (error) return file_error(to, reason_of_transfer(error));
   return {};

@@ -97,6 +97,46 @@ TEST_F(FileTransferTest, ThePendingFolderOfTheNextCommandUndoesIt) {
   EXPECT_EQ(contents(out_), before_);
 }
 
+// The hidden folder lies beside the folder if that did not exist when the command began.
+TEST_F(FileTransferTest, ThePendingFolderBesideIsNotLostBeforeItIsUndone) {
+  const fs::path beside = folder_ / ".out.resight-partial";
+  fs::rename(hidden_, beside);
+  hidden_ = beside;
+  begin_and_stop(3);
+  EXPECT_TRUE(check_writable_folder(out_, ExistingFolder::kFill).ok());
+  EXPECT_EQ(contents(out_), before_);
+  EXPECT_EQ(get(beside / "new/er/c.txt"), "new");
+  { EXPECT_TRUE(PendingDirectory::create(out_, ExistingFolder::kFill).ok()); }
+  EXPECT_FALSE(fs::exists(beside));
+}
+
+TEST_F(FileTransferTest, AMixtureThatCannotBeUndoneStaysKnown) {
+  begin_and_stop(3);
+  fs::remove_all(hidden_);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    EXPECT_THAT(check_writable_folder(out_, ExistingFolder::kFill).error().message, HasSubstr("holds a mixture"));
+    EXPECT_FALSE(check_finished(out_).ok());
+  }
+}
+
+TEST_F(FileTransferTest, WhatCannotBeMovedIsNamedAndAllIsAsBefore) {
+  const fs::path elsewhere = "/dev/shm/" + folder_.filename().string();
+  std::error_code error;
+  if (!fs::create_directory(elsewhere, error)) GTEST_SKIP() << "no /dev/shm";
+  put(hidden_ / "other_disk/d.txt", "new");
+  fs::create_directory_symlink(elsewhere, out_ / "other_disk");
+  fs::rename(hidden_ / "other_disk/d.txt", elsewhere / "d.txt", error);
+  if (!error) fs::remove_all(elsewhere);
+  if (!error) GTEST_SKIP() << "/dev/shm is the same disk";
+  const auto moved = FileTransfer(hidden_, out_).run();
+  fs::remove_all(elsewhere);
+  ASSERT_FALSE(moved.ok());
+  EXPECT_THAT(moved.error().message, HasSubstr("out/other_disk/d.txt: cannot be written"));
+  fs::remove(out_ / "other_disk");
+  fs::remove_all(hidden_);
+  EXPECT_EQ(contents(out_), before_);
+}
+
 // A data set is written into an empty folder only. What a killed command has left there is no data.
 TEST_F(FileTransferTest, AFolderThatWasEmptyIsEmptyAgain) {
   const fs::path empty = folder_ / "empty";

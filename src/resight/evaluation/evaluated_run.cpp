@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/evaluation/evaluated_run.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/json_text.hpp"
+#include "resight/evaluation/loss.hpp"
 
 namespace resight {
 namespace {
@@ -23,6 +26,26 @@ constexpr std::array<std::pair<DetectionVerdict, std::string_view>, 4> kVerdicts
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_from(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+// Of a preset or of a stage that takes time. It goes into tables as it is.
+std::string plain_name_from(const Json& j) {
+  auto name = j.get<std::string>();
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ' || c == '-' || c == '_';
+  };
+  if (!std::ranges::all_of(name, is_plain)) throw std::runtime_error("'" + name + "' is no plain name");
+  return name;
+}
+
+// Empty, or the name of a LossStage, which heads a column.
+std::string loss_stage_from(const Json& j) {
+  auto name = j.get<std::string>();
+  bool is_known = name.empty();
+  for (int stage = 0; stage <= static_cast<int>(LossStage::kRejected); ++stage)
+    is_known |= name == to_string(static_cast<LossStage>(stage));
+  if (!is_known) throw std::runtime_error("unknown stage '" + name + "'");
+  return name;
 }
 
 Json score_json(const RecognitionScore& s) { return {s.true_positives, s.false_positives, s.false_negatives}; }
@@ -72,7 +95,7 @@ EvaluatedTruth truth_from(const Json& j) {
   t.found_strictly = j.at("found_strictly").get<bool>();
   t.center_error_m = number_from(j.at("center_error_m"));
   t.rotation_error_rad = number_from(j.at("rotation_error_rad"));
-  t.lost_at = j.at("lost_at").get<std::string>();
+  t.lost_at = loss_stage_from(j.at("lost_at"));
   return t;
 }
 
@@ -131,7 +154,7 @@ EvaluatedView view_from(const Json& j) {
   view.counts = counts_from(j.at("counts"));
   view.points = {points_from(j.at("removed_points")), points_from(j.at("novel_points"))};
   for (const Json& t : j.at("times"))
-    view.times.add(t.at(0).get<std::string>(), t.at(1).get<double>(), t.at(2).get<double>());
+    view.times.add(plain_name_from(t.at(0)), t.at(1).get<double>(), t.at(2).get<double>());
   return view;
 }
 
@@ -175,7 +198,7 @@ Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {
     const Json j = Json::parse(text);
     EvaluatedRun run;
     run.sequence = j.at("sequence").get<std::string>();
-    run.preset = j.at("preset").get<std::string>();
+    run.preset = plain_name_from(j.at("preset"));
     run.num_previous_views = j.at("num_previous_views").get<int>();
     run.is_clustered = j.at("is_clustered").get<bool>();
     run.fingerprint = j.at("fingerprint").get<std::string>();

@@ -64,7 +64,16 @@ TEST(EvaluatedRun, DamageIsReportedInOneLine) {
   std::string text = format_run(make_run("a", "mvr", 3));
   std::string high_score = text;
   high_score.replace(high_score.find("\"score\":0.5"), 11, "\"score\":1.5");
-  for (const std::string& bad : {text.substr(0, text.size() / 2), high_score, std::string("[]"), std::string()}) {
+  const auto with = [&](const std::string& what, const std::string& by) {
+    std::string changed = text;
+    return changed.replace(changed.find(what), what.size(), by);
+  };
+  // Names that are printed into tables as they are.
+  const std::string stage = with("\"rejected\"", "\"a | b\"");
+  const std::string time = with("\"sift\"", "\"a | b\"");
+  const std::string preset = with("\"mvr\"", "\"a | b\"");
+  for (const std::string& bad :
+       {text.substr(0, text.size() / 2), high_score, stage, time, preset, std::string("[]"), std::string()}) {
     const auto run = parse_run(bad, "a.json");
     ASSERT_FALSE(run.ok());
     EXPECT_TRUE(run.error().message.starts_with("a.json: ")) << run.error().message;

@@ -101,8 +101,12 @@ SurfaceEvidence classify_surface(const OrientedPoints& surface, const Rigid3& ca
                            &projected[begin]);
   });
   std::optional<SelfOcclusion> self;
-  if (options.self_occlusion_spacing_m)
+  if (options.self_occlusion_spacing_m) {
+    // What hides a pixel projects to it. A point beside the image can be so near that its cells hold the whole image.
+    for (ProjectedPoint& p : projected)
+      if (!view.camera.contains({p.u, p.v})) p.z = -1;
     self.emplace(projected, static_cast<float>(view.camera.fx), static_cast<float>(*options.self_occlusion_spacing_m));
+  }
 
   const auto min_cosine = static_cast<float>(options.min_viewing_cosine);
   SurfaceEvidence result;

@@ -193,6 +193,20 @@ TEST(ClassifySurface, ASurfaceHidesItselfIfAsked) {
   EXPECT_THROW((void)classify(), std::invalid_argument);
 }
 
+// A large object reaches beside the camera.
+TEST(ClassifySurface, WhatIsBesideTheImageHidesNothing) {
+  const Image<float> wall(kCamera.width, kCamera.height, 2.0F);
+  Points points{{1, 0, 0.002F}};
+  for (int i = 1; i <= 20; ++i)
+    for (int j = -20; j <= 20; ++j) {
+      points.emplace_back(-0.005F * static_cast<float>(i), 0.005F * static_cast<float>(j), 1.0F);
+      points.emplace_back(0.006F * static_cast<float>(i), 0.005F * static_cast<float>(j), 1.2F);
+    }
+  const SurfaceEvidence evidence =
+      classify_surface({.points = points}, Rigid3::identity(), {kCamera, wall}, {.self_occlusion_spacing_m = 0.005});
+  EXPECT_EQ(evidence.num(Evidence::kSeenThrough), static_cast<int>(points.size()) - 1);
+}
+
 TEST(ClassifySurface, SelfOcclusionTurnsPointsToOccludedAndNothingElse) {
   const Image<float> depth_m = random_depth(21);
   const Points points = random_points(4000, 0.4, 22);

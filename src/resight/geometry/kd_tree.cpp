@@ -21,6 +21,23 @@ struct Adaptor {
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
 
+/// A result set of nanoflann that fills the caller's list: its own one would be allocated for each query.
+class NeighborsWithin {
+ public:
+  NeighborsWithin(float radius_sq, std::vector<PointNeighbor>& found) : radius_sq_(radius_sq), found_(found) {}
+  [[nodiscard]] std::size_t size() const { return found_.size(); }
+  [[nodiscard]] static bool full() { return true; }
+  [[nodiscard]] float worstDist() const { return radius_sq_; }
+  bool addPoint(float distance_sq, std::uint32_t index) {
+    if (distance_sq < radius_sq_) found_.push_back({static_cast<int>(index), distance_sq});
+    return true;  // goes on
+  }
+
+ private:
+  float radius_sq_;
+  std::vector<PointNeighbor>& found_;
+};
+
 }  // namespace
 
 struct KdTree::Impl {
@@ -59,12 +76,11 @@ std::vector<PointNeighbor> KdTree::nearest(const Eigen::Vector3f& query, int k) 
 void KdTree::within(const Eigen::Vector3f& query, double radius_m, std::vector<PointNeighbor>& neighbors) const {
   neighbors.clear();
   if (impl_->adaptor.points.empty()) return;
-  std::vector<std::pair<std::uint32_t, float>> found;
+  NeighborsWithin found(static_cast<float>(radius_m * radius_m), neighbors);
   nanoflann::SearchParams params;
   params.sorted = false;
-  impl_->tree.radiusSearch(query.data(), static_cast<float>(radius_m * radius_m), found, params);
-  std::sort(found.begin(), found.end());
-  for (const auto& [index, distance_sq] : found) neighbors.push_back({static_cast<int>(index), distance_sq});
+  impl_->tree.radiusSearchCustomCallback(query.data(), found, params);
+  std::ranges::sort(neighbors, {}, &PointNeighbor::index);
 }
 
 }  // namespace resight

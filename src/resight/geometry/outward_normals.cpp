@@ -10,6 +10,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/statistics.hpp"
+#include "resight/geometry/fibonacci_sphere.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/voxel_map.hpp"
@@ -27,13 +28,7 @@ constexpr double kMaxTangent = 1.3333;
 // Directions spread evenly over the sphere (Fibonacci).
 std::vector<Eigen::Vector3f> spread_directions(int count) {
   std::vector<Eigen::Vector3f> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count;
-    const double phi = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    directions.emplace_back(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
-                            static_cast<float>(z));
-  }
+  for (int i = 0; i < count; ++i) directions.push_back(fibonacci_direction(i, count).cast<float>());
   return directions;
 }
 

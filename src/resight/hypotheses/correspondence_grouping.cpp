@@ -126,6 +126,7 @@ class GroupCollector {
   }
 
   [[nodiscard]] bool is_repeated(const Candidate& candidate) const {
+    if (!options_.merge_distance_m) return false;
     const Rigid3& pose = candidate.estimate.scene_from_model;
     return std::any_of(accepted_.begin(), accepted_.end(), [&](const Candidate& other) {
       const Rigid3& other_pose = other.estimate.scene_from_model;

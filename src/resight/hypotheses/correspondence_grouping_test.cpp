@@ -73,6 +73,19 @@ TEST(GroupCorrespondences, TwoInstancesSideBySideAreTwoGroups) {
   }
 }
 
+TEST(GroupCorrespondences, GroupsOfOnePoseAreMergedUnlessThatIsOff) {
+  std::size_t num_merged = 0, num_apart = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Problem problem =
+        make_problem({.num_correspondences = 200, .inliers_per_instance = 40, .share_near = 0.7, .seed = seed});
+    GroupCorrespondencesOptions options;
+    num_merged += group_correspondences(problem.correspondences, options).size();
+    options.merge_distance_m = std::nullopt;
+    num_apart += group_correspondences(problem.correspondences, options).size();
+  }
+  EXPECT_GT(num_apart, num_merged);
+}
+
 TEST(GroupCorrespondences, RecallAmongOutliers) {
   EXPECT_GE(recall({.num_correspondences = 80, .inliers_per_instance = 8}, {}, 40), 0.94);
   EXPECT_GE(recall({.num_correspondences = 200, .inliers_per_instance = 20}, {}, 40), 0.97);

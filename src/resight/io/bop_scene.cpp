@@ -17,6 +17,9 @@ namespace {
 
 using Names = std::map<int, BopModelInfo>;
 
+constexpr double kMinDepthScale = 1e-6;
+constexpr double kMaxDepthScale = 1e6;
+
 /// Finds the image of a view in one of several folders, with one of several extensions.
 std::optional<fs::path> find_image(const fs::path& scene, std::initializer_list<const char*> folders, int image_id) {
   for (const char* folder : folders)
@@ -45,7 +48,8 @@ Result<ListedView> parse_camera(const fs::path& scene, int image_id, const nlohm
   view.intrinsics = *intrinsics;
   const double depth_scale =
       member(entry, "depth_scale").is_null() ? 1.0 : as_number(member(entry, "depth_scale")).value_or(0);
-  if (!(depth_scale > 0)) return Error{what + ": depth_scale must be a positive number"};
+  if (!(depth_scale >= kMinDepthScale && depth_scale <= kMaxDepthScale))
+    return Error{what + ": depth_scale must be a number from 1e-6 to 1e6 (millimetres per unit)"};
   view.metres_per_unit = depth_scale * 1e-3;
   const nlohmann::json& rotation = member(entry, "cam_R_w2c");
   has_pose = !rotation.is_null();

@@ -115,8 +115,11 @@ TEST(BopScene, BadContent) {
   EXPECT_THAT(message_with("scene_camera.json", R"({"9": {}})"), HasSubstr("colour image is missing"));
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {"cam_K": [0,0,1,0,5,1,0,0,1]}})"), HasSubstr("focal"));
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {"cam_K": "x"}})"), HasSubstr("9 numbers"));
-  EXPECT_THAT(message_with("scene_camera.json", R"({"1": {"cam_K": [5,0,1,0,5,1,0,0,1], "depth_scale": 0}})"),
-              HasSubstr("depth_scale"));
+  for (const char* scale : {"0", "1e-322", "1e7", "\"1\""})
+    EXPECT_THAT(message_with("scene_camera.json",
+                             std::string(R"({"1": {"cam_K": [5,0,1,0,5,1,0,0,1], "depth_scale": )") + scale + "}}"),
+                HasSubstr("image 1: depth_scale must be a number from"))
+        << scale;
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {}, "1": {}})"), HasSubstr("the key '1' twice"));
   EXPECT_THAT(message_with("scene_camera.json", R"({"1": {}, "01": {}})"), HasSubstr("several keys are the number 1"));
   EXPECT_THAT(message_with("scene_camera.json", "{\n\"1\": NaN}"), HasSubstr("line 2 (NaN and infinite"));

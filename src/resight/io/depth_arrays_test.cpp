@@ -34,6 +34,17 @@ TEST(DepthArrays, FilesOfOtherWriters) {
   }
 }
 
+// As renderers and other programs mark the background: finite, but farther than any camera measures.
+TEST(DepthArrays, AbsurdDepthIsNoReturn) {
+  for (const char* name : {"single.npz", "named.npz", "single.exr", "half.exr", "fortran.npy"}) {
+    const auto far = read_depth_array(stored(name), 1e3);
+    const auto too_far = read_depth_array(stored(name), 1e5);
+    ASSERT_TRUE(far.ok() && too_far.ok()) << name;
+    EXPECT_NEAR((*far)(1, 0), 1010, 1) << name;
+    EXPECT_TRUE(std::isnan((*too_far)(1, 0))) << name;
+  }
+}
+
 TEST(DepthArrays, SaysWhichArrayIsMissing) {
   EXPECT_THAT(read_depth_array(stored("unnamed.npz"), std::nullopt).error().message,
               HasSubstr("holds 2 arrays (a, b, ..), none of which is called depth"));

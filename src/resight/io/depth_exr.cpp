@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight::io {
 namespace {
@@ -101,10 +101,7 @@ Result<Image<float>> parse_depth_exr(std::string_view bytes, std::string_view na
     auto depth_m = read_channel(stream, name, metres_per_unit.has_value());
     if (!depth_m) return depth_m;
     const double scale = metres_per_unit.value_or(1);
-    for (float& z_m : depth_m->data()) {
-      const auto scaled = static_cast<float>(scale * z_m);
-      z_m = scaled > 0 && std::isfinite(scaled) ? scaled : std::numeric_limits<float>::quiet_NaN();
-    }
+    for (float& z_m : depth_m->data()) z_m = depth_or_none(scale * z_m);
     return depth_m;
   } catch (const std::exception&) {
     return Error{fmt::format("{}: cannot be decoded as an OpenEXR image (damaged?)", name)};

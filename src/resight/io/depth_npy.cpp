@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -15,6 +13,7 @@
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 namespace {
@@ -140,11 +139,10 @@ Result<Image<float>> io::parse_depth_npy(std::string_view bytes, std::string_vie
   const double scale = metres_per_unit.value_or(1);
   const char* value = bytes.data() + header->data_offset;
   for (std::size_t i = 0; i < num_pixels; ++i, value += value_bytes) {
-    const auto z = static_cast<float>(scale * load_value(header->type, value));
     const auto height = static_cast<std::size_t>(header->height);
     const std::size_t pixel =
         header->is_column_major ? i % height * static_cast<std::size_t>(header->width) + i / height : i;
-    depth_m[pixel] = z > 0 && std::isfinite(z) ? z : std::numeric_limits<float>::quiet_NaN();
+    depth_m[pixel] = depth_or_none(scale * load_value(header->type, value));
   }
   return depth_m;
 }

@@ -136,6 +136,21 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("the unit is wrong"));
 }
 
+TEST(ImageFolder, AbsurdDepthIsNoReturn) {
+  io::TestDirectory directory;
+  Image<float> depth_m(kWidth, kHeight, 2.0F);
+  depth_m(3, 2) = 20000;
+  ASSERT_TRUE(write_color(directory / "color/0.jpg", Image<Rgb8>(kWidth, kHeight)).ok());
+  ASSERT_TRUE(write_depth(directory / "depth/0.png", depth_m, 1).ok());
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  OpenSequenceOptions options;
+  options.depth_scale_m = 1;
+  const auto sequence = open_sequence(directory.path(), options);
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_TRUE(std::isnan((*sequence)->read_view(0)->depth_m(3, 2)));
+  EXPECT_EQ((*sequence)->read_view(0)->depth_m(2, 3), 2);
+}
+
 TEST(ImageFolder, DepthArraysAreMetres) {
   for (const char* extension : {".npz", ".exr"}) {
     io::TestDirectory directory;
@@ -259,6 +274,48 @@ TEST(ImageFolder, NamesThatAreTimes) {
   EXPECT_EQ((*sequence)->view_name(2), "1305031103.005100");
   EXPECT_NEAR((*sequence)->read_pose(0)->translation.x(), 1 + 0.000407 / 0.04, 1e-4);
   EXPECT_NEAR((*sequence)->read_pose(2)->translation.x(), 3, 1e-6);
+}
+
+// As with --follow, when the first view is there alone.
+TEST(ImageFolder, TheNameOfAViewStaysWhenOthersFollow) {
+  for (const auto& [first, second] : {std::pair<std::string, std::string>{"cam1_#_0001", "cam1_#_0002"},
+                                      {"cam1_#_1305031102.175304", "cam1_#_1305031102.211214"},
+                                      {"1305031102.175304", "1305031103.005100"}}) {
+    io::TestDirectory directory;
+    const auto write_pair = [&](std::string color, std::string depth) {
+      if (const std::size_t kind = color.find('#'); kind != std::string::npos) {
+        color.replace(kind, 1, "color");
+        depth.replace(kind, 1, "depth");
+      }
+      ASSERT_TRUE(write_color(directory / "rgb" / (color + ".png"), Image<Rgb8>(kWidth, kHeight)).ok());
+      ASSERT_TRUE(write_depth(directory / "depth" / (depth + ".png"), Image<float>(kWidth, kHeight, 1.5F), 0.001).ok());
+    };
+    io::write_text(directory / "intrinsics.txt", kMatrix);
+    write_pair(first, first);
+    const auto alone = open_sequence(directory.path());
+    ASSERT_TRUE(alone.ok()) << alone.error().message;
+    ASSERT_EQ((*alone)->num_views(), 1);
+    const std::string name = (*alone)->view_name(0);
+    write_pair(second, second);
+    const auto both = open_sequence(directory.path());
+    ASSERT_TRUE(both.ok()) << both.error().message;
+    ASSERT_EQ((*both)->num_views(), 2);
+    EXPECT_EQ((*both)->view_name(0), name);
+  }
+}
+
+TEST(ImageFolder, SinglePairsOfTimesAreComparedByTime) {
+  const auto num_views = [](const std::string& color, const std::string& depth) {
+    io::TestDirectory directory;
+    EXPECT_TRUE(write_color(directory / "rgb" / (color + ".jpg"), Image<Rgb8>(kWidth, kHeight)).ok());
+    EXPECT_TRUE(write_depth(directory / "depth" / (depth + ".png"), Image<float>(kWidth, kHeight, 1.5F), 0.001).ok());
+    io::write_text(directory / "intrinsics.txt", kMatrix);
+    const auto sequence = open_sequence(directory.path());
+    return sequence.ok() ? (*sequence)->num_views() : 0;
+  };
+  EXPECT_EQ(num_views("1305031102.175304", "1305031102.160407"), 1);
+  EXPECT_EQ(num_views("1305031102.175304", "1305031102.975304"), 0) << "0.8 s apart";
+  EXPECT_EQ(num_views("1305031102.5", "1305031109.5"), 0) << "only the fractions agree";
 }
 
 TEST(ImageFolder, NamesThatAreMillisecondsWithFractions) {

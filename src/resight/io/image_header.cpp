@@ -38,7 +38,11 @@ std::optional<ImageHeader> parse_png(std::string_view bytes) {
   return header;
 }
 
-/// Walks over the segments up to the start of frame, which contains the size.
+/// Whether a marker stands alone, without a segment.
+bool stands_alone(unsigned char marker) { return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD8); }
+
+/// Walks over the segments up to the start of frame, which contains the size. In the data behind it, the end marker
+/// cannot occur by chance.
 std::optional<ImageHeader> parse_jpeg(std::string_view bytes) {
   std::size_t at = 2;
   while (at + 9 < bytes.size()) {
@@ -52,10 +56,10 @@ std::optional<ImageHeader> parse_jpeg(std::string_view bytes) {
       ImageHeader header;
       header.height = static_cast<int>(big_endian(bytes, at + 5, 2));
       header.width = static_cast<int>(big_endian(bytes, at + 7, 2));
-      header.complete = bytes.substr(bytes.size() > 64 ? bytes.size() - 64 : 0).find("\xff\xd9") != bytes.npos;
+      header.complete = bytes.find("\xff\xd9", at) != bytes.npos;
       return header;
     }
-    at += 2 + big_endian(bytes, at + 2, 2);
+    at += 2 + (stands_alone(marker) ? 0 : big_endian(bytes, at + 2, 2));
   }
   return std::nullopt;
 }

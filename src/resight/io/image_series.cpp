@@ -120,17 +120,22 @@ std::string series_word(std::string_view lower_name) {
   return has_any(lower_name, {"color", "colour", "rgb"}) ? "*color*" : "*";
 }
 
+/// Of a single file: all numbers of a time, otherwise the last one, so that its name stays if others follow.
+std::vector<bool> guess_key_runs(const DigitRuns& runs) {
+  std::vector<bool> is_key(runs.digits.size(), !std::isnan(time_of_digits(runs.digits)));
+  if (!is_key.empty()) is_key.back() = true;
+  return is_key;
+}
+
 /// Removes the numbers that are the same in all names, such as those of "color_640x480".
 void set_keys(FileSeries& series, const std::vector<std::string>& names) {
   const DigitRuns first = split_digits(names.front());
-  std::vector<bool> differs(first.digits.size(), names.size() == 1);
+  std::vector<bool> differs = names.size() == 1 ? guess_key_runs(first) : std::vector<bool>(first.digits.size(), false);
   for (const std::string& name : names) {
     const DigitRuns runs = split_digits(name);
     for (std::size_t i = 0; i < runs.digits.size(); ++i)
       if (runs.digits[i] != first.digits[i]) differs[i] = true;
   }
-  if (names.size() == 1)
-    std::fill(differs.begin() + std::min<std::ptrdiff_t>(1, std::ssize(differs)), differs.end(), false);
   for (const std::string& name : names) {
     const DigitRuns runs = split_digits(name);
     std::string key;

@@ -6,17 +6,15 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <opencv2/imgcodecs.hpp>
 
 #include "resight/io/internal/bgr_image.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_header.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 namespace {
-
-constexpr float kNoDepth = std::numeric_limits<float>::quiet_NaN();
 
 Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags, std::int64_t max_pixels) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
@@ -31,7 +29,8 @@ Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags,
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
     cv::Mat image = cv::imdecode(encoded, flags);
-    if (image.empty()) return fail("the image cannot be decoded (damaged?)");
+    if (image.cols != header->width || image.rows != header->height)
+      return fail("the image cannot be decoded (damaged?)");
     return image;
   } catch (const cv::Exception&) {
     return fail("the image cannot be decoded (damaged?)");
@@ -100,8 +99,7 @@ Result<Image<float>> read_depth(const std::filesystem::path& file, double metres
   const auto raw = read_depth_raw(file);
   if (!raw) return raw.error();
   Image<float> depth_m(raw->width(), raw->height());
-  for (std::size_t i = 0; i < raw->size(); ++i)
-    depth_m[i] = (*raw)[i] == 0 ? kNoDepth : static_cast<float>((*raw)[i] * metres_per_unit);
+  for (std::size_t i = 0; i < raw->size(); ++i) depth_m[i] = depth_or_none((*raw)[i] * metres_per_unit);
   return depth_m;
 }
 
@@ -110,10 +108,12 @@ Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file) {
   if (!image) return image.error();
   Image<std::uint8_t> mask(image->cols, image->rows, 0);
   const std::size_t pixel_bytes = image->elemSize();
+  const bool has_alpha = image->channels() == 2 || image->channels() == 4;
+  const std::size_t color_bytes = pixel_bytes - (has_alpha ? image->elemSize1() : 0);
   for (int v = 0; v < image->rows; ++v)
     for (int u = 0; u < image->cols; ++u) {
       const unsigned char* pixel = image->ptr(v) + static_cast<std::size_t>(u) * pixel_bytes;
-      for (std::size_t i = 0; i < pixel_bytes; ++i)
+      for (std::size_t i = 0; i < color_bytes; ++i)
         if (pixel[i] != 0) mask(u, v) = 255;
     }
   return mask;

@@ -27,10 +27,11 @@ inline constexpr int kMaxViewPixels = 1 << 24;
 [[nodiscard]] Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file);
 /// Same for the bytes of a file. `name` is used in error messages.
 [[nodiscard]] Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name);
-/// Reads depth in metres from a 16-bit PNG: stored value times `metres_per_unit`. A stored 0 (no return) becomes NaN.
+/// Reads depth in metres from a 16-bit PNG: stored value times `metres_per_unit`. A stored 0 becomes NaN, as
+/// by depth_or_none().
 [[nodiscard]] Result<Image<float>> read_depth(const std::filesystem::path& file, double metres_per_unit);
 /// Reads a NumPy array of shape (height, width): floating-point metres, or any numbers times `metres_per_unit`. Values
-/// that are not positive and finite become NaN. Whole numbers without a unit are refused.
+/// that are no depth (depth_or_none) become NaN. Whole numbers without a unit are refused.
 [[nodiscard]] Result<Image<float>> read_depth_npy(const std::filesystem::path& file,
                                                   std::optional<double> metres_per_unit = {});
 /// Reads an 8- or 16-bit PNG with one channel, or a colour PNG: 255 where it is not black, else 0.

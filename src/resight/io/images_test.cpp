@@ -44,6 +44,43 @@ TEST(Images, MasksAreZeroOr255) {
   EXPECT_EQ(std::ranges::count(read->data(), 255), 1);
 }
 
+// As image editors save them: an opaque black pixel and an opaque green one.
+TEST(Images, TheAlphaOfAMaskDoesNotCount) {
+  io::TestDirectory directory;
+  constexpr unsigned char kRgba[] = {
+      0x89, 'P',  'N',  'G',  0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 'I',  'H',  'D',  'R',  0x00, 0x00, 0x00,
+      0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4, 0x22, 0x7f, 0x8a, 0x00, 0x00, 0x00, 0x11, 'I',
+      'D',  'A',  'T',  0x78, 0x9c, 0x63, 0x60, 0x60, 0x60, 0xf8, 0xcf, 0xc0, 0xc9, 0xf0, 0x1f, 0x00, 0x06, 0x1e, 0x02,
+      0x08, 0xe9, 0x8d, 0x74, 0xa9, 0x00, 0x00, 0x00, 0x00, 'I',  'E',  'N',  'D',  0xae, 0x42, 0x60, 0x82};
+  io::write_text(directory / "m.png", std::string(reinterpret_cast<const char*>(kRgba), sizeof kRgba));
+  const auto mask = read_mask(directory / "m.png");
+  ASSERT_TRUE(mask.ok()) << mask.error().message;
+  EXPECT_EQ((*mask)(0, 0), 0);
+  EXPECT_EQ((*mask)(1, 0), 255);
+}
+
+// A marker without a segment, then a start of frame that is too large. Whoever takes its bytes for a length finds a
+// small one far behind.
+TEST(Images, NoMarkerHidesTheSizeOfAJpeg) {
+  const std::string large("\xff\xc0\x00\x11\x08\x4e\x20\x4e\x20\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00", 19);
+  const std::string small("\xff\xc0\x00\x11\x08\x00\x10\x00\x10\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00", 19);
+  std::string bytes("\xff\xd8\xff\x01");
+  bytes += large;
+  bytes.resize(2 + 2 + 0xffc0, '\0');
+  bytes += small;
+  bytes += "\xff\xd9";
+  EXPECT_THAT(decode_color(bytes, "bomb.jpg").error().message, HasSubstr("20000x20000 is out of range"));
+}
+
+TEST(Images, JpegMayBeFollowedByOtherData) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "c.jpg", Image<Rgb8>(32, 24, Rgb8{200, 100, 50})).ok());
+  std::string bytes = *io::read_file(directory / "c.jpg");
+  EXPECT_TRUE(decode_color(bytes + std::string(1000, 'x'), "motion.jpg").ok());
+  bytes.resize(bytes.size() - 10);
+  EXPECT_THAT(decode_color(bytes, "cut.jpg").error().message, HasSubstr("cut off"));
+}
+
 TEST(Images, DepthThatDoesNotFitIsAnError) {
   io::TestDirectory directory;
   EXPECT_THAT(write_depth(directory / "d.png", Image<float>(2, 2, 7.0F), 1e-4).error().message,

@@ -21,7 +21,7 @@ Result<Image<float>> read_rotated_depth(const fs::path& file, double metres_per_
   Image<float> depth_m(raw->width(), raw->height());
   for (std::size_t i = 0; i < raw->size(); ++i) {
     const std::uint16_t value = std::rotl((*raw)[i], 13);
-    depth_m[i] = value == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value * metres_per_unit);
+    depth_m[i] = depth_or_none(value * metres_per_unit);
   }
   return depth_m;
 }
@@ -32,7 +32,7 @@ Result<Image<float>> read_unsaturated_depth(const fs::path& file, double metres_
   if (!raw) return raw.error();
   Image<float> depth_m(raw->width(), raw->height(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < raw->size(); ++i)
-    if ((*raw)[i] != 0 && (*raw)[i] != 0xFFFF) depth_m[i] = static_cast<float>((*raw)[i] * metres_per_unit);
+    if ((*raw)[i] != 0xFFFF) depth_m[i] = depth_or_none((*raw)[i] * metres_per_unit);
   return depth_m;
 }
 

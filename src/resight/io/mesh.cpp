@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "resight/geometry/limits.hpp"
@@ -16,6 +15,12 @@
 
 namespace resight {
 namespace {
+
+/// The area of a closed box or ball is at most 3.2 times its squared diagonal; the rest is for what has many thin
+/// parts.
+constexpr double kMaxAreaPerSizeSq = 100;
+/// The same for the largest object that is allowed: 250 m2 for 5 m.
+constexpr double kMaxAreaPerLargestSizeSq = 10;
 
 Result<MeshFile> read_ply_mesh(const std::filesystem::path& file) {
   auto content = read_ply(file);
@@ -52,12 +57,33 @@ std::string guess_unit(double size_m, double metres_per_unit) {
   return "check its unit";
 }
 
-/// Whether any face is more than a line.
-bool has_area(const TriangleMesh& mesh) {
-  return std::ranges::any_of(mesh.faces, [&](const std::array<int, 3>& f) {
+double total_area_sq_m(const TriangleMesh& mesh) {
+  double area_sq_m = 0;
+  for (const auto& f : mesh.faces) {
     const Eigen::Vector3d a = mesh.vertices[f[0]].cast<double>();
-    return (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a).squaredNorm() > 0;
-  });
+    area_sq_m += (mesh.vertices[f[1]].cast<double>() - a).cross(mesh.vertices[f[2]].cast<double>() - a).norm() / 2;
+  }
+  return area_sq_m;
+}
+
+double diagonal_m(std::span<const Eigen::Vector3f> points_m) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : points_m) box.extend(p);
+  return box.isEmpty() ? 0 : box.diagonal().cast<double>().norm();
+}
+
+/// Surfaces are sampled by area: faces on top of each other would make a small file fill the memory.
+Result<void> check_area(const TriangleMesh& mesh, const ReadMeshOptions& options, const std::filesystem::path& file) {
+  const double area_sq_m = total_area_sq_m(mesh);
+  if (!(area_sq_m > 0)) return io::file_error(file, "has no surface: its faces are lines and points");
+  const double size_m = diagonal_m(mesh.vertices);
+  const double limit_sq_m =
+      std::min(kMaxAreaPerSizeSq * size_m * size_m, kMaxAreaPerLargestSizeSq * options.max_size_m * options.max_size_m);
+  if (area_sq_m <= limit_sq_m) return {};
+  return io::file_error(
+      file, fmt::format("its faces have an area of {:.4g} m2, too much for an object that is {:.3g} m large (at most "
+                        "{:.4g} m2): do they lie on top of each other?",
+                        area_sq_m, size_m, limit_sq_m));
 }
 
 }  // namespace
@@ -102,7 +128,7 @@ Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOpti
   for (Eigen::Vector2f& uv : mesh.uvs)
     if (!uv.allFinite()) uv.setZero();
   if (const auto done = check_size(mesh.vertices, options, file); !done) return done.error();
-  if (!has_area(mesh)) return io::file_error(file, "has no surface: its faces are lines and points");
+  if (const auto done = check_area(mesh, options, file); !done) return done.error();
   const auto is_unit = [](const Eigen::Vector3f& n) { return std::abs(n.squaredNorm() - 1) < 1e-3F; };
   if (mesh.normals.empty() || !std::ranges::all_of(mesh.normals, is_unit)) compute_vertex_normals(mesh);
   return result;

@@ -24,8 +24,9 @@ struct MeshFile {
 
 /// Reads a triangle mesh: PLY by read_ply(), OBJ, GLB/glTF and STL through Assimp. Applies scene transforms, splits
 /// polygons into triangles, and drops points and lines. Several textures are stacked into one. A mesh with a missing
-/// texture has no colours unless its vertices have different colours. Deterministic: vertices are in the order of the
-/// file (PLY) or of Assimp's importer.
+/// texture has no colours unless its vertices have different colours. A mesh whose faces have a larger area than
+/// 100 times its squared size, or 10 times the squared largest size, is refused. Deterministic: vertices are in the
+/// order of the file (PLY) or of Assimp's importer.
 [[nodiscard]] Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options = {});
 
 /// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).

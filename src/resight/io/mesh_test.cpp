@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
+#include <limits>
 #include <optional>
 
 #include "resight/io/images.hpp"
@@ -78,6 +79,33 @@ TEST(Mesh, ObjectsFarFromTheirOriginAreRefused) {
   EXPECT_THAT(read_mesh(directory / "far.obj").error().message, HasSubstr("m away from its origin (at most 100 m)"));
   io::write_text(directory / "near.obj", "v 99 0 0\nv 100 0 0\nv 99 1 0\nf 1 2 3\n");
   EXPECT_TRUE(read_mesh(directory / "near.obj").ok());
+}
+
+/// `count` times the same triangle, with two sides of `leg_m`.
+void write_stacked_ply(const std::filesystem::path& file, const std::string& leg_m, int count) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  text += "element face " + std::to_string(count) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  text += "0 0 0\n" + leg_m + " 0 0\n0 " + leg_m + " 0\n";
+  for (int i = 0; i < count; ++i) text += "3 0 1 2\n";
+  io::write_text(file, text);
+}
+
+TEST(Mesh, MoreAreaThanAnObjectCanHaveIsRefused) {
+  io::TestDirectory directory;
+  // 0.005 m2 each; 100 times 0.02 m2 are allowed.
+  write_stacked_ply(directory / "small.ply", "0.1", 350);
+  EXPECT_TRUE(read_mesh(directory / "small.ply").ok());
+  write_stacked_ply(directory / "small.ply", "0.1", 1000);
+  EXPECT_THAT(read_mesh(directory / "small.ply").error().message,
+              HasSubstr("its faces have an area of 5 m2, too much for an object that is 0.141 m large (at most 2 m2)"));
+  // 4.5 m2 each; 250 m2 are allowed whatever the size.
+  write_stacked_ply(directory / "large.ply", "3", 55);
+  EXPECT_TRUE(read_mesh(directory / "large.ply").ok());
+  write_stacked_ply(directory / "large.ply", "3", 1000);
+  EXPECT_THAT(read_mesh(directory / "large.ply").error().message, HasSubstr("an area of 4500 m2"));
+  const double any_size = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(read_mesh(directory / "large.ply", {.max_size_m = any_size}).error().message,
+              HasSubstr("at most 1800 m2"));
 }
 
 TEST(Mesh, SameFileSameBytes) {

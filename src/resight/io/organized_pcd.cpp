@@ -11,7 +11,7 @@
 namespace resight {
 namespace {
 
-bool is_return(const Eigen::Vector3f& p) { return p.allFinite() && p.z() > 0; }
+bool is_return(const Eigen::Vector3f& p) { return p.allFinite() && p.z() > 0 && p.z() <= kMaxReturn_m; }
 
 /// Fits pixel = f * slope + c by least squares.
 class LineFit {

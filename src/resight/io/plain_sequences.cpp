@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
@@ -83,6 +84,8 @@ Result<void> add_truth_per_view(const fs::path& file, SequenceTable& table) {
       const auto name = as_text(member(entry, "object"));
       const auto pose = parse_matrix(member(entry, "camera_from_object"), what);
       if (!name) return Error{what + ": an object has no name"};
+      if (const auto checked = check_object_name(*name); !checked)
+        return Error{fmt::format("{}: {}", what, checked.error().message)};
       if (!pose) return pose.error();
       view.ground_truth.push_back({*name, 0, counts[*name]++, *pose, std::numeric_limits<double>::quiet_NaN()});
     }
@@ -98,6 +101,7 @@ Result<void> add_truth_in_world(const fs::path& file, SequenceTable& table) {
   if (!json->is_object()) return file_error(file, "expected an object");
   for (const auto& [name, entry] : json->items()) {
     if (member(entry, "T_world_model").is_null()) continue;
+    if (const auto checked = check_object_name(name); !checked) return file_error(file, checked.error().message);
     const auto world_from_object =
         parse_matrix(member(entry, "T_world_model"), fmt::format("{}: {}", file.string(), name));
     if (!world_from_object) return world_from_object.error();

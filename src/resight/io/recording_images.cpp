@@ -14,6 +14,7 @@
 #include "resight/io/images.hpp"
 #include "resight/io/internal/bgr_image.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight::io {
 namespace {
@@ -82,14 +83,10 @@ Result<Image<Rgb8>> decode_raw_color(const ImageMessage& image, std::string_view
   return from_bgr(bgr);
 }
 
-float to_depth(double value, double scale) {
-  const auto z = static_cast<float>(value * scale);
-  return z > 0 && std::isfinite(z) ? z : std::numeric_limits<float>::quiet_NaN();
-}
-
 Image<float> scale_whole_numbers(const Image<std::uint16_t>& raw, double metres_per_unit) {
   Image<float> depth_m(raw.width(), raw.height());
-  for (std::size_t i = 0; i < raw.size(); ++i) depth_m[i] = to_depth(raw[i] == 0xFFFF ? 0 : raw[i], metres_per_unit);
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    depth_m[i] = depth_or_none(raw[i] == 0xFFFF ? 0 : raw[i] * metres_per_unit);
   return depth_m;
 }
 
@@ -123,7 +120,8 @@ Result<Image<float>> decode_raw_depth(const ImageMessage& image, std::optional<d
   }
   Image<float> depth_m(width, height);
   for (int v = 0; v < height; ++v)
-    for (int u = 0; u < width; ++u) depth_m(u, v) = to_depth(value_at<float>(image, u, v), metres_per_unit.value_or(1));
+    for (int u = 0; u < width; ++u)
+      depth_m(u, v) = depth_or_none(value_at<float>(image, u, v) * metres_per_unit.value_or(1));
   return depth_m;
 }
 
@@ -141,7 +139,7 @@ Result<Image<float>> decode_disparity_depth(std::string_view bytes, const Record
   for (float& value : depth_m->data()) {
     const bool is_measured =
         value > 0 && (!has_limits || (value >= message->min_disparity_px && value <= message->max_disparity_px));
-    value = is_measured ? to_depth(unit / static_cast<double>(value), 1) : std::numeric_limits<float>::quiet_NaN();
+    value = is_measured ? depth_or_none(unit / static_cast<double>(value)) : std::numeric_limits<float>::quiet_NaN();
   }
   return depth_m;
 }
@@ -163,8 +161,8 @@ Result<Image<float>> decode_compressed_depth(const CompressedImageMessage& image
   std::memcpy(&b, image.data.data() + 8, 4);
   Image<float> depth_m(raw->width(), raw->height());
   for (std::size_t i = 0; i < raw->size(); ++i)
-    depth_m[i] = to_depth((*raw)[i] == 0 ? 0 : double{a} / (static_cast<double>((*raw)[i]) - double{b}),
-                          metres_per_unit.value_or(1));
+    depth_m[i] = depth_or_none(
+        (*raw)[i] == 0 ? 0 : double{a} / (static_cast<double>((*raw)[i]) - double{b}) * metres_per_unit.value_or(1));
   return depth_m;
 }
 

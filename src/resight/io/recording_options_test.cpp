@@ -13,6 +13,7 @@ namespace {
 using recordings::TestRecording;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr int kImageWidth = 20;
 constexpr int kImageHeight = 10;
@@ -157,6 +158,23 @@ TEST_F(RecordingOptions, DepthOfAnotherCameraNeedsItsPlace) {
   // 30 px * 0.1 m / 1 m: the depth lies 3 px to the right.
   EXPECT_TRUE(std::isnan(frame->depth_m(2, 5)));
   EXPECT_NEAR(frame->depth_m(3, 5), 1, 1e-6);
+}
+
+// Registered depth has the CameraInfo of the colours. More exact intrinsics do not make it another camera.
+TEST_F(RecordingOptions, GivenIntrinsicsDoNotRegisterDepthAnew) {
+  add_views(recording_, {});
+  add_info(recording_, "/depth/camera_info");
+  OpenSequenceOptions options;
+  options.intrinsics = "30,30,9.5,4.5";
+  const auto plain = open(options);
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  EXPECT_THAT((*plain)->notes(), Not(Contains(HasSubstr("registered here"))));
+  add_info(recording_, "/rgb/camera_info");
+  options.intrinsics = "31,31,9.5,4.5";
+  const auto refined = open(options);
+  ASSERT_TRUE(refined.ok()) << refined.error().message;
+  EXPECT_THAT((*refined)->notes(), Not(Contains(HasSubstr("registered here"))));
+  EXPECT_EQ((*refined)->read_view(0)->camera.fx, 31);
 }
 
 TEST_F(RecordingOptions, LensesOfCameraInfo) {

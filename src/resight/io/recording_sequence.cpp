@@ -83,6 +83,7 @@ class RecordingSequence final : public Sequence {
     return recording_->topics()[static_cast<std::size_t>(index)];
   }
   [[nodiscard]] Result<void> find_cameras(const OpenSequenceOptions& options);
+  [[nodiscard]] Camera recorded_color_camera() const;
   [[nodiscard]] Result<void> find_registration(const RecordedPoses& poses);
   [[nodiscard]] Result<void> find_views(const std::vector<RecordedPair>& pairs, const RecordedPoses& poses,
                                         const OpenSequenceOptions& options);
@@ -122,6 +123,14 @@ Result<void> RecordingSequence::find_cameras(const OpenSequenceOptions& options)
   return {};
 }
 
+/// The colour camera as the recording describes it, if it does. What the user says of it may be more exact.
+Camera RecordingSequence::recorded_color_camera() const {
+  if (topics_.color_info)
+    if (const auto recorded = to_camera(*topics_.color_info, topic(topics_.color).name); recorded.ok())
+      return recorded->camera;
+  return color_camera_.camera;
+}
+
 Result<void> RecordingSequence::find_registration(const RecordedPoses& poses) {
   const std::string& name = topic(topics_.depth).name;
   const Camera& depth = registration_.depth_camera.camera;
@@ -129,9 +138,9 @@ Result<void> RecordingSequence::find_registration(const RecordedPoses& poses) {
   const bool says_registered = name.find("aligned") != name.npos || name.find("registered") != name.npos;
   const auto between = poses.color_from_depth(topics_);
   const bool same_frame = topics_.color_frame == topics_.depth_frame && !between;
-  const Camera& color = color_camera_.camera;
-  const bool same_camera =
-      !has_depth_camera || (std::abs(depth.fx / color.fx - 1) < 0.01 && depth.width == color.width);
+  const Camera color = recorded_color_camera();
+  const bool same_width = depth.width == color.width || color.width == 0;  // 0: given as plain numbers
+  const bool same_camera = !has_depth_camera || (std::abs(depth.fx / color.fx - 1) < 0.01 && same_width);
   if (says_registered || (same_frame && same_camera)) return {};
   if (!has_depth_camera)
     return Error{

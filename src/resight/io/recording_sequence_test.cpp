@@ -194,13 +194,15 @@ TEST(RecordingImages, DepthEncodings) {
   ASSERT_TRUE(millimetres.ok()) << millimetres.error().message;
   EXPECT_FLOAT_EQ((*millimetres)[0], 1.0F);
   EXPECT_TRUE(std::isnan((*millimetres)[1])) << "65535 is no return";
+  EXPECT_TRUE(std::isnan((*io::decode_depth_message(raw_message("16UC1", 1, 1, 2, "\xe8\x03"), topic, 20.0))[0]));
   const auto swapped = io::decode_depth_message(raw_message("16UC1", 1, 1, 2, "\x03\xe8", true), topic, 0.0005);
   EXPECT_FLOAT_EQ((*swapped)[0], 0.5F);
-  const float metres[] = {1.5F, std::nanf("")};
+  const float metres[] = {1.5F, std::nanf(""), 1e10F};
   const auto floats = io::decode_depth_message(
-      raw_message("32FC1", 2, 1, 8, std::string(reinterpret_cast<const char*>(metres), 8)), topic, {});
+      raw_message("32FC1", 3, 1, 12, std::string(reinterpret_cast<const char*>(metres), 12)), topic, {});
   EXPECT_EQ((*floats)[0], 1.5F);
   EXPECT_TRUE(std::isnan((*floats)[1]));
+  EXPECT_TRUE(std::isnan((*floats)[2])) << "finite, but absurd";
   EXPECT_EQ(io::content_of("mono16", "/device_0/sensor_0/Depth_0/image/data"), io::ImageContent::kDepth);
   EXPECT_EQ(io::content_of("mono16", "/camera/ir/image"), io::ImageContent::kUnknown);
   EXPECT_EQ(io::content_of("16UC1; compressedDepth png", "/d"), io::ImageContent::kDepth);

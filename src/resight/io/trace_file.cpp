@@ -90,7 +90,7 @@ StoredTrace read_trace(const MemberReader& reader) {
   return trace;
 }
 
-/// Calls `on_line` with offset and size of each whole line from the line that starts at `begin`.
+/// Calls `on_line` with offset and size of each whole line from the line that starts at `begin`, until it fails.
 template <typename OnLine>
 Result<void> find_lines(const InputFile& file, std::uint64_t begin, const OnLine& on_line) {
   std::string block;
@@ -98,7 +98,7 @@ Result<void> find_lines(const InputFile& file, std::uint64_t begin, const OnLine
     block.resize(std::min<std::uint64_t>(1 << 20, file.size() - offset));
     if (const auto done = file.read_at(offset, block.data(), block.size()); !done) return done;
     for (std::size_t end = block.find('\n'); end != block.npos; end = block.find('\n', end + 1)) {
-      on_line(begin, offset + end - begin);
+      if (const auto done = on_line(begin, offset + end - begin); !done) return done;
       begin = offset + end + 1;
     }
   }
@@ -109,6 +109,7 @@ Result<void> find_lines(const InputFile& file, std::uint64_t begin, const OnLine
 
 Result<TraceFile> TraceFile::open(const std::filesystem::path& file, int num_views) {
   TraceFile trace = follow(file);
+  trace.max_views_ = num_views;
   if (const auto found = trace.find_new_views(); !found) return found.error();
   if (trace.num_views() != num_views)
     return file_error(file, fmt::format("traces {} views, but the results have {}", trace.num_views(), num_views));
@@ -130,23 +131,32 @@ Result<void> TraceFile::find_new_views() {
   if (const auto done = content_->update_size(); !done) return done;
   if (content_->size() < end_offset_) return file_error(file_, "has become shorter");
   std::vector<Line> found;
-  const auto add = [&](std::uint64_t offset, std::uint64_t size) { found.push_back({offset, size}); };
+  const auto add = [&](std::uint64_t offset, std::uint64_t size) -> Result<void> {
+    if (end_offset_ == 0) {
+      if (const auto done = check_header({offset, size}); !done) return done;
+      end_offset_ = size + 1;
+      return {};
+    }
+    if (size == 0) return file_error(file_, fmt::format("line {} is empty", lines_.size() + found.size() + 2));
+    if (lines_.size() + found.size() >= static_cast<std::size_t>(max_views_))
+      return file_error(file_, fmt::format("traces more views than the results have ({})", max_views_));
+    found.push_back({offset, size});
+    return {};
+  };
   if (const auto done = find_lines(*content_, end_offset_, add); !done) return done;
-  if (end_offset_ == 0) {
-    if (found.empty()) return file_error(file_, "is no trace of 'resight recognize --trace'");
-    const auto header = read_line(found.front());
-    if (!header) return header.error();
-    const auto content = io::parse_json(*header);
-    if (!content || member(*content, "format") != kTraceFormat)
-      return file_error(
-          file_,
-          "is no trace of 'resight recognize --trace' of this version (remove it to use the results without it)");
-    end_offset_ = found.front().size + 1;
-    found.erase(found.begin());
-  }
+  if (end_offset_ == 0) return file_error(file_, "is no trace of 'resight recognize --trace'");
   if (!found.empty()) end_offset_ = found.back().offset + found.back().size + 1;
   lines_.insert(lines_.end(), found.begin(), found.end());
   return {};
+}
+
+Result<void> TraceFile::check_header(const Line& line) const {
+  const auto text = read_line(line);
+  if (!text) return text.error();
+  const auto content = io::parse_json(*text);
+  if (content.ok() && member(*content, "format") == kTraceFormat) return {};
+  return file_error(
+      file_, "is no trace of 'resight recognize --trace' of this version (remove it to use the results without it)");
 }
 
 Result<std::string> TraceFile::read_line(const Line& line) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -104,7 +105,9 @@ class TraceFile {
     std::uint64_t size = 0;
   };
   [[nodiscard]] Result<std::string> read_line(const Line& line) const;
+  [[nodiscard]] Result<void> check_header(const Line& line) const;
   std::filesystem::path file_;
+  int max_views_ = std::numeric_limits<int>::max();  ///< Of the results; not known while they are written.
   std::shared_ptr<InputFile>
       content_;                   ///< Stays open: the file may be renamed once it is complete. Null: not found yet.
   std::vector<Line> lines_;       ///< One per view.

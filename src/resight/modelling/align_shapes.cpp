@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/fibonacci_sphere.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/registration/point_to_plane.hpp"
 #include "resight/registration/twist.hpp"
@@ -88,15 +89,12 @@ double agreement(const Shape& fixed, const Shape& moving, const Rigid3& pose, co
   return num / static_cast<double>(fixed.samples.size() + moving.samples.size());
 }
 
-// Directions uniformly over the sphere (Fibonacci lattice), each combined with rotations about it.
+// Directions uniformly over the sphere, each combined with rotations about it.
 std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options) {
   std::vector<Eigen::Matrix3d> rotations;
   for (int d = 0; d < options.num_directions; ++d) {
-    const double z = 1 - (2 * d + 1.0) / options.num_directions;
-    const double angle = d * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
     const Eigen::Quaterniond tilt =
-        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d(r * std::cos(angle), r * std::sin(angle), z));
+        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), fibonacci_direction(d, options.num_directions));
     for (int t = 0; t < options.num_rotations; ++t)
       rotations.emplace_back(tilt *
                              Eigen::AngleAxisd(2 * std::numbers::pi * t / options.num_rotations, Vector3d::UnitZ()));

@@ -33,9 +33,19 @@ BuildModelOptions two_threads() {
   return options;
 }
 
+// A can from both sides and the model of it, made once for all tests.
+struct PeaCan {
+  std::vector<TrainingView> views = scan("soup_pea", true);
+  Result<ObjectModelBuild> build = build_model(views, two_threads());
+};
+
+const PeaCan& pea_can() {
+  static const PeaCan instance;
+  return instance;
+}
+
 TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
-  const std::vector<TrainingView> views = scan("soup_pea", true);
-  const auto build = build_model(views, two_threads());
+  const auto& [views, build] = pea_can();
   ASSERT_TRUE(build.ok()) << build.error().message;
   EXPECT_EQ(build->report.num_views, 24);
   EXPECT_EQ(build->key_views.size(), 24U);
@@ -73,8 +83,7 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
 }
 
 TEST(BuildModel, WritesWhatIsDeclaredOfTheObject) {
-  const std::vector<TrainingView> views = scan("soup_pea", true);
-  const auto build = build_model(views, two_threads());
+  const auto& [views, build] = pea_can();
   ASSERT_TRUE(build.ok()) << build.error().message;
   DeclaredModelInfo declared;
   declared.bop_id = 7;
@@ -104,7 +113,7 @@ TEST(BuildModel, WarnsOfWhatWillBeHard) {
 }
 
 TEST(BuildModel, ViewsWithoutTheObjectAreAnError) {
-  std::vector<TrainingView> views = scan("soup_pea", false);
+  std::vector<TrainingView> views = pea_can().views;
   for (TrainingView& view : views) std::ranges::fill(view.mask.data(), std::uint8_t{0});
   EXPECT_FALSE(build_model(views).ok());
   EXPECT_FALSE(build_model({}).ok());

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "resight/core/check.hpp"
+#include "resight/geometry/fibonacci_sphere.hpp"
 
 namespace resight {
 namespace {
@@ -13,14 +14,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kDirections = 4000;  // About 1.8 deg apart.
-
-// Fibonacci lattice: equal areas, from +z to -z.
-Vector3d lattice_direction(int i) {
-  const double z = 1 - (2 * i + 1.0) / kDirections;
-  const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-  const double r = std::sqrt(1 - z * z);
-  return {r * std::cos(angle), r * std::sin(angle), z};
-}
 
 std::vector<Vector3d> view_directions(std::span<const Rigid3> object_from_camera, const Vector3d& center) {
   std::vector<Vector3d> directions;
@@ -46,7 +39,7 @@ ViewCoverage measure_coverage(std::span<const Rigid3> object_from_camera, const 
   int above = 0;
   int below = 0;
   for (int i = 0; i < kDirections; ++i) {
-    const Vector3d direction = lattice_direction(i);
+    const Vector3d direction = fibonacci_direction(i, kDirections);
     const double angle_rad = std::acos(std::clamp(nearest_cosine(direction, views), -1.0, 1.0));
     if (!views.empty() && angle_rad <= max_angle_rad) ++(direction.z() > 0 ? above : below);
     if (angle_rad <= coverage.largest_gap_rad) continue;

@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/disjoint_sets.hpp"
 
 namespace resight {
 namespace {
@@ -63,11 +63,6 @@ double fan_area(const TriangleMesh& mesh, const std::vector<int>& loop) {
   return area;
 }
 
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 template <typename T>
 void keep(std::vector<T>& values, const std::vector<int>& kept) {
   if (values.empty()) return;
@@ -105,12 +100,11 @@ MeshHoles measure_holes(const TriangleMesh& mesh) {
 
 TriangleMesh keep_large_parts(const TriangleMesh& mesh, double min_share) {
   check_in_range("min_share", min_share, 0, 1);
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets parts(mesh.vertices.size());
   for (const auto& f : mesh.faces)
-    for (int k = 1; k < 3; ++k) parent[find_root(parent, f[k])] = find_root(parent, f[0]);
+    for (int k = 1; k < 3; ++k) parts.join(f[0], f[k]);
   std::map<int, std::size_t> faces_of_part;
-  for (const auto& f : mesh.faces) ++faces_of_part[find_root(parent, f[0])];
+  for (const auto& f : mesh.faces) ++faces_of_part[parts.root(f[0])];
   std::size_t largest = 0;
   for (const auto& [root, count] : faces_of_part) largest = std::max(largest, count);
   std::vector<int> number(mesh.vertices.size(), -1);
@@ -118,7 +112,7 @@ TriangleMesh keep_large_parts(const TriangleMesh& mesh, double min_share) {
   TriangleMesh result = mesh;
   result.faces.clear();
   for (std::array<int, 3> f : mesh.faces) {
-    const std::size_t count = faces_of_part[find_root(parent, f[0])];
+    const std::size_t count = faces_of_part[parts.root(f[0])];
     if (static_cast<double>(count) < min_share * static_cast<double>(largest)) continue;
     for (int& i : f) {
       if (number[i] < 0) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string_view>
+#include <map>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "resight/sensor/training_view.hpp"
@@ -9,14 +11,20 @@
 /// Recordings for tests, in the frame of the generated object.
 namespace resight::test {
 
-inline std::vector<RecordedView> record(std::string_view object, double step_deg, bool upside_down = false,
+/// Each recording is made once.
+inline std::vector<RecordedView> record(const std::string& object, double step_deg, bool upside_down = false,
                                         RecordingKind kind = RecordingKind::kTurntable) {
-  RecordingOptions options;
-  options.kind = kind;
-  options.step_deg = step_deg;
-  options.upside_down = upside_down;
-  options.num_threads = 2;
-  return simulate_recording(make_procedural_object(object)->mesh, options);
+  static std::map<std::tuple<std::string, double, bool, RecordingKind>, std::vector<RecordedView>> made;
+  const auto [entry, is_new] = made.try_emplace({object, step_deg, upside_down, kind});
+  if (is_new) {
+    RecordingOptions options;
+    options.kind = kind;
+    options.step_deg = step_deg;
+    options.upside_down = upside_down;
+    options.num_threads = 2;
+    entry->second = simulate_recording(make_procedural_object(object)->mesh, options);
+  }
+  return entry->second;
 }
 
 }  // namespace resight::test

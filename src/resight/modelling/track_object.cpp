@@ -29,16 +29,29 @@ std::size_t count_set(const Image<std::uint8_t>& mask) {
   return mask.size() - static_cast<std::size_t>(std::ranges::count(mask.data(), 0));
 }
 
-// Share of the pixels beside the object, with depth in both, whose depth is equal.
-double still_share(const RgbdFrame& a, const RgbdFrame& b, const Image<std::uint8_t>& object) {
+// Share of the pixels beside the object, with depth in both, whose depth is equal. 0 if the sizes differ.
+double still_share(const Image<float>& depth_a_m, const Image<float>& depth_b_m, const Image<std::uint8_t>& object) {
+  if (depth_a_m.width() != depth_b_m.width() || depth_a_m.height() != depth_b_m.height()) return 0;
   std::size_t still = 0;
   std::size_t both = 0;
   for (std::size_t i = 0; i < object.size(); ++i) {
-    if (object[i] != 0 || std::isnan(a.depth_m[i]) || std::isnan(b.depth_m[i])) continue;
+    if (object[i] != 0 || std::isnan(depth_a_m[i]) || std::isnan(depth_b_m[i])) continue;
     ++both;
-    still += std::abs(a.depth_m[i] - b.depth_m[i]) <= kStillDepthShare * a.depth_m[i];
+    still += std::abs(depth_a_m[i] - depth_b_m[i]) <= kStillDepthShare * depth_a_m[i];
   }
   return both == 0 ? 0 : static_cast<double>(still) / static_cast<double>(both);
+}
+
+// Whether most of some views from all over the recording show the scene of the first one where it was. The next view
+// alone does not tell, because a camera in the hand moves little between two views, or starts later.
+bool is_camera_static(const Image<float>& first_depth_m, std::span<const RgbdFrame> others,
+                      const Image<std::uint8_t>& object, double min_share) {
+  constexpr std::size_t kCompared = 5;
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < kCompared; ++k)
+    shares.push_back(still_share(first_depth_m, others[k * (others.size() - 1) / (kCompared - 1)].depth_m, object));
+  std::ranges::nth_element(shares, shares.begin() + kCompared / 2);
+  return shares[kCompared / 2] >= min_share;
 }
 
 // z points up from the support; the origin is the foot of the region.
@@ -99,6 +112,7 @@ class ObjectTracker {
 
   // Masks of all views.
   Result<void> segment(std::vector<RgbdFrame> frames) {
+    if (frames.size() < 2) return Error{"a recording must have at least two views"};
     for (const RgbdFrame& frame : frames) given_.push_back(frame.world_from_camera);
     std::optional<ObjectRegion> region;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -106,9 +120,6 @@ class ObjectTracker {
         return Error{fmt::format("view {}: is {} columns wide (expected {} or more)", frames[i].name,
                                  frames[i].camera.width, kMinColumns)};
       const PreparedView view = prepare_view(std::move(frames[i]));
-      if (i == 1)  // All other views are like the first and the second.
-        track_.is_camera_still =
-            still_share(track_.views[0].frame, view.frame, track_.views[0].mask) >= options_.min_still_share;
       if (!region || !track_.is_camera_still) {
         const ObjectRegion last = region.value_or(ObjectRegion{});
         std::optional<ObjectRegion> found = find_object_region(view, options_.region, region ? &last : nullptr);
@@ -122,8 +133,11 @@ class ObjectTracker {
       if (count_set(mask) < kMinMaskPixels)
         return Error{fmt::format("lost at view {}: nothing stands where the object was", view.frame.name)};
       track_.views.push_back({view.frame, std::move(mask)});
+      const TrainingView& first = track_.views[0];
+      if (i == 0)
+        track_.is_camera_still =
+            is_camera_static(first.frame.depth_m, std::span(frames).subspan(1), first.mask, options_.min_still_share);
     }
-    if (track_.views.size() < 2) return Error{"a recording must have at least two views"};
     return {};
   }
 

@@ -115,6 +115,23 @@ TEST(TrackObject, GivenPosesOfSomethingElseDoNoHarm) {
   EXPECT_LT(rotation_error("milk_carton", RecordingKind::kTurntable, 0.001, small_steps), 0.06);
 }
 
+// A camera in the hand is held still for a moment before it goes around.
+TEST(TrackObject, AStartWithoutMotionIsNoTurntable) {
+  Recording walk = split(test::record("milk_carton", 60, false, RecordingKind::kWalk));
+  walk.frames.insert(walk.frames.begin(), 2, walk.frames[0]);
+  const auto track = track_object(std::move(walk.frames), track_on_two_threads());
+  EXPECT_TRUE(!track.ok() || !track->is_camera_still);
+}
+
+TEST(TrackObject, AViewOfAnotherSizeIsNoTurntable) {
+  Recording walk = split(test::record("milk_carton", 60, false, RecordingKind::kWalk));
+  RgbdFrame& small = walk.frames[1];
+  small.camera = {320, 240, small.camera.fx / 2, small.camera.fy / 2, 159.5, 119.5};
+  small.depth_m = Image<float>(320, 240, 1.0F);
+  small.color = Image<Rgb8>(320, 240);
+  EXPECT_FALSE(track_object(std::move(walk.frames), track_on_two_threads()).ok());
+}
+
 TEST(TrackObject, SaysWhereItIsLost) {
   const Recording whole = split(test::record("milk_carton", 40));
   // The object is rotated by hand between two views.

@@ -103,6 +103,17 @@ std::size_t count_bytes(const schema::Features* features) {
   return sizeof(float) * (std::size_t{features->points()->size()} + features->normals()->size()) + num_codes;
 }
 
+template <typename Stored>
+std::size_t count_bytes(const flatbuffers::Vector<const Stored*>* values) {
+  return values != nullptr ? sizeof(Stored) * std::size_t{values->size()} : 0;
+}
+
+std::size_t count_bytes(const schema::Object& object) {
+  return count_bytes(object.surface()) + count_bytes(object.sift()) + count_bytes(object.shot()) +
+         count_bytes(object.discrete_symmetries()) + count_bytes(object.continuous_symmetries()) +
+         count_bytes(object.discrete_shape_symmetries()) + count_bytes(object.continuous_shape_symmetries());
+}
+
 /// Whether centre and diameter can be those of the surface. Views are cropped to them.
 bool fits_surface(const ObjectModel& object) {
   if (object.surface.empty()) return true;
@@ -152,10 +163,9 @@ Result<ModelLibrary> decode_payload(std::span<const std::uint8_t> payload) {
     if (const auto checked = check_object_name(name); !checked) return Error{"damaged: " + checked.error().message};
     if (!names.insert(name).second) return Error{fmt::format("damaged: two objects are named '{}'", name)};
   }
-  // Objects could share one surface, and a small file fill the memory.
+  // Objects could share their parts, and a small file fill the memory.
   std::size_t num_bytes = 0;
-  for (const schema::Object* object : objects)
-    num_bytes += count_bytes(object->surface()) + count_bytes(object->sift()) + count_bytes(object->shot());
+  for (const schema::Object* object : objects) num_bytes += count_bytes(*object);
   if (num_bytes > payload.size()) return Error{"damaged: its objects hold more than the file does"};
   library.objects.resize(objects.size());
   std::vector<std::string> damaged_parts(objects.size());

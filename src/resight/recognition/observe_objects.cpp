@@ -9,6 +9,7 @@ Result<std::vector<ObservedObject>> observe_objects(const Sequence& sequence, co
                                                     int num_threads, const ObserveProgress& progress) {
   RecognizerConfig config = RecognizerConfig::from_preset("default");
   config.num_previous_views = 0;
+  config.camera.depth_bias.correct = false;  // It is measured with the given poses.
   config.set_num_threads(num_threads);
   SceneRecognizer recognizer(library, config);
   std::vector<ObservedObject> observed;

@@ -164,7 +164,6 @@ struct RecognizerConfig {
   /// Single views stand for themselves.
   [[nodiscard]] bool remembers() const { return remember_objects && num_previous_views > 0; }
   /// Whether tracked objects decide where a view is searched.
-  [[nodiscard]] bool skips_places() const { return remembers() && search.place_interval.has_value(); }
   void check() const;
   /// Every setting that has an effect as key and value, in order: what summary.json keeps of a run.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;

@@ -34,8 +34,8 @@ TEST(GenerationSettings, DependOnTheGenerationOnly) {
     EXPECT_NE(generation_settings(*changed), text);
 }
 
-// Where a view is searched then depends on what is known, and that on all settings.
-TEST(GenerationSettings, AreAllSettingsIfPlacesAreSkipped) {
+// Which views are searched, and where, then depends on what is known, and that on all settings.
+TEST(GenerationSettings, AreAllSettingsIfViewsOrPlacesAreSkipped) {
   RecognizerConfig base = RecognizerConfig::from_preset("default");
   base.search.place_interval = 4;
   RecognizerConfig other = base;
@@ -45,6 +45,8 @@ TEST(GenerationSettings, AreAllSettingsIfPlacesAreSkipped) {
   other.verify.selection.outlier_weight *= 2;
   EXPECT_NE(generation_settings(other), generation_settings(base));
   base.search.place_interval = other.search.place_interval = std::nullopt;
+  EXPECT_NE(generation_settings(other), generation_settings(base));
+  base.search.max_new_share = other.search.max_new_share = std::nullopt;
   EXPECT_EQ(generation_settings(other), generation_settings(base));
 }
 

@@ -86,7 +86,8 @@ class McapFile final : public IndexedRecording {
  private:
   [[nodiscard]] Result<McapRecord> record_at(std::uint64_t offset) const;
   [[nodiscard]] Result<void> read_summary(std::uint64_t begin, std::uint64_t end);
-  [[nodiscard]] Result<void> index_chunk(std::string_view chunk_index);
+  /// Returns where the chunk ends, with the index behind it.
+  [[nodiscard]] Result<std::uint64_t> index_chunk(std::string_view chunk_index);
   [[nodiscard]] Result<void> read_message_indexes(std::uint64_t begin, std::uint64_t bytes, std::uint32_t part);
   [[nodiscard]] Result<std::uint32_t> add_chunk(const McapRecord& record);
   [[nodiscard]] Result<void> scan();
@@ -192,7 +193,7 @@ Result<void> McapFile::read_message_indexes(std::uint64_t begin, std::uint64_t b
   return {};
 }
 
-Result<void> McapFile::index_chunk(std::string_view chunk_index) {
+Result<std::uint64_t> McapFile::index_chunk(std::string_view chunk_index) {
   ByteReader reader(chunk_index);
   reader.take(16);  // first and last time
   const auto chunk_begin = reader.value<std::uint64_t>();
@@ -207,8 +208,12 @@ Result<void> McapFile::index_chunk(std::string_view chunk_index) {
     return fail("the list of chunks is damaged");
   const auto part = add_chunk(*record);
   if (!part) return part.error();
-  if (offsets.empty()) return scan_chunk(*part);
-  return read_message_indexes(record->end(), index_bytes, *part);
+  if (offsets.empty()) {
+    if (const auto done = scan_chunk(*part); !done) return done.error();
+    return record->end();
+  }
+  if (const auto done = read_message_indexes(record->end(), index_bytes, *part); !done) return done.error();
+  return record->end() + index_bytes;
 }
 
 Result<void> McapFile::read_summary(std::uint64_t begin, std::uint64_t end) {
@@ -235,10 +240,14 @@ Result<void> McapFile::read_summary(std::uint64_t begin, std::uint64_t end) {
     return fields.value<std::uint64_t>();
   };
   std::ranges::sort(chunk_indexes, {}, begin_of);
-  if (std::ranges::adjacent_find(chunk_indexes, {}, begin_of) != chunk_indexes.end())
-    return fail("the list of chunks is damaged");
-  for (const std::string_view index : chunk_indexes)
-    if (const auto done = index_chunk(index); !done) return done;
+  // Of chunks within each other, each would read the same bytes again.
+  std::uint64_t end_of_last = 0;
+  for (const std::string_view index : chunk_indexes) {
+    if (begin_of(index) < end_of_last) return fail("the list of chunks is damaged");
+    const auto chunk_end = index_chunk(index);
+    if (!chunk_end) return chunk_end.error();
+    end_of_last = *chunk_end;
+  }
   return {};
 }
 
@@ -336,6 +345,7 @@ Result<void> McapFile::build_index() {
   }
   index_ = {};
   chunks_.clear();
+  cache_.clear();
   topic_of_channel_.clear();
   if (const auto done = scan(); !done) index_.damage = done.error().message;
   return {};

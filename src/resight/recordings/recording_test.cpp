@@ -11,6 +11,7 @@
 #include "resight/core/random.hpp"
 #include "resight/recordings/internal/decompress.hpp"
 #include "resight/recordings/message.hpp"
+#include "resight/recordings/testing/ros1_messages.hpp"
 
 namespace resight {
 namespace {
@@ -240,6 +241,110 @@ TEST(Recording, MissingPartsAreNamed) {
   std::ofstream(folder / "metadata.yaml") << "a:\n  relative_file_paths:";
   EXPECT_EQ((*open_recording(folder))->damage(), "");
   fs::remove_all(folder);
+}
+
+TEST(Recording, ABagThatWasNotClosedIsRefused) {
+  const fs::path folder = fs::temp_directory_path() / "resight_recordings_NotClosed";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  fs::copy(recorded("ros2.db3"), folder / "bag_0.db3");
+  std::ofstream(folder / "bag_0.db3-wal") << "";
+  EXPECT_TRUE(open_recording(folder / "bag_0.db3").ok()) << "an empty log holds nothing";
+  std::ofstream(folder / "bag_0.db3-wal") << "the last messages";
+  for (const fs::path& where : {folder, folder / "bag_0.db3"})
+    EXPECT_THAT(open_recording(where).error().message, HasSubstr("bag_0.db3: was not closed"));
+  fs::remove_all(folder);
+}
+
+std::string mcap_record(int op, const std::string& content) {
+  return recordings::packed(static_cast<std::uint8_t>(op)) +
+         recordings::packed(static_cast<std::uint64_t>(content.size())) + content;
+}
+
+std::string mcap_chunk(const std::string& records) {
+  std::string content(16, '\0');  // first and last time
+  content += recordings::packed(static_cast<std::uint64_t>(records.size())) + std::string(8, '\0');
+  content += recordings::packed(static_cast<std::uint64_t>(records.size())) + records;
+  return mcap_record(6, content);
+}
+
+std::string mcap_chunk_index(std::size_t begin, std::size_t bytes, std::size_t index_bytes) {
+  std::string content(16, '\0');
+  content += recordings::packed(std::uint64_t{begin}) + recordings::packed(std::uint64_t{bytes});
+  content += recordings::packed_text(std::string(10, '\0')) + recordings::packed(std::uint64_t{index_bytes});
+  return mcap_record(8, content);
+}
+
+// A message in a chunk, at whose end lies a chunk with the same index behind it. A file of such chunks would take a
+// time that grows with the square of its size.
+TEST(Recording, ChunksOfMcapWithinEachOtherAreNotIndexed) {
+  const std::string channel = recordings::packed(std::uint16_t{1});
+  const std::string lists = mcap_record(3, channel + recordings::packed_text("std_msgs/String") +
+                                               recordings::packed_text("ros1msg") + recordings::packed_text("")) +
+                            mcap_record(4, channel + channel + recordings::packed_text("/a") +
+                                               recordings::packed_text("ros1") + recordings::packed(std::uint32_t{0}));
+  const std::string message = mcap_record(5, channel + std::string(20, '\0') + "hello");
+  const std::string inner = mcap_chunk(message);
+  const std::string outer = mcap_chunk(lists + message + inner);
+  const std::string index = mcap_record(7, channel + recordings::packed_text(std::string(16, '\0')));
+  std::string bytes("\x89MCAP0\r\n", 8);
+  const std::size_t outer_begin = bytes.size();
+  bytes += outer + index;
+  const std::size_t inner_begin = outer_begin + outer.size() - inner.size();
+  bytes += mcap_record(15, std::string(4, '\0'));
+  const std::string summary = recordings::packed(std::uint64_t{bytes.size()});
+  bytes += lists + mcap_chunk_index(outer_begin, outer.size(), index.size()) +
+           mcap_chunk_index(inner_begin, inner.size(), index.size());
+  bytes += mcap_record(2, summary + std::string(12, '\0')) + std::string("\x89MCAP0\r\n", 8);
+  TemporaryFile file;
+  const auto recording = open_recording(file.write(bytes));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ((*recording)->damage(), "") << "the whole file is read instead of its list of chunks";
+  ASSERT_EQ((*recording)->messages().size(), 1U);
+  EXPECT_EQ(*(*recording)->read((*recording)->messages().front(), kMaxMessageBytes), "hello");
+}
+
+std::string bag_field(const std::string& name, const std::string& value) {
+  return recordings::packed_text(name + "=" + value);
+}
+
+std::string bag_record(char op, const std::string& fields, const std::string& data) {
+  return recordings::packed_text(bag_field("op", std::string(1, op)) + fields) + recordings::packed_text(data);
+}
+
+std::string bag_chunk(const std::string& records) {
+  const auto size = static_cast<std::uint32_t>(records.size());
+  return bag_record('\5', bag_field("compression", "none") + bag_field("size", recordings::packed(size)), records);
+}
+
+std::string bag_header(std::size_t index_begin) {
+  return bag_record('\3',
+                    bag_field("index_pos", recordings::packed(std::uint64_t{index_begin})) +
+                        bag_field("conn_count", recordings::packed(std::uint32_t{1})) +
+                        bag_field("chunk_count", recordings::packed(std::uint32_t{2})),
+                    "");
+}
+
+TEST(Recording, ChunksOfBagsWithinEachOtherAreNotIndexed) {
+  const std::string number = bag_field("conn", recordings::packed(std::uint32_t{0}));
+  const std::string connection =
+      bag_record('\7', number + bag_field("topic", "/a"), bag_field("type", "std_msgs/String"));
+  const std::string message = bag_record('\2', number + bag_field("time", std::string(8, '\0')), "hello");
+  const std::string inner = bag_chunk(message);
+  const std::string outer = bag_chunk(connection + message + inner);
+  const std::string index = bag_record('\4', number, std::string(12, '\0'));
+  const std::string magic = "#ROSBAG V2.0\n";
+  const std::size_t outer_begin = magic.size() + bag_header(0).size();
+  const std::size_t inner_begin = outer_begin + outer.size() - inner.size();
+  std::string bytes = magic + bag_header(outer_begin + outer.size() + index.size()) + outer + index + connection;
+  for (const std::size_t begin : {outer_begin, inner_begin})
+    bytes += bag_record('\6', bag_field("chunk_pos", recordings::packed(std::uint64_t{begin})), "");
+  TemporaryFile file;
+  const auto recording = open_recording(file.write(bytes));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ((*recording)->damage(), "") << "the whole file is read instead of its index";
+  ASSERT_EQ((*recording)->messages().size(), 1U);
+  EXPECT_EQ(*(*recording)->read((*recording)->messages().front(), kMaxMessageBytes), "hello");
 }
 
 /// Every file with bytes exchanged is refused or read.

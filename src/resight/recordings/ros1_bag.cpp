@@ -93,8 +93,9 @@ class Ros1Bag final : public IndexedRecording {
  private:
   [[nodiscard]] Result<BagRecord> read_record(std::uint64_t offset) const;
   [[nodiscard]] Result<void> read_end_index(std::uint64_t offset);
-  [[nodiscard]] Result<void> index_chunk_at(std::uint64_t offset);
-  [[nodiscard]] Result<void> add_index_records(std::uint64_t offset, std::uint32_t chunk);
+  /// Both return where the index of the chunk ends.
+  [[nodiscard]] Result<std::uint64_t> index_chunk_at(std::uint64_t offset);
+  [[nodiscard]] Result<std::uint64_t> add_index_records(std::uint64_t offset, std::uint32_t chunk);
   [[nodiscard]] Result<std::uint64_t> add_chunk(const BagRecord& record);
   [[nodiscard]] Result<void> scan(std::uint64_t begin);
   [[nodiscard]] Result<void> scan_chunk(std::uint32_t chunk);
@@ -167,12 +168,12 @@ Result<std::uint64_t> Ros1Bag::add_chunk(const BagRecord& record) {
 }
 
 /// The records that follow a chunk say where its messages are.
-Result<void> Ros1Bag::add_index_records(std::uint64_t offset, std::uint32_t chunk) {
+Result<std::uint64_t> Ros1Bag::add_index_records(std::uint64_t offset, std::uint32_t chunk) {
   while (offset < file_.size()) {
     const auto record = read_record(offset);
     if (!record) return record.error();
     const auto fields = BagFields::parse(record->header);
-    if (!fields || !fields->is(BagOp::kIndexData)) return {};
+    if (!fields || !fields->is(BagOp::kIndexData)) return offset;
     const auto connection = fields->number<std::uint32_t>("conn");
     if (!connection || record->data_bytes > kMaxIndexBytes) return fail("an index record is damaged");
     const auto data = file_.read(record->data_offset, record->data_bytes);
@@ -182,14 +183,14 @@ Result<void> Ros1Bag::add_index_records(std::uint64_t offset, std::uint32_t chun
       const auto time = reader.value<std::uint64_t>();
       const auto place = reader.value<std::uint32_t>();
       if (!reader.ok() || place >= chunks_[chunk].size) return fail("an index record is damaged");
-      if (const auto done = add_message(*connection, time, chunk, place); !done) return done;
+      if (const auto done = add_message(*connection, time, chunk, place); !done) return done.error();
     }
     offset = record->end();
   }
-  return {};
+  return offset;
 }
 
-Result<void> Ros1Bag::index_chunk_at(std::uint64_t offset) {
+Result<std::uint64_t> Ros1Bag::index_chunk_at(std::uint64_t offset) {
   const auto record = read_record(offset);
   if (!record) return record.error();
   const auto chunk = add_chunk(*record);
@@ -216,9 +217,14 @@ Result<void> Ros1Bag::read_end_index(std::uint64_t offset) {
     offset = record->end();
   }
   std::ranges::sort(chunk_offsets);
-  if (std::ranges::adjacent_find(chunk_offsets) != chunk_offsets.end()) return fail("the index is damaged");
-  for (const std::uint64_t chunk : chunk_offsets)
-    if (const auto done = index_chunk_at(chunk); !done) return done;
+  // Of chunks within each other, each would read the same bytes again.
+  std::uint64_t end_of_last = 0;
+  for (const std::uint64_t chunk : chunk_offsets) {
+    if (chunk < end_of_last) return fail("the index is damaged");
+    const auto chunk_end = index_chunk_at(chunk);
+    if (!chunk_end) return chunk_end.error();
+    end_of_last = *chunk_end;
+  }
   return {};
 }
 
@@ -278,6 +284,7 @@ Result<void> Ros1Bag::build_index() {
     if (read_end_index(end_index).ok() && chunks_.size() == num_chunks) return {};
     index_ = {};
     chunks_.clear();
+    cache_.clear();
     topic_of_connection_.clear();
   } else if (num_chunks == 0 && end_index == first->end()) {
     return {};  // an empty bag

@@ -134,11 +134,24 @@ Result<std::string> Ros2Sqlite::read_blob(const MessageEntry& entry, std::size_t
   return blob == nullptr ? std::string() : std::string(blob, static_cast<std::size_t>(bytes));
 }
 
+/// What the writer of a database has not moved into it yet lies in a file beside it. To read that file, SQLite would
+/// have to write another one.
+bool has_write_ahead_log(const std::filesystem::path& database) {
+  std::filesystem::path log = database;
+  log += "-wal";
+  std::error_code error;
+  return std::filesystem::is_regular_file(log, error) && std::filesystem::file_size(log, error) > 0 && !error;
+}
+
 }  // namespace
 
 RecordingResult open_ros2_sqlite(const std::filesystem::path& file) {
   const auto checked = RandomAccessFile::open(file);
   if (!checked) return checked.error();
+  if (has_write_ahead_log(file))
+    return file_error(file,
+                      "was not closed: its last messages are still in a write-ahead log beside it; move them into it "
+                      "with: sqlite3 FILE 'PRAGMA wal_checkpoint(TRUNCATE)'");
   sqlite3* raw = nullptr;
   // immutable: no journal or lock is written beside the file.
   std::string uri = "file:";

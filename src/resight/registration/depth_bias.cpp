@@ -43,7 +43,7 @@ bool DepthBias::is_significant() const {
 float DepthBias::corrected_m(float measured_m) const {
   if (!is_significant()) return measured_m;
   const auto share = static_cast<float>(1 - per_m * static_cast<double>(measured_m));
-  return share > 0 ? measured_m / share : std::numeric_limits<float>::quiet_NaN();
+  return share > 0 ? depth_or_none(measured_m / share) : std::numeric_limits<float>::quiet_NaN();
 }
 
 DepthBias estimate_depth_bias(std::span<const AlignmentTarget> views, const DepthBiasOptions& options) {

@@ -298,10 +298,11 @@ Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targ
   return pose;
 }
 
-void check_targets(const AlignmentView& view, std::span<const AlignmentTarget> targets) {
+/// The levels that are used must be there in both.
+void check_levels(const AlignmentView& view, std::span<const AlignmentTarget> targets, std::size_t num_levels) {
   require(!view.levels.empty(), "view: must have at least one level");
   for (const AlignmentTarget& target : targets)
-    require(target.view != nullptr && target.view->levels.size() >= view.levels.size(),
+    require(target.view != nullptr && target.view->levels.size() >= num_levels,
             "targets: must have at least as many levels as the view");
 }
 
@@ -325,7 +326,7 @@ void AlignViewOptions::check() const {
 AlignedView evaluate_alignment(const AlignmentView& view, std::span<const AlignmentTarget> targets,
                                const Rigid3& world_from_camera, const AlignViewOptions& options) {
   options.check();
-  check_targets(view, targets);
+  check_levels(view, targets, 1);
   const Samples samples = draw_samples(view.levels[0], options.max_samples);
   const Sums sums =
       sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, CostOfPairs::kComputed);
@@ -345,7 +346,7 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
 AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarget> targets,
                        const Rigid3& world_from_camera, const AlignViewOptions& options) {
   options.check();
-  check_targets(view, targets);
+  check_levels(view, targets, view.levels.size());
   Rigid3 pose = world_from_camera;
   const std::size_t num_levels = std::min(view.levels.size(), static_cast<std::size_t>(options.num_levels));
   const double min_m = std::min(options.min_distance_m, options.max_distance_m);

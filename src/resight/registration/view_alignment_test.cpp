@@ -121,6 +121,19 @@ TEST_F(Alignment, SaysHowMuchIsSeenThrough) {
   EXPECT_LT(evaluate_alignment(second, targets, second_pose()).seen_through, 0.01);
 }
 
+// Small images have fewer levels than large ones, and only the finest is compared.
+TEST_F(Alignment, ViewsWithFewerLevelsAreComparedToo) {
+  const PreparedView view = prepared({}, first_pose());
+  AlignmentView coarse = make_alignment_view(view);
+  ASSERT_GT(coarse.levels.size(), 1U);
+  const std::vector<AlignmentTarget> whole{{&coarse, first_pose()}};
+  const double overlap = evaluate_alignment(second, whole, second_pose()).overlap;
+  EXPECT_GT(overlap, 0.1);
+  coarse.levels.resize(1);
+  EXPECT_EQ(evaluate_alignment(second, whole, second_pose()).overlap, overlap);
+  EXPECT_THROW((void)align_view(second, whole, second_pose()), std::invalid_argument);
+}
+
 TEST_F(Alignment, SameForAnyNumberOfThreads) {
   AlignViewOptions serial, parallel;
   parallel.num_threads = 4;

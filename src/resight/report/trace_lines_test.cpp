@@ -207,6 +207,19 @@ TEST_F(StoredTraces, BelongToTheirResults) {
   EXPECT_FALSE(read_recognition_results(folder_)->trace.has_value());
 }
 
+// Each line takes memory, whatever its length.
+TEST_F(StoredTraces, MayNotHaveMoreLinesThanViews) {
+  const auto error_of = [&](const std::string& text) {
+    store(text);
+    const auto trace = TraceFile::open(folder_ / kTraceFile, 2);
+    return trace.ok() ? std::string("none") : trace.error().message;
+  };
+  EXPECT_EQ(error_of(header() + "x\nx\n"), "none");
+  EXPECT_THAT(error_of(header() + "x\nx\nx\nx\n"), HasSubstr("traces more views than the results have (2)"));
+  EXPECT_THAT(error_of(header() + "x\n\nx\n"), HasSubstr("line 3 is empty"));
+  EXPECT_THAT(error_of(std::string(100, '\n')), HasSubstr("is no trace of"));
+}
+
 TEST_F(StoredTraces, AreCheckedWhenTheyAreRead) {
   EXPECT_EQ(error_after([](json&) {}), "none");
   EXPECT_THAT(error_after([](json& j) { j["name"] = "view5"; }), HasSubstr("line 2.view: is not that of the results"));

@@ -64,7 +64,11 @@ class NoisyPlaneFinder {
     std::optional<ScenePlane> best;
     std::ptrdiff_t best_count = 0;
     for (int t = 0; t < kTriples; ++t) {
-      const auto plane = through(scored[rng_.below(kScored)], scored[rng_.below(kScored)], scored[rng_.below(kScored)]);
+      // One after the other: the order of evaluation of arguments is that of the compiler.
+      const int c = scored[rng_.below(kScored)];
+      const int b = scored[rng_.below(kScored)];
+      const int a = scored[rng_.below(kScored)];
+      const auto plane = through(a, b, c);
       if (!plane) continue;
       const auto count = std::ranges::count_if(scored, [&](int i) { return is_on(*plane, i); });
       if (count <= best_count) continue;

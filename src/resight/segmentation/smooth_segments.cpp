@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "resight/core/check.hpp"
+#include "resight/core/disjoint_sets.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/block_grid.hpp"
 
@@ -161,26 +161,8 @@ Surface look_around(const CellOrder& cells, float radius_sq, float min_dot, int 
   return surface;
 }
 
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int a, int b) {  // The smaller index becomes the root.
-    a = find(a);
-    b = find(b);
-    if (a < b) parent_[b] = a;
-    if (b < a) parent_[a] = b;
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 // Joins flat neighbours with similar normals.
-void join_flat_points(const Surface& surface, float max_curvature, UnionFind& sets) {
+void join_flat_points(const Surface& surface, float max_curvature, DisjointSets& sets) {
   int i = 0;
   for (const LaterNeighbors& later : surface.of_block)
     for (std::size_t p = 0; p + 1 < later.begin.size(); ++p, ++i) {
@@ -260,13 +242,13 @@ SmoothSegments find_smooth_segments(std::span<const Eigen::Vector3f> points, std
   const float radius_sq = static_cast<float>(options.max_distance_m * options.max_distance_m);
   const CellOrder cells = sort_into_cells(points, normals, options);
   const Surface surface = look_around(cells, radius_sq, min_dot, options.num_threads);
-  UnionFind sets(points.size());
+  DisjointSets sets(points.size());
   join_flat_points(surface, max_curvature, sets);
   const std::vector<int> hosts =
       find_hosts(cells, surface.curvatures, radius_sq, max_curvature, min_dot, options.num_threads);
   std::vector<int> root_of(points.size(), -1);  // In the original order; roots are numbers in cell order.
   for (std::size_t i = 0; i < hosts.size(); ++i)
-    if (hosts[i] >= 0) root_of[cells.source[i]] = sets.find(hosts[i]);
+    if (hosts[i] >= 0) root_of[cells.source[i]] = sets.root(hosts[i]);
   return number_segments(root_of, options.min_points);
 }
 

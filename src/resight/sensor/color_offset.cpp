@@ -23,8 +23,9 @@ constexpr float kMaxContrast = 40;      // Grey levels. Stronger edges count no 
 constexpr int kBlock_px = 64;           // The halves of a view are the fields of a chequerboard.
 constexpr int kMinContourPixels = 100;  // Per half.
 constexpr double kMaxHalfDistance_px = 1;
-constexpr std::size_t kMaxViews = 32;         // The newest ones count.
-constexpr double kSystematicError_px = 0.15;  // As on scenes with known offsets.
+constexpr std::size_t kMaxViews = 32;            // The newest ones count.
+constexpr double kSystematicError_px = 0.15;     // As on scenes with known offsets.
+constexpr double kMedianOverMeanError = 1.2533;  // Of their standard errors, if errors are normal: sqrt(pi / 2).
 
 /// Contrast between a pixel and its next neighbour in the row and in the column.
 struct EdgeImages {
@@ -147,7 +148,8 @@ ColorOffset ColorOffsetCorrector::correct(PreparedView& view) {
   }
   if (offset.num_views < options_.min_views || offset.spread_px.maxCoeff() > options_.max_spread_px) return offset;
   for (int axis = 0; axis < 2; ++axis) {
-    const double standard_error = offset.spread_px[axis] / std::sqrt(static_cast<double>(offset.num_views));
+    const double standard_error =
+        kMedianOverMeanError * offset.spread_px[axis] / std::sqrt(static_cast<double>(offset.num_views));
     const double error_px = 2 * std::hypot(standard_error, kSystematicError_px);
     const double sure_px = std::floor(std::max(0.0, std::abs(offset.offset_px[axis]) + 0.5 - error_px));
     offset.moved_px[axis] = static_cast<int>(std::copysign(sure_px, offset.offset_px[axis]));

@@ -33,9 +33,16 @@ TEST(CheckFrame, AcceptsAGoodFrameAndNamesWhatIsWrongOtherwise) {
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.color = {}; }), "colour image"));
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.world_from_camera.rotation *= 1.1; }), "pose"));
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.world_from_camera.translation.x() = kNan; }), "pose"));
-  for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::infinity()})
+  for (const float bad : {0.0F, -1.0F, 1.1e4F, std::numeric_limits<float>::infinity()})
     EXPECT_TRUE(contains(message_after([&](RgbdFrame& f) { f.depth_m[17] = bad; }), "depth contains"));
   EXPECT_TRUE(contains(message_after([](RgbdFrame& f) { f.camera.fx = 0; }), "view 'test'"));
+}
+
+TEST(DepthOrNone, KeepsWhatACameraCanMeasure) {
+  EXPECT_EQ(depth_or_none(1.5), 1.5F);
+  EXPECT_EQ(depth_or_none(kMaxReturn_m), kMaxReturn_m);
+  for (const double none : {0.0, -1.0, 1e-60, 1.1e4, 1e10, 1e300, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_TRUE(std::isnan(depth_or_none(none))) << none;
 }
 
 TEST(PrepareView, HoldsWhatTheStagesGiveOneByOne) {

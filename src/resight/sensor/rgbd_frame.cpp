@@ -17,8 +17,8 @@ Result<void> check_frame(const RgbdFrame& frame) {
   if (!frame.world_from_camera.is_rigid())
     return fail("the camera pose is not a rigid motion (NaN, scale, shear or reflection)");
   for (const float z : frame.depth_m.data())
-    if (!std::isnan(z) && !(z > 0 && std::isfinite(z)))
-      return fail("the depth contains zero, negative or infinite values");
+    if (!std::isnan(z) && std::isnan(depth_or_none(z)))
+      return fail("the depth contains zero, negative or infinite values, or some beyond 10 km (wrong unit?)");
   return {};
 }
 

@@ -119,7 +119,8 @@ PoseScorer::PoseScorer(const PreparedView& view, std::span<const ScenePlane> pla
   parallel_for_blocks(lab_.size(), 4096, num_threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       lab_[i] = to_lab(colors[i]);
-      pixels_[i] = {view.cloud.z[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.noise), chroma(lab_[i])};
+      pixels_[i] = {view.frame.depth_m[i], plane_extent_at(view.cloud, i, planes, view.frame.camera.noise),
+                    chroma(lab_[i])};
       const Eigen::Vector3f normal = view.cloud.has_normal(i) ? view.cloud.normal(i) : kNoNormal;
       oriented_[i] = {view.cloud.z[i], normal.x(), normal.y(), normal.z()};
     }
@@ -343,7 +344,8 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
     num_cells += goes_on ? 1 : 0;
     return goes_on;
   });
-  return num_cells * static_cast<double>(kCellSpacings * kCellSpacings);
+  const double spacings_per_cell = static_cast<double>(cell_px * z) / (model.spacing_m * view_.frame.camera.fx);
+  return num_cells * spacings_per_cell * spacings_per_cell;
 }
 
 PoseFit PoseScorer::shape_fit(const Confirmed& confirmed) {

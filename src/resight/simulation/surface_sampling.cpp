@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
+#include "resight/geometry/fibonacci_sphere.hpp"
 #include "resight/rendering/raycast_scene.hpp"
 
 namespace resight {
@@ -19,13 +19,7 @@ constexpr float kGapM = 5e-4F;
 
 std::vector<Eigen::Vector3f> sphere_directions() {
   std::vector<Eigen::Vector3f> directions;
-  for (int i = 0; i < kDirections; ++i) {  // Fibonacci sphere
-    const double z = 1 - 2 * (i + 0.5) / kDirections;
-    const double phi = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    directions.emplace_back(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
-                            static_cast<float>(z));
-  }
+  for (int i = 0; i < kDirections; ++i) directions.push_back(fibonacci_direction(i, kDirections).cast<float>());
   return directions;
 }
 

@@ -73,6 +73,19 @@ TEST(PrepareDepthViews, PixelsNearDepthEdgesAreUnobserved) {
   EXPECT_GT(dropped, 100);
 }
 
+TEST(PrepareDepthViews, WhatIsTooFarForThePointsIsStillFreeSpace) {
+  RgbdFrame frame;
+  frame.camera = {64, 48, 60, 60, 31.5, 23.5};
+  frame.depth_m = Image<float>(64, 48, 2.0F);
+  frame.color = Image<Rgb8>(64, 48);
+  PrepareViewOptions options;
+  options.max_depth_m = 1.5;
+  const PreparedView view = prepare_view(frame, options);
+  ASSERT_TRUE(std::isnan(view.cloud.z(30, 20)));
+  const VerificationView reference{&view};
+  EXPECT_EQ(prepare_depth_views(std::span(&reference, 1), 0, 1)[0].depth_m(30, 20), 2.0F);
+}
+
 TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
   const SmallCase c;
   // A convex model hides itself by its back faces alone; so its z-buffer must not take anything away.

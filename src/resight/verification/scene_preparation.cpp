@@ -83,16 +83,25 @@ void find_surfaces(PreparedScene& scene, const VerifyOptions& options) {
 
 PointCloud crop_to_balls(const PointCloud& cloud, std::span<const Ball> balls) {
   VoxelMap cubes;
+  std::vector<Eigen::Vector3i> corners;
+  std::vector<int> cube_of_point(cloud.size(), VoxelMap::kNotFound);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.points[i].allFinite()) continue;
+    const Eigen::Vector3i corner = voxel_index(cloud.points[i], 1 / kCropCube_m);
+    cube_of_point[i] = cubes.insert(voxel_key(corner.x(), corner.y(), corner.z()));
+    if (cube_of_point[i] == static_cast<int>(corners.size())) corners.push_back(corner);
+  }
+  // A large object reaches more cubes than there are occupied ones.
+  std::vector<std::uint8_t> is_near(corners.size(), 0);
   for (const Ball& ball : balls) {
-    const Eigen::Vector3i first = voxel_index(ball.center.array() - ball.radius_m, 1 / kCropCube_m);
-    const Eigen::Vector3i last = voxel_index(ball.center.array() + ball.radius_m, 1 / kCropCube_m);
-    for (int ix = first.x(); ix <= last.x(); ++ix)
-      for (int iy = first.y(); iy <= last.y(); ++iy)
-        for (int iz = first.z(); iz <= last.z(); ++iz) cubes.insert(voxel_key(ix, iy, iz));
+    const Eigen::Array3i first = voxel_index(ball.center.array() - ball.radius_m, 1 / kCropCube_m);
+    const Eigen::Array3i last = voxel_index(ball.center.array() + ball.radius_m, 1 / kCropCube_m);
+    for (std::size_t c = 0; c < corners.size(); ++c)
+      if ((corners[c].array() >= first).all() && (corners[c].array() <= last).all()) is_near[c] = 1;
   }
   std::vector<int> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.points[i].allFinite() && cubes.find(voxel_key(cloud.points[i], 1 / kCropCube_m)) != VoxelMap::kNotFound)
+    if (cube_of_point[i] >= 0 && is_near[static_cast<std::size_t>(cube_of_point[i])] != 0)
       kept.push_back(static_cast<int>(i));
   return select(cloud, kept);
 }

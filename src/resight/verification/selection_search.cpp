@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 
 #include "resight/core/check.hpp"
+#include "resight/core/disjoint_sets.hpp"
 #include "resight/core/random.hpp"
 
 namespace resight {
@@ -152,31 +152,21 @@ int search_locally(Selection& selection, const std::vector<int>& members, const 
 
 std::vector<std::vector<int>> find_components(const SelectionProblem& problem) {
   const int n = problem.num_candidates();
-  std::vector<int> root(static_cast<std::size_t>(n));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int c) {
-    while (root[c] != c) c = root[c] = root[root[c]];
-    return c;
-  };
-  const auto join = [&](int a, int b) {
-    a = find(a);
-    b = find(b);
-    root[std::max(a, b)] = std::min(a, b);
-  };
+  DisjointSets sets(static_cast<std::size_t>(n));
   std::vector<int> first_user(static_cast<std::size_t>(problem.num_points), -1);
   for (int c = 0; c < n; ++c) {
     for (const FixedWeight& w : problem.weights[c]) {
       if (first_user[w.point] < 0)
         first_user[w.point] = c;
       else
-        join(first_user[w.point], c);
+        sets.join(first_user[w.point], c);
     }
-    for (const SelectionProblem::Conflict& conflict : problem.conflicts[c]) join(c, conflict.other);
+    for (const SelectionProblem::Conflict& conflict : problem.conflicts[c]) sets.join(c, conflict.other);
   }
   std::vector<std::vector<int>> components;
   std::vector<int> number(static_cast<std::size_t>(n), -1);
   for (int c = 0; c < n; ++c) {
-    const int r = find(c);
+    const int r = sets.root(c);
     if (number[r] < 0) {
       number[r] = static_cast<int>(components.size());
       components.emplace_back();

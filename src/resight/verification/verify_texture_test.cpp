@@ -183,7 +183,8 @@ class SilhouetteTest : public testing::Test {
     Fixture f(world, {look_at({0.8, 0, 0.5}, {0, 0, 0.03})});
     for (PreparedView& view : f.views)
       for (std::size_t i = 0; i < view.cloud.z.size(); ++i)
-        if (view.frame.color[i] == table_color) view.cloud.z[i] = std::numeric_limits<float>::quiet_NaN();
+        if (view.frame.color[i] == table_color)
+          view.frame.depth_m[i] = view.cloud.z[i] = std::numeric_limits<float>::quiet_NaN();
     const std::vector<Hypothesis> high = {make_hypothesis(0, on_table(0, 0, high_.size_m.z() / 2))};
     const HypothesisEvidence evidence =
         f.verify(high, {.objects = {make_model("high", high_)}},

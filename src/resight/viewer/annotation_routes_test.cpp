@@ -221,6 +221,16 @@ TEST_F(AnnotationRoutes, BodiesThatAreNoObjectsAreRefused) {
   EXPECT_EQ(get("")["revision"], 0);
 }
 
+TEST_F(AnnotationRoutes, NestingInAnActionDoesNotOverflowTheStack) {
+  const std::string lists = std::string(400000, '[') + std::string(400000, ']');
+  EXPECT_EQ(status_of(send("POST", "/actions", R"({"revision":0,"action":)" + lists + "}")), 400);
+  const json title = {{"revision", 0},
+                      {"action", {{"title", std::string(100, '[') + "\\\""}, {"changes", json::array()}}}};
+  EXPECT_EQ(status_of(post("/actions", title)),
+            status_of(post("/actions", {{"revision", 0}, {"action", {{"title", "t"}, {"changes", json::array()}}}})))
+      << "brackets in strings are no nesting";
+}
+
 TEST_F(AnnotationRoutes, WrongValuesAreRefusedAndChangeNothing) {
   const json pose = pose_numbers(Rigid3::from_translation({0, 0, 1}));
   const std::string key = R"({"view":3,"kind":"novel","center":[0,0,0]})";

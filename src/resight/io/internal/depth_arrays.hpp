@@ -12,8 +12,8 @@ namespace resight::io {
 /// Whether files of this extension (lower case) hold depth as numbers of their own type: npy, npz, exr.
 [[nodiscard]] bool holds_depth_array(std::string_view extension);
 
-/// Reads depth from a file of such an extension: floating-point metres, or any numbers times `metres_per_unit`. Values
-/// that are not positive and finite become NaN.
+/// Reads depth from a file of such an extension: floating-point metres, or any numbers times `metres_per_unit`. The
+/// values pass depth_or_none().
 [[nodiscard]] Result<Image<float>> read_depth_array(const std::filesystem::path& file,
                                                     std::optional<double> metres_per_unit);
 

@@ -30,6 +30,10 @@ class ChunkCache {
     if (chunks_.size() > kMaxChunks) chunks_.pop_back();
     return chunks_.front().second;
   }
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    chunks_.clear();
+  }
 
  private:
   static constexpr std::size_t kMaxChunks = 3;  ///< Colour and depth of a view may lie in neighbouring chunks.
