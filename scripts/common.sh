@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Functions shared by the scripts. Sourced from the root of the source tree.
 
-command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  # Otherwise, nothing that uses a precompiled header is kept.
+  export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+fi
 num_jobs=$(nproc)
-log_dir=build/logs
+log_dir=${log_dir:-build/logs}
 mkdir -p "$log_dir"
 
 # step NAME COMMAND...: runs the command quietly. Prints one line with the time on success, and the end of its output on

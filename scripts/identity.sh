@@ -78,6 +78,7 @@ while read -r file; do
     result=DIFFERENT status=1
   fi
   printf '%-32s %s  %s\n' "$file" "$(sha256sum "$b" | cut -c1-12)" "$result"
-done < <(cd "$work/results/$base" &&
-  find . \( -name detections.json -o -name changes.json -o -name library.payload \) -printf '%P\n' | sort)
+done < <(cd "$work/results" && find "$base" "$head" \( -name detections.json -o -name changes.json -o \
+  -name library.payload \) -printf '%P\n' | sort -u)
+[[ -n ${result:-} ]] || { echo "identity: nothing to compare" >&2; exit 1; }
 exit $status

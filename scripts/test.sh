@@ -28,7 +28,8 @@ scripts/setup.sh --tests
 source scripts/common.sh
 
 check_format() {
-  find src apps examples tests bench fuzz \( -name '*.cpp' -o -name '*.hpp' \) -print0 | xargs -0 clang-format --dry-run -Werror
+  find src apps examples tests bench fuzz \( -name '*.cpp' -o -name '*.hpp' \) -print0 |
+    xargs -0 -P "$num_jobs" -n 50 clang-format --dry-run -Werror
 }
 run_tests() { ctest --test-dir build/ci -j "$num_jobs" --output-on-failure --no-tests=error; }
 # "412 tests passed, 0 failed, 3 skipped": the cases of GoogleTest, and each other program as one.
@@ -64,8 +65,10 @@ configure_clang() {
     mkdir -p "build/clang/$generated" && cp build/ci/$generated/*.h "build/clang/$generated"
 }
 run_clang_tidy() {
+  # The largest first, so that none runs alone at the end.
   configure_clang &&
     grep -o '"file": "[^"]*' build/clang/compile_commands.json | cut -d'"' -f4 | grep -E '/Unity/|/apps/|/examples/' |
+    xargs wc -l | sort -rn | awk '$2 != "total" { print $2 }' |
     xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/clang
 }
 # Compiles each public header on its own. Eigen, which takes most of the time, is precompiled.
@@ -115,7 +118,7 @@ if ((!fast)); then
   step "page of the viewer" check_page
   step "viewer in a browser" run_viewer
   step "clang-tidy" run_clang_tidy
-  step "picture of the modules" scripts/draw_modules.sh --check
+  step "picture of the modules" scripts/draw_modules.sh --check build/ci
   step "install, and a project that uses it" build_consumer
   step "build with ASan and UBSan" build_asan
   step "tests and program with ASan and UBSan" run_asan

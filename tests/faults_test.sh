@@ -67,14 +67,15 @@ list() { # list FOLDER
   )
 }
 
-random() { # random FROM TO
-  echo $(($1 + (RANDOM * 32768 + RANDOM) % ($2 - $1 + 1)))
+random() { # random FROM TO: into `picked`, because a substitution of commands would start its own series
+  picked=$(($1 + (RANDOM * 32768 + RANDOM) % ($2 - $1 + 1)))
 }
 
 disturb() { # disturb COMMAND FAULT: in the folder `round`; returns the status of the command
   local call ms size
   call=$(program "$1")
-  ms=$(random 20 $((duration_ms[$1] * 11 / 10)))
+  random 20 $((duration_ms[$1] * 11 / 10))
+  ms=$picked
   what="$2"
   case $2 in
     kill | interrupt)
@@ -84,7 +85,8 @@ disturb() { # disturb COMMAND FAULT: in the folder `round`; returns the status o
       (cd round && timeout -s $signal "$((ms / 1000)).$(printf %03d $((ms % 1000)))" $call >../log 2>&1) 2>/dev/null
       ;;
     file_limit)
-      size=$(random 1 "${largest_kb[$1]}")
+      random 1 "${largest_kb[$1]}"
+      size=$picked
       what="$2 of $size kB"
       (cd round && ulimit -f "$size" && $call 2>&1 | cat >../log)
       ;;
@@ -101,7 +103,8 @@ disturb() { # disturb COMMAND FAULT: in the folder `round`; returns the status o
       ;;
     full_disk)
       $can_mount || return 0
-      size=$(random 1 $((total_kb[$1] + 16)))
+      random 1 $((total_kb[$1] + 16))
+      size=$picked
       what="$2 of $size kB"
       # What is left on the full disk is copied to one with space.
       unshare -m bash -c "mount -t tmpfs -o size=${size}k none round && (cd round && $call >../log 2>&1)

@@ -86,7 +86,7 @@ void add_detections(const fs::path& detections, const Sequence& sequence, const 
 }  // namespace
 
 void run_annotate(const AnnotateArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.sequence});
+  check_output_folder(arguments.out, "annotate", {arguments.sequence});
   const fs::path export_folder = arguments.out / "export";
   value_or_throw(check_export_folder(export_folder));  // Before the work, not after it.
   const std::shared_ptr<const Sequence> sequence = open_posed_input(arguments.sequence, arguments.input);

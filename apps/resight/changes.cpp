@@ -68,7 +68,7 @@ std::string count_regions(const ViewChangeRecord& view) {
 // Alg. 1 without models: compares each view with the reconstruction from the views before it. `mvr` compares nothing,
 // so that its reconstruction is the one of a static world (paper, Fig. 6).
 void run_changes(const ChangesArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.sequence});
+  check_output_folder(arguments.out, "changes", {arguments.sequence});
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto sequence = open_posed_input(arguments.sequence, arguments.input);

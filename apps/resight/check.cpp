@@ -118,7 +118,7 @@ void print_lines(const CheckArguments& arguments, const CheckReport& report, con
 }  // namespace
 
 bool run_check(const CheckArguments& arguments) {
-  if (arguments.out) check_output_folder(*arguments.out, {arguments.sequence});
+  if (arguments.out) check_output_folder(*arguments.out, "check", {arguments.sequence});
   const auto sequence = open_input(arguments.sequence, arguments.input);
   const CheckReport report = check_sequence(arguments, *sequence);
   if (arguments.out) write_findings(arguments, report, *sequence);

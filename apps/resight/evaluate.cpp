@@ -186,7 +186,7 @@ class Evaluation {
 }  // namespace
 
 void run_evaluate(const EvaluateArguments& arguments) {
-  check_output_folder(arguments.out, {arguments.dataset, arguments.models});
+  check_output_folder(arguments.out, "evaluate", {arguments.dataset, arguments.models});
   for (const char* folder : {"runs", "worst"})
     value_or_throw(check_writable_folder(arguments.out / folder, ExistingFolder::kFill));
   // Another command that is filling the folder would refuse the tables after all the work.

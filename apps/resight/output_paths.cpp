@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/io/sequence.hpp"
 
 namespace resight::app {
 namespace {
@@ -32,13 +33,22 @@ void check_not_input(const fs::path& out, const Paths& inputs) {
   }
 }
 
-/// Whether `recognize`, `changes`, `evaluate`, `check` or `annotate` has written into the folder.
-bool has_results(const fs::path& folder) {
+/// Files by which the results of a command are known. `recognize` writes changes.json, too, so it comes first.
+struct ResultsMark {
+  std::string_view command;
+  std::string_view file;
+};
+constexpr ResultsMark kResultsMarks[] = {{"recognize", "summary.json"}, {"recognize", "finished_views.jsonl"},
+                                         {"evaluate", "results.json"},  {"evaluate", "runs"},
+                                         {"check", "findings.json"},    {"annotate", "annotation.jsonl"},
+                                         {"changes", "changes.json"}};
+
+/// The command whose results the folder holds; empty if none.
+std::string_view find_writer(const fs::path& folder) {
   std::error_code error;
-  return std::ranges::any_of(
-      std::initializer_list<const char*>{"summary.json", "changes.json", "results.json", "runs", "finished_views.jsonl",
-                                         "findings.json", "annotation.jsonl"},
-      [&](const char* name) { return fs::exists(folder / name, error); });
+  for (const ResultsMark& mark : kResultsMarks)
+    if (fs::exists(folder / mark.file, error)) return mark.command;
+  return {};
 }
 
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our
@@ -86,13 +96,16 @@ bool is_within(const fs::path& path, const fs::path& folder) {
   return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
 }
 
-void check_output_folder(const fs::path& out, const Paths& inputs) {
+void check_output_folder(const fs::path& out, std::string_view command, const Paths& inputs) {
   check_not_input(out, inputs);
   value_or_throw(check_writable_folder(out, ExistingFolder::kFill));
   check_names_of_folders(out);
-  if (check_writable_folder(out, ExistingFolder::kRefuse).ok() || has_results(out)) return;
+  const std::string_view writer = find_writer(out);
+  if (writer == command || check_writable_folder(out, ExistingFolder::kRefuse).ok()) return;
+  if (!writer.empty()) refuse_output(out, fmt::format("holds results of 'resight {}' (choose another folder)", writer));
   for (const fs::path& input : inputs)
     if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
+  if (find_sequence_folder(out).ok()) refuse_output(out, "is a sequence (choose another folder)");
 }
 
 std::string path_from(const fs::path& folder, const fs::path& path) {

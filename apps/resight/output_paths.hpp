@@ -19,9 +19,10 @@ void check_output_file(const std::filesystem::path& out, std::string_view signat
 /// For a file to write that must not exist.
 void check_new_file(const std::filesystem::path& out);
 
-/// For a folder to fill. It may exist, but a folder within an input only if an earlier run has filled it. It may not
-/// hold a folder that is called like a result (report.html).
-void check_output_folder(const std::filesystem::path& out, const Paths& inputs);
+/// For a folder that `command` fills. It may exist, but not hold results of another command, and be a sequence or lie
+/// within an input only if the command has filled it before. It may not hold a folder that is called like a result
+/// (report.html).
+void check_output_folder(const std::filesystem::path& out, std::string_view command, const Paths& inputs);
 
 /// For a folder to write, which must be empty or not exist.
 void check_new_folder(const std::filesystem::path& out);

@@ -28,6 +28,8 @@ void print_summary(const ReportRun& run, const std::filesystem::path& out) {
   const RunSummary summary = summarize(run);
   print("{} views, {} detections, {} changes, {:.2f} s per view (median)\n", summary.num_views, summary.num_detections,
         summary.num_events, summary.median_view_wall_s);
+  if (summary.num_detections == 0)
+    print("nothing was recognised; if that is wrong, 'resight check --models' may tell the reason\n");
   if (summary.num_scored_views > 0)
     print("precision {}, recall {} (5 cm, 30 deg), {} ghosts\n", format_share(summary.score.precision()),
           format_share(summary.score.recall()), summary.num_ghosts);
@@ -154,7 +156,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   if (arguments.follow.keeps_late && !arguments.follow.is_on) throw InputError("--keep-late needs --follow");
   if (arguments.follow.idle_timeout_s && !is_live) throw InputError("--idle-timeout-s needs --follow or --camera");
   if (arguments.camera.empty() == arguments.sequence.empty()) throw InputError("give either --sequence or --camera");
-  check_output_folder(arguments.out,
+  check_output_folder(arguments.out, "recognize",
                       {arguments.camera.empty() ? arguments.sequence : arguments.models, arguments.models});
   value_or_throw(check_writable_folder(arguments.out / kReportPages, ExistingFolder::kFill));
   RecognizerConfig config =

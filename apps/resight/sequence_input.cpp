@@ -91,9 +91,12 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
                    "one, metres [0]")
       ->check(number_up_to(100))
       ->group(group);
-  command->add_option("--from", options.views.from_s, "Takes views from this time on, seconds since the first")
+  command
+      ->add_option("--from", options.views.from_s,
+                   "Takes views from this time on, seconds since the first (needs times)")
       ->group(group);
-  command->add_option("--until", options.views.to_s, "Takes views up to this time, seconds since the first")
+  command
+      ->add_option("--until", options.views.to_s, "Takes views up to this time, seconds since the first (needs times)")
       ->group(group);
   add_recording_options(command, options.topics);
 }

@@ -25,6 +25,15 @@ std::shared_ptr<const ModelLibrary> open_library(const fs::path& path) {
   return std::make_shared<const ModelLibrary>(value_or_throw(load_library(path)));
 }
 
+/// Opens a sequence that needs none of the options which other commands have for it.
+std::shared_ptr<const Sequence> open_viewed(const fs::path& path) {
+  auto sequence = open_sequence(path);
+  if (!sequence && sequence.error().message.find(" --") != std::string::npos)
+    throw InputError(sequence.error().message +
+                     " (not here: 'resight convert' takes such options, and its copy needs none)");
+  return value_or_throw(std::move(sequence));
+}
+
 /// The sequence that results are of: the one of the arguments, else the one that the results name.
 fs::path sequence_of_results(const ViewArguments& arguments, const ViewerRun& run) {
   if (arguments.sequence) return *arguments.sequence;
@@ -64,7 +73,7 @@ ViewerScene open_results(const ViewArguments& arguments) {
   }
   const fs::path sequence = sequence_of_results(arguments, scene.runs.front());
   scene.title = folder_name(sequence);
-  scene.sequence = value_or_throw(open_sequence(sequence));
+  scene.sequence = open_viewed(sequence);
   add_library(arguments, scene);
   return scene;
 }
@@ -74,7 +83,7 @@ ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::pa
   scene.title = folder_name(input);
   const bool is_folder_of_views = !is_library(input) && find_sequence_folder(input).ok();
   if (is_folder_of_views || arguments.sequence) {
-    scene.sequence = value_or_throw(open_sequence(arguments.sequence.value_or(input)));
+    scene.sequence = open_viewed(arguments.sequence.value_or(input));
     if (arguments.models) scene.library = open_library(*arguments.models);
     return scene;
   }
@@ -100,6 +109,9 @@ ViewerScene open_views_or_models(const ViewArguments& arguments) {
   if (has_recognition_results(input)) return open_results(arguments);
   if (arguments.inputs.size() > 1)
     throw InputError(input.string() + ": holds no results of 'resight recognize' to compare with the others");
+  if (fs::exists(input / "changes.json", error))
+    throw InputError(
+        file_error(input, "holds results of 'resight changes' (give the sequence, and this by --changes)").message);
   return open_sequence_or_models(arguments, input);
 }
 

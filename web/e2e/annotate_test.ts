@@ -119,6 +119,8 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
   await x.fill(String(Number(await x.inputValue()) + 5));
   await x.press("Enter");
   await waitForRevision(page, 6);
+  // Else the next keys would be shortcuts: Delete would delete the object.
+  assert.equal(await page.locator(".numbers input:focus").count(), 1, "the field that is typed into stays");
   await page.locator("#world canvas").focus();
   await page.keyboard.press("s");
   await waitForRevision(page, 7);
@@ -145,12 +147,27 @@ test("annotate: place, snap, move, undo, redo, reload, two windows, export", asy
   await waitForRevision(page, 10);
   assert.match(await inspector(page), /view 3 of 5, 4 unchecked/);
 
-  // Drag the object by the handle at its centre, and undo that.
+  // A click on the handle at the centre of the object measures nothing and changes nothing.
   const label = await restingBox(page, ".labels3d span.selected");
   const [left, top] = [label.x + label.width / 2, label.y + label.height];
-  await page.mouse.move(left - 2, top);
-  await page.mouse.move(left, top, { steps: 3 });
-  await page.mouse.down();
+  const pressHandle = async () => {
+    await page.mouse.move(left - 2, top);
+    await page.mouse.move(left, top, { steps: 3 });
+    await page.mouse.down();
+  };
+  const status = async () => (await page.locator("#status").textContent()) ?? "";
+  await page.keyboard.press("m");
+  await pressHandle();
+  await page.mouse.up();
+  await clickPixel(page, ...(await pixelOf("cereal_blue", "2")));
+  assert.doesNotMatch(await status(), /distance/);
+  await clickPixel(page, ...(await pixelOf("tea_box", "2")));
+  assert.match(await status(), /distance [\d.]+ m/);
+  await page.keyboard.press("m");
+  assert.equal((await annotation(address)).revision, 10);
+
+  // Drag the object by this handle, and undo that.
+  await pressHandle();
   await page.mouse.move(left + 40, top + 10, { steps: 6 });
   await page.mouse.up();
   await waitForRevision(page, 11);
@@ -240,6 +257,9 @@ test("annotate: masks of regions, and a move of a thing without model", async ()
   assert.ok(painted > proposed + 400 && painted < proposed + 1000, `${proposed} pixels, then ${painted}`);
   await page.waitForTimeout(200);
   await picture(page, "annotate_mask");
+  const radius = page.getByLabel("Radius of the brush in pixels");
+  await radius.press("ArrowRight");
+  assert.equal(await radius.inputValue(), "7", "arrow keys change the radius, not the view");
   await click(page, "Lasso −");
   await drag([
     [0, 0],

@@ -10,7 +10,7 @@
 //   PICTURES         folder for pictures of the page
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Page } from "playwright-core";
+import type { Page, Route } from "playwright-core";
 import { browser, inspector, open, picture, serve, setting, waitForDrawing, waitForView } from "./page";
 
 test("results: scrub, pick, select a change, keep a link, compare", async () => {
@@ -88,6 +88,12 @@ test("results: scrub, pick, select a change, keep a link, compare", async () => 
   await waitForDrawing(page, 100);
   await picture(page, "depth_error");
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280, "something is cut off");
+  await page.setViewportSize({ width: 620, height: 500 });
+  const rightEnds = (parts: string) =>
+    page.locator(parts).evaluateAll((found) => found.map((each) => each.getBoundingClientRect().right));
+  const [end = 0] = await rightEnds("#world");
+  assert.ok(Math.max(...(await rightEnds(".layers button"))) <= end, "layers are out of reach in a small window");
+  await page.setViewportSize({ width: 1280, height: 720 });
   await waitForDrawing(page, 100);
 
   // A picture of it.
@@ -153,6 +159,20 @@ test("places have coordinates, and distances are measured", async () => {
   await page.waitForFunction(() =>
     /pixel \d+, \d+ · depth .* · world /.test(document.querySelector("#status")?.textContent ?? ""),
   );
+
+  // While the next view is loading, the image is that of this one, and so is what the pointer reads in it.
+  const here = await readAt(page, 150, 150);
+  const { route, release } = holdUp();
+  await page.route("**/api/views/1/color", route);
+  await page.keyboard.press("ArrowRight");
+  await waitForView(page, -1);
+  assert.equal(await readAt(page, 150, 150), here);
+  release();
+  await waitForView(page, 1);
+  assert.notEqual(await readAt(page, 150, 150), here);
+  await page.keyboard.press("ArrowLeft");
+  await waitForView(page, 0);
+
   await page.keyboard.press("m");
   await image.click({ position: { x: 150, y: 150 } });
   await image.click({ position: { x: 200, y: 150 } });
@@ -178,6 +198,15 @@ test("places have coordinates, and distances are measured", async () => {
   const played = (await page.locator("body").getAttribute("data-played")) ?? "";
   assert.equal(played.replaceAll(" -1", ""), " 0 1 2 3 4");
   await page.close();
+
+  // A view that cannot be read is reported; the others are shown.
+  const broken = await openBroken(address, "**/api/views/0/color");
+  await broken.waitForSelector("#status.error:text('it is damaged')");
+  await broken.keyboard.press("ArrowRight");
+  await waitForView(broken, 1);
+  await waitForDrawing(broken, 100);
+  assert.equal(await broken.locator("#status.error").count(), 0);
+  await broken.close();
   assert.equal(await stop(), 0);
 });
 
@@ -189,7 +218,24 @@ test("a sequence and a model library are shown as well", async () => {
   await modelPage.waitForSelector("#inspector h2:text('tea_box')");
   assert.match(await inspector(modelPage), /diameter[\s\S]*keypoints/);
   await picture(modelPage, "models");
+
+  // Layers are switched without a jump of the camera.
+  await modelPage.waitForTimeout(400); // for the link
+  await modelPage.keyboard.press("t");
+  await modelPage.waitForTimeout(400);
+  const camera = cameraOf(modelPage);
+  await modelPage.locator("button[data-layer=labels]").click();
+  await modelPage.waitForFunction(() => location.hash.includes("layers="));
+  assert.equal(cameraOf(modelPage), camera);
   await modelPage.close();
+
+  // A model that cannot be read is named; the others are shown.
+  const broken = await openBroken(models.address, "**/api/surfaces/0");
+  await broken.waitForSelector("#status.error");
+  assert.match((await text(broken, "#status")) ?? "", /^cannot be shown: \w+ \(it is damaged\)$/);
+  assert.equal(await broken.locator(".labels3d span").count(), 1);
+  await waitForDrawing(broken, 50);
+  await broken.close();
   assert.equal(await models.stop(), 0);
 
   const sequence = await serve([setting("SEQUENCE"), "--models", setting("MODELS"), "--changes", setting("CHANGES")]);
@@ -206,6 +252,15 @@ test("a sequence and a model library are shown as well", async () => {
   await picture(page, "changes");
   await page.close();
   assert.equal(await sequence.stop(), 0);
+
+  // Without models, true objects have their names.
+  const plain = await serve([setting("SEQUENCE")]);
+  const plainPage = await open(plain.address);
+  await plainPage.locator("button[data-layer=truth]").click();
+  await plainPage.waitForFunction(() => document.querySelectorAll(".labels3d span").length === 2);
+  assert.doesNotMatch((await plainPage.locator(".labels3d span").allTextContents()).join(), /\?/);
+  await plainPage.close();
+  assert.equal(await plain.stop(), 0);
 });
 
 test("views are shown as they are recognised", async () => {
@@ -228,6 +283,8 @@ test("without the token, the page says what to do", async () => {
   const page = await browser.newPage();
   await page.goto(address.replace(/#.*/, ""));
   assert.match((await page.locator(".failure").textContent()) ?? "", /open the address that resight printed/);
+  await page.goto(address); // in the same tab, it differs in its fragment only
+  await page.waitForSelector("body[data-ready=yes]");
   await page.close();
   assert.equal(await stop(), 0);
 });
@@ -238,6 +295,39 @@ async function numHypotheses(address: string, view: number): Promise<number> {
   const response = await fetch(`${origin}/api/views/${view}/trace?run=0`, { headers: { "X-Resight-Token": token } });
   return ((await response.json()) as { hypotheses: object[] }).hypotheses.length;
 }
+
+/** Opens the page where one request fails; open() takes that for a fault of the page. */
+async function openBroken(address: string, requests: string): Promise<Page> {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  await page.route(requests, (route) => route.fulfill({ status: 500, body: "it is damaged" }));
+  await page.goto(address);
+  await page.waitForSelector("body[data-ready=yes]");
+  return page;
+}
+
+/** Lets requests wait until they are released. */
+function holdUp(): { route: (route: Route) => Promise<void>; release: () => void } {
+  let release = () => {};
+  const released = new Promise<void>((resolve) => {
+    release = resolve;
+  });
+  const route = async (held: Route) => {
+    await released;
+    await held.continue();
+  };
+  return { route, release: () => release() };
+}
+
+/** What the page says of a place in the image. */
+async function readAt(page: Page, x: number, y: number): Promise<string> {
+  await page.mouse.move(640, 719);
+  await page.waitForFunction(() => document.querySelector("#status")?.textContent === "");
+  await page.locator("figure canvas").first().hover({ position: { x, y } });
+  await page.waitForFunction(() => document.querySelector("#status")?.textContent?.includes("world"));
+  return (await text(page, "#status")) ?? "";
+}
+
+const cameraOf = (page: Page) => new URLSearchParams(new URL(page.url()).hash.slice(1)).get("camera");
 
 const text = (page: Page, selector: string) => page.locator(selector).evaluate((part) => part.textContent);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keyboard of the annotation.
 import type { AnnotatePanel } from "./annotate_panel";
+import { isIn } from "./annotation";
 import type { Annotator } from "./annotator";
 import { rotateVector, type Vec3 } from "./geometry";
 import { movePose, turnPose } from "./pose_edit";
@@ -9,7 +10,6 @@ import type { World } from "./world";
 
 const kStepM = 0.001;
 const kCoarse = 10;
-const kPauseMs = 350;
 
 /** Directions in the frame of the camera: x right, y down, z away. */
 const kMoves: Record<string, Vec3> = {
@@ -21,11 +21,10 @@ const kMoves: Record<string, Vec3> = {
   PageDown: [0, 0, -1],
 };
 
-export class AnnotateKeys {
-  /** A pose that has been moved by keys and is sent when they rest, as one edit. */
-  private pending: Pose | null = null;
-  private timer = 0;
+/** Whether a key that is held down repeats what it does: moves, turns, and steps through views. */
+export const mayRepeat = (key: string): boolean => /^(Arrow\w+|Page\w+|[,.;:<>np])$/i.test(key);
 
+export class AnnotateKeys {
   constructor(
     private readonly annotator: Annotator,
     private readonly panel: AnnotatePanel,
@@ -36,8 +35,10 @@ export class AnnotateKeys {
   actionOf(event: KeyboardEvent): (() => void) | undefined {
     const { annotator, panel } = this;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (event.ctrlKey || event.metaKey) {
-      if (event.shiftKey && kMoves[key]) return () => this.move(kMoves[key] ?? [0, 0, 0], kCoarse * kStepM);
+    const isControl = event.ctrlKey || event.metaKey;
+    const direction = event.shiftKey ? kMoves[key] : undefined;
+    if (direction) return () => this.move(direction, isControl ? kCoarse * kStepM : kStepM);
+    if (isControl) {
       const commands: Record<string, () => void> = {
         z: () => (event.shiftKey ? annotator.redo() : annotator.undo()),
         y: () => annotator.redo(),
@@ -45,9 +46,6 @@ export class AnnotateKeys {
       };
       return commands[key];
     }
-    const { view } = annotator.app.get();
-    const placement = annotator.selected();
-    if (event.shiftKey && kMoves[key]) return () => this.move(kMoves[key] ?? [0, 0, 0], kStepM);
     const actions: Record<string, () => void> = {
       s: () => (event.shiftKey ? annotator.snapAll() : annotator.snap()),
       g: () => panel.setGizmo({ mode: "translate" }),
@@ -59,9 +57,9 @@ export class AnnotateKeys {
       ".": () => this.turn(1),
       ">": () => this.turn(kCoarse),
       ":": () => this.turn(kCoarse),
-      i: () => placement && annotator.setInterval(view, Math.max(view, placement.last_view)),
-      o: () => placement && panel.endBefore(placement, view),
-      v: () => annotator.split(),
+      i: () => annotator.cameHere(),
+      o: () => annotator.leftHere(),
+      v: () => annotator.movedHere(),
       y: () => panel.nextSymmetry(),
       Delete: () => annotator.remove(),
       k: () => annotator.check(),
@@ -79,7 +77,7 @@ export class AnnotateKeys {
   private selectNext(step: number): void {
     const { app, annotation } = this.annotator;
     const { view, track } = app.get();
-    const tracks = annotation.objects.filter((o) => o.first_view <= view && view <= o.last_view).map((o) => o.track);
+    const tracks = annotation.objects.filter((each) => isIn(each, view)).map((each) => each.track);
     if (tracks.length === 0) return;
     const index = tracks.indexOf(track);
     app.selectTrack(tracks[(index + step + tracks.length) % tracks.length] ?? -1);
@@ -97,15 +95,7 @@ export class AnnotateKeys {
     this.change((pose) => turnPose(pose, object?.center ?? [0, 0, 0], axis, degrees, axes));
   }
   private change(by: (pose: Pose) => Pose): void {
-    const placement = this.annotator.selected();
-    if (!placement) return;
-    this.pending = by(this.pending ?? placement.pose);
-    this.world.gizmo().onDrag(this.pending);
-    window.clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => {
-      const pose = this.pending;
-      this.pending = null;
-      if (pose) this.annotator.setPose(pose);
-    }, kPauseMs);
+    const pose = this.annotator.nudge(by);
+    if (pose) this.world.gizmo().onDrag(pose);
   }
 }

@@ -7,7 +7,7 @@ import { parseColor } from "./colors";
 import { button, element, percent } from "./dom";
 import type { Vec3 } from "./geometry";
 import type { MaskEditor } from "./mask_editor";
-import { type Axes, fromNumbers, toNumbers } from "./pose_edit";
+import { type Axes, isSamePose, nextSymmetryStep, toNumbers } from "./pose_edit";
 import { RegionList } from "./region_list";
 import { drawThumbnail } from "./thumbnail";
 
@@ -18,10 +18,16 @@ export interface GizmoState {
   axes: Axes;
 }
 
+/** What is typed stays. */
+function setValue(input: HTMLInputElement, value: string): void {
+  if (input !== document.activeElement) input.value = value;
+}
+
 export class AnnotatePanel {
   readonly gizmo: GizmoState = { mode: "translate", axes: "world" };
   private readonly toolbar = element("div", { class: "tools" });
   private readonly selection = element("div", { class: "selection" });
+  private readonly residuals = element("div");
   private readonly models = element("div", { class: "models-list" });
   private readonly search = element("input", {
     type: "search",
@@ -29,6 +35,10 @@ export class AnnotatePanel {
     "aria-label": "Search models",
   });
   private readonly regions: RegionList;
+  /** The placement whose controls are shown; -1: none. They stay, and `fill` gives them its values: a control that is
+   * typed into or pressed must not be replaced. */
+  private shownId = -1;
+  private fill: ((now: Placement) => void)[] = [];
   private symmetriesOf = -1;
   private symmetries: number[][] = [];
   private symmetryIndex = 0;
@@ -44,6 +54,8 @@ export class AnnotatePanel {
     this.regions.onCorrect = (region) => masks.begin(region);
     masks.onChange = () => this.show();
     this.search.addEventListener("input", () => this.filterModels());
+    // What was typed gives way to what is stored, once that is known.
+    this.selection.addEventListener("focusout", () => annotator.idle().then(() => this.fillIn()));
     root.replaceChildren(
       this.toolbar,
       this.selection,
@@ -98,70 +110,89 @@ export class AnnotatePanel {
   }
 
   private showSelection(): void {
-    if (this.masks.region >= 0) {
-      this.selection.replaceChildren(...this.masks.controls());
-      return;
-    }
-    const placement = this.annotator.selected();
+    const placement = this.masks.region >= 0 ? null : this.annotator.selected();
     if (!placement) {
-      const hint =
-        this.annotator.placing >= 0
-          ? `Click on ${this.annotator.nameOf(this.annotator.placing)} in the image or in 3D. Escape ends it.`
-          : "Select an object, or choose a model below and click where it is.";
-      this.selection.replaceChildren(element("p", { class: "hint" }, hint));
+      this.shownId = -1;
+      this.selection.replaceChildren(...(this.masks.region >= 0 ? this.masks.controls() : [this.makeHint()]));
       return;
     }
-    if (this.symmetriesOf !== placement.object) this.loadSymmetries(placement.object);
+    if (this.shownId !== placement.id) this.makeSelection(placement);
+    this.fillIn();
+    this.residuals.replaceChildren(this.makeResiduals(placement));
+  }
+  private fillIn(): void {
+    const placement = this.annotator.selected();
+    if (placement?.id === this.shownId) for (const fill of this.fill) fill(placement);
+  }
+  private makeHint(): HTMLElement {
+    const { placing } = this.annotator;
+    const hint =
+      placing >= 0
+        ? `Click on ${this.annotator.nameOf(placing)} in the image or in 3D. Escape ends it.`
+        : "Select an object, or choose a model below and click where it is.";
+    return element("p", { class: "hint" }, hint);
+  }
+  private makeSelection(placement: Placement): void {
+    this.shownId = placement.id;
+    this.fill = [];
+    this.loadSymmetries(placement.object);
     const object = this.annotator.app.object(placement.object);
     this.selection.replaceChildren(
       element("h2", { class: "object", style: `--object-color: ${object?.color ?? "#888"}` }, object?.name ?? "?"),
       this.makeActions(placement),
-      this.makeInterval(placement),
-      this.makeNumbers(placement, object?.center ?? [0, 0, 0]),
-      this.makeResiduals(placement),
+      this.makeInterval(placement.id),
+      this.makeNumbers(placement.id, object?.center ?? [0, 0, 0]),
+      this.residuals,
     );
   }
 
   private makeActions(placement: Placement): HTMLElement {
     const { annotator } = this;
-    const { view } = annotator.app.get();
-    const others = [
-      ...new Set(annotator.annotation.objects.filter((o) => o.object === placement.object).map((o) => o.track)),
-    ];
-    const track = element("select", {
-      title: "The thing that it is: placements of one track are one thing that moves",
+    const symmetry = button("Symmetry", "Take the next pose of the same shape (Y)", () => this.nextSymmetry());
+    this.fill.push(() => {
+      symmetry.hidden = this.symmetries.length === 0;
     });
-    for (const each of others) track.append(element("option", { value: each }, `track ${each}`));
-    track.append(element("option", { value: -1 }, "new track"));
-    track.value = String(placement.track);
-    track.addEventListener("change", () => annotator.joinTrack(Number(track.value)));
     return element(
       "div",
       { class: "tools" },
       button("Snap", "Fit to the depth of all views of the placement (S)", () => annotator.snap()),
-      button("Came here", "It came before this view: the placement begins here (I)", () =>
-        annotator.setInterval(view, Math.max(view, placement.last_view)),
-      ),
+      button("Came here", "It came before this view: the placement begins here (I)", () => annotator.cameHere()),
       button("Left here", "It left before this view: the placement ends with the last one (O)", () =>
-        this.endBefore(placement, view),
+        annotator.leftHere(),
       ),
-      button("Moved here", "It moved before this view: a second placement begins here (V)", () => annotator.split()),
-      ...(this.symmetries.length > 0
-        ? [button("Symmetry", "Take the next pose of the same shape (Y)", () => this.nextSymmetry())]
-        : []),
-      track,
+      button("Moved here", "It moved before this view: a second placement begins here (V)", () =>
+        annotator.movedHere(),
+      ),
+      symmetry,
+      this.makeTrack(placement),
       button("Delete", "Delete the placement (Delete)", () => annotator.remove()),
     );
   }
-  endBefore(placement: Placement, view: number): void {
-    if (view > placement.first_view) this.annotator.setInterval(placement.first_view, view - 1);
-    else this.annotator.say("The placement begins here: delete it instead.", true);
+  private makeTrack({ id, object }: Placement): HTMLElement {
+    const { annotator } = this;
+    const select = element("select", {
+      title: "The thing that it is: placements of one track are one thing that moves",
+    });
+    select.addEventListener("change", () => annotator.joinTrack(id, Number(select.value)));
+    let listed: string | null = null;
+    this.fill.push((now) => {
+      const same = annotator.annotation.objects.filter((each) => each.object === object);
+      const tracks = [...new Set(same.map((each) => each.track))];
+      if (listed !== tracks.join()) {
+        const options = tracks.map((track) => element("option", { value: track }, `track ${track}`));
+        select.replaceChildren(...options, element("option", { value: -1 }, "new track"));
+        listed = tracks.join();
+      }
+      select.value = String(now.track);
+    });
+    return select;
   }
 
   private loadSymmetries(object: number): void {
+    this.symmetryIndex = 0;
+    if (this.symmetriesOf === object) return;
     this.symmetriesOf = object;
     this.symmetries = [];
-    this.symmetryIndex = 0;
     this.api.symmetries(object).then(
       (motions) => {
         if (this.symmetriesOf !== object) return;
@@ -173,58 +204,42 @@ export class AnnotatePanel {
   }
   /** Steps through all poses of the same shape, and returns to the first one. */
   nextSymmetry(): void {
-    const motion = this.symmetries[this.symmetryIndex];
-    if (!motion) return;
-    this.symmetryIndex = (this.symmetryIndex + 1) % this.symmetries.length;
-    this.annotator.applySymmetry(motion);
+    if (this.symmetries.length === 0) return;
+    this.annotator.applySymmetry(nextSymmetryStep(this.symmetries, this.symmetryIndex));
+    this.symmetryIndex = (this.symmetryIndex + 1) % (this.symmetries.length + 1);
   }
 
-  private makeInterval(placement: Placement): HTMLElement {
-    const make = (label: string, value: number) =>
-      element("input", {
-        type: "number",
-        min: 1,
-        max: this.annotator.app.scene.views.length,
-        value: value + 1,
-        "aria-label": label,
-      });
-    const first = make("First view", placement.first_view);
-    const last = make("Last view", placement.last_view);
-    for (const input of [first, last])
-      input.addEventListener("change", () =>
-        this.annotator.setInterval(first.valueAsNumber - 1, last.valueAsNumber - 1),
-      );
+  private makeInterval(id: number): HTMLElement {
+    const make = (label: string, key: "first_view" | "last_view") => {
+      const max = this.annotator.app.scene.views.length;
+      const input = element("input", { type: "number", min: 1, max, "aria-label": label });
+      input.addEventListener("change", () => this.annotator.setViews(id, { [key]: input.valueAsNumber - 1 }));
+      this.fill.push((now) => setValue(input, String(now[key] + 1)));
+      return input;
+    };
+    const [first, last] = [make("First view", "first_view"), make("Last view", "last_view")];
     return element("div", { class: "interval" }, "views ", first, " to ", last);
   }
 
-  private makeNumbers(placement: Placement, center: Vec3): HTMLElement {
-    const grid = element("div", { class: "numbers" });
-    const inputs = toNumbers(placement.pose, center).map((value, index) => {
-      const name = kNumberNames[index] ?? "";
-      const input = element("input", {
-        type: "number",
-        step: index < 3 ? 1 : 0.5,
-        value: value.toFixed(2),
-        "aria-label": name,
-      });
-      input.addEventListener("change", () => {
-        const pose = fromNumbers(
-          inputs.map((each) => each.valueAsNumber),
-          center,
-        );
-        if (pose) this.annotator.setPose(pose);
-        else this.annotator.say("A number is missing.", true);
-      });
-      grid.append(element("label", {}, name, input));
+  private makeNumbers(id: number, center: Vec3): HTMLElement {
+    const inputs = kNumberNames.map((name, index) => {
+      const input = element("input", { type: "number", step: index < 3 ? 1 : 0.5, "aria-label": name });
+      input.addEventListener("change", () => this.annotator.setNumber(id, index, input.valueAsNumber));
       return input;
     });
-    return grid;
+    this.fill.push((now) => {
+      const numbers = toNumbers(now.pose, center);
+      inputs.forEach((input, index) => {
+        setValue(input, (numbers[index] ?? 0).toFixed(2));
+      });
+    });
+    const labels = inputs.map((input, index) => element("label", {}, kNumberNames[index] ?? "", input));
+    return element("div", { class: "numbers" }, ...labels);
   }
 
   private makeResiduals(placement: Placement): HTMLElement {
     const { residuals, residualsOf } = this.annotator;
-    const isCurrent = residualsOf?.every((value, i) => Math.abs(value - (placement.pose[i] ?? 0)) < 1e-9);
-    if (!isCurrent)
+    if (!residualsOf || !isSamePose(residualsOf, placement.pose))
       return button("Residual per view", "Compare with the depth of each view", () => this.annotator.showResiduals());
     const rows = residuals.filter((each) => each.num_visible > 0).map((each) => this.residualRow(each, placement));
     const head = ["view", "distance", "supported", ""].map((name) => element("th", { scope: "col" }, name));
@@ -264,7 +279,7 @@ export class AnnotatePanel {
         );
     });
   }
-  startPlacing(object: number): void {
+  private startPlacing(object: number): void {
     this.annotator.placing = this.annotator.placing === object ? -1 : object;
     this.annotator.app.selectNothing();
     this.show();

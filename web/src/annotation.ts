@@ -153,6 +153,24 @@ export function presentInterval(residuals: ViewResidual[], view: number, numView
   return [first, last];
 }
 
+/** A placement that begins at a view. */
+export const beginAt = (placement: Placement, view: number): Placement => ({
+  ...placement,
+  first_view: view,
+  last_view: Math.max(view, placement.last_view),
+});
+/** A placement that ends before a view. */
+export function endBefore(placement: Placement, view: number): Placement {
+  if (view <= placement.first_view) throw new Error("The placement begins here: delete it instead.");
+  return { ...placement, last_view: view - 1 };
+}
+/** A placement that ends before a view, and the next one of the same thing, which begins there. */
+export function splitAt(placement: Placement, view: number): Placement[] {
+  if (view <= placement.first_view || view > placement.last_view)
+    throw new Error("Go to the first view after the move.");
+  return [endBefore(placement, view), { ...placement, id: -1, first_view: view }];
+}
+
 export const putObject = (placement: Omit<Placement, "id" | "track"> & { id?: number; track?: number }): Change => ({
   do: "put_object",
   id: placement.id ?? -1,

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fetches data from the server and keeps what was used last. Data are made once on both sides.
-import type { Action, Annotation, RegionPixels } from "./annotation";
-import type { Camera, Cloud, Scene, ViewDetails } from "./protocol";
+import { type Action, type Annotation, isIn, type Placement, type RegionPixels } from "./annotation";
+import type { Camera, Cloud, DetectionDetails, Scene, ViewDetails } from "./protocol";
 import { decodeCloud } from "./protocol";
 import type { Trace } from "./trace";
 
 const kMaxViews = 24;
+const kMinViews = 3;
+const kMaxImageBytes = 256 * 2 ** 20;
+const kBytesPerPixel = 12; // a bitmap, its pixels and depth: see ViewImages
 const kMaxDetails = 300;
 
 /** Keeps promises of the values that were used last; failures are not kept. */
 export class Recent<T> {
   private readonly values = new Map<string, Promise<T>>();
   constructor(
-    private readonly maxCount: number,
+    public maxCount: number,
     private readonly drop: (value: T) => void = () => {},
   ) {}
 
@@ -37,6 +40,19 @@ export class Recent<T> {
   clear(): void {
     this.values.clear();
   }
+}
+
+/** How many views are kept: as many as fit into the memory, within limits. */
+export function numKeptViews({ width, height }: Camera): number {
+  const fitting = Math.floor(kMaxImageBytes / (kBytesPerPixel * width * height));
+  return Math.max(kMinViews, Math.min(kMaxViews, fitting));
+}
+
+/** The details of the placements of a view in the order in which the page knows these. The server may know others by
+ * now: another window has edited them. */
+export function inOrder(known: readonly Placement[], answered: readonly DetectionDetails[]): DetectionDetails[] {
+  const none: DetectionDetails = { outline: [], covariance: null, evidence: [] };
+  return known.map(({ id }) => answered.find((each) => each.id === id) ?? none);
 }
 
 /** The data of the whole events in a text of server-sent events, and what follows them. */
@@ -74,6 +90,8 @@ export class Api {
 
   /** Views are those of the annotation. */
   isAnnotated = false;
+  /** Those of the annotation that was received last. */
+  private placements: readonly Placement[] = [];
 
   constructor(private readonly token: string) {}
 
@@ -94,10 +112,14 @@ export class Api {
     return (await this.ask("/api/scene")).json();
   }
   async annotation(): Promise<Annotation> {
-    return (await this.ask("/api/annotation")).json();
+    return this.keep(await (await this.ask("/api/annotation")).json());
   }
   async act(revision: number, action: Action): Promise<Annotation> {
-    return (await this.ask("/api/annotation/actions", { revision, action })).json();
+    return this.keep(await (await this.ask("/api/annotation/actions", { revision, action })).json());
+  }
+  private keep(annotation: Annotation): Annotation {
+    this.placements = annotation.objects;
+    return annotation;
   }
   /** Asks for something that changes nothing but takes work (docs/annotate.md). */
   async post<T>(what: "place" | "refine" | "assess" | "export", body: unknown): Promise<T> {
@@ -122,15 +144,20 @@ export class Api {
         for (const each of data) yield Number(each);
       }
     } finally {
-      await reader.cancel();
+      await reader.cancel().catch(() => {}); // of a stream that has failed, its own error counts
     }
   }
   view(view: number, run: number): Promise<ViewDetails> {
     return this.details.get(`${view}/${run}`, async () => {
-      if (this.isAnnotated) return (await this.ask(`/api/annotation/views/${view}`)).json();
+      if (this.isAnnotated) return this.annotatedView(view);
       const query = run >= 0 ? `?run=${run}` : "";
       return (await this.ask(`/api/views/${view}${query}`)).json();
     });
+  }
+  private async annotatedView(view: number): Promise<ViewDetails> {
+    const details: ViewDetails = await (await this.ask(`/api/annotation/views/${view}`)).json();
+    const known = this.placements.filter((each) => isIn(each, view));
+    return { ...details, detections: inOrder(known, details.detections) };
   }
   /** What became of the hypotheses of a view, in a run with has_trace. */
   trace(view: number, run: number): Promise<Trace> {
@@ -139,6 +166,7 @@ export class Api {
     );
   }
   viewImages(view: number, camera: Camera): Promise<ViewImages> {
+    this.images.maxCount = numKeptViews(camera);
     return this.images.get(String(view), async () => {
       const [color, depth] = await Promise.all([
         this.ask(`/api/views/${view}/color`).then((response) => response.blob()),

@@ -3,8 +3,9 @@ import { classifyError } from "./geometry";
 
 type Rgb = [number, number, number];
 
-/** Colours of what a view says of a surface: not seen, occluded, present, seen through. */
-export const kEvidenceColors = ["#8b949e", "#3e7bfa", "#30a46c", "#e5484d"] as const;
+/** Colours of what a view says of a surface: not seen, occluded, present, seen through. The last two differ in
+ * brightness as well, for who does not tell red from green. */
+export const kEvidenceColors = ["#8b949e", "#3e7bfa", "#6fdc9c", "#c1272d"] as const;
 
 /** Colours of errors of depth: the view is nearer than the model by the limit, as near, farther by the limit. */
 export const kErrorColors = ["#3e7bfa", "#f2f2f2", "#e5484d"] as const;

@@ -3,7 +3,7 @@
 import { Matrix4, Object3D, type PerspectiveCamera, type Scene } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
 import { multiply, type Vec3 } from "./geometry";
-import { type Axes, translation } from "./pose_edit";
+import { type Axes, isSamePose, translation } from "./pose_edit";
 import type { Pose } from "./protocol";
 
 const kSize = 0.7;
@@ -13,7 +13,9 @@ export class Gizmo {
   private readonly handle = new Object3D();
   private center: Vec3 = [0, 0, 0];
   isDragging = false;
+  private start: Pose = [];
   onDrag: (pose: Pose) => void = () => {};
+  /** Called when a handle that was moved is released; a click on one moves nothing. */
   onDrop: (pose: Pose) => void = () => {};
   /** The camera must not turn while a handle is dragged. */
   onHold: (isHeld: boolean) => void = () => {};
@@ -26,7 +28,9 @@ export class Gizmo {
     this.controls.addEventListener("dragging-changed", (event) => {
       this.isDragging = event.value === true;
       this.onHold(this.isDragging);
-      if (!this.isDragging) this.onDrop(this.pose());
+      const pose = this.pose();
+      if (this.isDragging) this.start = pose;
+      else if (!isSamePose(pose, this.start)) this.onDrop(pose);
     });
     this.controls.addEventListener("objectChange", () => this.onDrag(this.pose()));
   }
@@ -48,7 +52,7 @@ export class Gizmo {
     this.controls.setMode(mode);
     this.controls.setSpace(axes === "object" ? "local" : "world");
   }
-  /** Whether the pointer is on a handle. */
+  /** Whether the pointer is on a handle. Not known when the button is released: the controls forget it before. */
   get isHovered(): boolean {
     return this.controls.axis !== null && this.controls.axis !== undefined;
   }

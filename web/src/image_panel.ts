@@ -40,6 +40,7 @@ function toPath(outline: Outline): { path: Path2D; top: [number, number] } {
 }
 
 export interface PointedAt {
+  view: number;
   pixel: [number, number];
   depth: number;
   position: Vec3 | null;
@@ -58,6 +59,8 @@ export class ImagePanel {
   private readonly caption: HTMLElement;
   private images: ViewImages | null = null;
   private details: ViewDetails | null = null;
+  /** What the image is of: until another one is there, clicks in it are meant for this one. */
+  private shown = { view: 0, run: -1 };
   private shapes: Shape[] = [];
   private wanted = "";
   onPoint: (at: PointedAt | null) => void = () => {};
@@ -103,15 +106,16 @@ export class ImagePanel {
 
   /** Loads what the state asks for; what is shown stays until that is there. */
   async update(): Promise<void> {
-    const { view } = this.app.get();
+    const { view, edit } = this.app.get();
     const run = this.runOf();
-    this.wanted = `${view}/${run}`;
+    this.wanted = `${view}/${run}/${edit}`;
     const wanted = this.wanted;
     const details = await this.api.view(view, run);
     const images = await this.api.viewImages(view, details.camera);
     if (this.wanted !== wanted) return;
     this.details = details;
     this.images = images;
+    this.shown = { view, run };
     this.moved = null;
     this.makeShapes(run, view, details);
     this.setCaption(run, view);
@@ -194,7 +198,7 @@ export class ImagePanel {
 
   /** Shows the points of an object at another pose: while it is dragged, or of a hypothesis. Null shows none. */
   async showMoved(shown: { object: number; pose: Pose } | null): Promise<void> {
-    const cameraPose = this.pose(this.app.get().view);
+    const cameraPose = this.pose();
     if (!shown && !this.moved) return;
     this.moved = null;
     if (!shown || !this.app.object(shown.object)?.has_surface || !cameraPose || !this.details) {
@@ -223,7 +227,7 @@ export class ImagePanel {
   private isSelected(shape: Shape): boolean {
     const { track, run } = this.app.get();
     // Numbers of tracks mean the same within a run only.
-    if (!shape.isTruth && this.runOf() === run && track >= 0) return shape.track === track;
+    if (!shape.isTruth && this.shown.run === run && track >= 0) return shape.track === track;
     return shape.object >= 0 && shape.object === this.app.selectedObject();
   }
 
@@ -276,8 +280,8 @@ export class ImagePanel {
   }
 
   private drawPoint(context: CanvasRenderingContext2D, pixel: number): void {
-    const { point, view } = this.app.get();
-    const pose = this.pose(view);
+    const { point } = this.app.get();
+    const pose = this.pose();
     if (!point || !pose || !this.details) return;
     const at = project(this.details.camera, transformPoint(inverseRigid(pose), point));
     if (!at) return;
@@ -293,8 +297,10 @@ export class ImagePanel {
     }
   }
 
-  private pose(view: number): number[] | null {
-    return this.app.runView(this.runOf(), view)?.pose ?? this.app.cameraPose(view);
+  /** Of the camera that took the image. */
+  private pose(): number[] | null {
+    const { view, run } = this.shown;
+    return this.app.runView(run, view)?.pose ?? this.app.cameraPose(view);
   }
 
   /** In pixels, whose centres are whole numbers. */
@@ -312,9 +318,9 @@ export class ImagePanel {
     const [u, v] = this.position(event, camera).map(Math.round) as [number, number];
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) return null;
     const depth = this.images.depth[v * camera.width + u] ?? Number.NaN;
-    const pose = this.pose(this.app.get().view);
+    const pose = this.pose();
     const position = depth > 0 && pose ? transformPoint(pose, unproject(camera, u, v, depth)) : null;
-    return { pixel: [u, v], depth, position };
+    return { view: this.shown.view, pixel: [u, v], depth, position };
   }
 
   private pick(event: MouseEvent): void {
@@ -333,7 +339,7 @@ export class ImagePanel {
       .filter((shape) => context?.isPointInPath(shape.path, x, y))
       .pop();
     if (!hit) this.onPick(at);
-    else if (hit.isTruth || this.runOf() !== this.app.get().run) this.app.selectObject(hit.object);
+    else if (hit.isTruth || this.shown.run !== this.app.get().run) this.app.selectObject(hit.object);
     else this.app.selectTrack(hit.track);
   }
 

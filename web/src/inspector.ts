@@ -4,8 +4,9 @@ import type { Api } from "./api";
 import { button, coordinates, element, metres, percent, type Row, table } from "./dom";
 import { distance, rotationAngleDeg, translationOf } from "./geometry";
 import { isChange, kEventMarks, kEventNames } from "./history";
-import type { Detection, DetectionDetails, ObjectEvent, SceneObject, TrueObject, ViewDetails } from "./protocol";
+import type { Detection, DetectionDetails, ObjectEvent, Pose, SceneObject, ViewDetails } from "./protocol";
 import type { App } from "./store";
+import { centerOf, viewNumber } from "./trace";
 import { Why } from "./why";
 
 const heading = (text: string, color?: string): HTMLElement =>
@@ -103,37 +104,30 @@ export class Inspector {
       ["position", coordinates(translationOf(detection.pose))],
     ];
     if (detection.verdict) rows.push(["verdict", detection.verdict]);
-    const error = this.truthError(detection);
-    if (error) rows.push(["to ground truth", error]);
+    const error = details?.truth_error;
+    if (error) rows.push(["to ground truth", difference(error.center_distance_m, error.rotation_rad)]);
     const other = this.otherRun(detection);
     if (other) rows.push(other);
     if (details?.covariance) rows.push(...uncertaintyRows(details.covariance));
     const copy = button("Copy pose", "Copy the pose as a 4x4 matrix, row by row", () => {
       navigator.clipboard?.writeText(formatMatrix(detection.pose)).catch(this.onError);
     });
-    return [table(rows), copy, ...(details ? evidenceTable(details, this.app) : [])];
-  }
-
-  /** How far a pose is from the nearest true one of its object. */
-  private truthError(detection: Detection): string | null {
-    const same = (this.details?.truth ?? []).filter((truth: TrueObject) => truth.object === detection.object);
-    const offset = (truth: TrueObject) => distance(translationOf(truth.pose), translationOf(detection.pose));
-    const nearest = same.sort((a, b) => offset(a) - offset(b))[0];
-    if (!nearest) return null;
-    return `${metres(offset(nearest))}, ${rotationAngleDeg(nearest.pose, detection.pose).toFixed(1)}°`;
+    return [table(rows), copy, ...(details ? evidenceTable(details) : [])];
   }
 
   private otherRun(detection: Detection): Row | null {
     const { compare } = this.app.get();
     const run = this.app.run(compare);
     if (!run) return null;
-    const offset = (other: Detection) => distance(translationOf(other.pose), translationOf(detection.pose));
+    const object = this.app.object(detection.object);
+    const offset = (other: Detection) => centerDistance(object, other.pose, detection.pose);
     const nearest = (this.app.runView(compare)?.detections ?? [])
       .filter((other) => other.object === detection.object)
       .sort((a, b) => offset(a) - offset(b))[0];
     if (!nearest) return [`in ${run.name}`, "not detected"];
-    const angle = rotationAngleDeg(nearest.pose, detection.pose).toFixed(1);
-    return [`in ${run.name}`, `score ${nearest.score.toFixed(3)}, ${metres(offset(nearest))} and ${angle}° away`];
+    // The angle of a symmetric object says nothing without its symmetries, which the page does not know.
+    const angle = object?.num_symmetries ? null : (rotationAngleDeg(nearest.pose, detection.pose) * Math.PI) / 180;
+    return [`in ${run.name}`, `score ${nearest.score.toFixed(3)}, ${difference(offset(nearest), angle)} away`];
   }
 
   private showObject(number: number): Node[] {
@@ -212,8 +206,8 @@ export class Inspector {
     const list = element("ul", { class: "events" });
     for (const { event, last } of joinRepeated(events)) {
       const name = withName ? `${this.app.object(event.object)?.name ?? "?"} ` : "";
-      const distanceM =
-        event.before && event.after ? distance(translationOf(event.before), translationOf(event.after)) : 0;
+      const object = this.app.object(event.object);
+      const distanceM = event.before && event.after ? centerDistance(object, event.before, event.after) : 0;
       const by = event.kind === "moved" ? ` by ${metres(distanceM)}` : "";
       const text = `${name}${kEventNames[event.kind]}${by}`;
       const choose = button("", `${text}, view ${event.view + 1}`, () => this.app.selectEvent(event), {
@@ -232,6 +226,16 @@ export class Inspector {
     }
     return list;
   }
+}
+
+/** Between the centres of an object at two poses: its origin may be anywhere. */
+function centerDistance(object: SceneObject | undefined, a: Pose, b: Pose): number {
+  return distance(centerOf({ pose: a }, object), centerOf({ pose: b }, object));
+}
+
+/** Of two poses, in words; without an angle where that is unknown. */
+function difference(distanceM: number, angleRad: number | null): string {
+  return angleRad === null ? metres(distanceM) : `${metres(distanceM)}, ${((angleRad * 180) / Math.PI).toFixed(1)}°`;
 }
 
 /** Joins what is the same in one view after the other, such as "still there". */
@@ -269,16 +273,15 @@ function uncertaintyRows(covariance: number[]): Row[] {
   ];
 }
 
-function evidenceTable(details: DetectionDetails, app: App): Node[] {
+function evidenceTable(details: DetectionDetails): Node[] {
   if (details.evidence.length === 0) return [];
-  const run = app.run();
   const head = element(
     "tr",
     {},
     ...["view", "visible", "explained", ""].map((name) => element("th", { scope: "col" }, name)),
   );
   const rows = details.evidence.map((each) => {
-    const name = run?.views[each.view] !== undefined ? String(each.view + 1) : "?";
+    const name = viewNumber(each.view);
     const note = each.allowed ? "" : "excluded by changes";
     return element(
       "tr",

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-import { AnnotateKeys } from "./annotate_keys";
+import { AnnotateKeys, mayRepeat } from "./annotate_keys";
 import { AnnotatePanel } from "./annotate_panel";
-import { toRun } from "./annotation";
+import { isIn, type Placement, toRun } from "./annotation";
 import { Annotator } from "./annotator";
 import { Api } from "./api";
 import { Bar, isDark, restoreTheme, toggleTheme } from "./bar";
 import { byId, coordinates, download, element, metres } from "./dom";
-import { guessUp, inverseRigid, project, transformPoint, type Vec3 } from "./geometry";
+import { distance, guessUp, inverseRigid, project, transformPoint, type Vec3 } from "./geometry";
 import { ImagePanel, type PointedAt } from "./image_panel";
 import { Inspector } from "./inspector";
 import { formatLink, type LinkState, parseLink } from "./link";
+import { follow } from "./live";
 import { MaskEditor } from "./mask_editor";
 import { makePicture } from "./picture";
 import type { Pose } from "./protocol";
@@ -17,8 +18,6 @@ import { SceneView } from "./scene_view";
 import { App } from "./store";
 import { Timeline } from "./timeline";
 import { makeBox, World } from "./world";
-
-const kReconnectMs = 1000;
 
 /** The whole page. */
 class Viewer {
@@ -30,6 +29,9 @@ class Viewer {
   private readonly status = byId("status");
   private readonly annotateKeys: AnnotateKeys | null = null;
   private linkTimer = 0;
+  /** The fragment that this page was loaded with or has written last. */
+  private fragment = location.hash;
+  private hasHome = false;
 
   constructor(
     private readonly app: App,
@@ -44,6 +46,7 @@ class Viewer {
     const poses = scene.views.map((_, view) => app.cameraPose(view)).filter((pose): pose is Pose => pose !== null);
     this.world = new World(byId("world"), hasViews ? guessUp(poses) : [0, 0, 1]);
     this.sceneView = new SceneView(this.world, app, api);
+    this.sceneView.onError = (error) => this.report(error);
     this.bar = new Bar(byId("bar"), app, {
       exportPicture: () => this.exportPicture(),
       copyLink: () => this.copyLink(),
@@ -95,12 +98,13 @@ class Viewer {
     const keys = new AnnotateKeys(annotator, panel, this.world);
     annotator.onChange = () => panel.show();
     const gizmo = this.world.gizmo();
+    let held: Placement | null = null; // another one may be selected while its handles are dragged
     const showGizmo = () => {
-      const placement = annotator.selected();
-      const { view } = this.app.get();
-      const isHere = placement && placement.first_view <= view && view <= placement.last_view;
       gizmo.setMode(panel.gizmo.mode, panel.gizmo.axes);
-      gizmo.attach(isHere ? placement.pose : null, this.app.object(placement?.object ?? -1)?.center);
+      if (gizmo.isDragging) return;
+      const placement = annotator.selected();
+      held = placement && isIn(placement, this.app.get().view) ? placement : null;
+      gizmo.attach(held?.pose ?? null, this.app.object(placement?.object ?? -1)?.center);
     };
     panel.onGizmo = showGizmo;
     const showRegions = () => {
@@ -118,13 +122,14 @@ class Viewer {
       this.sceneView.movePoints(this.app.get().track, pose);
       this.panels[0]?.showMoved({ object: annotator.selected()?.object ?? -1, pose });
     };
-    gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move");
+    gizmo.onDrop = (pose) => annotator.setPose(pose, panel.gizmo.mode === "rotate" ? "Turn" : "Move", held?.id);
     this.app.listen((changed) => {
       if (["view", "track", "edit"].some((key) => changed.has(key as "view"))) showGizmo();
       if (changed.has("view") || changed.has("edit")) showRegions();
     });
     imagePanel.onPlace = (at) => {
       if (annotator.placing < 0) return false;
+      this.app.goTo(at.view); // the one that was clicked, even if another one is loading
       annotator.place(...at.pixel);
       return true;
     };
@@ -146,20 +151,27 @@ class Viewer {
     const { scene } = this.app;
     this.app.set(scene.is_live && state.view === 0 ? { ...state, view: Math.max(0, this.app.latestView()) } : state);
     const all = new Set(Object.keys(this.app.get()));
-    const { view } = this.app.get();
-    const pose = this.app.cameraPose(view);
-    if (scene.views.length > 0 && pose) {
-      const { camera } = await this.api.view(view, this.app.run() ? state.run : -1);
-      const { depth } = await this.api.viewImages(view, camera);
-      this.sceneView.home(guessUp([pose]), camera, depth, pose);
-    }
-    await this.updateAll(all);
+    const drawn = this.updateAll(all);
+    if (scene.views.length > 1 && !scene.has_poses)
+      this.say("The sequence has no camera poses: each view is drawn in the frame of its own camera.");
+    // A view that cannot be read is no reason to show none: the address would lead to it again and again.
+    await drawn.catch((error) => this.report(error));
     if (state.camera) this.world.setCamera(state.camera);
     else this.world.goHome();
     if (scene.is_live) this.follow().catch((error) => this.report(error));
-    if (scene.views.length > 1 && !scene.has_poses)
-      this.say("The sequence has no camera poses: each view is drawn in the frame of its own camera.");
     document.body.dataset.ready = "yes";
+  }
+
+  /** The first view that can be read decides where the 3D view looks from at first. */
+  private async findHome(): Promise<void> {
+    const { view, run, camera: asked } = this.app.get();
+    const pose = this.app.cameraPose(view);
+    if (!pose) return;
+    const { camera } = await this.api.view(view, this.app.run() ? run : -1);
+    const { depth } = await this.api.viewImages(view, camera);
+    this.sceneView.home(guessUp([pose]), camera, depth, pose);
+    this.hasHome = true;
+    if (!asked) this.world.goHome();
   }
 
   private update(changed: ReadonlySet<string>): void {
@@ -171,7 +183,10 @@ class Viewer {
     const { view, compare } = this.app.get();
     const isNew = has("view", "run", "compare", "edit");
     if (isNew) this.app.set({ shownView: -1 });
+    const isOtherModel = has("object") && this.app.scene.views.length === 0;
+    if (has("view", "run", "compare") || isOtherModel) this.say("");
     document.body.classList.toggle("compares", compare >= 0 && this.panels.length > 1);
+    if (has("view") && !this.hasHome) await this.findHome();
     const panels = this.panels.filter((_, index) => index === 0 || compare >= 0);
     await Promise.all([
       this.sceneView.update(changed),
@@ -179,7 +194,6 @@ class Viewer {
     ]);
     const { hypothesis } = this.app.get();
     if (has("hypothesis", "view", "run")) await this.panels[0]?.showMoved(hypothesis);
-    if (has("view", "run", "compare")) this.say("");
     if (isNew && this.app.get().view === view) this.app.set({ shownView: view });
   }
 
@@ -194,12 +208,13 @@ class Viewer {
 
   private showPointedAt(at: PointedAt | null): void {
     if (!at) {
-      this.say("");
+      this.readOut("");
+      this.world.setMarker(this.app.get().point); // not where the pointer has been
       return;
     }
     const [u, v] = at.pixel;
     const depth = at.depth > 0 ? `depth ${metres(at.depth)}` : "no depth";
-    this.say(`pixel ${u}, ${v} · ${depth}${at.position ? ` · world ${coordinates(at.position)} m` : ""}`);
+    this.readOut(`pixel ${u}, ${v} · ${depth}${at.position ? ` · world ${coordinates(at.position)} m` : ""}`);
     this.world.setMarker(at.position ?? this.app.get().point);
   }
 
@@ -208,23 +223,34 @@ class Viewer {
     if (isMeasuring)
       this.app.set({ measured: measured.length === 1 ? [...measured, position] : [position], point: position });
     else this.app.set({ point: position, track: -1, object: -1, event: null });
-    this.say(`world ${coordinates(position)} m`);
+    this.say(this.withDistance(`world ${coordinates(position)} m`));
+  }
+  /** Tells where the pointer is; an error stays until something else is done. */
+  private readOut(text: string): void {
+    if (!this.status.classList.contains("error")) this.say(this.withDistance(text));
+  }
+  /** Adds the distance that was measured. */
+  private withDistance(text: string): string {
+    const [a, b] = this.app.get().measured;
+    return a && b ? `${text}${text ? " · " : ""}distance ${metres(distance(a, b))}` : text;
   }
 
   private listenToPointer(): void {
     const { canvas } = this.world;
     let down: [number, number] = [0, 0];
     let isWaiting = false;
+    let isOnHandle = false;
     const locate = (event: PointerEvent): [number, number] => {
       const box = canvas.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
     canvas.addEventListener("pointerdown", (event) => {
       down = locate(event);
+      isOnHandle = this.annotator !== null && this.world.gizmo().isHovered;
     });
     canvas.addEventListener("pointerup", (event) => {
       const [x, y] = locate(event);
-      if (event.button !== 0 || Math.hypot(x - down[0], y - down[1]) > 4) return;
+      if (event.button !== 0 || isOnHandle || Math.hypot(x - down[0], y - down[1]) > 4) return;
       this.pickInWorld(x, y);
     });
     canvas.addEventListener("pointermove", (event) => {
@@ -234,13 +260,12 @@ class Viewer {
         isWaiting = false;
         const picked = this.world.pick(...locate(event));
         const name = picked && picked.object >= 0 ? ` · ${this.app.object(picked.object)?.name ?? ""}` : "";
-        this.say(picked ? `world ${coordinates(picked.position)} m${name}` : "");
+        this.readOut(picked ? `world ${coordinates(picked.position)} m${name}` : "");
       });
     });
   }
 
   private pickInWorld(x: number, y: number): void {
-    if (this.annotator && this.world.gizmo().isHovered) return;
     const picked = this.world.pick(x, y);
     if (picked && this.annotator && this.annotator.placing >= 0) {
       this.placeInWorld(picked.position).catch((error) => this.report(error));
@@ -257,18 +282,22 @@ class Viewer {
     const target = event.target as HTMLElement;
     if (event.altKey || document.querySelector("dialog[open]")) return;
     if (target.matches("input:not([type=range]), select")) return;
+    // The slider of the views steps through them as these keys do; others have values of their own.
+    const isSlider = target.matches("#inspector input[type=range]");
+    if (isSlider && /^(Arrow|Page|Home|End)/.test(event.key)) return;
     const edit = this.annotateKeys?.actionOf(event);
     if (edit) {
-      event.preventDefault();
-      edit();
+      this.act(event, edit);
       return;
     }
     if (event.ctrlKey || event.metaKey) return;
     if (event.key === " " && target.matches("button")) return;
     const action = this.actionOf(event.key);
-    if (!action) return;
+    if (action) this.act(event, action);
+  }
+  private act(event: KeyboardEvent, action: () => void): void {
     event.preventDefault();
-    action();
+    if (!event.repeat || mayRepeat(event.key)) action();
   }
 
   private actionOf(key: string): (() => void) | undefined {
@@ -290,7 +319,7 @@ class Viewer {
         ArrowRight: () => app.goTo(app.get().view + 1),
         Home: () => app.goTo(0),
         End: () => app.goTo(app.scene.views.length - 1),
-        " ": () => app.set({ isPlaying: !app.get().isPlaying }),
+        " ": () => app.togglePlaying(),
         n: () => timeline.goToChange(1),
         p: () => timeline.goToChange(-1),
         m: () => app.set({ isMeasuring: !app.get().isMeasuring, measured: [] }),
@@ -320,10 +349,15 @@ class Viewer {
   /** Keeps the state in the address, not more often than browsers allow. */
   private keepLink(): void {
     window.clearTimeout(this.linkTimer);
-    this.linkTimer = window.setTimeout(() => history.replaceState(null, "", this.link()), 250);
+    this.linkTimer = window.setTimeout(() => this.writeLink(), 250);
+  }
+  private writeLink(): void {
+    if (location.hash !== this.fragment) return; // another address was entered, and is about to be loaded
+    history.replaceState(null, "", this.link());
+    this.fragment = location.hash;
   }
   private copyLink(): void {
-    history.replaceState(null, "", this.link());
+    this.writeLink();
     navigator.clipboard.writeText(location.href).then(
       () => this.say("The link is copied. It works while resight view runs."),
       () => this.say("The address of this page is the link."),
@@ -345,13 +379,13 @@ class Viewer {
 
   /** Shows views as they are recognised. */
   private async follow(): Promise<void> {
-    while (this.app.scene.is_live) {
-      for await (const revision of this.api.revisions()) {
+    await follow(
+      () => this.api.revisions(),
+      async (revision) => {
         if (revision !== this.app.scene.revision) await this.reload();
-        if (!this.app.scene.is_live) return;
-      }
-      await new Promise((resolve) => window.setTimeout(resolve, kReconnectMs));
-    }
+        return this.app.scene.is_live;
+      },
+    );
   }
 
   private async reload(): Promise<void> {
@@ -365,6 +399,8 @@ class Viewer {
 
 async function main(): Promise<void> {
   restoreTheme();
+  // An address that differs in its fragment only, such as another token, loads nothing by itself.
+  window.addEventListener("hashchange", () => location.reload());
   const token = parseLink(location.hash, { views: 0, runs: 0, objects: 0 }).token;
   const api = new Api(token);
   const scene = await api.scene();

@@ -18,6 +18,8 @@ export class MaskEditor {
   private adds = true;
   private radius = 6;
   private stroke: Point[] = [];
+  private numUnsent = 0;
+  private numLoads = 0;
   /** Called when another region is edited, or another tool is used. */
   onChange: () => void = () => {};
 
@@ -41,6 +43,7 @@ export class MaskEditor {
     if (!found) return;
     this.annotator.app.goTo(found.view);
     this.region = region;
+    this.clear(); // no stroke may go from the mask of another region to this one
     this.panel.tool = {
       press: (at) => this.onPress(at),
       drag: (at) => this.onDrag(at),
@@ -51,19 +54,30 @@ export class MaskEditor {
   }
   end(): void {
     this.region = -1;
-    this.mask = null;
-    this.picture = null;
+    this.clear();
     this.panel.tool = null;
-    this.panel.draw();
     this.onChange();
   }
+  private clear(): void {
+    this.mask = null;
+    this.picture = null;
+    this.stroke = [];
+    this.panel.draw();
+  }
 
+  /** The page has strokes that the server does not have yet. */
+  private isAhead(): boolean {
+    return this.stroke.length > 0 || this.numUnsent > 0;
+  }
+  /** Takes the mask of the server. While strokes are on their way, it is older than what is shown. */
   private load(): void {
     const { region } = this;
+    if (region < 0 || this.isAhead()) return;
+    const number = ++this.numLoads;
     const { view } = this.annotator.app.get();
     Promise.all([this.api.regionPixels(region), this.api.view(view, 0)]).then(
       ([{ proposed, corrected }, { camera }]) => {
-        if (this.region !== region) return;
+        if (this.region !== region || this.numLoads !== number || this.isAhead()) return;
         this.mask = new PixelMask(camera.width, camera.height, corrected ?? proposed);
         this.draw();
       },
@@ -72,6 +86,7 @@ export class MaskEditor {
   }
 
   private onPress(at: Point): void {
+    if (!this.mask) return; // it is loading
     this.stroke = [at];
     if (this.tool === "brush") this.paint(at, at);
   }
@@ -84,13 +99,19 @@ export class MaskEditor {
   }
   private onRelease(): void {
     const { stroke, mask } = this;
-    this.stroke = [];
     if (!mask || stroke.length === 0) return;
+    this.stroke = [];
     if (this.tool === "lasso") {
       mask.fillPolygon(stroke, this.adds ? 1 : 0);
       this.draw();
     }
-    this.annotator.correctMask(this.region, mask.toRuns());
+    this.send(mask);
+  }
+  private async send(mask: PixelMask): Promise<void> {
+    ++this.numUnsent;
+    await this.annotator.correctMask(this.region, mask.toRuns());
+    --this.numUnsent;
+    this.load();
   }
   private paint(from: Point, to: Point): void {
     this.mask?.paintLine(from, to, this.radius, this.adds ? 1 : 0);

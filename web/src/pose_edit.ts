@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses as six numbers, and small motions of them. Matrices are 4x4, column by column. No page needed.
-import { multiply, transformPoint, translationOf, type Vec3 } from "./geometry";
+import { inverseRigid, multiply, transformPoint, translationOf, type Vec3 } from "./geometry";
 import type { Pose } from "./protocol";
 
 const kDegree = Math.PI / 180;
+const kSamePose = 1e-9;
 
 /** Rotation about a unit axis through the origin. */
 export function rotation(axis: Vec3, degrees: number): Pose {
@@ -31,6 +32,17 @@ export function rotation(axis: Vec3, degrees: number): Pose {
 }
 
 export const translation = (by: Vec3): Pose => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, by[0], by[1], by[2], 1];
+
+export const isSamePose = (a: Pose, b: Pose): boolean =>
+  a.every((value, i) => Math.abs(value - (b[i] ?? 0)) < kSamePose);
+
+/** From the pose of symmetry `index` to that of the next one. Symmetry 0 is the identity, number i is `motions[i - 1]`;
+ * after the last one comes the identity again. Right of a pose, as motions of the object are. */
+export function nextSymmetryStep(motions: readonly Pose[], index: number): Pose {
+  const poses = [translation([0, 0, 0]), ...motions];
+  const at = (i: number) => poses[i % poses.length] ?? translation([0, 0, 0]);
+  return multiply(inverseRigid(at(index)), at(index + 1));
+}
 
 export type Axes = "world" | "object";
 
@@ -67,4 +79,11 @@ export function fromNumbers(numbers: number[], center: Vec3): Pose | null {
   const turned = multiply(rotation([0, 0, 1], z), multiply(rotation([0, 1, 0], y), rotation([1, 0, 0], x)));
   const moved = translationOf(multiply(turned, translation(center)));
   return multiply(translation([px / 1000 - moved[0], py / 1000 - moved[1], pz / 1000 - moved[2]]), turned);
+}
+
+/** A pose with one of its six numbers changed; null unless that one is finite. */
+export function withNumber(pose: Pose, center: Vec3, index: number, value: number): Pose | null {
+  const numbers = toNumbers(pose, center);
+  numbers[index] = value;
+  return fromNumbers(numbers, center);
 }

@@ -84,9 +84,14 @@ export interface Camera {
 export type Outline = number[][];
 
 export interface DetectionDetails {
+  /** Of the placement, in an annotation. */
+  id?: number;
+  /** To the nearest true pose, up to the symmetries of the object; only where its model is known. */
+  truth_error?: { center_distance_m: number; rotation_rad: number } | null;
   outline: Outline;
   covariance: number[] | null;
   evidence: {
+    /** -1: unknown, as in traces. */
     view: number;
     allowed: boolean;
     visible_share: number | null;

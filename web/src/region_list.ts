@@ -83,7 +83,7 @@ export class RegionList {
       ),
       this.moveButton(toDo.region),
       button("Accept", "A change of the selected track, or of none", () =>
-        annotator.judge(toDo.region, "accepted", annotator.selected()?.track ?? -1),
+        annotator.judge(toDo.region, "accepted", annotator.selected()),
       ),
       button("Reject", "Nothing has changed here", () => annotator.judge(toDo.region, "rejected")),
       this.correctButton(toDo.region),
@@ -111,7 +111,9 @@ export class RegionList {
     if (first >= 0 && regions[first]?.kind !== regions[region]?.kind) {
       this.moved = -1;
       const name = this.unknownName.value;
-      this.annotator.moveUnknown(first, region, name).then(() => this.annotator.say(`${name} has moved.`));
+      this.annotator.moveUnknown(first, region, name).then((isDone) => {
+        if (isDone) this.annotator.say(`${name} has moved.`);
+      });
       return;
     }
     const other = regions[region]?.kind === "novel" ? "left" : "came to";

@@ -34,6 +34,8 @@ interface Item {
   track: number;
   pose: Pose;
   kind: "detection" | "other" | "place" | "truth" | "hypothesis";
+  /** For objects that the scene does not know. */
+  name?: string;
 }
 
 /** Those above a half are drawn before the points of the view. */
@@ -58,6 +60,7 @@ export class SceneView {
   private readonly versions = new Map<string, number>();
   private labels: Label[] = [];
   private readonly pointsOfTrack = new Map<number, PointSet>();
+  /** What could not be drawn; the rest is. */
   onError: (error: unknown) => void = () => {};
 
   constructor(
@@ -71,7 +74,7 @@ export class SceneView {
     const has = (...keys: string[]) => keys.some((key) => changed.has(key));
     if (has("layers")) this.showLayers();
     if (this.app.scene.views.length === 0) {
-      if (has("object", "view", "layers")) await this.showModels();
+      if (has("object", "view")) await this.showModels();
       return;
     }
     this.camera = (await this.api.view(this.app.get().view, this.runNumber())).camera;
@@ -213,7 +216,7 @@ export class SceneView {
     const items = this.findItems();
     if (layers.has("truth")) {
       const details = await this.api.view(view, this.runNumber());
-      for (const { object, pose } of details.truth) items.push({ object, track: -1, pose, kind: "truth" });
+      for (const { object, name, pose } of details.truth) items.push({ object, track: -1, pose, kind: "truth", name });
     }
     const { hypothesis, compare } = this.app.get();
     // Numbers of tracks mean the same within a run only.
@@ -259,7 +262,7 @@ export class SceneView {
     const object = this.app.object(item.object);
     const center = transformPoint(item.pose, object?.center ?? [0, 0, 0]);
     return {
-      text: object?.name ?? "?",
+      text: object?.name ?? item.name ?? "?",
       position: center,
       color: object?.color ?? "#ffffff",
       isSelected: this.isSelected(item),
@@ -340,11 +343,16 @@ export class SceneView {
     const spacing = 1.15 * Math.max(0.05, ...objects.map((object) => object.diameter_m ?? 0.3));
     const parts: PointSet[] = [];
     const pickables: Pickable[] = [];
+    const faults: string[] = [];
     this.labels = [];
     for (const [index, object] of objects.entries()) {
       if (selected >= 0 && selected !== index) continue;
-      const surface = await this.api.surface(index);
+      const surface = await this.api.surface(index).catch((error: Error) => {
+        faults.push(`${object.name} (${error.message})`);
+        return null;
+      });
       if (!isCurrent()) return;
+      if (!surface) continue;
       const colors = surface.colors ?? plainColors(surface.positions.length / 3, object.color);
       const style = { sizeM: kSurfaceSizeM, nearerM: 0, isRound: true, opacity: 1 };
       const points = new PointSet(surface.positions, colors, surface.normals, style);
@@ -362,6 +370,7 @@ export class SceneView {
     this.world.setHome({ position: [target[0], target[1] - 0.6 * range, 0.9 * range], target });
     this.setGroup("objects", [...parts, ...(selected >= 0 ? makeAxes(new Matrix4().toArray(), 0.05) : [])], pickables);
     this.world.goHome();
+    if (faults.length > 0) this.onError(new Error(`cannot be shown: ${faults.join(", ")}`));
   }
 
   /** Draws an object elsewhere while it is dragged. */

@@ -110,6 +110,10 @@ export class App {
     const last = this.scene.views.length - 1;
     this.set({ view: Math.max(0, Math.min(last, view)) });
   }
+  /** A single view has nothing to play. */
+  togglePlaying(): void {
+    this.set({ isPlaying: !this.state.isPlaying && this.scene.views.length > 1 });
+  }
   selectTrack(track: number): void {
     this.set({ track, object: -1, point: null, event: null });
   }

@@ -22,7 +22,7 @@ export class Timeline {
     private readonly app: App,
   ) {
     const step = (offset: number) => () => app.goTo(app.get().view + offset);
-    this.play = button("▶", "Play (Space)", () => app.set({ isPlaying: !app.get().isPlaying }));
+    this.play = button("▶", "Play (Space)", () => app.togglePlaying());
     this.slider = element("input", { type: "range", min: 0, step: 1, "aria-label": "View" });
     this.slider.addEventListener("input", () => app.goTo(Number(this.slider.value)));
     this.cursor = element("div", { class: "cursor" });

@@ -62,6 +62,9 @@ export interface Trace {
   lost: Loss[];
 }
 
+/** The number of a view as it is shown, from 1 on. */
+export const viewNumber = (view: number): string => (view < 0 ? "?" : String(view + 1));
+
 const kMarginM = 0.02;
 const kDefaultDiameterM = 0.2;
 
@@ -125,7 +128,7 @@ export function lossRows(loss: Loss): [string, string][] {
 
 /** The evidence of a hypothesis: lines of a name and a value. */
 export function evidenceRows(hypothesis: Hypothesis): [string, string][] {
-  const from = hypothesis.origin_views.map((view) => view + 1).join(", ");
+  const from = hypothesis.origin_views.map(viewNumber).join(", ");
   const rows: [string, string][] = [["from views", `${from || "–"} (${hypothesis.correspondences} matches)`]];
   const v = hypothesis.verification;
   if (!v) return rows;
@@ -140,7 +143,7 @@ export function evidenceRows(hypothesis: Hypothesis): [string, string][] {
     ["cost", `${v.outlier.toFixed(0)} outlier, ${v.clutter.toFixed(0)} clutter, ${v.plane.toFixed(0)} plane`],
   );
   const views = v.views.map(
-    (each) => `${each.view + 1}: ${percent(each.visible_share)}/${percent(each.explained_share)}`,
+    (each) => `${viewNumber(each.view)}: ${percent(each.visible_share)}/${percent(each.explained_share)}`,
   );
   if (views.length > 0) rows.push(["visible/explained", views.join(" · ")]);
   return rows;

@@ -3,7 +3,6 @@
 import {
   BufferGeometry,
   Float32BufferAttribute,
-  GridHelper,
   Group,
   Line,
   LineBasicMaterial,
@@ -382,10 +381,4 @@ export function makeAxes(pose: Pose, length: number): LineSegments[] {
     makeSegments([origin, transformPoint(pose, [0, length, 0])], "#30a46c"),
     makeSegments([origin, transformPoint(pose, [0, 0, length])], "#3e7bfa"),
   ];
-}
-
-export function makeGrid(size: number, up: Vec3, color: string): GridHelper {
-  const grid = new GridHelper(size, Math.round(size / 0.1), color, color);
-  grid.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), new Vector3(...up));
-  return grid;
 }

@@ -3,14 +3,27 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
   type Annotation,
+  beginAt,
+  endBefore,
   type Placement,
   placementAt,
   presentInterval,
+  splitAt,
   toRun,
   type ViewResidual,
 } from "../src/annotation";
-import { transformPoint, type Vec3 } from "../src/geometry";
-import { fromNumbers, movePose, rotation, toNumbers, translation, turnPose } from "../src/pose_edit";
+import { multiply, transformPoint, type Vec3 } from "../src/geometry";
+import {
+  fromNumbers,
+  isSamePose,
+  movePose,
+  nextSymmetryStep,
+  rotation,
+  toNumbers,
+  translation,
+  turnPose,
+  withNumber,
+} from "../src/pose_edit";
 
 const isNear = (a: number[], b: number[]) => a.every((value, i) => Math.abs(value - (b[i] ?? 0)) < 1e-9);
 const kCenter: Vec3 = [0.1, -0.2, 0.3];
@@ -37,6 +50,30 @@ test("the centre stays where it is when an object turns", () => {
   }
   const alongOwnAxis = movePose(rotation([0, 0, 1], 90), [1, 0, 0], 0.5, "object");
   assert.ok(isNear(alongOwnAxis.slice(12, 15), [0, 0.5, 0]));
+});
+
+test("one number changes alone", () => {
+  const pose = fromNumbers([1.234567, 2, 3, 10.000123, 20, 30], kCenter) ?? [];
+  assert.ok(isNear(withNumber(pose, kCenter, 0, 7) ?? [], fromNumbers([7, 2, 3, 10.000123, 20, 30], kCenter) ?? [9]));
+  assert.equal(withNumber(pose, kCenter, 3, Number.NaN), null);
+});
+
+test("steps of symmetry reach all poses of the same shape, and return to the first one", () => {
+  const [turn, half] = [rotation([0, 0, 1], 90), rotation([1, 0, 0], 180)];
+  const group = [0, 1, 2, 3].flatMap((i) => {
+    const turned = rotation([0, 0, 1], 90 * i);
+    return [turned, multiply(half, turned)];
+  });
+  assert.ok(isSamePose(group[2] ?? [], turn));
+  const start = turnPose(translation([1, 2, 3]), kCenter, [0, 1, 0], 33, "world");
+  const reached: number[][] = [];
+  let pose = start;
+  group.forEach((_, index) => {
+    pose = multiply(pose, nextSymmetryStep(group.slice(1), index));
+    if (!reached.some((other) => isSamePose(other, pose))) reached.push(pose);
+  });
+  assert.equal(reached.length, group.length);
+  assert.ok(isSamePose(pose, start));
 });
 
 const placement = (id: number, track: number, first_view: number, last_view: number): Placement => ({
@@ -70,6 +107,19 @@ test("an annotation is shown as a run", () => {
   assert.equal(placementAt(annotation, 5, 3)?.id, 1);
   assert.equal(placementAt(annotation, 6, 0)?.id, 2);
   assert.equal(placementAt(annotation, 9, 0), null);
+});
+
+test("an object came, left or moved before a view", () => {
+  const there = placement(4, 2, 1, 3);
+  assert.deepEqual(beginAt(there, 2), { ...there, first_view: 2 });
+  assert.deepEqual(beginAt(there, 4), { ...there, first_view: 4, last_view: 4 });
+  assert.deepEqual(endBefore(there, 3), { ...there, last_view: 2 });
+  assert.throws(() => endBefore(there, 1), /delete it/);
+  assert.deepEqual(splitAt(there, 2), [
+    { ...there, last_view: 1 },
+    { ...there, id: -1, first_view: 2 },
+  ]);
+  for (const view of [0, 1, 4]) assert.throws(() => splitAt(there, view), /after the move/);
 });
 
 test("free space bounds the views in which an object is there", () => {

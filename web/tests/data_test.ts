@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Recent, splitEvents } from "../src/api";
-import { distanceColors, parseColor, plainColors } from "../src/colors";
+import { Api, inOrder, numKeptViews, Recent, splitEvents } from "../src/api";
+import { distanceColors, kEvidenceColors, parseColor, plainColors } from "../src/colors";
 import { decodeCloud } from "../src/protocol";
 
 function encode(count: number, flags: number, size: number): ArrayBuffer {
@@ -59,4 +59,39 @@ test("colours are bytes", () => {
 test("events are split where they are whole", () => {
   assert.deepEqual(splitEvents("data: 1\n\n:\n\ndata: 2\n\ndata: 3"), { data: ["1", "2"], rest: "data: 3" });
   assert.deepEqual(splitEvents(""), { data: [], rest: "" });
+});
+
+test("so many views are kept as fit into the memory", () => {
+  const kept = (width: number, height: number) => numKeptViews({ width, height, fx: 1, fy: 1, cx: 0, cy: 0 });
+  assert.equal(kept(640, 480), 24);
+  assert.equal(kept(1920, 1080), 10);
+  assert.equal(kept(6000, 4000), 3);
+});
+
+test("placements get their own outlines, whatever another window has done", () => {
+  const placement = (id: number) => ({ id, track: 0, object: 0, first_view: 0, last_view: 0, pose: [] });
+  const details = (id: number) => ({ id, outline: [[id]], covariance: null, evidence: [] });
+  const found = inOrder([placement(1), placement(2), placement(4)], [details(4), details(0), details(1)]);
+  assert.deepEqual(
+    found.map((each) => each.outline),
+    [[[1]], [], [[4]]],
+  );
+});
+
+test("a stream that has failed throws its own error", async (context) => {
+  const reader = {
+    read: () => Promise.reject(new Error("cut off")),
+    cancel: () => Promise.reject(new Error("cannot cancel")),
+  };
+  context.mock.method(globalThis, "fetch", async () => ({ ok: true, body: { getReader: () => reader } }));
+  await assert.rejects(new Api("").revisions().next(), /cut off/);
+});
+
+test("present and seen through differ in brightness, not in hue alone", () => {
+  const luminance = (color: string) => {
+    const linear = parseColor(color).map((value) => (value / 255) ** 2.2);
+    return 0.2126 * (linear[0] ?? 0) + 0.7152 * (linear[1] ?? 0) + 0.0722 * (linear[2] ?? 0);
+  };
+  const [, , present, seenThrough] = kEvidenceColors;
+  assert.ok((luminance(present) + 0.05) / (luminance(seenThrough) + 0.05) > 3);
 });

@@ -90,6 +90,8 @@ test("evidence and losses are listed, unknown numbers as such", () => {
   assert.equal(rows.get("from views"), "2, 4 (7 matches)");
   assert.equal(rows.get("visible/explained"), "4: 25 %/–");
   assert.equal(evidenceRows(hypothesis("not verified", 0, null)).length, 1);
+  const unknown = new Map(evidenceRows({ ...hypothesis("cost", 0), origin_views: [-1, 0] }));
+  assert.equal(unknown.get("from views"), "?, 1 (7 matches)");
   const loss = {
     object: 0,
     name: "mug",

@@ -10,7 +10,8 @@ struct OrientedBox {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();  ///< Length of the sides.
 };
 
-/// The smallest box with the axes of a principal component analysis. Throws std::invalid_argument for an empty cloud.
+/// The smallest box with the axes of a principal component analysis that holds the points, without the few that lie far
+/// beyond the others. Throws std::invalid_argument for an empty cloud.
 [[nodiscard]] OrientedBox fit_box(const PointCloud& cloud_in_world);
 
 }  // namespace resight

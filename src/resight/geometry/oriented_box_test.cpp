@@ -43,6 +43,18 @@ TEST(FitBox, HoldsAllPoints) {
   }
 }
 
+TEST(FitBox, StrayPointsDoNotCount) {
+  const Rigid3 world_from_box{Rigid3::from_axis_angle({1, -2, 0.5}, 0.8).rotation, {0.3, -1, 2}};
+  PointCloud cloud = random_box(world_from_box, {0.06, 0.22, 0.1}, 3000, 3);
+  const OrientedBox clean = fit_box(cloud);
+  for (int i = 0; i < 40; ++i)  // A trail behind the edge of the object.
+    cloud.points.emplace_back((world_from_box * Eigen::Vector3d(0.05 + 0.005 * i, 0.08, 0.04)).cast<float>());
+  const OrientedBox box = fit_box(cloud);
+  EXPECT_LT((box.size_m - clean.size_m).cwiseAbs().maxCoeff(), 0.015);
+  EXPECT_LT((box.world_from_box.translation - clean.world_from_box.translation).norm(), 0.01);
+  EXPECT_GT(std::abs(box.world_from_box.rotation.col(0).dot(clean.world_from_box.rotation.col(0))), 0.98);
+}
+
 TEST(FitBox, APointIsABoxWithoutSize) {
   const OrientedBox box = fit_box({{{1, 2, 3}}, {}, {}});
   EXPECT_EQ(box.size_m, Eigen::Vector3d::Zero());

@@ -78,6 +78,7 @@ TEST(SplatMesh, TheOtherSideOfAThinWallHasNoPartInIt) {
   }
   wall.append(back);
   const TriangleMesh mesh = make_splat_mesh(wall);
+  ASSERT_GE(mesh.vertices.size(), wall.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const bool is_front = i < mesh.vertices.size() / wall.size() * num_front;
     EXPECT_EQ(mesh.colors[i].b, is_front ? 77 : 200);

@@ -65,6 +65,7 @@ TEST(FindFaults, ResultsDoNotDependOnThreads) {
   const test::BrokenSequence broken(good_sequence(), "depth_x1.25");
   const auto one = find_faults(measure_sequence(broken, {.max_views = 24, .num_threads = 1}).value());
   const auto three = find_faults(measure_sequence(broken, {.max_views = 24, .num_threads = 3}).value());
+  ASSERT_FALSE(one.empty());
   ASSERT_EQ(names_of(one), names_of(three));
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].value, three[i].value);
 }

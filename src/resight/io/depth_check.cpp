@@ -5,9 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace resight::io {
+namespace {
+
+/// The factor between usual units (1 m, 1 mm, a fifth and a tenth of it) that makes a depth that of a room or a table.
+std::optional<double> find_likely_factor(double median_m) {
+  for (const double factor : {0.1, 0.2, 0.001, 0.0002, 0.0001, 10.0, 5.0, 1000.0, 5000.0, 10000.0})
+    if (median_m * factor >= 0.3 && median_m * factor <= 5) return factor;
+  return std::nullopt;
+}
+
+}  // namespace
 
 Result<void> check_depth_unit(const RgbdFrame& frame) {
   constexpr float kMinMedian_m = 0.1F;
@@ -19,10 +31,13 @@ Result<void> check_depth_unit(const RgbdFrame& frame) {
   const auto middle = depths.begin() + std::ssize(depths) / 2;
   std::ranges::nth_element(depths, middle);
   if (*middle >= kMinMedian_m && *middle <= kMaxMedian_m) return {};
-  return Error{
-      fmt::format("the median depth of view '{}' would be {:.3g} m: the unit is wrong; give --depth-scale "
-                  "METRES per stored unit (0.001: millimetres)",
-                  frame.name, *middle)};
+  std::string error = fmt::format(
+      "the median depth of view '{}' would be {:.3g} m: the unit is wrong; give --depth-scale METRES per stored unit "
+      "(0.001: millimetres)",
+      frame.name, *middle);
+  if (const auto factor = find_likely_factor(*middle))
+    error += fmt::format("; {:g} times the unit in use gives {:.3g} m", *factor, *factor * *middle);
+  return Error{error};
 }
 
 }  // namespace resight::io

@@ -296,8 +296,10 @@ std::string describe_images(const std::vector<FileSeries>& all) {
   }
   if (num_color == 0 && num_depth == 0) return "";
   if (num_color > 0 && num_depth > 0)
-    return fmt::format("found {} colour and {} depth images whose names have no number in common", num_color,
-                       num_depth);
+    return fmt::format(
+        "found {} colour and {} depth images whose names have no number in common (1.jpg and 1.png, or NAME_color.jpg "
+        "and NAME_depth.png, are a view)",
+        num_color, num_depth);
   return num_color > 0 ? fmt::format("found {} colour images, but no depth (16-bit PNG, npy, npz or exr)", num_color)
                        : fmt::format("found {} depth images, but no colour (JPEG or 8-bit PNG)", num_depth);
 }

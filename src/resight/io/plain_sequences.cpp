@@ -154,6 +154,8 @@ Result<CameraInfo> read_camera_info(const fs::path& file) {
   return info;
 }
 
+constexpr const char* kAssumesStaticCamera = "no file of poses: the camera is taken to stand still (--poses)";
+
 }  // namespace
 
 bool is_npy_sequence(const fs::path& directory) {
@@ -166,7 +168,7 @@ SequenceResult open_npy_sequence(const fs::path& directory, const OpenSequenceOp
   if (!intrinsics) return intrinsics.error();
   SequenceTable table;
   table.format = "npy";
-  if (options.poses.empty()) table.notes.emplace_back("no file of poses: the camera is taken to stand still (--poses)");
+  if (options.poses.empty()) table.notes.emplace_back(kAssumesStaticCamera);
   table.depth_storage = DepthStorage::kByName;
   for (const std::string& stem : list_stems(directory / "rgb", ".png")) {
     ListedView view = make_view(directory / "rgb", stem, ".png", "", static_cast<int>(table.views.size()));
@@ -182,11 +184,12 @@ bool is_fixed_camera_sequence(const fs::path& directory) {
   return is_file(directory / "meta.yml") && !list_stems(directory, "-color.png").empty();
 }
 
-SequenceResult open_fixed_camera_sequence(const fs::path& directory) {
+SequenceResult open_fixed_camera_sequence(const fs::path& directory, const OpenSequenceOptions& options) {
   const auto intrinsics = read_meta_yml(directory / "meta.yml");
   if (!intrinsics) return intrinsics.error();
   SequenceTable table;
   table.format = "color-depth";
+  if (options.poses.empty()) table.notes.emplace_back(kAssumesStaticCamera);
   for (const std::string& stem : list_stems(directory, "-color.png")) {
     table.views.push_back(make_view(directory, stem, "-color.png", "-depth.png", static_cast<int>(table.views.size())));
     table.views.back().intrinsics = *intrinsics;

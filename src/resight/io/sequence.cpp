@@ -35,7 +35,7 @@ constexpr std::array<FormatEntry, 8> kFormats = {
     {{io::is_bop_scene, open_without_options<io::open_bop_scene>},
      {io::is_tum_sequence, io::open_tum_sequence},
      {io::is_npy_sequence, io::open_npy_sequence},
-     {io::is_fixed_camera_sequence, open_without_options<io::open_fixed_camera_sequence>},
+     {io::is_fixed_camera_sequence, io::open_fixed_camera_sequence},
      {io::is_camera_info_sequence, open_without_options<io::open_camera_info_sequence>},
      {io::is_numbered_cameras_sequence, open_without_options<io::open_numbered_cameras_sequence>},
      {io::is_tuw_sequence, open_without_options<io::open_tuw_sequence>},

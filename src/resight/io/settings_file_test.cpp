@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
+#include "resight/io/internal/test_data.hpp"
 
 namespace resight {
 namespace {
@@ -40,11 +40,9 @@ void declare(OptionVisitor& v, Boat& o) {
 class ReadSettings : public testing::Test {
  protected:
   static Result<Boat> read(const std::string& text, const Boat& boat = {}) {
-    const auto path =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("settings_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml");
-    std::ofstream(path) << text;
-    return read_settings(path, boat);
+    const io::TestDirectory directory;
+    io::write_text(directory / "settings.toml", text);
+    return read_settings(directory / "settings.toml", boat);
   }
   static std::string error_of(const std::string& text) {
     const Result<Boat> boat = read(text);

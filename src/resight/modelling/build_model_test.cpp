@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/modelling/build_model.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -17,6 +19,10 @@ namespace resight {
 namespace {
 
 namespace fs = std::filesystem;
+
+fs::path temporary_folder(const std::string& name) {
+  return fs::path(testing::TempDir()) / fmt::format("resight_{}_{}", name, ::getpid());
+}
 
 std::vector<TrainingView> scan(const char* name, bool both_sides) {
   TurntableOptions turntable;
@@ -55,7 +61,7 @@ TEST(BuildModel, WritesAFolderThatCanBeTrainedFrom) {
   EXPECT_TRUE(build->report.symmetries.none());
   EXPECT_TRUE(build->report.troubles.empty()) << build->report.troubles[0];
 
-  const fs::path folder = fs::path(testing::TempDir()) / "resight_build_model" / "pea";
+  const fs::path folder = temporary_folder("build_model") / "pea";
   fs::remove_all(folder.parent_path());
   ASSERT_TRUE(write_object_model(folder, views, *build).ok());
   EXPECT_FALSE(write_object_model(folder, views, *build).ok());
@@ -88,7 +94,7 @@ TEST(BuildModel, WritesWhatIsDeclaredOfTheObject) {
   DeclaredModelInfo declared;
   declared.bop_id = 7;
   declared.symmetries.continuous.push_back({});
-  const fs::path folder = fs::path(testing::TempDir()) / "resight_declared_model" / "pea";
+  const fs::path folder = temporary_folder("declared_model") / "pea";
   fs::remove_all(folder.parent_path());
   ASSERT_TRUE(write_object_model(folder, views, *build, declared).ok());
   const auto model = read_model(find_models({folder})->at(0));
@@ -96,6 +102,7 @@ TEST(BuildModel, WritesWhatIsDeclaredOfTheObject) {
   EXPECT_EQ(model->bop_id, 7);
   EXPECT_EQ(model->symmetries.continuous.size(), 1U);
   EXPECT_TRUE(model->symmetries_known);
+  fs::remove_all(folder.parent_path());
 }
 
 TEST(BuildModel, WarnsOfWhatWillBeHard) {

@@ -29,9 +29,8 @@ std::size_t count_set(const Image<std::uint8_t>& mask) {
   return mask.size() - static_cast<std::size_t>(std::ranges::count(mask.data(), 0));
 }
 
-// Share of the pixels beside the object, with depth in both, whose depth is equal. 0 if the sizes differ.
+// Share of the pixels beside the object, with depth in both, whose depth is equal.
 double still_share(const Image<float>& depth_a_m, const Image<float>& depth_b_m, const Image<std::uint8_t>& object) {
-  if (depth_a_m.width() != depth_b_m.width() || depth_a_m.height() != depth_b_m.height()) return 0;
   std::size_t still = 0;
   std::size_t both = 0;
   for (std::size_t i = 0; i < object.size(); ++i) {
@@ -113,7 +112,13 @@ class ObjectTracker {
   // Masks of all views.
   Result<void> segment(std::vector<RgbdFrame> frames) {
     if (frames.size() < 2) return Error{"a recording must have at least two views"};
-    for (const RgbdFrame& frame : frames) given_.push_back(frame.world_from_camera);
+    for (const RgbdFrame& frame : frames) {
+      const Camera& camera = frame.camera;
+      if (camera.width != frames[0].camera.width || camera.height != frames[0].camera.height)
+        return Error{
+            fmt::format("view {}: is {}x{}, other than the first view", frame.name, camera.width, camera.height)};
+      given_.push_back(frame.world_from_camera);
+    }
     std::optional<ObjectRegion> region;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].camera.width < kMinColumns)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recordings/recording.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -43,7 +45,7 @@ class TemporaryFile {
  public:
   TemporaryFile() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = fs::temp_directory_path() / (std::string("resight_recordings_") + test->name());
+    path_ = fs::temp_directory_path() / fmt::format("resight_recordings_{}_{}", ::getpid(), test->name());
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -223,7 +225,7 @@ TEST(Recording, AnUncompressedChunkIsReadUpToTheCut) {
 }
 
 TEST(Recording, MissingPartsAreNamed) {
-  const fs::path folder = fs::temp_directory_path() / "resight_recordings_MissingParts";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("resight_recordings_{}_MissingParts", ::getpid());
   fs::remove_all(folder);
   fs::create_directories(folder);
   fs::copy(recorded("ros2.db3"), folder / "bag_0.db3");
@@ -244,7 +246,7 @@ TEST(Recording, MissingPartsAreNamed) {
 }
 
 TEST(Recording, ABagThatWasNotClosedIsRefused) {
-  const fs::path folder = fs::temp_directory_path() / "resight_recordings_NotClosed";
+  const fs::path folder = fs::temp_directory_path() / fmt::format("resight_recordings_{}_NotClosed", ::getpid());
   fs::remove_all(folder);
   fs::create_directories(folder);
   fs::copy(recorded("ros2.db3"), folder / "bag_0.db3");
@@ -371,9 +373,9 @@ TEST(Recording, SurvivesDamage) {
         const auto message = (*recording)->read(entry, kMaxMessageBytes);
         if (!message) continue;
         const RecordedTopic& topic = (*recording)->topics()[static_cast<std::size_t>(entry.topic)];
-        EXPECT_TRUE(decode_image(*message, topic.layout, "x").ok() || true);
-        EXPECT_TRUE(decode_camera_info(*message, topic.layout, "x").ok() || true);
-        EXPECT_TRUE(decode_transforms(*message, topic).ok() || true);
+        (void)decode_image(*message, topic.layout, "x");
+        (void)decode_camera_info(*message, topic.layout, "x");
+        (void)decode_transforms(*message, topic);
       }
     }
     EXPECT_GT(num_opened, 20) << name;

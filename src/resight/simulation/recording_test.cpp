@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/simulation/recording.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
@@ -91,7 +93,7 @@ TEST(Recording, OnATurntableOnlyTheObjectAndItsDiscMove) {
 }
 
 TEST(Recording, WritesTwoSidesThatCanBeOpened) {
-  const fs::path folder = fs::path(testing::TempDir()) / "resight_recording";
+  const fs::path folder = fs::path(testing::TempDir()) / fmt::format("resight_recording_{}", ::getpid());
   fs::remove_all(folder);
   const ProceduralObject object = *make_procedural_object("soup_pea");
   int sides = 0;

@@ -120,6 +120,7 @@ TEST_F(AnnotationRoutes, ActionsChangeTheStateAndAnswerIt) {
   EXPECT_EQ(ask("POST", "/actions", {{"revision", 2}, {"action", "redo"}})["objects"].size(), 1U);
   EXPECT_EQ(get("/views/1")["detections"].size(), 1U);
   EXPECT_FALSE(get("/views/1")["detections"][0]["outline"].empty());
+  EXPECT_EQ(get("/views/1")["detections"][0]["id"], 0);
   EXPECT_EQ(get("/views/4")["detections"].size(), 0U) << "the placement has ended";
 }
 

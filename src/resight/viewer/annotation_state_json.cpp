@@ -126,7 +126,7 @@ std::string format_annotated_view(const AnnotationDocument& document, const Mode
     const auto outline = find_outline(frame.camera, frame.world_from_camera.inverse() * object.world_from_object,
                                       model.surface, static_cast<double>(library.surface_voxel_m));
     json["detections"].push_back(
-        {{"evidence", Json::array()}, {"covariance", nullptr}, {"outline", contours_json(outline)}});
+        {{"id", id}, {"evidence", Json::array()}, {"covariance", nullptr}, {"outline", contours_json(outline)}});
   }
   return to_text(json);
 }

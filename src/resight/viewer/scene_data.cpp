@@ -113,25 +113,30 @@ SceneData::Content SceneData::view(int view, int run) {
     const auto shown = frame(view);
     if (!shown) return shown.error();
     const StoredView* stored = nullptr;
+    viewer::SequenceNumbers numbers;
     if (run >= 0) {
-      const int number = stored_views_[static_cast<std::size_t>(run)][static_cast<std::size_t>(view)];
+      const auto& stored_views = stored_views_[static_cast<std::size_t>(run)];
+      numbers = viewer::SequenceNumbers(stored_views);
+      const int number = stored_views[static_cast<std::size_t>(view)];
       if (number >= 0)
         stored = &scene_.runs[static_cast<std::size_t>(run)].results.views[static_cast<std::size_t>(number)];
     }
     const auto truth = scene_.sequence->read_ground_truth(view);
     if (!truth) return truth.error();
-    return viewer::format_view(scene_, objects_, **shown, stored, *truth);
+    return viewer::format_view(scene_, objects_, **shown, stored, numbers, *truth);
   });
 }
 
 SceneData::Content SceneData::trace(int view, int run) {
   return cached(fmt::format("trace/{}/{}", view, run), [&]() -> Result<std::string> {
     const RecognitionResults& results = scene_.runs[static_cast<std::size_t>(run)].results;
-    const int number = stored_views_[static_cast<std::size_t>(run)][static_cast<std::size_t>(view)];
-    if (!results.trace || number < 0) return viewer::format_trace({}, objects_);
+    const auto& stored_views = stored_views_[static_cast<std::size_t>(run)];
+    const int number = stored_views[static_cast<std::size_t>(view)];
+    const viewer::SequenceNumbers numbers(stored_views);
+    if (!results.trace || number < 0) return viewer::format_trace({}, objects_, numbers);
     const auto trace = results.trace->read(number, results.views[static_cast<std::size_t>(number)].name);
     if (!trace) return trace.error();
-    return viewer::format_trace(*trace, objects_);
+    return viewer::format_trace(*trace, objects_, numbers);
   });
 }
 

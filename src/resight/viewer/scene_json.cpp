@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "resight/models/pose_distance.hpp"
 #include "resight/report/outline.hpp"
 #include "resight/report/overlay.hpp"
 #include "resight/viewer/internal/view_json.hpp"
@@ -61,16 +62,13 @@ Json event_json(const StoredEvent& event, int view, const ObjectTable& objects) 
 
 Json run_json(const ViewerRun& run, const std::vector<int>& stored_views, const ObjectTable& objects) {
   Json views = Json::array();
-  std::vector<int> view_of_stored(run.results.views.size());
-  for (std::size_t v = 0; v < stored_views.size(); ++v) {
-    const int stored = stored_views[v];
-    if (stored >= 0) view_of_stored[static_cast<std::size_t>(stored)] = static_cast<int>(v);
+  for (const int stored : stored_views)
     views.push_back(stored < 0 ? Json(nullptr)
                                : stored_view_json(run.results.views[static_cast<std::size_t>(stored)], objects));
-  }
+  const SequenceNumbers numbers(stored_views);
   Json events = Json::array();
   for (const StoredEvent& event : run.results.events)
-    events.push_back(event_json(event, view_of_stored[static_cast<std::size_t>(event.view)], objects));
+    events.push_back(event_json(event, numbers.of(event.view), objects));
   return {{"name", run.name},
           {"preset", run.results.preset},
           {"version", run.results.version},
@@ -88,16 +86,37 @@ Json views_json(const Sequence& sequence) {
   return views;
 }
 
-Json outline_json(const ViewerScene& scene, int object, const Camera& camera, const Rigid3& camera_from_object) {
-  if (!scene.library || object < 0 || object >= static_cast<int>(scene.library->objects.size())) return Json::array();
-  const PointCloud& surface = scene.library->objects[static_cast<std::size_t>(object)].surface;
-  return contours_json(find_outline(camera, camera_from_object, surface, scene.library->surface_voxel_m));
+/// The model of an object of the table; null if it has none.
+const ObjectModel* find_model(const ViewerScene& scene, int object) {
+  if (!scene.library || object < 0 || object >= static_cast<int>(scene.library->objects.size())) return nullptr;
+  return &scene.library->objects[static_cast<std::size_t>(object)];
 }
 
-Json details_json(const StoredDetection& detection) {
+Json outline_json(const ViewerScene& scene, int object, const Camera& camera, const Rigid3& camera_from_object) {
+  const ObjectModel* model = find_model(scene, object);
+  if (model == nullptr) return Json::array();
+  return contours_json(find_outline(camera, camera_from_object, model->surface, scene.library->surface_voxel_m));
+}
+
+/// How far a detection is from the nearest true pose of its object; null without one, or without a model, whose centre
+/// and symmetries it takes.
+Json truth_error_json(const StoredDetection& detection, const ObjectModel* model, const Rigid3& world_from_camera,
+                      const std::vector<GroundTruthObject>& truth) {
+  std::optional<PoseDifference> nearest;
+  for (const GroundTruthObject& object : truth) {
+    if (model == nullptr || object.object != detection.object) continue;
+    const PoseDifference difference =
+        compare_poses(detection.world_from_object, world_from_camera * object.camera_from_object, *model);
+    if (!nearest || difference.center_distance_m < nearest->center_distance_m) nearest = difference;
+  }
+  if (!nearest) return nullptr;
+  return {{"center_distance_m", nearest->center_distance_m}, {"rotation_rad", nearest->rotation_rad}};
+}
+
+Json details_json(const StoredDetection& detection, const SequenceNumbers& numbers) {
   Json evidence = Json::array();
   for (const StoredEvidence& e : detection.evidence)
-    evidence.push_back({{"view", e.view},
+    evidence.push_back({{"view", numbers.of(e.view)},
                         {"allowed", e.allowed},
                         {"visible_share", e.visible_share},
                         {"explained_share", e.explained_share},
@@ -128,15 +147,17 @@ std::string format_index(const ViewerScene& scene, const ObjectTable& objects, c
 }
 
 std::string format_view(const ViewerScene& scene, const ObjectTable& objects, const RgbdFrame& frame,
-                        const StoredView* stored, const std::vector<GroundTruthObject>& truth) {
+                        const StoredView* stored, const SequenceNumbers& numbers,
+                        const std::vector<GroundTruthObject>& truth) {
   const Camera& camera = frame.camera;
   const Rigid3 world_from_camera = stored != nullptr ? stored->world_from_camera : frame.world_from_camera;
   Json json = {{"camera", camera_json(camera)}};
   json["detections"] = Json::array();
   for (const StoredDetection& detection : stored != nullptr ? stored->detections : std::vector<StoredDetection>{}) {
-    Json entry = details_json(detection);
-    entry["outline"] = outline_json(scene, objects.find(detection.object), camera,
-                                    world_from_camera.inverse() * detection.world_from_object);
+    const int number = objects.find(detection.object);
+    Json entry = details_json(detection, numbers);
+    entry["truth_error"] = truth_error_json(detection, find_model(scene, number), world_from_camera, truth);
+    entry["outline"] = outline_json(scene, number, camera, world_from_camera.inverse() * detection.world_from_object);
     json["detections"].push_back(std::move(entry));
   }
   json["truth"] = Json::array();

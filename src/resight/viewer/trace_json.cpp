@@ -6,11 +6,12 @@
 namespace resight::viewer {
 namespace {
 
-Json verification_json(const StoredVerification& v) {
+Json verification_json(const StoredVerification& v, const SequenceNumbers& numbers) {
   Json views = Json::array();
   for (const StoredHypothesisView& view : v.views)
-    views.push_back(
-        {{"view", view.view}, {"visible_share", view.visible_share}, {"explained_share", view.explained_share}});
+    views.push_back({{"view", numbers.of(view.view)},
+                     {"visible_share", view.visible_share},
+                     {"explained_share", view.explained_share}});
   Json json = {{"suppressed_by", v.suppressed_by},
                {"score", v.score},
                {"fit", v.fit},
@@ -32,15 +33,17 @@ Json verification_json(const StoredVerification& v) {
   return json;
 }
 
-Json hypothesis_json(const StoredHypothesis& h, const ObjectTable& objects) {
+Json hypothesis_json(const StoredHypothesis& h, const ObjectTable& objects, const SequenceNumbers& numbers) {
+  Json origin_views = Json::array();
+  for (const int view : h.origin_views) origin_views.push_back(numbers.of(view));
   return {{"object", objects.find(h.object)},
           {"name", h.object},
           {"verdict", h.verdict},
-          {"origin_views", h.origin_views},
+          {"origin_views", origin_views},
           {"correspondences", h.num_correspondences},
           {"start", matrix_json(h.start)},
           {"pose", matrix_json(h.verification ? h.verification->world_from_object : h.start)},
-          {"verification", h.verification ? verification_json(*h.verification) : Json(nullptr)}};
+          {"verification", h.verification ? verification_json(*h.verification, numbers) : Json(nullptr)}};
 }
 
 Json loss_json(const StoredLoss& loss, const ObjectTable& objects) {
@@ -59,11 +62,11 @@ Json loss_json(const StoredLoss& loss, const ObjectTable& objects) {
 
 }  // namespace
 
-std::string format_trace(const StoredTrace& trace, const ObjectTable& objects) {
+std::string format_trace(const StoredTrace& trace, const ObjectTable& objects, const SequenceNumbers& numbers) {
   Json json = {{"is_searched", trace.is_searched}, {"num_generated", trace.num_generated},
                {"num_merged", trace.num_merged},   {"num_clustered", trace.num_clustered},
                {"hypotheses", Json::array()},      {"lost", Json::array()}};
-  for (const StoredHypothesis& h : trace.hypotheses) json["hypotheses"].push_back(hypothesis_json(h, objects));
+  for (const StoredHypothesis& h : trace.hypotheses) json["hypotheses"].push_back(hypothesis_json(h, objects, numbers));
   for (const StoredLoss& loss : trace.lost) json["lost"].push_back(loss_json(loss, objects));
   return to_text(json);
 }

@@ -193,6 +193,45 @@ TEST_F(ViewerRoutes, DescribesAView) {
   EXPECT_EQ(get_json("/api/views/1?run=0")["detections"][0]["outline"].size(), 0U) << "an object without a model";
 }
 
+/// A scene whose only run has left out view 0, so that view 1 is the first one of its results.
+ViewerScene make_scene_with_gap() {
+  ViewerScene scene = make_scene();
+  scene.runs = {make_run("gap")};
+  RecognitionResults& results = scene.runs[0].results;
+  results.views.erase(results.views.begin());
+  results.views[0].detections[0].evidence.push_back({7, true, 0.5, 0.5, 0.5});
+  results.events[0].view = 0;
+  return scene;
+}
+
+TEST(SceneData, NumbersViewsAsTheSequenceDoes) {
+  const auto data = SceneData::create(make_scene_with_gap()).value();
+  EXPECT_EQ(json::parse(**data->index())["runs"][0]["events"][0]["view"], 1);
+  const json evidence = json::parse(**data->view(1, 0))["detections"][0]["evidence"];
+  ASSERT_EQ(evidence.size(), 2U);
+  EXPECT_EQ(evidence[0]["view"], 1);
+  EXPECT_EQ(evidence[1]["view"], -1) << "no view of the results";
+}
+
+TEST(SceneData, ComparesWithTheTruthAtTheCentreAndUpToSymmetry) {
+  ViewerScene scene = make_scene();
+  ModelLibrary library = *scene.library;
+  library.objects[0].center = {0.05F, 0, 0};
+  library.objects[0].symmetries.continuous.push_back({Eigen::Vector3d::UnitZ(), {0.05, 0, 0}});
+  scene.library = std::make_shared<const ModelLibrary>(library);
+  // The true pose, turned by 90 degrees about the axis of symmetry, which lies beside the origin.
+  Rigid3 turn = Rigid3::from_axis_angle(Eigen::Vector3d::UnitZ(), std::acos(0.0));
+  turn.translation = {0.05, -0.05, 0};
+  scene.runs[0].results.views[0].detections[0].world_from_object = Rigid3::from_translation({0, 0, 1}) * turn;
+  const auto data = SceneData::create(std::move(scene)).value();
+  const json error = json::parse(**data->view(0, 0))["detections"][0]["truth_error"];
+  EXPECT_NEAR(error["center_distance_m"].get<double>(), 0, 1e-6);
+  EXPECT_NEAR(error["rotation_rad"].get<double>(), 0, 1e-6);
+  const json other = json::parse(**data->view(0, 1))["detections"][0]["truth_error"];
+  EXPECT_NEAR(other["center_distance_m"].get<double>(), 0.01, 1e-6);
+  EXPECT_EQ(json::parse(**data->view(1, 0))["detections"][0]["truth_error"], nullptr) << "no true pose of the object";
+}
+
 TEST_F(ViewerRoutes, SendsImagesDepthAndSurfaces) {
   const std::string color = get("/api/views/0/color");
   EXPECT_NE(color.find("Content-Type: image/jpeg"), color.npos);
@@ -267,6 +306,21 @@ TEST(SceneData, SaysWhatBecameOfTheHypotheses) {
   EXPECT_NE(body_of(damaged).find("line 3.searched"), damaged.npos) << damaged;
   EXPECT_EQ(json::parse(body_of(get("/api/views/2/trace?run=1")))["hypotheses"].size(), 0U) << "not recognised";
   EXPECT_EQ(json::parse(body_of(get("/api/views/0/trace?run=0")))["hypotheses"].size(), 0U) << "not traced";
+  std::filesystem::remove(file);
+}
+
+TEST(SceneData, NumbersTheViewsOfATraceAsTheSequenceDoes) {
+  const auto file = std::filesystem::temp_directory_path() / ("resight_gap_trace_" + std::to_string(::getpid()));
+  std::string lines = kTrace;
+  lines.resize(lines.find("{\"view\":1"));
+  lines[lines.find("view_0") + 5] = '1';  // the name of the view: it is the first one of the results
+  std::ofstream(file) << lines;
+  ViewerScene scene = make_scene_with_gap();
+  scene.runs[0].results.trace = TraceFile::open(file, 1).value();
+  const auto data = SceneData::create(std::move(scene)).value();
+  const json trace = json::parse(**data->trace(1, 0));
+  ASSERT_EQ(trace["hypotheses"].size(), 1U);
+  EXPECT_EQ(trace["hypotheses"][0]["origin_views"], json::parse("[1]"));
   std::filesystem::remove(file);
 }
 

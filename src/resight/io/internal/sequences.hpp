@@ -27,7 +27,8 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] SequenceResult open_npy_sequence(const std::filesystem::path& directory,
                                                const OpenSequenceOptions& options);
 [[nodiscard]] bool is_fixed_camera_sequence(const std::filesystem::path& directory);
-[[nodiscard]] SequenceResult open_fixed_camera_sequence(const std::filesystem::path& directory);
+[[nodiscard]] SequenceResult open_fixed_camera_sequence(const std::filesystem::path& directory,
+                                                        const OpenSequenceOptions& options);
 [[nodiscard]] bool is_camera_info_sequence(const std::filesystem::path& directory);
 [[nodiscard]] SequenceResult open_camera_info_sequence(const std::filesystem::path& directory);
 [[nodiscard]] bool is_numbered_cameras_sequence(const std::filesystem::path& directory);

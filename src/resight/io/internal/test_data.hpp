@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -18,8 +20,9 @@ class TestDirectory {
  public:
   TestDirectory() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            (std::string("resight_io_") + test->test_suite_name() + "_" + test->name());
+    std::string name = std::string(test->test_suite_name()) + "_" + test->name();
+    std::ranges::replace(name, '/', '_');  // of a parametrised test
+    path_ = std::filesystem::temp_directory_path() / ("resight_io_" + std::to_string(::getpid()) + "_" + name);
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

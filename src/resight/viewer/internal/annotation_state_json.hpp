@@ -16,7 +16,7 @@ namespace resight::viewer {
 [[nodiscard]] std::string format_annotation(const AnnotationProject& project, const ModelLibrary& library,
                                             std::span<const ChangeProposal> regions);
 
-/// Camera of a view, and the outlines of the objects that are in it, in the order of their ids.
+/// Camera of a view, and the outlines of the objects that are in it, with their ids.
 [[nodiscard]] std::string format_annotated_view(const AnnotationDocument& document, const ModelLibrary& library,
                                                 const RgbdFrame& frame, int view);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "resight/sensor/rgbd_frame.hpp"
+#include "resight/viewer/internal/sequence_numbers.hpp"
 #include "resight/viewer/object_table.hpp"
 
 namespace resight::viewer {
@@ -16,7 +17,9 @@ using StoredViewNumbers = std::vector<std::vector<int>>;
                                        const StoredViewNumbers& stored_views, int revision);
 
 /// A view with the outlines and details of its detections and of its ground truth. `stored`: null without results.
+/// `numbers`: of the views of the run.
 [[nodiscard]] std::string format_view(const ViewerScene& scene, const ObjectTable& objects, const RgbdFrame& frame,
-                                      const StoredView* stored, const std::vector<GroundTruthObject>& truth);
+                                      const StoredView* stored, const SequenceNumbers& numbers,
+                                      const std::vector<GroundTruthObject>& truth);
 
 }  // namespace resight::viewer
