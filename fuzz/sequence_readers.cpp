@@ -105,7 +105,7 @@ void read_fixed_camera_folder(std::string_view bytes) {
   static const bool has_images = (write_images("0-color.png", "0-depth.png"), true);
   (void)has_images;
   fs::create_directory(scratch_folder() / "derived");
-  read_all(io::open_fixed_camera_sequence(write_bundle(bytes, kFixedCameraFiles)));
+  read_all(io::open_fixed_camera_sequence(write_bundle(bytes, kFixedCameraFiles), {}));
 }
 
 }  // namespace
