@@ -11,7 +11,7 @@ class BrowserLaunch {
   /// The address goes through a file that only this user can read, which redirects to it: command lines are visible to
   /// all users of a machine, and the address holds a secret.
   explicit BrowserLaunch(const std::string& address);
-  /// Removes the file, as a signal does that ends the program before.
+  /// Removes the file. A signal that ends the program earlier removes it, too.
   ~BrowserLaunch();
   BrowserLaunch(const BrowserLaunch&) = delete;
   BrowserLaunch& operator=(const BrowserLaunch&) = delete;

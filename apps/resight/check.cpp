@@ -92,7 +92,8 @@ std::string format_json(const CheckArguments& arguments, const CheckReport& repo
   return to_json_text(json, kIndentedJson) + "\n";
 }
 
-/// Also without findings: the list tells which pictures are of this check, and the next one that it may write here.
+/// Writes findings.json even if there are none: it tells which pictures belong to this check, and it marks the folder
+/// as one that the next check may fill.
 void write_findings(const CheckArguments& arguments, const CheckReport& report, const Sequence& sequence) {
   auto folder = value_or_throw(PendingDirectory::create(*arguments.out, ExistingFolder::kFill));
   for (const Finding& f : report.findings)

@@ -9,8 +9,8 @@ namespace resight::app {
 /// stay ignored, as under nohup. To be called again after others have handled these signals.
 void clean_up_when_interrupted();
 
-/// Counts a file that lies outside of the outputs among the temporary ones. May be called from any thread; one that
-/// comes while a signal ends the program waits for the end.
+/// A signal that ends the program also removes this temporary file, which lies outside the outputs. Any thread may call
+/// this; after such a signal, the call blocks until the program has ended.
 void remove_when_interrupted(const std::filesystem::path& file);
 /// Removes such a file now.
 void remove_temporary_file(const std::filesystem::path& file);

@@ -33,7 +33,7 @@ void LineFile::add(const std::string& line) {
 
 void LineFile::sync() {
   if (!out_.is_open()) return;
-  // A stream does not tell its descriptor, but any descriptor of a file will do.
+  // std::ofstream hides its descriptor, and fsync() takes any descriptor of the file.
   const int descriptor = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail_to_write(file_, errno);
   const int code = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;

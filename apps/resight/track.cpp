@@ -38,7 +38,7 @@ std::filesystem::path file_of_component(const std::filesystem::path& out, int co
   return out.parent_path() / fmt::format("{}_component{}{}", out.stem().string(), component, out.extension().string());
 }
 
-// Those of all components that are there: an earlier run may have had more of them, and a user may have removed some.
+// Takes every number: an earlier run may have had more components, and a user may have removed some files.
 Paths list_component_files(const std::filesystem::path& out) {
   namespace fs = std::filesystem;
   const std::string begin = out.stem().string() + "_component";
@@ -101,7 +101,7 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
         1000 * error.rms_m, 1000 * error.max_m, kDegPerRad * error.mean_rad, kDegPerRad * error.max_rad);
 }
 
-// Intrinsics may be a text, which names no file.
+// Intrinsics may be numbers in place of a file.
 Paths list_inputs(const TrackArguments& arguments) {
   Paths inputs{arguments.sequence};
   if (arguments.models) inputs.push_back(*arguments.models);

@@ -30,7 +30,7 @@ std::shared_ptr<const Sequence> open_viewed(const fs::path& path) {
   auto sequence = open_sequence(path);
   if (!sequence && sequence.error().message.find(" --") != std::string::npos)
     throw InputError(sequence.error().message +
-                     " (not here: 'resight convert' takes such options, and its copy needs none)");
+                     " ('resight view' has no such option: make a data set with 'resight convert' first)");
   return value_or_throw(std::move(sequence));
 }
 

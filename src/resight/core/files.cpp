@@ -93,7 +93,7 @@ Result<void> check_writable(const fs::path& path) {
   // Some file systems, such as /proc, take nothing whatever the permissions say: only a trial tells.
   if (auto taken = PendingPlace::try_out(is_file ? target.parent_path() : folder); !taken)
     return file_error(path, "cannot be written (" + taken.error().message + ")");
-  // A killed command has left what is to be moved back first (FileTransfer::undo).
+  // A killed command was moving files from this place. FileTransfer::undo() moves them back first.
   if (fs::exists(fs::symlink_status(target / kTransferJournal, error))) return {};
   const std::string place = PendingPlace::name_for(target.filename().string());
   if (auto cleared = PendingPlace::clear_unused(target.parent_path() / place); !cleared)

@@ -14,7 +14,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-// Points farther out than a tenth of the length that holds nearly all of them are strays, such as flying pixels.
+// A stray, such as a flying pixel, lies beyond the range of nearly all points by more than a tenth of that range.
 constexpr double kStrayShare = 0.02;  // At either end.
 constexpr double kStrayReach = 0.1;
 constexpr double kLeastReach_m = 0.005;

@@ -12,7 +12,7 @@
 namespace resight::io {
 namespace {
 
-/// The factor between usual units (1 m, 1 mm, a fifth and a tenth of it) that makes a depth that of a room or a table.
+/// Of the factors between usual units (1 m, 1 mm, 0.2 mm, 0.1 mm), the first that gives the depth of a table or a room.
 std::optional<double> find_likely_factor(double median_m) {
   for (const double factor : {0.1, 0.2, 0.001, 0.0002, 0.0001, 10.0, 5.0, 1000.0, 5000.0, 10000.0})
     if (median_m * factor >= 0.3 && median_m * factor <= 5) return factor;

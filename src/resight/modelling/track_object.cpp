@@ -41,8 +41,8 @@ double still_share(const Image<float>& depth_a_m, const Image<float>& depth_b_m,
   return both == 0 ? 0 : static_cast<double>(still) / static_cast<double>(both);
 }
 
-// Whether most of some views from all over the recording show the scene of the first one where it was. The next view
-// alone does not tell, because a camera in the hand moves little between two views, or starts later.
+// Whether most of five views, spread over the recording, see the surroundings at the depth of the first view. The
+// second view alone does not tell: a hand-held camera moves little between two views, or starts to move later.
 bool is_camera_static(const Image<float>& first_depth_m, std::span<const RgbdFrame> others,
                       const Image<std::uint8_t>& object, double min_share) {
   constexpr std::size_t kCompared = 5;

@@ -163,7 +163,10 @@ struct RecognizerConfig {
   void set_seed(std::uint64_t seed);
   /// Single views stand for themselves.
   [[nodiscard]] bool remembers() const { return remember_objects && num_previous_views > 0; }
-  /// Whether tracked objects decide where a view is searched.
+  /// Whether tracked objects decide which views, and which places in them, are searched.
+  [[nodiscard]] bool limits_search() const {
+    return remembers() && (search.max_new_share.has_value() || search.place_interval.has_value());
+  }
   void check() const;
   /// Every setting that has an effect as key and value, in order: what summary.json keeps of a run.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> to_settings() const;

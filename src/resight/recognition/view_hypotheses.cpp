@@ -36,9 +36,8 @@ std::string generation_settings(const RecognizerConfig& config) {
   counted.verify.acceptance.min_pattern_similarity = config.verify.acceptance.min_pattern_similarity;
   counted.verify.refine.symmetry_step_rad = config.verify.refine.symmetry_step_rad;
   std::string text;
-  // Which views and places are searched depends on tracked objects, which come from all stages.
-  const bool depends_on_tracks = config.remembers() && (config.search.place_interval || config.search.max_new_share);
-  for (const auto& [name, value] : (depends_on_tracks ? config : counted).to_settings())
+  // Tracked objects come from all stages.
+  for (const auto& [name, value] : (config.limits_search() ? config : counted).to_settings())
     text += name + "=" + value + "\n";
   return text;
 }

@@ -5,7 +5,7 @@
 
 namespace resight::viewer {
 
-/// Numbers of views in results as numbers in their sequence. The two differ where a run has left out views.
+/// Maps numbers of views in results to numbers in their sequence. They differ where a run has skipped views.
 class SequenceNumbers {
  public:
   SequenceNumbers() = default;
