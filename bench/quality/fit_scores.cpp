@@ -35,8 +35,8 @@ constexpr std::size_t kMaxInstances = 10;  // Of an object in a view: 2^10 subse
 using Weights = Eigen::Matrix<double, kNumWeights, 1>;
 using Hessian = Eigen::Matrix<double, kNumWeights, kNumWeights>;
 constexpr const char* kNames[kNumWeights] = {
-    "gain",   "correspondence", "fit",        "visible", "texture", "beside_planes",
-    "newest", "seen_through",   "silhouette", "hue",     "offset",  "log_further_odds"};
+    "gain",         "correspondence", "fit", "visible",   "texture", "beside_planes",   "newest",
+    "seen_through", "silhouette",     "hue", "uncolored", "offset",  "log_further_odds"};
 
 // What the fit starts from, and the weights that it changes.
 struct Fit {
@@ -173,7 +173,8 @@ Fit what_to_fit(const RecognizerConfig& config, const std::string& only) {
   Weights preset;
   preset << score.gain_weight, score.correspondence_weight, score.fit_weight, score.visible_weight,
       score.texture_weight, score.beside_planes_weight, score.newest_weight, score.seen_through_weight,
-      score.silhouette_weight, score.hue_weight, score.offset, std::log(config.detections.further_instance_odds);
+      score.silhouette_weight, score.hue_weight, score.uncolored_weight, score.offset,
+      std::log(config.detections.further_instance_odds);
   Fit fit;
   if (only.empty()) {
     fit.is_free = (preset.array() != 0).cast<double>();

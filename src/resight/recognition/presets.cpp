@@ -72,7 +72,8 @@ void set_default(RecognizerConfig& config) {
                          .newest_weight = 4.35,
                          .seen_through_weight = 10.3,
                          .silhouette_weight = 1.11,
-                         .hue_weight = 20};
+                         .hue_weight = 20,
+                         .uncolored_weight = 26};
   config.history.min_new_share = 0.01;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.

@@ -87,6 +87,7 @@ struct CueComputer::Impl {
 
   HypothesisCues finish(const Eigen::Array3f& white_balance) {
     cues_.state.assign(association_.points.size(), ModelPointState::kNotVisible);
+    cues_.evidence.appearance.is_compared = use_color_;
     if (association_.local) {
       adapt_model_colors(limit_chromaticity(association_.light, white_balance));
       compare_patterns();

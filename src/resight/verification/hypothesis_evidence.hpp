@@ -30,6 +30,7 @@ enum class Verdict : std::uint8_t {
 
 /// How the colours of model and scene agree.
 struct AppearanceEvidence {
+  bool is_compared = true;  ///< Whether model and scene have colours. If not, all other fields are as they are here.
   double pattern_similarity = 1;  ///< pattern_similarity() of the colours of model and scene.
   /// The same with the colours of the newest view that sees enough of the model; 1 if not compared.
   double newest_similarity = 1;

@@ -10,9 +10,8 @@ namespace resight {
 /// Weights of a logistic regression; all 0: 0.5 for any evidence. `bench_fit_scores` fits them. Those of `default` are
 /// fitted to its detections at K = 0 and 5, where the simulator (`dynamic-tabletop`, seed 1) counts as much as all
 /// other recordings together: the more look-alikes a scene holds, the less often the same evidence is right.
-/// Later fits held these weights and added those of the silhouette and of the hue, each with a new offset;
-/// docs/ablation.md names their seeds.
-/// docs/results.md says how well the scores generalise.
+/// Later fits held these weights and added those of the silhouette and of the hue, each with a new offset, and that of
+/// models without colours; docs/ablation.md names their seeds. docs/results.md says how well the scores generalise.
 struct HypothesisScoreOptions {
   double offset = 0;
   double gain_weight = 0;
@@ -25,6 +24,7 @@ struct HypothesisScoreOptions {
   double seen_through_weight = 0;
   double silhouette_weight = 0;
   double hue_weight = 0;
+  double uncolored_weight = 0;
   void check() const { check_options("HypothesisScoreOptions", *this); }
 };
 
@@ -53,10 +53,14 @@ inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
   v.field("hue_weight", o.hue_weight, between(0, 100),
           "Of the hue similarity of model and scene, 1 for an untextured model: look-alikes often have other colours.",
           "fitted");
+  v.field("uncolored_weight", o.uncolored_weight, between(-100, 100),
+          "Takes the place of the weights of texture, newest colours, silhouette and hue where model or scene has no "
+          "colours: these say nothing then.",
+          "fitted");
 }
 
 /// What the weights of HypothesisScoreOptions weigh, in their order.
-using ScoreCues = std::array<double, 10>;
+using ScoreCues = std::array<double, 11>;
 [[nodiscard]] ScoreCues score_cues(const HypothesisEvidence& evidence);
 
 /// How likely a hypothesis with enough support and the right appearance is right, in [0, 1]: of the accepted ones with

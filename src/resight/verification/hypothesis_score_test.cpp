@@ -38,13 +38,22 @@ constexpr HypothesisScoreOptions kSome{.offset = -4,
                                        .newest_weight = 2.5,
                                        .seen_through_weight = 2,
                                        .silhouette_weight = 1.1,
-                                       .hue_weight = 6};
+                                       .hue_weight = 6,
+                                       .uncolored_weight = 9};
 
 TEST(HypothesisScore, IsTheLogisticOfTheWeightedEvidence) {
   const double log_odds = -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) +
                           1.5 * std::log(1 + 2.5) + 3 * 0.8 + 2.5 * 0.75 - 2 * 0.1 - 1.1 * std::log(0.02 + 0.05) +
                           6 * 0.9;
   EXPECT_NEAR(hypothesis_score(some_evidence(), kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
+}
+
+TEST(HypothesisScore, ColoursThatAreNotComparedAreNoEvidence) {
+  HypothesisEvidence evidence = some_evidence();
+  evidence.appearance = {.is_compared = false};
+  const double log_odds =
+      -4 + 5 * 0.7 + 0.7 * std::log(21.0) + 2 * 0.8 + 6 * std::log(0.01 + 0.3) + 3 * 0.8 - 2 * 0.1 + 9;
+  EXPECT_NEAR(hypothesis_score(evidence, kSome), 1 / (1 + std::exp(-log_odds)), 1e-12);
 }
 
 TEST(HypothesisScore, GrowsWithTheEvidence) {
