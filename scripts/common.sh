@@ -25,3 +25,10 @@ step() {
     return 1
   fi
 }
+
+# keep_output FILE COMMAND...: the output of the command in FILE, which exists only if the command succeeds.
+keep_output() {
+  local file=$1
+  shift
+  "$@" >"$file.partial" && mv "$file.partial" "$file"
+}

@@ -48,17 +48,12 @@ has_set() {
   contains "$1" "${absent[@]}" || { echo "left out: $data/$1 is absent"; absent+=("$1"); }
   return 1
 }
-write_part() {
-  local file=$1
-  shift
-  "$@" >"$file.partial" && mv "$file.partial" "$file"
-}
 # part NAME COMMAND...: keeps the output of the command in NAME.txt.
 part() {
   local name=$1
   shift
   [[ -e $parts/$name.txt ]] && return
-  step "$name" write_part "$parts/$name.txt" "$@" || failed+=("$name")
+  step "$name" keep_output "$parts/$name.txt" "$@" || failed+=("$name")
 }
 file_name() { echo "${1//\//-}"; }
 

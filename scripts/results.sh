@@ -69,11 +69,6 @@ part() {
   fi
   step "$name" keep_output "$parts/$name" "$@" || { missing+=("$name"); failed+=("$name"); }
 }
-keep_output() {
-  local file=$1
-  shift
-  "$@" >"$file.partial" && mv "$file.partial" "$file"
-}
 
 # make_data_set NAME SEED: the data set, its library NAME.resight, and its name and version in NAME.txt.
 make_data_set() {

@@ -19,7 +19,7 @@ packages=(
 for option in "$@"; do
   case "$option" in
     --tests) packages+=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format clang-tidy graphviz
-                        chromium libopenni2-dev)
+                        chromium libopenni2-dev qemu-user)
              # Node.js from elsewhere brings its own npm, which Debian's package conflicts with.
              command -v npm >/dev/null || packages+=(nodejs npm) ;;
     --bench) packages+=(libbenchmark-dev) ;;

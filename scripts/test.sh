@@ -6,8 +6,8 @@
 # AddressSanitizer and UndefinedBehaviorSanitizer, the tests of threads under ThreadSanitizer.
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
-#   scripts/test.sh --long  before a release: all of these, every public header alone, the program under ThreadSanitizer,
-#                           and the tests of all modules under all sanitizers
+#   scripts/test.sh --long  before a release: all of these, every public header and program of bench/ alone, the program
+#                           under ThreadSanitizer, and the tests of all modules under all sanitizers
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
@@ -71,12 +71,14 @@ run_clang_tidy() {
     xargs wc -l | sort -rn | awk '$2 != "total" { print $2 }' |
     xargs -P "$num_jobs" -n 1 clang-tidy --quiet -p build/clang
 }
-# Compiles each public header on its own. Eigen, which takes most of the time, is precompiled.
+# Compiles each public header on its own, and the programs of bench/. Eigen, which takes most of the time, is
+# precompiled.
 check_headers() {
-  local clang=(clang++-14 -std=c++20 -march=x86-64-v3 -isystem /usr/include/eigen3)
+  local clang=(clang++-14 -std=c++20 -march=x86-64-v3 -isystem /usr/include/eigen3 -isystem /usr/include/opencv4)
   printf '#include <Eigen/Core>\n#include <Eigen/Geometry>\n' >build/clang/eigen.hpp
   "${clang[@]}" -x c++-header build/clang/eigen.hpp -o build/clang/eigen.pch &&
-    find src -name '*.hpp' ! -path '*/internal/*' ! -path '*/testing/*' ! -name '*test*.hpp' -print0 |
+    { find src -name '*.hpp' ! -path '*/internal/*' ! -path '*/testing/*' ! -name '*test*.hpp' -print0
+      find bench/quality bench/pipeline -name '*.cpp' -print0; } |
     xargs -0 -P "$num_jobs" -I{} "${clang[@]}" -fsyntax-only -x c++ -Isrc -include-pch build/clang/eigen.pch \
       -Wno-pragma-once-outside-header {}
 }
@@ -128,7 +130,7 @@ if ((!fast)); then
   step "tests with TSan" run_tsan
 fi
 if ((long)); then
-  step "each public header compiles alone" check_headers
+  step "each public header and program of bench/ compiles alone" check_headers
   step "build the program with TSan" build_tsan resight_app
   step "program with TSan" run_tsan_program
 fi

@@ -37,6 +37,11 @@ cmp -s <(grep -v '^#' whole.txt) <(grep -v '^#' parts.txt) || fail "an interrupt
 grep -q '^7 of 7 views joined' out || fail "not all views joined from a file: $(cat out)"
 awk '/ATE/ { n++; far = !($6 + 0 < 5) } END { exit !n || far }' out || fail "poses from a file are off: $(grep ATE out)"
 
+# Other commands take estimated poses, too.
+"$resight" changes --sequence "$sequence" --poses auto --out changes >/dev/null 2>err ||
+  fail "changes with estimated poses: $(tail -1 err)"
+[ "$(find changes -name '*_novel.png' | wc -l)" = 7 ] || fail "not a mask a view: $(ls changes)"
+
 "$resight" track --sequence "$sequence" --models models.resight --out with.txt >out 2>err || fail "with objects: $(tail -1 err)"
 for object in cereal_blue tea_box; do
   grep -q "^0 .* $object\$" with_objects.txt || fail "$object is not among the objects: $(cat with_objects.txt)"

@@ -12,6 +12,7 @@
 #include "resight/cameras/track_journal.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/recognition/observe_objects.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -140,6 +141,31 @@ PosedSequence take_largest_component(const Sequence& sequence, const CameraTrack
     poses.push_back(track.views[v].world_from_camera);
   }
   return {sequence, std::move(views), std::move(poses)};
+}
+
+bool is_estimated(const std::string& poses) { return poses == "auto" || poses == "refine"; }
+
+OpenSequenceOptions with_poses(OpenSequenceOptions options, const std::string& poses) {
+  if (poses != "given" && !is_estimated(poses)) options.poses = poses;
+  return options;
+}
+
+std::unique_ptr<Sequence> open_recorded_input(const std::filesystem::path& where, const OpenSequenceOptions& options,
+                                              const std::string& poses) {
+  const OpenSequenceOptions input = with_poses(options, poses);
+  auto recorded = is_estimated(poses) ? open_input(where, input) : open_posed_input(where, input);
+  warn_about_faults(*recorded, poses != "auto");
+  return recorded;
+}
+
+std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::string& poses,
+                                            const ModelLibrary* library, int num_threads) {
+  if (!is_estimated(poses)) return std::nullopt;
+  TrackSequenceOptions options;
+  options.refine = poses == "refine";
+  options.library = library;
+  options.num_threads = num_threads;
+  return take_largest_component(recorded, track_sequence(recorded, options).track);
 }
 
 }  // namespace resight::app

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "resight/cameras/joint_adjustment.hpp"
+#include "resight/io/sequence.hpp"
 #include "resight/sensor/posed_sequence.hpp"
 
 namespace resight::app {
@@ -24,5 +27,17 @@ struct TrackSequenceOptions {
 
 /// Views of the largest component, with their poses. `sequence` must outlive the result.
 [[nodiscard]] PosedSequence take_largest_component(const Sequence& sequence, const CameraTrack& track);
+
+/// Whether the value of --poses asks for poses that are estimated from the views: "auto" or "refine".
+[[nodiscard]] bool is_estimated(const std::string& poses);
+/// The options with the value of --poses: given, refine, auto, fixed, or a file.
+[[nodiscard]] OpenSequenceOptions with_poses(OpenSequenceOptions options, const std::string& poses);
+/// Opens a recorded sequence with poses, or for poses that are still to be estimated. Warns about its faults.
+[[nodiscard]] std::unique_ptr<Sequence> open_recorded_input(const std::filesystem::path& where,
+                                                            const OpenSequenceOptions& options,
+                                                            const std::string& poses);
+/// Views of the largest component with poses that were estimated as --poses asks; nullopt unless is_estimated(poses).
+[[nodiscard]] std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::string& poses,
+                                                          const ModelLibrary* library, int num_threads);
 
 }  // namespace resight::app

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "camera_run.hpp"
 #include "commands.hpp"
 #include "output_paths.hpp"
 #include "progress.hpp"
@@ -18,7 +19,6 @@
 #include "resight/report/overlay.hpp"
 #include "resight/report/scene_changes.hpp"
 #include "resight/sensor/read_ahead.hpp"
-#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -71,15 +71,16 @@ void run_changes(const ChangesArguments& arguments) {
   check_output_folder(arguments.out, "changes", {arguments.sequence});
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
-  const auto sequence = open_posed_input(arguments.sequence, arguments.input);
-  warn_about_faults(*sequence, true);
+  const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  const DepthBias bias = measure_depth_bias(*sequence, config.prepare, config.camera.depth_bias);
+  const auto tracked = estimate_poses(*given, arguments.poses, nullptr, arguments.num_threads);
+  const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
+  const DepthBias bias = measure_depth_bias(sequence, config.prepare, config.camera.depth_bias);
   DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
-  Progress progress("changes", sequence->num_views());
-  ReadAhead reader(*sequence, arguments.num_threads);
-  for (int v = 0; v < sequence->num_views(); ++v) {
+  Progress progress("changes", sequence.num_views());
+  ReadAhead reader(sequence, arguments.num_threads);
+  for (int v = 0; v < sequence.num_views(); ++v) {
     RgbdFrame recorded = value_or_throw(reader.read_view(v));
     const Camera camera = recorded.camera;
     correct_depth(bias, recorded);
@@ -97,7 +98,7 @@ void run_changes(const ChangesArguments& arguments) {
   }
   value_or_throw(write_file(folder.path() / "changes.json", format_scene_changes_json(record)));
   value_or_throw(folder.commit());
-  print("{} views: {}\n", sequence->num_views(), arguments.out.string());
+  print("{} views: {}\n", sequence.num_views(), arguments.out.string());
 }
 
 }  // namespace resight::app

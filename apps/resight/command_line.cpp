@@ -15,6 +15,7 @@ namespace resight::app {
 namespace {
 
 const CLI::Validator kFormats = CLI::IsMember({"tuw", "bop"});
+const std::map<std::string, double> kMeshUnits = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
 const CLI::Validator kPresets = CLI::IsMember({"mvr", "mvr-chd", "default"});
 
 // CLI11 accepts -1 and 99999999999999999999 as unsigned numbers.
@@ -55,11 +56,11 @@ std::function<void()> add_train(CLI::App& app, TrainArguments& a) {
   command->add_option("inputs", a.inputs, "TUW model folder, BOP models folder, folder of meshes, or mesh files")
       ->required();
   command->add_option("--out", a.out, "Model library to write")->required();
-  const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}};
   command
-      ->add_option("--mesh-unit", a.metres_per_unit,
-                   "Unit of the meshes and clouds [default: mm in a BOP models folder, else m]")
-      ->transform(CLI::CheckedTransformer(units).description("m, cm, mm or in"));
+      ->add_option_function<std::string>(
+          "--mesh-unit", [&a](const std::string& unit) { a.metres_per_unit = kMeshUnits.at(unit); },
+          "Unit of the meshes and clouds [default: mm in a BOP models folder, else m]")
+      ->check(CLI::IsMember(kMeshUnits));
   add_threads(command, a.num_threads);
   return [&a] { run_train(a); };
 }
@@ -102,18 +103,22 @@ void add_live_options(CLI::App* command, RecognizeArguments& a) {
       ->group(group);
 }
 
+void add_poses(CLI::App* command, std::string& poses) {
+  command
+      ->add_option("--poses", poses,
+                   "Camera poses: given, refine (starting from the given poses), auto (from the views alone), fixed "
+                   "(the camera does not move), or a file")
+      ->check(CLI::IsMember({"given", "refine", "auto", "fixed"}) | CLI::ExistingFile)
+      ->capture_default_str();
+}
+
 std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
   CLI::App* command =
       app.add_subcommand("recognize", "Recognise trained objects in a sequence of views and report what changed");
   command->add_option("--models", a.models, "Model library (made by 'resight train')")->required();
   command->add_option("--sequence", a.sequence, "Sequence folder or recording (detected)");
   command->add_option("--out", a.out, "Folder for the results")->required();
-  command
-      ->add_option("--poses", a.poses,
-                   "Camera poses: given, refine (starting from the given poses), auto (from the views alone), fixed "
-                   "(the camera does not move), or a file")
-      ->check(CLI::IsMember({"given", "refine", "auto", "fixed"}) | CLI::ExistingFile)
-      ->capture_default_str();
+  add_poses(command, a.poses);
   command
       ->add_option("--seed", a.seed, "Seed of all random choices; the same seed gives the same results [run.seed: 1]")
       ->check(kSeeds);
@@ -141,8 +146,8 @@ std::function<void()> add_changes(CLI::App& app, ChangesArguments& a) {
   command->add_option("--sequence", a.sequence, "Sequence folder")->required();
   command->add_option("--out", a.out, "Folder for coloured point clouds (PLY) and overlays (PNG)")->required();
   add_recognition_options(command, a);
+  add_poses(command, a.poses);
   add_sequence_options(command, a.input);
-  add_pose_file_option(command, a.input);
   return [&a] { run_changes(a); };
 }
 
@@ -241,7 +246,7 @@ std::function<void()> add_check(CLI::App& app, CheckArguments& a, bool& is_sound
                       "Model library: also compare the sizes of its objects with those in the views");
   command->add_option("--out", a.out, "Folder for findings.json and a picture of each finding");
   command->add_option("--views", a.max_views, "Largest number of inspected views, spread over the sequence")
-      ->check(CLI::Range(2, 1000))
+      ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   command->add_flag("--json", a.as_json, "Print JSON");
   add_threads(command, a.num_threads);

@@ -77,6 +77,7 @@ struct ChangesArguments {
   std::filesystem::path sequence;
   OpenSequenceOptions input;
   std::filesystem::path out;
+  std::string poses = "given";  ///< given, refine, auto, fixed, or a file.
   std::string preset = "default";
   std::optional<std::filesystem::path> config;
   std::optional<int> num_previous_views;

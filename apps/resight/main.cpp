@@ -32,6 +32,10 @@ std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const 
   if (named != commands.end()) {
     std::string what = error.what();
     std::ranges::replace(what, '\n', ' ');
+    // CLI11 looks for missing options first, but what is missing is often what is misspelt.
+    const std::vector<std::string> unexpected = (*named)->remaining();
+    if (!unexpected.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+      what = "unexpected '" + unexpected.front() + "'; " + what;
     return first + ": " + what + " (see resight " + first + " --help)";
   }
   std::string names;

@@ -175,25 +175,15 @@ void run_recognize(const RecognizeArguments& arguments) {
     CameraViews views(arguments.camera, arguments.input, arguments.follow);
     return recognize_live(views, arguments, library, config);
   }
-  const bool estimated = arguments.poses == "auto" || arguments.poses == "refine";
-  OpenSequenceOptions input = arguments.input;
-  if (!estimated && arguments.poses != "given") input.poses = arguments.poses;
   if (arguments.follow.is_on) {
-    if (estimated) throw InputError("--follow needs poses with each view: --poses given, fixed or a file");
-    FolderViews views(arguments.sequence, input, arguments.follow);
+    if (is_estimated(arguments.poses))
+      throw InputError("--follow needs poses with each view: --poses given, fixed or a file");
+    FolderViews views(arguments.sequence, with_poses(arguments.input, arguments.poses), arguments.follow);
     return recognize_live(views, arguments, library, config);
   }
-  const auto recorded = estimated ? open_input(arguments.sequence, input) : open_posed_input(arguments.sequence, input);
-  warn_about_faults(*recorded, arguments.poses != "auto");
+  const auto recorded = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
   RunFiles files(arguments, library);
-  std::optional<PosedSequence> tracked;
-  if (estimated) {
-    TrackSequenceOptions options;
-    options.refine = arguments.poses == "refine";
-    options.library = &library;
-    options.num_threads = arguments.num_threads;
-    tracked.emplace(take_largest_component(*recorded, track_sequence(*recorded, options).track));
-  }
+  const auto tracked = estimate_poses(*recorded, arguments.poses, &library, arguments.num_threads);
   recognize_recorded(tracked ? static_cast<const Sequence&>(*tracked) : *recorded, files, arguments, library, config);
 }
 

@@ -98,6 +98,9 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
   command
       ->add_option("--until", options.views.to_s, "Takes views up to this time, seconds since the first (needs times)")
       ->group(group);
+  command->add_option("--max-views", options.views.max_views, "Takes only the first n of these views")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
   add_recording_options(command, options.topics);
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -45,7 +46,15 @@ void add_runs(const fs::path& folder, int seed, const char* side,
   }
 }
 
-std::string show(const PairedDifference& d) { return fmt::format("{:+.4f} +- {:.4f}", d.mean, d.standard_error); }
+std::string show(const PairedDifference& d) {
+  return d.num_pairs > 0 ? fmt::format("{:+.4f} ± {:.4f}", d.mean, d.standard_error) : "-";
+}
+
+// The ratio of two times from the difference of their logarithms.
+std::string show_ratio(const PairedDifference& d) {
+  const double ratio = std::exp(d.mean);
+  return d.num_pairs > 0 ? fmt::format("{:.2f} ± {:.2f}", ratio, ratio * d.standard_error) : "-";
+}
 
 }  // namespace
 
@@ -56,11 +65,19 @@ int main(int argc, char** argv) {
     add_runs(argv[i], i / 2, "A", runs_of_preset);
     add_runs(argv[i + 1], i / 2, "B", runs_of_preset);
   }
-  fmt::print("| preset | K | sequences | precision | recall | F | strict F | ghosts per former place |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| preset | K | sequences | right, A and B | wrong, A and B | precision | recall | F | strict F | "
+      "ghosts per former place | F of events | CPU, B / A |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& [preset, runs] : runs_of_preset)
-    for (const PresetComparison& c : compare_presets(runs))
-      fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", preset, c.num_previous_views, c.precision.num_pairs,
-                 show(c.precision), show(c.recall), show(c.f_score), show(c.strict_f_score), show(c.ghosts_per_change));
+    for (const PresetComparison& c : compare_presets(runs)) {
+      fmt::print("| {} | {} | {} | {}, {} | {}, {} |", preset, c.num_previous_views, c.precision.num_pairs,
+                 c.score_of_a.true_positives, c.score_of_b.true_positives, c.score_of_a.false_positives,
+                 c.score_of_b.false_positives);
+      for (const PairedDifference* d :
+           {&c.precision, &c.recall, &c.f_score, &c.strict_f_score, &c.ghosts_per_change, &c.event_f_score})
+        fmt::print(" {} |", show(*d));
+      fmt::print(" {} |\n", show_ratio(c.log_cpu));
+    }
   return 0;
 }

@@ -16,14 +16,20 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 struct RunScores {
   RecognitionScore score, strict_score;
   double ghosts_per_change = kUnknown;
+  double event_f_score = kUnknown;
+  double log_cpu = kUnknown;
 };
 
 RunScores scores_of(const EvaluatedRun& run) {
   RunScores scores;
+  double cpu_s = 0;
   for (const EvaluatedView& view : run.views) {
     scores.score += view.score;
     scores.strict_score += view.strict_score;
+    for (const StageTime& stage : view.times.stages()) cpu_s += stage.cpu_s;
   }
+  if (cpu_s > 0) scores.log_cpu = std::log(cpu_s);
+  if (run.has_changes) scores.event_f_score = run.events.events.f_score();
   if (run.num_former_places > 0)
     scores.ghosts_per_change = static_cast<double>(run.num_ghosts()) / run.num_former_places;
   return scores;
@@ -35,6 +41,12 @@ const EvaluatedRun* find_run(std::span<const EvaluatedRun> runs, const std::stri
     return run.is_clustered && run.preset == preset && run.num_previous_views == k && run.sequence == sequence;
   });
   return found == runs.end() ? nullptr : &*found;
+}
+
+RecognitionScore sum_scores(const std::vector<RunScores>& runs) {
+  RecognitionScore sum;
+  for (const RunScores& run : runs) sum += run.score;
+  return sum;
 }
 
 template <typename Value>
@@ -88,12 +100,14 @@ std::vector<PresetComparison> compare_presets(std::span<const EvaluatedRun> runs
         b.push_back(scores_of(*run_b));
       }
       if (a.empty()) continue;
-      comparisons.push_back({presets[0], presets[p], k,
-                             compare(a, b, [](const RunScores& s) { return s.score.precision(); }),
-                             compare(a, b, [](const RunScores& s) { return s.score.recall(); }),
-                             compare(a, b, [](const RunScores& s) { return s.score.f_score(); }),
-                             compare(a, b, [](const RunScores& s) { return s.strict_score.f_score(); }),
-                             compare(a, b, [](const RunScores& s) { return s.ghosts_per_change; })});
+      comparisons.push_back(
+          {presets[0], presets[p], k, compare(a, b, [](const RunScores& s) { return s.score.precision(); }),
+           compare(a, b, [](const RunScores& s) { return s.score.recall(); }),
+           compare(a, b, [](const RunScores& s) { return s.score.f_score(); }),
+           compare(a, b, [](const RunScores& s) { return s.strict_score.f_score(); }),
+           compare(a, b, [](const RunScores& s) { return s.ghosts_per_change; }),
+           compare(a, b, [](const RunScores& s) { return s.event_f_score; }),
+           compare(a, b, [](const RunScores& s) { return s.log_cpu; }), sum_scores(a), sum_scores(b)});
     }
   return comparisons;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "resight/evaluation/evaluated_run.hpp"
+#include "resight/evaluation/recognition_score.hpp"
 
 namespace resight {
 
@@ -28,6 +29,9 @@ struct PresetComparison {
   PairedDifference f_score;
   PairedDifference strict_f_score;
   PairedDifference ghosts_per_change;
+  PairedDifference event_f_score;           ///< Only sequences on which both presets detected changes.
+  PairedDifference log_cpu;                 ///< Of the CPU times of all stages: log(time of b / time of a).
+  RecognitionScore score_of_a, score_of_b;  ///< Sums over the pairs.
 };
 
 /// Compares every preset with the first one, for each K, over the sequences that both were run on (with clustering).

@@ -34,6 +34,10 @@ EvaluatedRun run_with(const std::string& sequence, const std::string& preset, co
   run.num_former_places = 2;
   run.views.resize(1);
   run.views[0].score = score;
+  run.views[0].times.add("features", 1, preset == "mvr" ? 2 : 3);
+  run.views[0].times.add("search", 1, preset == "mvr" ? 2 : 5);
+  run.has_changes = sequence == "1";
+  run.events.events = {1, preset == "mvr" ? 2 : 0, 0};
   run.views[0].detections.resize(1);
   run.views[0].detections[0].verdict = preset == "mvr" ? DetectionVerdict::kGhost : DetectionVerdict::kFalsePositive;
   return run;
@@ -50,6 +54,20 @@ TEST(ComparePresets, PairsBySequence) {
   EXPECT_NEAR(comparisons[0].precision.mean, 0.1, 1e-12);
   EXPECT_NEAR(comparisons[0].precision.standard_error, 0, 1e-12);
   EXPECT_DOUBLE_EQ(comparisons[0].ghosts_per_change.mean, -0.5);
+  EXPECT_EQ(comparisons[0].score_of_a, (RecognitionScore{6, 14, 0}));
+  EXPECT_EQ(comparisons[0].score_of_b, (RecognitionScore{8, 12, 0}));
+  // Stages are added up: 8 s instead of 4 s.
+  EXPECT_NEAR(comparisons[0].log_cpu.mean, std::log(2.0), 1e-12);
+  EXPECT_EQ(comparisons[0].event_f_score.num_pairs, 1);
+  EXPECT_DOUBLE_EQ(comparisons[0].event_f_score.mean, 0.5);
+}
+
+TEST(ComparePresets, WithoutTimesTheirRatioIsUnknown) {
+  EvaluatedRun a = run_with("1", "mvr", {1, 0, 0}), b = run_with("1", "mvr-chd", {1, 0, 0});
+  a.views[0].times = {};
+  const auto comparisons = compare_presets(std::vector{a, b});
+  ASSERT_EQ(comparisons.size(), 1U);
+  EXPECT_TRUE(std::isnan(comparisons[0].log_cpu.mean));
 }
 
 }  // namespace

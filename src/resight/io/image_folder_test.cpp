@@ -132,6 +132,13 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   ASSERT_TRUE(frame.ok()) << frame.error().message;
   EXPECT_EQ(frame->camera.fx, 62);
   EXPECT_NEAR(frame->depth_m(0, 0), 0.6, 1e-6);
+  options.views.max_views = 1;
+  EXPECT_EQ((*open_posed_sequence(directory.path(), options))->num_views(), 1);
+  options.views.max_views = 7;
+  EXPECT_EQ((*open_posed_sequence(directory.path(), options))->num_views(), 2);
+  options.views.max_views = 0;
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--max-views must be at least 1"));
+  options.views.max_views.reset();
   options.depth_scale_m = 1;
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("the unit is wrong"));
 }

@@ -46,9 +46,9 @@ TEST(RecordingSequence, ChoiceOfViews) {
   ASSERT_TRUE(second.ok()) << second.error().message;
   EXPECT_EQ((*second)->num_views(), 2);
   EXPECT_EQ((*second)->view_name(1), "000002");
-  options.views = {.every = 1, .from_s = 0.15, .to_s = 0.25};
+  options.views = {.every = 1, .from_s = 0.15, .to_s = 0.25, .max_views = {}};
   EXPECT_EQ((*open_sequence(recorded("none.mcap"), options))->num_views(), 1);
-  options.views = {.every = 1, .from_s = 5, .to_s = {}};
+  options.views = {.every = 1, .from_s = 5, .to_s = {}, .max_views = {}};
   EXPECT_THAT(open_sequence(recorded("none.mcap"), options).error().message, HasSubstr("--from"));
 }
 

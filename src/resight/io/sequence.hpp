@@ -27,6 +27,7 @@ struct ViewChoice {
   double min_motion_m = 0;
   std::optional<double> from_s;  ///< Seconds since the first view.
   std::optional<double> to_s;    ///< Seconds since the first view.
+  std::optional<int> max_views;  ///< The first of those that the other fields leave.
 };
 
 /// What a recording contains many of. Empty: found by type and name.

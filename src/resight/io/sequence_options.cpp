@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ constexpr double kMaxBaseline_m = 1;
 bool gives_something(const OpenSequenceOptions& options) {
   return !options.intrinsics.empty() || !options.depth_intrinsics.empty() || !options.color_from_depth.empty() ||
          options.depth_scale_m || !options.poses.empty() || options.pose_convention != PoseConvention::kCameraToWorld ||
-         options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s || options.views.to_s;
+         options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s || options.views.to_s ||
+         options.views.max_views;
 }
 
 /// Of the camera, or of the point 1 m in front of it, whichever is larger.
@@ -47,7 +49,7 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   for (ListedView& view : table.views) {
     const double time_s = view.time_s - begin_s;
     if ((choice.from_s || choice.to_s) && std::isnan(time_s))
-      return Error{"the views have no times, which --from and --until need; use --every"};
+      return Error{"the views have no times, which --from and --until need; use --every and --max-views"};
     if (choice.from_s && time_s < *choice.from_s) continue;
     if (choice.to_s && time_s > *choice.to_s) continue;
     if (number++ % choice.every == 0) kept.push_back(std::move(view));
@@ -55,7 +57,12 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   if (kept.empty()) return Error{"no view lies between --from and --until"};
   table.views = std::move(kept);
   if (!(choice.min_motion_m >= 0)) return Error{"--min-motion must not be negative"};
-  return choice.min_motion_m > 0 ? choose_moved_views(table, choice.min_motion_m) : Result<void>();
+  if (choice.min_motion_m > 0)
+    if (const auto done = choose_moved_views(table, choice.min_motion_m); !done) return done;
+  if (choice.max_views && *choice.max_views < 1) return Error{"--max-views must be at least 1"};
+  const auto max_views = static_cast<std::size_t>(choice.max_views.value_or(std::numeric_limits<int>::max()));
+  if (table.views.size() > max_views) table.views.resize(max_views);
+  return {};
 }
 
 }  // namespace
@@ -88,7 +95,7 @@ Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& option
   if (SequenceTable* table = listed_table(sequence)) return apply_options(*table, options);
   return Error{
       "consists of PCD files, which hold camera, unit and poses themselves: --intrinsics, --depth-intrinsics, "
-      "--depth-scale, --poses, --every, --min-motion, --from and --until do not apply"};
+      "--depth-scale, --poses, --every, --min-motion, --from, --until and --max-views do not apply"};
 }
 
 Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& options) {

@@ -8,6 +8,8 @@
 namespace resight {
 namespace {
 
+constexpr double kUsualDiameter_m = 2;  // Larger ones are mostly in another unit.
+
 bool is_usable_surface(const std::optional<PointCloud>& surface) {
   return surface.has_value() && surface->has_colors();
 }
@@ -85,6 +87,15 @@ ObjectSymmetries find_shape_symmetries(PointCloud surface, const TrainOptions& o
   return find_undeclared(surface, options);
 }
 
+void warn_about(const ObjectModel& model, const ModelSource& source, const std::string& path,
+                const TrainWarning& warning) {
+  for (const std::string& line : source.warnings) warning(line);
+  if (model.sift.size() + model.shot.size() == 0)
+    warning(fmt::format("{}: the object has no features and will not be recognised", path));
+  if (model.diameter_m > kUsualDiameter_m)
+    warning(fmt::format("{}: the object is {:.1f} m across: is its unit right?", path, model.diameter_m));
+}
+
 }  // namespace
 
 Result<ObjectModel> train_object(const ModelSource& source, const TrainOptions& options) {
@@ -118,11 +129,7 @@ Result<ModelLibrary> train_library(std::span<const ModelLocation> locations, con
     if (!source.ok()) return source.error();
     Result<ObjectModel> model = train_object(*source, options);
     if (!model.ok()) return Error{fmt::format("{}: {}", location.path.string(), model.error().message)};
-    if (warning) {
-      for (const std::string& line : source->warnings) warning(line);
-      if (model->sift.size() + model->shot.size() == 0)
-        warning(fmt::format("{}: the object has no features and will not be recognised", location.path.string()));
-    }
+    if (warning) warn_about(*model, *source, location.path.string(), warning);
     library.objects.push_back(*std::move(model));
   }
   const Result<void> ids = assign_bop_ids(library.objects);

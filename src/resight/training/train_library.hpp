@@ -22,8 +22,8 @@ namespace resight {
 /// Called before each object with its index (from 0), the number of objects and its name.
 using TrainProgress = std::function<void(int index, int count, const std::string& name)>;
 
-/// Called with one line for each problem of a model: a line of ModelSource::warnings, or that the object has no
-/// features and cannot be recognised.
+/// Called with one line for each problem of a model: a line of ModelSource::warnings, that the object has no features
+/// and cannot be recognised, or that it is larger than objects on tables and shelves are.
 using TrainWarning = std::function<void(const std::string& line)>;
 
 /// Reads and trains all locations one by one (the views of each object are processed in parallel). Names and given

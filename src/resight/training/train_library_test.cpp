@@ -96,6 +96,21 @@ TEST_F(MeshFolder, EveryModelIsReadBeforeTheFirstIsTrained) {
   EXPECT_EQ(num_begun, 0);
 }
 
+TEST_F(MeshFolder, AnObjectAsLargeAsARoomGivesAWarning) {
+  Result<std::vector<ModelLocation>> locations = find_models({folder_});
+  ASSERT_TRUE(locations.ok()) << locations.error().message;
+  (*locations)[0].metres_per_unit =
+      3 / train_object("thing", make_any_object().mesh, quick_library_options())->diameter_m;
+  TrainOptions options = quick_library_options();
+  options.surface_voxel_m = 0.05;
+  options.find_symmetries = false;
+  std::vector<std::string> warnings;
+  ASSERT_TRUE(train_library(*locations, options, {}, [&](const std::string& line) { warnings.push_back(line); }).ok());
+  // The other object has its size.
+  EXPECT_THAT(warnings, testing::Contains(HasSubstr("across")).Times(1));
+  EXPECT_THAT(warnings, testing::Contains(HasSubstr("the object is 3.0 m across: is its unit right?")));
+}
+
 TEST(TrainLibrary, RefusesNothingAndNamesThatAreNotUnique) {
   EXPECT_THAT(train_library({}).error().message, HasSubstr("no models"));
   const std::vector<ModelLocation> twice{{.name = "mug", .bop_id = 0, .path = "/a/mug.ply", .format = "mesh"},

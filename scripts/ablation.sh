@@ -1,0 +1,298 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Leave-one-out ablation of preset `default`: switches each feature off alone, and measures what that changes on
+# generated, path-traced and real recordings. Writes the tables of docs/ablation.md. What is finished is kept in
+# OUT/<commit>/ and not computed again. A call computes on one core. Shards may run at the same time, also on several
+# machines that share OUT; the call after the last one writes the page.
+#   scripts/ablation.sh [--shard I/N | --merge] [--data DIR=../shared/data] [--out DIR=out/ablation]
+#                       [--build DIR=build/ablation] [--no-build] [--page FILE=docs/ablation.md]
+# With --no-build, the programs are those in the build folder.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+usage() {
+  sed -n '7,9s/^# \{0,1\}//p' "$0" >&2
+  exit 2
+}
+shard="" merge=0 data=../shared/data out=out/ablation build=build/ablation can_build=1 page=docs/ablation.md
+while (($# > 0)); do
+  case "$1" in
+    --merge) merge=1; shift; continue ;;
+    --no-build) can_build=0; shift; continue ;;
+  esac
+  (($# > 1)) || usage
+  case "$1" in
+    --shard) shard=$2 ;;
+    --data) data=$2 ;;
+    --out) out=$2 ;;
+    --build) build=$2 ;;
+    --page) page=$2 ;;
+    *) usage ;;
+  esac
+  shift 2
+done
+[[ $shard == "" || $shard =~ ^[1-9][0-9]*/[1-9][0-9]*$ && $merge == 0 ]] || usage
+shard_number=${shard%/*} num_shards=${shard#*/}
+data=$(realpath -m "$data")
+
+# A seed, and three of its nine sequences: each kind of sequence is there at least once.
+seeds=("11 1 4 7" "12 2 5 8" "13 3 6 9" "14 1 5 9" "15 2 6 7")
+# A data set, its models, and the seeds of all random choices.
+recorded_sets=("table-camera table-camera/models 1 2" "table-rendered table-rendered/models 1"
+  "table-two-states ycb-meshes 1")
+still_sets=(hots-table hots-more/table_8 hots-more/office_5)
+static_sets=(seven-scenes-kitchen tum-fr1-xyz apc-bin/scene-0000)
+previous_views=5
+
+# What is switched off: settings, separated by semicolons.
+switches=(
+  'shape.skip_planes = false'
+  'shape.max_matches = 0'
+  'shape.min_feature_share = 0'
+  'hypotheses.min_carried_share = 0'
+  'verify.clutter.noise_sigmas = 0'
+  'verify.clutter.texture_contrast = "off"'
+  'verify.planes.spacing_m = "off"'
+  'verify.acceptance.min_shared_texture = 0'
+  'verify.acceptance.min_newest_similarity = "off"'
+  'verify.acceptance.min_pattern_similarity = "off"'
+  'verify.acceptance.untextured.enabled = false'
+  'verify.acceptance.require_unary_gain = false'
+  'verify.acceptance.min_explained_share = 0'
+  'verify.acceptance.min_visible_share = 0'
+  'search.max_new_share = "off"'
+  'search.place_interval = "off"'
+  'poses.correct = false'
+  'color_offset.correct = false'
+  'depth_bias.correct = false'
+  'prepare.color_width_m = "off"'
+  'verify.selection.score_power = 0'
+  'detections.further_instance_odds = 1'
+  'detections.min_score = 0'
+  'detections.min_reported_share = 0'
+  'verify.appearance.pattern_radius_m = "off"'
+  'verify.appearance.sigma_saturation = 0; verify.appearance.sigma_ab = 0.17'
+  'verify.appearance.use_color = false'
+  'verify.visibility.min_edge_distance_px = 0'
+  'verify.visibility.arrival_share = "off"'
+  'verify.visibility.free_space = "majority"'
+  'verify.refine.max_iterations = "off"'
+  'verify.refine.symmetry_step_rad = "off"'
+  'verify.refine.correspondence_weight = 0'
+  'verify.clutter.weight = 0'
+  'verify.clutter.rule = "segments"'
+  'verify.planes.enabled = false'
+  'verify.selection.occupancy_weight = 0'
+  'history.confirm_score = 0'
+  'history.min_new_share = 0'
+  'remember_objects = false'
+  'changes.removed_hypotheses = "discard"'
+  'changes.test = "points"'
+  'changes.enabled = false'
+  'shape.enabled = false'
+  'features.match.shot_neighbors = 1'
+  'features.match.shot_index.num_components = "off"; features.match.shot_index.num_probes = 32'
+  'features.shot.min_surface_variation = 0'
+  'hypotheses.cluster.enabled = false'
+  'hypotheses.grouping.expand_groups = false'
+  'hypotheses.grouping.merge_distance_m = "off"'
+  'integrate.min_edge_distance_px = 0'
+  'prepare.normals.window_radius_px = 2'
+)
+# Those that act on the detection of changes.
+change_switches=(
+  'changes.recolored_sigmas = "off"'
+  'changes.min_region_px = 1'
+  'changes.test = "points"'
+  'poses.correct = false'
+  'depth_bias.correct = false'
+)
+
+# The tables name a commit, so the programs must be those of a commit.
+if [[ $page == docs/ablation.md && -n $(git status --porcelain -- CMakeLists.txt cmake src apps bench) ]]; then
+  echo "ablation.sh: there are uncommitted changes; commit them, or write to another page with --page" >&2
+  exit 2
+fi
+commit=$(git rev-parse --short=12 HEAD)
+log_dir=build/logs/ablation-${shard/\//-of-}
+source scripts/common.sh
+resight=$build/apps/resight/resight
+compare=$build/bench/bench_compare_results
+if ((can_build)); then
+  scripts/setup.sh --bench
+  step "configure" cmake --preset release -B "$build" -DRESIGHT_BUILD_BENCH=ON -DRESIGHT_BUILD_TESTS=OFF \
+    -DRESIGHT_BUILD_EXAMPLES=OFF
+  step "build the programs" cmake --build "$build" -j "$num_jobs" \
+    --target resight_app bench_compare_results bench_real_changes
+fi
+parts=$(realpath -m "$out/$commit")
+mkdir -p "$parts"
+missing=() failed=()
+
+# slug SETTINGS: a name for files.
+slug() { tr -cs 'a-zA-Z0-9._\n' '-' <<<"$1"; }
+
+# take_turn NAME: whether this call computes the part. The shards take turns.
+num_parts=0
+take_turn() {
+  num_parts=$((num_parts + 1))
+  if ((merge)) || { [[ -n $shard ]] && ((num_parts % num_shards + 1 != shard_number)); }; then
+    missing+=("$1")
+    return 1
+  fi
+}
+
+# make_seed SEED NUMBER...: the chosen sequences in seed-SEED/data, their library beside it.
+make_seed() {
+  local folder=$parts/seed-$1 number
+  [[ -e $folder/models.resight ]] && return
+  rm -rf "$folder"
+  mkdir -p "$folder/data/test"
+  step "simulate seed $1" "$resight" simulate --preset dynamic-tabletop --seed "$1" --format bop --out "$folder/all"
+  for number in "${@:2}"; do mv "$folder/all/test/00000$number"* "$folder/data/test"; done
+  mv "$folder/all/models" "$folder/data"
+  rm -rf "$folder/all"
+  step "train seed $1" "$resight" train "$folder/data/models" --out "$folder/models.partial.resight"
+  mv "$folder/models.partial.resight" "$folder/models.resight"
+}
+make_data() {
+  exec 9>"$parts/lock"
+  flock 9
+  local set
+  for set in "${seeds[@]}"; do make_seed $set; done
+  for set in "${recorded_sets[@]}"; do
+    read -r _ models _ <<<"$set"
+    [[ -e $parts/$(slug "$models").resight ]] ||
+      step "train $models" "$resight" train "$data/$models" --out "$parts/$(slug "$models").resight"
+  done
+  exec 9>&-
+}
+
+# evaluate FOLDER LIBRARY DATA SEED SETTINGS: a finished folder has tables.md.
+evaluate() {
+  local folder=$1 config=()
+  [[ -e $folder/tables.md ]] && return
+  take_turn "$folder" || return 0
+  mkdir -p "$folder"
+  if [[ -n $5 ]]; then
+    tr ';' '\n' <<<"$5" >"$folder.toml"
+    config=(--config "$folder.toml")
+  fi
+  step "${folder#"$parts/"}" "$resight" evaluate --models "$2" --dataset "$3" --presets default -k $previous_views \
+    --seed "$4" --out "$folder" -j 1 "${config[@]}" || { missing+=("$folder"); failed+=("$folder"); }
+}
+# evaluate_all SETTINGS: on all sets. Empty: preset default as it is.
+evaluate_all() {
+  local name set sequences models seed
+  name=$(slug "${1:-default}")
+  for set in "${seeds[@]}"; do
+    read -r seed _ <<<"$set"
+    evaluate "$parts/seed-$seed/$name" "$parts/seed-$seed/models.resight" "$parts/seed-$seed/data" 1 "$1"
+  done
+  for set in "${recorded_sets[@]}"; do
+    read -r sequences models _ <<<"$set"
+    for seed in ${set#* * }; do
+      evaluate "$parts/$(slug "$sequences")-$seed/$name" "$parts/$(slug "$models").resight" "$data/$sequences" "$seed" "$1"
+    done
+  done
+}
+
+# find_changes SETTINGS: bench_real_changes on all still and static sets.
+find_changes() {
+  local set kind file config=-
+  mkdir -p "$parts/changes"
+  if [[ -n $1 ]]; then
+    config=$parts/changes/$(slug "$1").toml
+    tr ';' '\n' <<<"$1" >"$config"
+  fi
+  for set in "${still_sets[@]}" "${static_sets[@]}"; do
+    kind="static $data/$set"
+    [[ " ${still_sets[*]} " == *" $set "* ]] && kind="still $data/$set $data/$set/class_png"
+    file=$parts/changes/$(slug "$set")-$(slug "${1:-default}").txt
+    [[ -e $file ]] && continue
+    take_turn "$file" || continue
+    step "changes of $set, ${1:-default}" keep_output "$file" "$build/bench/bench_real_changes" $kind default "$config" \
+      $previous_views || { missing+=("$file"); failed+=("$file"); }
+  done
+}
+# compare SETTINGS FOLDER...: the row of bench_compare_results, with the feature against without it.
+compare() {
+  local folder arguments=()
+  for folder in "${@:2}"; do arguments+=("$folder/$(slug "$1")" "$folder/default"); done
+  "$compare" "${arguments[@]}" | awk -v title="" -f scripts/table_columns.awk \
+    -v columns="right, A and B;wrong, A and B;F;strict F;F of events;CPU, B / A"
+}
+generated_folders() { for set in "${seeds[@]}"; do echo "$parts/seed-${set%% *}"; done; }
+recorded_folders() {
+  local set seed
+  for set in "${recorded_sets[@]}"; do
+    for seed in ${set#* * }; do echo "$parts/$(slug "${set%% *}")-$seed"; done
+  done
+}
+
+write_switches() {
+  local settings generated recorded
+  echo "| without | right, wrong | F | strict F | F of events | CPU | recorded: right, wrong | F |"
+  echo "|---|---|---|---|---|---|---|---|"
+  for settings in "${switches[@]}"; do
+    generated=$(compare "$settings" $(generated_folders))
+    recorded=$(compare "$settings" $(recorded_folders))
+    printf '%s\t%s\t%s\n' "$settings" "$generated" "$recorded"
+  done | awk -F '\t' '
+    function first(pair) { return substr(pair, 1, index(pair, ",") - 1) }
+    function second(pair) { return substr(pair, index(pair, " ") + 1) }
+    NR == 1 {
+      printf "| (nothing: `default`) | %s, %s | | | | | %s, %s | |\n", second($2), second($3), second($8), second($9)
+    }
+    {
+      gsub(/; /, "`, `", $1)
+      printf "| `%s` | %s, %s | %s | %s | %s | %s | %s, %s | %s |\n", $1, first($2), first($3), $4, $5, $6, $7,
+             first($8), first($9), $10
+    }'
+}
+
+# change_cells SETTINGS: sums over the still sets, then each static set.
+change_cells() {
+  local set name still=() static=()
+  name=$(slug "${1:-default}")
+  for set in "${still_sets[@]}"; do still+=("$parts/changes/$(slug "$set")-$name.txt"); done
+  for set in "${static_sets[@]}"; do static+=("$parts/changes/$(slug "$set")-$name.txt"); done
+  awk '
+    $1 == "counts" && $2 == "default" { for (i = 3; i <= NF; ++i) sum[i] += $i }
+    END {
+      printf "%.3f, %.3f | %.3f, %.3f | %d of %d | %d of %d | %d of %d |", sum[3] / sum[4], sum[5] / sum[6],
+             sum[7] / sum[8], sum[9] / sum[10], sum[11] + sum[15], sum[12] + sum[16], sum[23] + sum[27],
+             sum[24] + sum[28], sum[25] + sum[29], sum[26] + sum[30]
+    }' "${still[@]}"
+  for set in "${static[@]}"; do
+    awk -F ' *[|] *' '
+      $2 == "default, novel" && !novel { novel = $3 }
+      $2 == "default, removed" && !removed { removed = $3 }
+      END { printf " %s, %s |", novel, removed }' "$set"
+  done
+}
+write_change_switches() {
+  local settings set
+  printf '| without | added P, R | removed P, R | thin things found | regions right | things found as a region |'
+  for set in "${static_sets[@]}"; do printf ' `%s`: novel, removed |' "$set"; done
+  printf '\n|---|---|---|---|---|---|---|---|---|\n'
+  echo "| (nothing: \`default\`) | $(change_cells "")"
+  for settings in "${change_switches[@]}"; do echo "| \`$settings\` | $(change_cells "$settings")"; done
+}
+
+# put NAME: makes the table NAME and puts it into the page.
+put() {
+  "write_$1" >"$parts/$1.md"
+  printf '\nCommit %s; K = %d.\n' "$commit" "$previous_views" >>"$parts/$1.md"
+  scripts/page_tables.sh put "$page" "${1//_/-}" "$commit" <"$parts/$1.md"
+}
+
+((merge)) || make_data
+for settings in "" "${switches[@]}"; do evaluate_all "$settings"; done
+for settings in "" "${change_switches[@]}"; do find_changes "$settings"; done
+if ((${#missing[@]} > 0)); then
+  echo "not finished, so the page stays as it is: ${missing[*]}"
+  [[ -n $shard ]] && ((${#failed[@]} == 0)) || exit 1
+else
+  put switches
+  put change_switches
+fi
