@@ -53,6 +53,11 @@ cmp -s out/changes.json whole/changes.json || fail "changes differ from those of
 { [ "$(wc -l <lines)" = 1 ] && grep -q color_000004 lines; } || fail "not the newest view only: $(cut -c1-80 lines)"
 grep -q '"num_skipped_views": *4' newest/summary.json || fail "not four views are skipped"
 
+# A number of views ends a run, too.
+timeout 60 "$resight" "${follow[@]}" --sequence live --poses fixed --follow --keep-late --max-views 2 --out two >lines 2>err ||
+  fail "with a number of views: $(tail -1 err)"
+{ [ "$(wc -l <lines)" = 2 ] && grep -q color_000001 lines; } || fail "not the first two views: $(cut -c1-80 lines)"
+
 # Nothing comes.
 mkdir empty
 "$resight" "${follow[@]}" --sequence empty --follow --idle-timeout-s 0.2 --out none >lines 2>err

@@ -7,6 +7,7 @@
 #include "interrupts.hpp"
 #include "resight/core/files.hpp"
 #include "resight/inspection/find_faults.hpp"
+#include "resight/sensor/disparity_error.hpp"
 
 namespace resight::app {
 namespace {
@@ -69,7 +70,10 @@ void FolderViews::tell_waiting() {
 }
 
 CameraViews::CameraViews(const std::string& name, const OpenSequenceOptions& open, const FollowArguments& arguments)
-    : name_(name), camera_(to_camera_options(name, open)), arguments_(arguments) {
+    : name_(name),
+      depth_bias_per_m_(open.depth_bias_per_m),
+      camera_(to_camera_options(name, open)),
+      arguments_(arguments) {
   stop_when_interrupted();
 }
 
@@ -80,6 +84,7 @@ std::optional<FollowedView> CameraViews::next() {
     std::optional<FollowedView> view = camera_.take(kPatience_s);
     if (!view && camera_.has_ended()) break;
     if (!view) continue;
+    if (depth_bias_per_m_ != 0) remove_disparity_error(depth_bias_per_m_, view->frame);
     if (!has_view_) tell_first_view(*view, camera_.notes());
     has_view_ = true;
     return view;

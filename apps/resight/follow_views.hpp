@@ -46,6 +46,7 @@ class CameraViews final : public LiveViews {
 
  private:
   std::string name_;
+  double depth_bias_per_m_;
   OpenniCamera camera_;
   FollowArguments arguments_;
   bool has_view_ = false;

@@ -121,8 +121,10 @@ class RunFiles {
 void recognize_live(LiveViews& views, const RecognizeArguments& arguments, const ModelLibrary& library,
                     const RecognizerConfig& config) {
   RunFiles files(arguments, library);
-  ReportRun run = run_live(
-      library, [&] { return views.next(); }, config, arguments.num_threads, files.observer());
+  const std::optional<int> max_views = arguments.input.views.max_views;
+  int num_taken = 0;
+  const auto next = [&] { return max_views && num_taken++ >= *max_views ? std::nullopt : views.next(); };
+  ReportRun run = run_live(library, next, config, arguments.num_threads, files.observer());
   run.num_skipped_views = views.num_skipped();
   files.complete(run);
 }
@@ -178,7 +180,9 @@ void run_recognize(const RecognizeArguments& arguments) {
   if (arguments.follow.is_on) {
     if (is_estimated(arguments.poses))
       throw InputError("--follow needs poses with each view: --poses given, fixed or a file");
-    FolderViews views(arguments.sequence, with_poses(arguments.input, arguments.poses), arguments.follow);
+    OpenSequenceOptions input = with_poses(arguments.input, arguments.poses);
+    input.views.max_views.reset();  // Counted here: of the folder, the first views may have been skipped.
+    FolderViews views(arguments.sequence, input, arguments.follow);
     return recognize_live(views, arguments, library, config);
   }
   const auto recorded = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);

@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "number_validator.hpp"
 #include "resight/inspection/quick_check.hpp"
+#include "resight/sensor/disparity_error.hpp"
 
 namespace resight::app {
 namespace {
@@ -67,6 +68,12 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
       ->check(number_validator([](double value) { return value > 1e-7 && value <= 1; },
                                "a number of metres per unit, such as 0.001 (millimetres) or 0.0002 (5000 per metre)",
                                "METRES"))
+      ->group(group);
+  command
+      ->add_option("--depth-bias", options.depth_bias_per_m,
+                   "Bias of the depth that is corrected, 1/m: 1 / z = 1 / measured - bias; 'resight check' measures it "
+                   "where the camera moves [0]")
+      ->check(CLI::Range(-kMaxDepthBias_per_m, kMaxDepthBias_per_m))
       ->group(group);
   command
       ->add_option_function<std::string>(

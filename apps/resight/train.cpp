@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands.hpp"
 #include "output_paths.hpp"
 #include "progress.hpp"
@@ -22,6 +24,14 @@ void set_unit(std::vector<ModelLocation>& locations, double metres_per_unit) {
   if (!has_effect) throw InputError("--mesh-unit has no effect: no model is a mesh or a cloud");
 }
 
+void tell_uncolored(const ModelLibrary& library) {
+  const auto num_uncolored =
+      std::ranges::count_if(library.objects, [](const ObjectModel& object) { return !object.surface.has_colors(); });
+  if (num_uncolored > 0)
+    print_error_line("note: ", fmt::format("{} of {} objects have no colours and are recognised by shape alone",
+                                           num_uncolored, library.objects.size()));
+}
+
 }  // namespace
 
 void run_train(const TrainArguments& arguments) {
@@ -39,6 +49,7 @@ void run_train(const TrainArguments& arguments) {
         [&](const std::string& line) { warnings.push_back(line); }));
   }
   for (const std::string& warning : warnings) print_warning(warning);
+  tell_uncolored(library);
   value_or_throw(save_library(library, arguments.out));
   for (const ObjectModel& object : library.objects)
     print("{:>4} {:<28} {:5.1f} cm, {:6d} surface points, {:5d} SIFT, {:5d} SHOT\n", object.bop_id, object.name,

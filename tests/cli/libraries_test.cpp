@@ -24,6 +24,12 @@ TriangleMesh make_lines() {
   return cube;
 }
 
+TriangleMesh make_uncolored_cube() {
+  TriangleMesh cube = make_cube(1);
+  cube.colors.clear();
+  return cube;
+}
+
 ModelLibrary make_stale_library() {
   ModelLibrary stale = make_library(40);
   ++stale.options_hash;
@@ -76,6 +82,8 @@ const Row kLibraryRows[] = {
      "train meshes --mesh-unit mm --out new.resight", 0, "", "new.resight"},
     {"MeshUnitOfViewsOnly", write("thing/views/cloud_00.pcd", kUnorganizedPcd),
      "train thing --mesh-unit mm --out new.resight", 2, "--mesh-unit has no effect: no model is a mesh or a cloud"},
+    {"MeshWithoutColours", mesh("meshes/cube.ply", make_uncolored_cube), kTrain, 0,
+     "note: 1 of 1 objects have no colours and are recognised by shape alone", "new.resight"},
     {"MeshOfAnUnknownUnit", kNothing, "train meshes --mesh-unit furlong --out new.resight", 2,
      "--mesh-unit: furlong not in .*mm"},
     {"MeshWithNan", mesh("meshes/cube.ply", [] { return make_cube_with(std::numeric_limits<float>::quiet_NaN()); }),
@@ -89,11 +97,12 @@ const Row kLibraryRows[] = {
     {"TwoMeshesOfOneName", kNothing, "train meshes meshes --out new.resight", 2, "two models are called 'cube'"},
     {"SceneAsModels", kNothing, "train views --out new.resight", 2, "views: no model found"},
     {"MissingTexture",
-     write("meshes/cube.ply",
-           "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 4\nproperty float x\nproperty float y\n"
-           "property float z\nproperty float s\nproperty float t\nelement face 4\nproperty list uchar int "
-           "vertex_indices\nend_header\n0 0 0 0 0\n.1 0 0 1 0\n0 .1 0 0 1\n0 0 .1 1 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 "
-           "2 3\n"),
+     write(
+         "meshes/cube.ply",
+         "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nproperty float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty "
+         "uchar blue\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 9 9 9\n.1 0 0 1 0 "
+         "200 9 9\n0 .1 0 0 1 9 200 9\n0 0 .1 1 1 9 9 200\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"),
      kTrain, 0, "warning: .*cube\\.ply: its texture is left out: .*no\\.png", "new.resight"},
 };
 

@@ -132,6 +132,11 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   ASSERT_TRUE(frame.ok()) << frame.error().message;
   EXPECT_EQ(frame->camera.fx, 62);
   EXPECT_NEAR(frame->depth_m(0, 0), 0.6, 1e-6);
+  options.depth_bias_per_m = 0.01;
+  EXPECT_NEAR((*open_posed_sequence(directory.path(), options))->read_view(1)->depth_m(0, 0), 0.6 / (1 - 0.006), 1e-6);
+  options.depth_bias_per_m = 0.06;
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--depth-bias 0.06"));
+  options.depth_bias_per_m = 0;
   options.views.max_views = 1;
   EXPECT_EQ((*open_posed_sequence(directory.path(), options))->num_views(), 1);
   options.views.max_views = 7;

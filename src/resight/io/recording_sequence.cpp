@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/io/internal/adjusted_sequence.hpp"
 #include "resight/io/internal/depth_check.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/recording_images.hpp"
 #include "resight/io/internal/recording_poses.hpp"
 #include "resight/io/internal/recording_topics.hpp"
-#include "resight/io/internal/sensor_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/sensor/rectify.hpp"

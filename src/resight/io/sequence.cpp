@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "resight/core/unfinished_folder.hpp"
+#include "resight/io/internal/adjusted_sequence.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
-#include "resight/io/internal/sensor_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/recordings/recording.hpp"
+#include "resight/sensor/disparity_error.hpp"
 
 namespace resight {
 namespace {
@@ -124,7 +126,15 @@ io::SequenceResult open_as_recorded(const path& directory, const OpenSequenceOpt
 }  // namespace
 
 Result<std::unique_ptr<Sequence>> open_sequence(const path& directory, const OpenSequenceOptions& options) {
+  const double bias_per_m = options.depth_bias_per_m;
+  if (!(std::abs(bias_per_m) <= kMaxDepthBias_per_m))
+    return Error{fmt::format("--depth-bias {:g}: is not between -{} and {}", bias_per_m, kMaxDepthBias_per_m,
+                             kMaxDepthBias_per_m)};
   auto sequence = open_as_recorded(directory, options);
+  if (sequence.ok() && bias_per_m != 0)
+    sequence = io::with_adjusted_frames(
+        std::move(sequence).value(), [=](RgbdFrame& frame) { remove_disparity_error(bias_per_m, frame); },
+        fmt::format("depth is corrected by {:+.1f} mm at 1 m (--depth-bias)", 1e3 * bias_per_m));
   if (!sequence || options.sensor == nullptr) return sequence;
   return io::with_sensor(std::move(sequence).value(), *options.sensor, "--sensor");
 }

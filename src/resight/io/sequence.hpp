@@ -46,6 +46,7 @@ struct OpenSequenceOptions {
   std::string depth_intrinsics;         ///< The same of a depth camera whose depth is not registered to colour.
   std::string color_from_depth;         ///< A file with its pose: 12 or 16 numbers, row by row, metres.
   std::optional<double> depth_scale_m;  ///< Metres per unit of stored depth.
+  double depth_bias_per_m = 0;          ///< Is corrected: 1 / z = 1 / measured - depth_bias_per_m.
   std::string poses;                    ///< A file of camera poses, or "fixed": the camera does not move.
   PoseConvention pose_convention = PoseConvention::kCameraToWorld;  ///< Of poses in the folder or in `poses`.
   ViewChoice views;

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "resight/registration/bias_adjustment.hpp"
+#include "resight/sensor/disparity_error.hpp"
 
 namespace resight {
 namespace {
 
-constexpr double kMaxBias_per_m = 0.05;  // More is a wrong unit or another law.
 constexpr double kMinSigmas = 3;
 
 std::vector<int> spread_views(int num_views) {
@@ -37,13 +37,11 @@ bool stands_still(const Sequence& sequence, std::span<const int> views) {
 }  // namespace
 
 bool DepthBias::is_significant() const {
-  return std::abs(per_m) > kMinSigmas * sigma_per_m && std::abs(per_m) < kMaxBias_per_m;
+  return std::abs(per_m) > kMinSigmas * sigma_per_m && std::abs(per_m) < kMaxDepthBias_per_m;
 }
 
 float DepthBias::corrected_m(float measured_m) const {
-  if (!is_significant()) return measured_m;
-  const auto share = static_cast<float>(1 - per_m * static_cast<double>(measured_m));
-  return share > 0 ? depth_or_none(measured_m / share) : std::numeric_limits<float>::quiet_NaN();
+  return is_significant() ? without_disparity_error_m(measured_m, per_m) : measured_m;
 }
 
 DepthBias estimate_depth_bias(std::span<const AlignmentTarget> views, const DepthBiasOptions& options) {
@@ -85,8 +83,7 @@ DepthBias measure_depth_bias(const Sequence& sequence, const PrepareViewOptions&
 }
 
 void correct_depth(const DepthBias& bias, RgbdFrame& frame) {
-  if (!bias.is_significant()) return;
-  for (std::size_t i = 0; i < frame.depth_m.size(); ++i) frame.depth_m[i] = bias.corrected_m(frame.depth_m[i]);
+  if (bias.is_significant()) remove_disparity_error(bias.per_m, frame);
 }
 
 }  // namespace resight

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/io/internal/sensor_sequence.hpp"
+#include "resight/io/internal/adjusted_sequence.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 namespace resight::io {
 namespace {
 
-class SensorSequence final : public Sequence {
+class AdjustedSequence final : public Sequence {
  public:
-  SensorSequence(std::unique_ptr<Sequence> original, const DepthSensor& sensor, std::string note)
-      : original_(std::move(original)), noise_(sensor.noise), note_(std::move(note)) {}
+  AdjustedSequence(std::unique_ptr<Sequence> original, std::function<void(RgbdFrame&)> adjust, std::string note)
+      : original_(std::move(original)), adjust_(std::move(adjust)), note_(std::move(note)) {}
   [[nodiscard]] std::string format() const override { return original_->format(); }
   [[nodiscard]] int num_views() const override { return original_->num_views(); }
   [[nodiscard]] std::string view_name(int view) const override { return original_->view_name(view); }
@@ -19,7 +19,7 @@ class SensorSequence final : public Sequence {
   [[nodiscard]] int image_id(int view) const override { return original_->image_id(view); }
   [[nodiscard]] Result<RgbdFrame> read_view(int view) const override {
     Result<RgbdFrame> frame = original_->read_view(view);
-    if (frame.ok()) frame->camera.noise = noise_;
+    if (frame.ok()) adjust_(*frame);
     return frame;
   }
   [[nodiscard]] Result<Rigid3> read_pose(int view) const override { return original_->read_pose(view); }
@@ -36,16 +36,22 @@ class SensorSequence final : public Sequence {
 
  private:
   std::unique_ptr<Sequence> original_;
-  DepthNoise noise_;
+  std::function<void(RgbdFrame&)> adjust_;
   std::string note_;
 };
 
 }  // namespace
 
+std::unique_ptr<Sequence> with_adjusted_frames(std::unique_ptr<Sequence> sequence,
+                                               std::function<void(RgbdFrame&)> adjust, std::string note) {
+  return std::make_unique<AdjustedSequence>(std::move(sequence), std::move(adjust), std::move(note));
+}
+
 std::unique_ptr<Sequence> with_sensor(std::unique_ptr<Sequence> sequence, const DepthSensor& sensor,
                                       const std::string& reason) {
-  return std::make_unique<SensorSequence>(std::move(sequence), sensor,
-                                          fmt::format("depth noise of {} ({})", sensor.name, reason));
+  return with_adjusted_frames(
+      std::move(sequence), [noise = sensor.noise](RgbdFrame& frame) { frame.camera.noise = noise; },
+      fmt::format("depth noise of {} ({})", sensor.name, reason));
 }
 
 }  // namespace resight::io

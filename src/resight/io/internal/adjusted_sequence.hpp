@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -8,6 +9,9 @@
 
 namespace resight::io {
 
+/// The same sequence. `adjust` is applied to each frame after it was read, and `note` is told beside other notes.
+[[nodiscard]] std::unique_ptr<Sequence> with_adjusted_frames(std::unique_ptr<Sequence> sequence,
+                                                             std::function<void(RgbdFrame&)> adjust, std::string note);
 /// The same sequence, whose views have the noise of a kind of depth camera. `reason`: for the note.
 [[nodiscard]] std::unique_ptr<Sequence> with_sensor(std::unique_ptr<Sequence> sequence, const DepthSensor& sensor,
                                                     const std::string& reason);
