@@ -166,10 +166,11 @@ struct EvaluateArguments {
 struct ViewArguments {
   std::vector<std::filesystem::path> inputs;
   std::optional<std::filesystem::path> sequence;  ///< Otherwise that of the results.
-  std::optional<std::filesystem::path> models;    ///< Otherwise those of the results.
-  std::optional<std::filesystem::path> changes;   ///< Results of `resight changes` on the same views.
-  std::uint16_t port = 0;                         ///< 0: a free one.
-  bool no_open = false;                           ///< Do not open a browser.
+  OpenSequenceOptions input;
+  std::optional<std::filesystem::path> models;   ///< Otherwise those of the results.
+  std::optional<std::filesystem::path> changes;  ///< Results of `resight changes` on the same views.
+  std::uint16_t port = 0;                        ///< 0: a free one.
+  bool no_open = false;                          ///< Do not open a browser.
 };
 
 struct AnnotateArguments {

@@ -8,6 +8,7 @@
 #include "resight/core/unfinished_folder.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/models/library_file.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -23,15 +24,6 @@ bool is_library(const fs::path& path) {
 
 std::shared_ptr<const ModelLibrary> open_library(const fs::path& path) {
   return std::make_shared<const ModelLibrary>(value_or_throw(load_library(path)));
-}
-
-/// Opens a sequence that needs none of the options which other commands have for it.
-std::shared_ptr<const Sequence> open_viewed(const fs::path& path) {
-  auto sequence = open_sequence(path);
-  if (!sequence && sequence.error().message.find(" --") != std::string::npos)
-    throw InputError(sequence.error().message +
-                     " ('resight view' has no such option: make a data set with 'resight convert' first)");
-  return value_or_throw(std::move(sequence));
 }
 
 /// The sequence that results are of: the one of the arguments, else the one that the results name.
@@ -73,7 +65,7 @@ ViewerScene open_results(const ViewArguments& arguments) {
   }
   const fs::path sequence = sequence_of_results(arguments, scene.runs.front());
   scene.title = folder_name(sequence);
-  scene.sequence = open_viewed(sequence);
+  scene.sequence = open_input(sequence, arguments.input);
   add_library(arguments, scene);
   return scene;
 }
@@ -83,7 +75,7 @@ ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::pa
   scene.title = folder_name(input);
   const bool is_folder_of_views = !is_library(input) && find_sequence_folder(input).ok();
   if (is_folder_of_views || arguments.sequence) {
-    scene.sequence = open_viewed(arguments.sequence.value_or(input));
+    scene.sequence = open_input(arguments.sequence.value_or(input), arguments.input);
     if (arguments.models) scene.library = open_library(*arguments.models);
     return scene;
   }
