@@ -47,6 +47,10 @@ cmp -s out/detections.json whole/detections.json || fail "detections differ from
 cmp -s out/trace.jsonl whole/trace.jsonl || fail "the trace differs from that of the finished folder"
 cmp -s out/changes.json whole/changes.json || fail "changes differ from those of the finished folder"
 
+# Results know how their sequence was opened. (A wrong --changes ends the viewer after that.)
+"$resight" view whole --no-open --changes live 2>err
+grep -q "live: holds no results of 'resight changes'" err || fail "the results do not open their sequence: $(cat err)"
+
 # All views are there: the newest one wins, and the idle time ends the run.
 "$resight" "${follow[@]}" --sequence live --poses fixed --follow --idle-timeout-s 1 --out newest >lines 2>err ||
   fail "with an idle time: $(tail -1 err)"

@@ -137,7 +137,7 @@ std::function<void()> add_recognize(CLI::App& app, RecognizeArguments& a) {
       ->excludes("--view");
   add_live_options(command, a);
   add_recognition_options(command, a);
-  add_sequence_options(command, a.input);
+  add_sequence_options(command, a.input, &a.given_input);
   return [&a] { run_recognize(a); };
 }
 
@@ -307,7 +307,7 @@ std::function<void()> add_view(CLI::App& app, ViewArguments& a) {
   command->add_option("--models", a.models, "Model library of the objects [default: the one that the results name]");
   command->add_option("--changes", a.changes,
                       "Folder of 'resight changes' on the same views: also show its reconstruction and changes");
-  add_sequence_options(command, a.input);
+  add_sequence_options(command, a.input, &a.given_input);
   add_pose_file_option(command, a.input);
   command->add_option("--port", a.port, "Port on 127.0.0.1; 0 takes a free one")->capture_default_str();
   command->add_flag("--no-open", a.no_open, "Print the address only, without opening a browser");

@@ -58,6 +58,7 @@ struct RecognizeArguments {
   std::filesystem::path models;
   std::filesystem::path sequence;
   OpenSequenceOptions input;
+  std::vector<std::string> given_input;  ///< Those of the options that were given: name and value in turn.
   std::filesystem::path out;
   std::string poses = "given";  ///< given, refine, auto, fixed, or a file.
   std::string preset = "default";
@@ -167,6 +168,7 @@ struct ViewArguments {
   std::vector<std::filesystem::path> inputs;
   std::optional<std::filesystem::path> sequence;  ///< Otherwise that of the results.
   OpenSequenceOptions input;
+  std::vector<std::string> given_input;          ///< If empty, the results tell how their sequence was opened.
   std::optional<std::filesystem::path> models;   ///< Otherwise those of the results.
   std::optional<std::filesystem::path> changes;  ///< Results of `resight changes` on the same views.
   std::uint16_t port = 0;                        ///< 0: a free one.

@@ -62,11 +62,24 @@ void report_view(const RecognizeArguments& arguments, const ViewRecord& view, co
   std::fflush(stdout);  // The reader of a pipe gets each view at once.
 }
 
+// How the sequence was opened, for `resight view`. Files are named from the folder of the results, as the inputs are.
+std::vector<std::string> describe_input(const RecognizeArguments& arguments) {
+  std::vector<std::string> given = arguments.given_input;
+  const std::string poses = with_poses({}, arguments.poses).poses;
+  if (!poses.empty()) given.insert(given.end(), {"--poses", poses});
+  for (std::string& text : given) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(text, error)) text = path_from(arguments.out, text);
+  }
+  return given;
+}
+
 void write_run(const RecognizeArguments& arguments, ReportRun& run, const ModelLibrary& library,
                PendingDirectory& folder, LineFile& finished) {
   const bool has_folder = arguments.camera.empty();
   run.sequence = has_folder ? arguments.sequence.string() : arguments.camera;
   if (has_folder) run.sequence_path = path_from(arguments.out, arguments.sequence);
+  if (has_folder) run.sequence_options = describe_input(arguments);
   run.models_path = path_from(arguments.out, arguments.models);
   const std::string title = "resight: " + (has_folder ? folder_name(arguments.sequence) : arguments.camera);
   value_or_throw(write_results(folder.path(), run, library));

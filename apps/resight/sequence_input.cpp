@@ -2,7 +2,9 @@
 #include "sequence_input.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "commands.hpp"
 #include "number_validator.hpp"
@@ -22,8 +24,19 @@ std::vector<std::string> sensor_names() {
   return names;
 }
 
+const std::string kSequenceGroup = "Sequence";
+const std::string kRecordingGroup = "Recording (ROS 1 bag, MCAP, ROS 2 bag)";
+
+std::vector<std::string> list_given(const CLI::App& command) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && (option->get_group() == kSequenceGroup || option->get_group() == kRecordingGroup))
+      given.insert(given.end(), {option->get_name(), option->results().back()});
+  return given;
+}
+
 void add_recording_options(CLI::App* command, RecordingTopics& topics) {
-  const std::string group = "Recording (ROS 1 bag, MCAP, ROS 2 bag)";
+  const std::string& group = kRecordingGroup;
   command->add_option("--color-topic", topics.color, "Topic of the colour images")->group(group);
   command->add_option("--depth-topic", topics.depth, "Topic of the depth images")->group(group);
   command->add_option("--camera-info", topics.camera_info, "Topic of the CameraInfo of the colour camera")
@@ -49,8 +62,9 @@ void warn_about_faults(const Sequence& sequence, bool uses_poses) {
   for (const Finding& f : check_quickly(sequence, uses_poses)) print_warning(f.message + "; remedy: " + f.remedy);
 }
 
-void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
-  const std::string group = "Sequence";
+void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::vector<std::string>* given) {
+  const std::string& group = kSequenceGroup;
+  if (given != nullptr) command->parse_complete_callback([=] { *given = list_given(*command); });
   command
       ->add_option("--intrinsics", options.intrinsics,
                    "fx,fy,cx,cy (px; distortion coefficients after it), or a file with them")
@@ -113,7 +127,21 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options) {
 
 void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options) {
   command->add_option("--poses", options.poses, "File of camera poses, or fixed: the camera does not move")
-      ->group("Sequence");
+      ->group(kSequenceGroup);
+}
+
+OpenSequenceOptions parse_sequence_options(std::vector<std::string> given) {
+  OpenSequenceOptions options;
+  CLI::App app;
+  add_sequence_options(&app, options);
+  add_pose_file_option(&app, options);
+  std::ranges::reverse(given);  // CLI11 takes them from the back.
+  try {
+    app.parse(std::move(given));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+  return options;
 }
 
 std::unique_ptr<Sequence> open_input(const std::filesystem::path& where, const OpenSequenceOptions& options) {

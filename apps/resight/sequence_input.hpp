@@ -2,6 +2,8 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "resight/io/sequence.hpp"
 
@@ -11,8 +13,11 @@ class App;
 
 namespace resight::app {
 
-/// Options of the command line for a sequence that does not say everything itself.
-void add_sequence_options(CLI::App* command, OpenSequenceOptions& options);
+/// Options of the command line for a sequence that does not say everything itself. `given`: if not null, gets those
+/// that the user gives, as name and value in turn.
+void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::vector<std::string>* given = nullptr);
+/// Such options from names and values. Throws an InputError.
+[[nodiscard]] OpenSequenceOptions parse_sequence_options(std::vector<std::string> given);
 /// --poses, where a command does not define it otherwise.
 void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options);
 

@@ -65,7 +65,10 @@ ViewerScene open_results(const ViewArguments& arguments) {
   }
   const fs::path sequence = sequence_of_results(arguments, scene.runs.front());
   scene.title = folder_name(sequence);
-  scene.sequence = open_input(sequence, arguments.input);
+  const bool as_recorded = arguments.given_input.empty() && !arguments.sequence;
+  const OpenSequenceOptions input =
+      as_recorded ? parse_sequence_options(scene.runs.front().results.sequence_options) : arguments.input;
+  scene.sequence = open_input(sequence, input);
   add_library(arguments, scene);
   return scene;
 }

@@ -123,6 +123,13 @@ Result<void> add_inputs(const std::filesystem::path& file, RecognitionResults& r
   };
   results.sequence = path_of("sequence");
   results.models = path_of("models");
+  const json& options = member(inputs, "sequence_options");
+  if (!options.is_array()) return {};
+  for (const json& option : options) {
+    const std::string text = as_text(option).value_or("");
+    const std::filesystem::path as_file = file.parent_path() / text;
+    results.sequence_options.push_back(io::is_file(as_file) ? as_file.lexically_normal().string() : text);
+  }
   return {};
 }
 

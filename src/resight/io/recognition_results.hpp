@@ -65,6 +65,8 @@ struct RecognitionResults {
   /// Inputs of the run as summary.json names them: paths, below the results if they are relative. Empty: unknown.
   std::filesystem::path sequence;
   std::filesystem::path models;
+  /// Options of the command line with which the sequence was opened: name and value in turn. Files as `sequence`.
+  std::vector<std::string> sequence_options;
   std::optional<TraceFile> trace;  ///< With `--trace`.
 };
 

@@ -197,6 +197,7 @@ std::string format_summary_json(const ReportRun& run) {
   for (const auto& [name, value] : run.settings) settings[name] = value;
   Json json = header(run);
   json["inputs"] = {{"sequence", unknown_if_empty(run.sequence_path)}, {"models", unknown_if_empty(run.models_path)}};
+  if (!run.sequence_options.empty()) json["inputs"]["sequence_options"] = run.sequence_options;
   json["settings"] = settings;
   json["num_threads"] = unknown_if_zero(static_cast<std::size_t>(std::max(0, run.num_threads)));
   json["num_views"] = summary.num_views;

@@ -47,6 +47,7 @@ struct ReportRun {
   /// Paths of the inputs relative to the folder of the results, for `resight view`. Empty = unknown.
   std::string sequence_path;
   std::string models_path;
+  std::vector<std::string> sequence_options;  ///< With which the sequence was opened: name and value in turn.
   std::optional<int> num_skipped_views;  ///< That newer ones overtook, where views were taken as they came.
 };
 
