@@ -48,7 +48,7 @@ struct ReportRun {
   std::string sequence_path;
   std::string models_path;
   std::vector<std::string> sequence_options;  ///< With which the sequence was opened: name and value in turn.
-  std::optional<int> num_skipped_views;  ///< That newer ones overtook, where views were taken as they came.
+  std::optional<int> num_skipped_views;       ///< That newer ones overtook, where views were taken as they came.
 };
 
 /// Detections of a view in the camera frame, by name, as input of the evaluation.
