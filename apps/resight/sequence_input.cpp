@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -87,7 +88,8 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::
       ->add_option("--depth-bias", options.depth_bias_per_m,
                    "Bias of the depth that is corrected, 1/m: 1 / z = 1 / measured - bias; 'resight check' measures it "
                    "where the camera moves [0]")
-      ->check(CLI::Range(-kMaxDepthBias_per_m, kMaxDepthBias_per_m))
+      ->check(number_validator([](double value) { return std::abs(value) <= kMaxDepthBias_per_m; },
+                               "a number from -0.05 to 0.05", "1/M"))
       ->group(group);
   command
       ->add_option_function<std::string>(
@@ -139,7 +141,7 @@ OpenSequenceOptions parse_sequence_options(std::vector<std::string> given) {
   try {
     app.parse(std::move(given));
   } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
+    throw InputError(std::string("options of the sequence in the results: ") + error.what());
   }
   return options;
 }

@@ -16,7 +16,7 @@ namespace resight::app {
 /// Options of the command line for a sequence that does not say everything itself. `given`: if not null, gets those
 /// that the user gives, as name and value in turn.
 void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::vector<std::string>* given = nullptr);
-/// Such options from names and values. Throws an InputError.
+/// Such options from the names and values that results keep. Throws an InputError.
 [[nodiscard]] OpenSequenceOptions parse_sequence_options(std::vector<std::string> given);
 /// --poses, where a command does not define it otherwise.
 void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options);

@@ -105,7 +105,7 @@ void print_error(const Sequence& recorded, const CameraTrack& track) {
 Paths list_inputs(const TrackArguments& arguments) {
   Paths inputs{arguments.sequence};
   if (arguments.models) inputs.push_back(*arguments.models);
-  if (arguments.poses != "auto" && arguments.poses != "refine") inputs.emplace_back(arguments.poses);
+  if (!is_estimated(arguments.poses)) inputs.emplace_back(arguments.poses);
   const OpenSequenceOptions& input = arguments.input;
   for (const std::string& file : {input.intrinsics, input.depth_intrinsics, input.color_from_depth})
     if (!file.empty()) inputs.emplace_back(file);
@@ -142,9 +142,7 @@ void check_outputs(const TrackArguments& arguments) {
 void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
   const bool refine = arguments.poses != "auto";
-  OpenSequenceOptions input = arguments.input;
-  if (refine && arguments.poses != "refine") input.poses = arguments.poses;
-  const auto sequence = open_input(arguments.sequence, input);
+  const auto sequence = open_input(arguments.sequence, with_poses(arguments.input, arguments.poses));
   warn_about_faults(*sequence, refine);
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
