@@ -13,25 +13,9 @@ usage() {
   sed -n '7,9s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
-shard="" merge=0 data=../shared/data out=out/ablation build=build/ablation can_build=1 page=docs/ablation.md
-while (($# > 0)); do
-  case "$1" in
-    --merge) merge=1; shift; continue ;;
-    --no-build) can_build=0; shift; continue ;;
-  esac
-  (($# > 1)) || usage
-  case "$1" in
-    --shard) shard=$2 ;;
-    --data) data=$2 ;;
-    --out) out=$2 ;;
-    --build) build=$2 ;;
-    --page) page=$2 ;;
-    *) usage ;;
-  esac
-  shift 2
-done
-[[ $shard == "" || $shard =~ ^[1-9][0-9]*/[1-9][0-9]*$ && $merge == 0 ]] || usage
-shard_number=${shard%/*} num_shards=${shard#*/}
+data=../shared/data out=out/ablation build=build/ablation page=docs/ablation.md
+source scripts/shards.sh
+read_options data out build page -- "$@"
 data=$(realpath -m "$data")
 
 # A seed, and three of its nine sequences: each kind of sequence is there at least once.
@@ -107,13 +91,8 @@ change_switches=(
   'depth_bias.correct = false'
 )
 
-# The tables name a commit, so the programs must be those of a commit.
-if [[ $page == docs/ablation.md && -n $(git status --porcelain -- CMakeLists.txt cmake src apps bench) ]]; then
-  echo "ablation.sh: there are uncommitted changes; commit them, or write to another page with --page" >&2
-  exit 2
-fi
+[[ $page == docs/ablation.md ]] && require_commit
 commit=$(git rev-parse --short=12 HEAD)
-log_dir=build/logs/ablation-${shard/\//-of-}
 source scripts/common.sh
 resight=$build/apps/resight/resight
 compare=$build/bench/bench_compare_results
@@ -126,20 +105,9 @@ if ((can_build)); then
 fi
 parts=$(realpath -m "$out/$commit")
 mkdir -p "$parts"
-missing=() failed=()
 
 # slug SETTINGS: a name for files.
 slug() { tr -cs 'a-zA-Z0-9._\n' '-' <<<"$1"; }
-
-# take_turn NAME: whether this call computes the part. The shards take turns.
-num_parts=0
-take_turn() {
-  num_parts=$((num_parts + 1))
-  if ((merge)) || { [[ -n $shard ]] && ((num_parts % num_shards + 1 != shard_number)); }; then
-    missing+=("$1")
-    return 1
-  fi
-}
 
 # make_seed SEED NUMBER...: the chosen sequences in seed-SEED/data, their library beside it.
 make_seed() {
@@ -170,8 +138,7 @@ make_data() {
 # evaluate FOLDER LIBRARY DATA SEED SETTINGS: a finished folder has tables.md.
 evaluate() {
   local folder=$1 config=()
-  [[ -e $folder/tables.md ]] && return
-  take_turn "$folder" || return 0
+  take_turn "$folder/tables.md" "${folder#"$parts/"}" || return 0
   mkdir -p "$folder"
   if [[ -n $5 ]]; then
     tr ';' '\n' <<<"$5" >"$folder.toml"
@@ -208,8 +175,7 @@ find_changes() {
     kind="static $data/$set"
     [[ " ${still_sets[*]} " == *" $set "* ]] && kind="still $data/$set $data/$set/class_png"
     file=$parts/changes/$(slug "$set")-$(slug "${1:-default}").txt
-    [[ -e $file ]] && continue
-    take_turn "$file" || continue
+    take_turn "$file" "${file#"$parts/"}" || continue
     step "changes of $set, ${1:-default}" keep_output "$file" "$build/bench/bench_real_changes" $kind default "$config" \
       $previous_views || { missing+=("$file"); failed+=("$file"); }
   done
@@ -289,10 +255,6 @@ put() {
 ((merge)) || make_data
 for settings in "" "${switches[@]}"; do evaluate_all "$settings"; done
 for settings in "" "${change_switches[@]}"; do find_changes "$settings"; done
-if ((${#missing[@]} > 0)); then
-  echo "not finished, so the page stays as it is: ${missing[*]}"
-  [[ -n $shard ]] && ((${#failed[@]} == 0)) || exit 1
-else
-  put switches
-  put change_switches
-fi
+exit_unless_finished
+put switches
+put change_switches

@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzzes the readers of foreign bytes with libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, one after the
 # other on one core. Prints the executions of each reader, and each finding with the file that remakes it.
-#   scripts/fuzz.sh MINUTES [READER...]  builds the preset `fuzz` and runs all readers (or those), MINUTES in total. What
-#                                        was learnt stays in build/fuzz-corpus, findings in build/fuzz-findings.
-#   scripts/fuzz.sh --short              the run of the continuous integration: a fixed number of mutated seeds per
-#                                        reader, with the program of the preset `asan-ubsan`, which must be built
+#   scripts/fuzz.sh MINUTES [READER...]         builds the preset `fuzz` and runs all readers (or those), MINUTES in
+#                                               total. What was learnt stays in build/fuzz-corpus, findings in
+#                                               build/fuzz-findings.
+#   scripts/fuzz.sh --executions N [READER...]  the same until each reader has N executions in all runs together
+#   scripts/fuzz.sh --short                     the run of the continuous integration: a fixed number of mutated seeds
+#                                               per reader, with the program of the preset `asan-ubsan`, which must be
+#                                               built
 # Ends with 1 if there was a finding: a crash, a fault that a sanitizer reports, an exception, 5 s or 2 GB.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/common.sh
 
-usage() { echo "fuzz.sh: expected MINUTES [READER...], or --short" >&2; exit 2; }
+usage() { echo "fuzz.sh: expected MINUTES [READER...], --executions N [READER...], or --short" >&2; exit 2; }
 
 # Readers that take a path write their input to a file, in memory if possible.
 scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/resight_fuzz.XXXXXX")
@@ -49,24 +52,49 @@ run_short() {
     'run_reader "$program" "$0" "$scratch/corpus-$0" "$scratch/$0.log" -runs="$1" -seed=1 -keep_seed=1'
 }
 
-run_long() {
-  local minutes=$1 failed=0
-  shift
+# build_instrumented READER...: sets `program` and `readers`, all if none is named.
+build_instrumented() {
   cmake --preset fuzz >"$log_dir/fuzz_configure.log"
   cmake --build build/fuzz -j "$num_jobs" --target resight_fuzz >"$log_dir/fuzz_build.log" ||
     { tail -n 40 "$log_dir/fuzz_build.log"; exit 1; }
-  local program=build/fuzz/fuzz/resight_fuzz readers=("$@")
+  program=build/fuzz/fuzz/resight_fuzz readers=("$@")
   ((${#readers[@]} > 0)) || mapfile -t readers < <("$program" --list | cut -d' ' -f1)
+}
+# run_instrumented READER OPTION...
+run_instrumented() {
+  run_reader "$program" "$1" "build/fuzz-corpus/$1" "$log_dir/fuzz_$1.log" "${@:2}"
+}
+
+run_minutes() {
+  local minutes=$1 reader failed=0
+  build_instrumented "${@:2}"
   local seconds=$((minutes * 60 / ${#readers[@]}))
   for reader in "${readers[@]}"; do
-    run_reader "$program" "$reader" "build/fuzz-corpus/$reader" "$log_dir/fuzz_$reader.log" \
-      -max_total_time=$((seconds > 0 ? seconds : 1)) || failed=1
+    run_instrumented "$reader" -max_total_time=$((seconds > 0 ? seconds : 1)) || failed=1
+  done
+  return "$failed"
+}
+
+# The executions of a reader are counted in a file beside its corpus, in turns that are short enough to lose one.
+run_executions() {
+  local wanted=$1 reader count_file count failed=0
+  build_instrumented "${@:2}"
+  for reader in "${readers[@]}"; do
+    mkdir -p build/fuzz-corpus
+    count_file=build/fuzz-corpus/$reader.executions
+    while count=$(cat "$count_file" 2>/dev/null || echo 0) && ((count < wanted)); do
+      run_instrumented "$reader" -runs=$((wanted - count)) -max_total_time=300 >"$scratch/line" || { failed=1; break; }
+      echo $((count + $(awk '{ print $2 }' "$scratch/line"))) >"$count_file"
+    done
+    printf '%-22s %10d executions in all runs\n' "$reader" "$count"
+    if ((count < wanted)); then cat "$scratch/line"; fi
   done
   return "$failed"
 }
 
 case "${1:-}" in
   --short) (($# == 1)) || usage; run_short ;;
+  --executions) [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || usage; run_executions "${@:2}" ;;
   '' | *[!0-9]*) usage ;;
-  *) run_long "$@" ;;
+  *) run_minutes "$@" ;;
 esac

@@ -12,34 +12,12 @@ usage() {
   sed -n '6,7s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
-version=3 shard="" merge=0 data=../shared/data out=out/results build=build/results can_build=1 pages=.
-while (($# > 0)); do
-  case "$1" in
-    --merge) merge=1; shift; continue ;;
-    --no-build) can_build=0; shift; continue ;;
-  esac
-  (($# > 1)) || usage
-  case "$1" in
-    --version) version=$2 ;;
-    --shard) shard=$2 ;;
-    --data) data=$2 ;;
-    --out) out=$2 ;;
-    --build) build=$2 ;;
-    --pages) pages=$2 ;;
-    *) usage ;;
-  esac
-  shift 2
-done
-[[ $version =~ ^[23]$ && ($shard == "" || $shard =~ ^[1-9][0-9]*/[1-9][0-9]*$ && $merge == 0) ]] || usage
-shard_number=${shard%/*} num_shards=${shard#*/}
-
-# The tables name a commit, so the programs must be those of a commit.
-if [[ $pages == . && -n $(git status --porcelain -- CMakeLists.txt cmake src apps bench scripts) ]]; then
-  echo "results.sh: there are uncommitted changes; commit them, or write to other pages with --pages" >&2
-  exit 2
-fi
+version=3 data=../shared/data out=out/results build=build/results pages=.
+source scripts/shards.sh
+read_options version data out build pages -- "$@"
+[[ $version =~ ^[23]$ ]] || usage
+[[ $pages == . ]] && require_commit scripts
 commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
-log_dir=build/logs/results-${shard/\//-of-}
 source scripts/common.sh
 resight=$build/apps/resight/resight
 if ((can_build)); then
@@ -51,22 +29,15 @@ if ((can_build)); then
 fi
 parts=$out/$commit-version-$version
 mkdir -p "$parts"
-missing=() failed=()
 model=$(sed -n 's/^model name[^:]*: //p;T;q' /proc/cpuinfo)
 machine="${model:-$(uname -m)}, $(nproc) cores"
 grep -qxF "$machine" "$parts/machines.txt" 2>/dev/null || echo "$machine" >>"$parts/machines.txt"
 
-# part NAME COMMAND...: keeps the output of the command in NAME, unless it is there. The shards take turns.
-num_parts=0
+# part NAME COMMAND...: keeps the output of the command in NAME, unless it is there.
 part() {
   local name=$1
   shift
-  num_parts=$((num_parts + 1))
-  [[ -e $parts/$name ]] && return
-  if ((merge)) || { [[ -n $shard ]] && ((num_parts % num_shards + 1 != shard_number)); }; then
-    missing+=("$name")
-    return
-  fi
+  take_turn "$parts/$name" "$name" || return 0
   step "$name" keep_output "$parts/$name" "$@" || { missing+=("$name"); failed+=("$name"); }
 }
 
@@ -169,9 +140,5 @@ part demo.txt run_demo
 part degraded.md "$build/bench/bench_robustness" "$validation/test/000001" "$validation.resight" mvr,mvr-chd,default 5 \
   "$validation/test/000001.events.json"
 part real.md measure_real
-if ((${#missing[@]} > 0)); then
-  echo "not finished, so the pages stay as they are: ${missing[*]}"
-  [[ -n $shard ]] && ((${#failed[@]} == 0)) || exit 1
-else
-  write_pages
-fi
+exit_unless_finished
+write_pages
