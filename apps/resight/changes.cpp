@@ -75,7 +75,8 @@ void run_changes(const ChangesArguments& arguments) {
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   const auto tracked = estimate_poses(*given, arguments.poses, nullptr, arguments.num_threads);
   const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
-  const DepthBias bias = measure_depth_bias(sequence, config.prepare, config.camera.depth_bias);
+  const CameraErrors errors =
+      measure_camera_errors(sequence, config.prepare, config.camera.color_offset, config.camera.depth_bias);
   DynamicScene scene(scene_options(config));
   SceneChanges record{RESIGHT_VERSION, arguments.preset, arguments.sequence.string(), {}};
   Progress progress("changes", sequence.num_views());
@@ -83,8 +84,7 @@ void run_changes(const ChangesArguments& arguments) {
   for (int v = 0; v < sequence.num_views(); ++v) {
     RgbdFrame recorded = value_or_throw(reader.read_view(v));
     const Camera camera = recorded.camera;
-    correct_depth(bias, recorded);
-    const ChangeResult changes = scene.add_view(prepare_view(std::move(recorded), config.prepare));
+    const ChangeResult changes = scene.add_view(prepare_corrected(std::move(recorded), errors, config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
     value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
     const int reduction = find_reduction(camera, config.prepare);

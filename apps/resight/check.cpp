@@ -14,7 +14,7 @@
 #include "resight/inspection/object_scale.hpp"
 #include "resight/io/images.hpp"
 #include "resight/models/library_file.hpp"
-#include "resight/registration/depth_bias.hpp"
+#include "resight/registration/camera_errors.hpp"
 #include "resight/training/training.hpp"
 #include "sequence_input.hpp"
 
@@ -55,7 +55,9 @@ void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, 
 
 // Nothing if the views do not show one.
 void add_depth_bias(const CheckArguments& arguments, const Sequence& sequence, CheckReport& report) {
-  const DepthBias bias = measure_depth_bias(sequence, {}, {.correct = true, .num_threads = arguments.num_threads});
+  const DepthBias bias =
+      measure_camera_errors(sequence, {}, {.correct = true}, {.correct = true, .num_threads = arguments.num_threads})
+          .depth_bias;
   if (bias.is_significant())
     report.facts.push_back(fmt::format(
         "depth at 1 m is {:.1f} +- {:.1f} mm too {}, and at 2 m four times as much; preset default corrects it in "

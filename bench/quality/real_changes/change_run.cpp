@@ -18,14 +18,14 @@ DynamicSceneOptions options_with_changes(const RecognizerConfig& config) {
 
 ChangeRun::ChangeRun(const RecognizerConfig& config, const Sequence& sequence)
     : prepare_(config.prepare),
-      depth_bias_(measure_depth_bias(sequence, config.prepare, config.camera.depth_bias)),
+      camera_errors_(
+          measure_camera_errors(sequence, config.prepare, config.camera.color_offset, config.camera.depth_bias)),
       voxel_m_(config.changes.detection.voxel_m),
       scene_(options_with_changes(config)) {}
 
 ChangeResult ChangeRun::add_view(RgbdFrame frame) {
   const Rigid3 given = frame.world_from_camera;
-  correct_depth(depth_bias_, frame);
-  ChangeResult changes = scene_.add_view(prepare_view(std::move(frame), prepare_));
+  ChangeResult changes = scene_.add_view(prepare_corrected(std::move(frame), camera_errors_, prepare_));
   if (this->frame().world_from_camera.matrix() != given.matrix()) ++num_corrected_;
   return changes;
 }

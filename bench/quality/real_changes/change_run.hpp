@@ -3,13 +3,14 @@
 #include "resight/changes/change_regions.hpp"
 #include "resight/recognition/recognizer_config.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/registration/camera_errors.hpp"
 
 namespace resight::bench {
 
-/// Change detection view by view, with corrected camera poses and depth as in SceneRecognizer.
+/// Change detection view by view, with corrected camera as in SceneRecognizer.
 class ChangeRun {
  public:
-  /// Changes are detected whatever the preset. The bias of the depth is that of `sequence`. Throws
+  /// Changes are detected whatever the preset. The errors of the camera are those of `sequence`. Throws
   /// std::invalid_argument for a config that fails check().
   ChangeRun(const RecognizerConfig& config, const Sequence& sequence);
 
@@ -25,7 +26,7 @@ class ChangeRun {
 
  private:
   PrepareViewOptions prepare_;
-  DepthBias depth_bias_;
+  CameraErrors camera_errors_;
   double voxel_m_;
   DynamicScene scene_;
   int num_corrected_ = 0;

@@ -17,7 +17,8 @@ Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer
   {
     const ScopedTimer timer(calibration, "calibration");
     const RecognizerConfig& config = recognizer.config();
-    recognizer.set_depth_bias(measure_depth_bias(sequence, config.prepare, config.camera.depth_bias));
+    recognizer.set_camera_errors(
+        measure_camera_errors(sequence, config.prepare, config.camera.color_offset, config.camera.depth_bias));
   }
   ReadAhead reader(sequence, recognizer.config().verify.num_threads);
   for (int v = 0; v < num_views; ++v) {

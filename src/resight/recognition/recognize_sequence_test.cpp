@@ -83,8 +83,9 @@ TEST(RecognizeSequence, DepthIsCorrectedByTheBiasOfItsViews) {
     RecognizerConfig config = scene.config;
     config.camera.depth_bias.correct = correct;
     SceneRecognizer recognizer(scene.library, config);
-    const auto events = recognize_sequence(recognizer, MemorySequence(test::render_biased_views(0.02)),
-                                           [&](const RgbdFrame&, SceneUpdate& update) { bias = update.depth_bias; });
+    const auto events =
+        recognize_sequence(recognizer, MemorySequence(test::render_biased_views(0.02)),
+                           [&](const RgbdFrame&, SceneUpdate& update) { bias = update.camera_errors.depth_bias; });
     EXPECT_TRUE(events.ok());
     return floor_error_m(recognizer.reconstruction());
   };

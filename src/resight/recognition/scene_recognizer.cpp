@@ -42,8 +42,9 @@ struct SceneRecognizer::Impl {
 
   const ModelLibrary& library;
   RecognizerConfig config;
-  DepthBias depth_bias;
-  ColorOffsetCorrector color_offset;
+  CameraErrors camera_errors;
+  ColorOffsetEstimator color_offset;
+  bool is_camera_measured = false;  // Before the first view.
   DynamicScene scene;
   SearchPlanner planner;
   ViewHypothesisSource source;
@@ -80,13 +81,15 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
 void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   update.view = scene.window().empty() ? 0 : scene.window().back().number + 1;
   update.view_name = frame.name;
-  update.depth_bias = depth_bias;
+  update.camera_errors = camera_errors;
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
-    correct_depth(depth_bias, frame);
-    view = prepare_view(std::move(frame), config.prepare);
-    update.color_offset = color_offset.correct(view);
+    view = prepare_corrected(std::move(frame), camera_errors, config.prepare);
+    if (!is_camera_measured) {
+      color_offset.add(view, camera_errors.color_offset);
+      camera_errors.color_offset = color_offset.offset();
+    }
   }
   update.changes = scene.add_view(std::move(view), &update.times);
   update.world_from_camera = scene.window().back().raw.world_from_camera;
@@ -187,7 +190,10 @@ SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig c
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 
-void SceneRecognizer::set_depth_bias(const DepthBias& bias) { impl_->depth_bias = bias; }
+void SceneRecognizer::set_camera_errors(const CameraErrors& errors) {
+  impl_->camera_errors = errors;
+  impl_->is_camera_measured = true;
+}
 SceneUpdate SceneRecognizer::add_view(RgbdFrame frame, RecognitionTrace* trace) {
   return impl_->add_view(std::move(frame), trace);
 }

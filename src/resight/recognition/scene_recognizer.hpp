@@ -30,8 +30,9 @@ class SceneRecognizer {
   ~SceneRecognizer();
   SceneRecognizer(SceneRecognizer&&) noexcept;
 
-  /// Bias of the camera's depth, which add_view() corrects if it is significant. Call it before the first view.
-  void set_depth_bias(const DepthBias& bias);
+  /// Errors of the camera, which add_view() corrects. Call it before the first view. Otherwise, add_view() estimates
+  /// the offset of the colours from the views so far.
+  void set_camera_errors(const CameraErrors& errors);
   /// Recognises the scene at this view. Views in time order; poses in one world frame. Throws std::invalid_argument for
   /// a frame that fails check_frame(); the recogniser is then unchanged. `trace`: filled with the intermediate results
   /// of the stages, unless null.

@@ -10,7 +10,7 @@
 #include "resight/history/object_event.hpp"
 #include "resight/history/object_observation.hpp"
 #include "resight/registration/camera_corrector.hpp"
-#include "resight/registration/depth_bias.hpp"
+#include "resight/registration/camera_errors.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
 #include "resight/sensor/color_offset.hpp"
 
@@ -60,8 +60,7 @@ struct SceneUpdate {
   std::string view_name;
   Rigid3 world_from_camera;  ///< As given, or corrected (RecognizerConfig::camera).
   PoseCorrection pose_correction;
-  ColorOffset color_offset;  ///< Of the views so far; zero unless RecognizerConfig::camera corrects it.
-  DepthBias depth_bias;      ///< As set by SceneRecognizer::set_depth_bias(); corrected if it is significant.
+  CameraErrors camera_errors;  ///< That were corrected; see SceneRecognizer::set_camera_errors().
   std::vector<Detection> detections;
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.

@@ -5,7 +5,7 @@
 
 #include "resight/core/options.hpp"
 #include "resight/registration/view_alignment.hpp"
-#include "resight/sensor/sequence.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 
@@ -22,9 +22,6 @@ inline void declare(OptionVisitor& v, DepthBiasOptions& o) {
           "ours");
   v.num_threads(o.num_threads);
 }
-
-/// measure_depth_bias() takes as many views, spread over the sequence.
-inline constexpr int kMaxBiasViews = 12;
 
 /// A bias of depth as a wrong disparity causes it in stereo cameras and in cameras with structured light:
 /// 1 / z = 1 / measured - per_m. At short range, z is measured + per_m * measured^2.
@@ -46,11 +43,6 @@ struct DepthBias {
 /// in align_view(), and the given motions from view to view. Things that move meanwhile count as outliers. A camera
 /// that stands still shows nothing: the standard error is large.
 [[nodiscard]] DepthBias estimate_depth_bias(std::span<const AlignmentTarget> views, const DepthBiasOptions& options);
-
-/// The same for up to kMaxBiasViews views of a sequence; those that cannot be read do not count. No bias unless
-/// options.correct, and none if all given poses are equal: a camera that stands shows nothing.
-[[nodiscard]] DepthBias measure_depth_bias(const Sequence& sequence, const PrepareViewOptions& prepare,
-                                           const DepthBiasOptions& options);
 
 /// Corrects the depth of a frame. Does nothing unless the bias is significant.
 void correct_depth(const DepthBias& bias, RgbdFrame& frame);

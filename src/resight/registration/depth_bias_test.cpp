@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "resight/registration/camera_errors.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"
 #include "resight/sensor/testing/memory_sequence.hpp"
 
@@ -17,7 +18,7 @@ using test::BallScene;
 constexpr DepthBiasOptions kOptions{.correct = true, .num_threads = 1};
 
 DepthBias measure(std::vector<RgbdFrame> frames, const DepthBiasOptions& options = kOptions) {
-  return measure_depth_bias(test::MemorySequence(std::move(frames)), {}, options);
+  return measure_camera_errors(test::MemorySequence(std::move(frames)), {}, {}, options).depth_bias;
 }
 
 TEST(DepthBias, IsFoundInViewsFromSeveralSides) {

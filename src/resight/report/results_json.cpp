@@ -106,18 +106,19 @@ Json stage_times_json(const StageTimes& times, int num_views) {
 
 // Null if no view showed it.
 Json color_offset_json(const ReportRun& run) {
-  if (run.views.empty() || run.views.back().update.color_offset.num_views == 0) return nullptr;
-  const ColorOffset& offset = run.views.back().update.color_offset;
+  if (run.views.empty() || !std::isfinite(run.views.back().update.camera_errors.color_offset.sigma_px.maxCoeff()))
+    return nullptr;
+  const ColorOffset& offset = run.views.back().update.camera_errors.color_offset;
   return {{"offset_px", {offset.offset_px.x(), offset.offset_px.y()}},
-          {"spread_px", {offset.spread_px.x(), offset.spread_px.y()}},
+          {"sigma_px", {offset.sigma_px.x(), offset.sigma_px.y()}},
           {"num_views", offset.num_views},
-          {"moved_px", {offset.moved_px.x(), offset.moved_px.y()}}};
+          {"corrected_px", {offset.corrected_px().x(), offset.corrected_px().y()}}};
 }
 
 // Null if it was not measured.
 Json depth_bias_json(const ReportRun& run) {
-  if (run.views.empty() || run.views.back().update.depth_bias.num_views < 2) return nullptr;
-  const DepthBias& bias = run.views.back().update.depth_bias;
+  if (run.views.empty() || run.views.back().update.camera_errors.depth_bias.num_views < 2) return nullptr;
+  const DepthBias& bias = run.views.back().update.camera_errors.depth_bias;
   return {{"per_m", bias.per_m},
           {"sigma_per_m", bias.sigma_per_m},
           {"num_views", bias.num_views},

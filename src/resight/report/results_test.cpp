@@ -194,10 +194,10 @@ TEST(FormatSummaryJson, HoldsSettingsTimesAndScores) {
   EXPECT_TRUE(parsed.at("pose_correction").is_null());
   EXPECT_FALSE(parsed.contains("num_skipped_views"));
   run.num_skipped_views = 3;
-  run.views.back().update.color_offset = {{2.25, -1.5}, {0.25, 0.5}, 7, {2, -1}};
+  run.views.back().update.camera_errors.color_offset = {{2.25, -1.5}, {0.25, 0.5}, 7};
   parsed = json::parse(format_summary_json(run));
-  EXPECT_EQ(parsed.at("color_offset"), json::parse(R"({"offset_px": [2.25, -1.5], "spread_px": [0.25, 0.5],
-                                                      "num_views": 7, "moved_px": [2, -1]})"));
+  EXPECT_EQ(parsed.at("color_offset"), json::parse(R"({"offset_px": [2.25, -1.5], "sigma_px": [0.25, 0.5],
+                                                      "num_views": 7, "corrected_px": [2.25, -1.5]})"));
   EXPECT_EQ(parsed.at("num_skipped_views"), 3);
   run.views.front().update.pose_correction = {.is_measured = true, .moved_m = 0, .sigma_m = 0.001};
   run.views.back().update.pose_correction = {true, 0.03, 0.02, 0.002, 0.001};

@@ -23,9 +23,11 @@ constexpr float kMaxContrast = 40;      // Grey levels. Stronger edges count no 
 constexpr int kBlock_px = 64;           // The halves of a view are the fields of a chequerboard.
 constexpr int kMinContourPixels = 100;  // Per half.
 constexpr double kMaxHalfDistance_px = 1;
-constexpr std::size_t kMaxViews = 32;            // The newest ones count.
-constexpr double kSystematicError_px = 0.15;     // As on scenes with known offsets.
-constexpr double kMedianOverMeanError = 1.2533;  // Of their standard errors, if errors are normal: sqrt(pi / 2).
+constexpr std::size_t kMinViews = 3;
+constexpr std::size_t kMaxViews = 32;        // The newest ones count.
+constexpr double kSystematicError_px = 0.2;  // As on scenes with known offsets.
+constexpr double kMinSigmas = 2;
+constexpr double kMaxSigma_px = 1;
 
 /// Contrast between a pixel and its next neighbour in the row and in the column.
 struct EdgeImages {
@@ -55,49 +57,87 @@ bool is_sharp_contour(const Image<float>& depth_m, int u, int v, PixelStep towar
          is_occluding_contour(depth_m, u, v, towards);
 }
 
-/// Contrast of the colours along the contours, for each shift of these and each erosion.
-class ContourContrast {
- public:
-  void add(const EdgeImages& edges, int u, int v, PixelStep to) {
-    const Image<float>& image = to.u != 0 ? edges.row : edges.column;
-    float* sum = sums_.data();
-    for (int erosion = kMinErosion_px; erosion <= kMaxErosion_px; ++erosion) {
-      // The edge between a pixel and the one before it is kept at the one before.
-      const int from_u = u + erosion * to.u - (to.u < 0 ? 1 : 0);
-      const int from_v = v + erosion * to.v - (to.v < 0 ? 1 : 0);
-      for (int y = from_v - kReach_px; y <= from_v + kReach_px; ++y)
-        for (int x = from_u - kReach_px; x <= from_u + kReach_px; ++x, ++sum)
-          if (image.contains(x, y)) *sum += image(x, y);
+void add_contour_pixel(const EdgeImages& edges, int u, int v, PixelStep to, ContourContrast& contrast) {
+  const Image<float>& image = to.u != 0 ? edges.row : edges.column;
+  float* sum = contrast.sums.data();
+  for (int erosion = kMinErosion_px; erosion <= kMaxErosion_px; ++erosion) {
+    // The edge between a pixel and the one before it is kept at the one before.
+    const int from_u = u + erosion * to.u - (to.u < 0 ? 1 : 0);
+    const int from_v = v + erosion * to.v - (to.v < 0 ? 1 : 0);
+    for (int y = from_v - kReach_px; y <= from_v + kReach_px; ++y)
+      for (int x = from_u - kReach_px; x <= from_u + kReach_px; ++x, ++sum)
+        if (image.contains(x, y)) *sum += image(x, y);
+  }
+  ++contrast.num_pixels;
+}
+
+void add_contrast(const ContourContrast& other, float sign, ContourContrast& contrast) {
+  for (std::size_t i = 0; i < contrast.sums.size(); ++i) contrast.sums[i] += sign * other.sums[i];
+  contrast.num_pixels += static_cast<int>(sign) * other.num_pixels;
+}
+
+ContourContrast make_contrast() { return {std::vector<float>(kNumErosions * kNumShifts * kNumShifts), 0}; }
+
+using Halves = ColorOffsetEstimator::Halves;
+
+Halves measure_contrast(const PreparedView& view, Eigen::Vector2i moved_px) {
+  const RgbdFrame& frame = view.frame;
+  const EdgeImages edges = find_color_edges(frame.color);
+  Halves halves = {make_contrast(), make_contrast()};
+  for (int v = 0; v < frame.depth_m.height(); ++v)
+    for (int u = v % 2; u < frame.depth_m.width(); u += 2) {  // Half of the pixels is enough for a mean.
+      if (view.edge_distance_px(u, v) > 0 || std::isnan(frame.depth_m(u, v))) continue;  // Contours are edges.
+      const auto half = static_cast<std::size_t>((u / kBlock_px + v / kBlock_px) % 2);
+      for (const PixelStep to : kPixelSteps)
+        if (is_sharp_contour(frame.depth_m, u, v, to))
+          add_contour_pixel(edges, u - moved_px.x(), v - moved_px.y(), to, halves[half]);
     }
-    ++num_pixels_;
-  }
-  void add(const ContourContrast& other) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
-    num_pixels_ += other.num_pixels_;
-  }
-  [[nodiscard]] int num_pixels() const { return num_pixels_; }
+  return halves;
+}
 
-  /// The shift with the strongest contrast, between pixels by parabolas.
-  [[nodiscard]] std::optional<Eigen::Vector2d> peak() const {
-    const auto best = std::ranges::max_element(sums_) - sums_.begin();
-    const auto x = static_cast<int>(best % kNumShifts);
-    const auto y = static_cast<int>(best / kNumShifts % kNumShifts);
-    if (*std::ranges::max_element(sums_) <= 0 || x == 0 || y == 0 || x == kNumShifts - 1 || y == kNumShifts - 1)
-      return std::nullopt;
-    return Eigen::Vector2d(x - kReach_px + peak_of_parabola(best, 1),
-                           y - kReach_px + peak_of_parabola(best, kNumShifts));
-  }
+double peak_of_parabola(const std::vector<float>& sums, std::ptrdiff_t at, std::ptrdiff_t step) {
+  const auto value = [&](std::ptrdiff_t i) { return static_cast<double>(sums[static_cast<std::size_t>(i)]); };
+  const double curvature = value(at - step) - 2 * value(at) + value(at + step);
+  return curvature < 0 ? 0.5 * (value(at - step) - value(at + step)) / curvature : 0;
+}
 
- private:
-  [[nodiscard]] double peak_of_parabola(std::ptrdiff_t at, std::ptrdiff_t step) const {
-    const auto value = [&](std::ptrdiff_t i) { return static_cast<double>(sums_[static_cast<std::size_t>(i)]); };
-    const double curvature = value(at - step) - 2 * value(at) + value(at + step);
-    return curvature < 0 ? 0.5 * (value(at - step) - value(at + step)) / curvature : 0;
-  }
+/// The shift with the strongest contrast, between pixels by parabolas. Nothing if it is at the end of the reach.
+std::optional<Eigen::Vector2d> find_peak(const ContourContrast& contrast) {
+  if (contrast.num_pixels < kMinContourPixels) return std::nullopt;
+  const auto best = std::ranges::max_element(contrast.sums) - contrast.sums.begin();
+  const auto x = static_cast<int>(best % kNumShifts);
+  const auto y = static_cast<int>(best / kNumShifts % kNumShifts);
+  if (contrast.sums[static_cast<std::size_t>(best)] <= 0 || x == 0 || y == 0 || x == kNumShifts - 1 ||
+      y == kNumShifts - 1)
+    return std::nullopt;
+  return Eigen::Vector2d(x - kReach_px + peak_of_parabola(contrast.sums, best, 1),
+                         y - kReach_px + peak_of_parabola(contrast.sums, best, kNumShifts));
+}
 
-  std::vector<float> sums_ = std::vector<float>(kNumErosions * kNumShifts * kNumShifts);
-  int num_pixels_ = 0;
-};
+ContourContrast sum_of(const Halves& halves) {
+  ContourContrast sum = halves[0];
+  add_contrast(halves[1], 1, sum);
+  return sum;
+}
+
+/// Variance of the peak of the sum, from the sums without one view each (jackknife). Nothing if one has no peak.
+std::optional<Eigen::Array2d> find_jackknife_variance(const std::deque<Halves>& views, const ContourContrast& sum) {
+  std::vector<Eigen::Vector2d> peaks;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Halves& left_out : views) {
+    ContourContrast rest = sum;
+    for (const ContourContrast& half : left_out) add_contrast(half, -1, rest);
+    const std::optional<Eigen::Vector2d> peak = find_peak(rest);
+    if (!peak) return std::nullopt;
+    peaks.push_back(*peak);
+    mean += *peak;
+  }
+  const auto n = static_cast<double>(peaks.size());
+  mean /= n;
+  Eigen::Array2d squares = Eigen::Array2d::Zero();
+  for (const Eigen::Vector2d& peak : peaks) squares += (peak - mean).array().square();
+  return (n - 1) / n * squares;
+}
 
 void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
   if (by_px.isZero()) return;
@@ -111,51 +151,53 @@ void move_colors(Eigen::Vector2i by_px, Image<Rgb8>& color) {
 }  // namespace
 
 std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view) {
-  const RgbdFrame& frame = view.frame;
-  const EdgeImages edges = find_color_edges(frame.color);
-  std::array<ContourContrast, 2> halves;
-  for (int v = 0; v < frame.depth_m.height(); ++v)
-    for (int u = v % 2; u < frame.depth_m.width(); u += 2) {  // Half of the pixels is enough for a mean.
-      if (view.edge_distance_px(u, v) > 0 || std::isnan(frame.depth_m(u, v))) continue;  // Contours are edges.
-      const auto half = static_cast<std::size_t>((u / kBlock_px + v / kBlock_px) % 2);
-      for (const PixelStep to : kPixelSteps)
-        if (is_sharp_contour(frame.depth_m, u, v, to)) halves[half].add(edges, u, v, to);
-    }
-  for (const ContourContrast& half : halves)
-    if (half.num_pixels() < kMinContourPixels) return std::nullopt;
-  const std::optional<Eigen::Vector2d> a = halves[0].peak();
-  const std::optional<Eigen::Vector2d> b = halves[1].peak();
+  const Halves halves = measure_contrast(view, {0, 0});
+  const std::optional<Eigen::Vector2d> a = find_peak(halves[0]);
+  const std::optional<Eigen::Vector2d> b = find_peak(halves[1]);
   if (!a || !b || (*a - *b).cwiseAbs().maxCoeff() > kMaxHalfDistance_px) return std::nullopt;
-  halves[0].add(halves[1]);
-  return halves[0].peak();
+  return find_peak(sum_of(halves));
 }
 
-ColorOffsetCorrector::ColorOffsetCorrector(const ColorOffsetOptions& options) : options_(options) { options_.check(); }
+Eigen::Vector2d ColorOffset::corrected_px() const {
+  if (sigma_px.maxCoeff() > kMaxSigma_px) return Eigen::Vector2d::Zero();
+  const Eigen::Array2d limit_px = kMinSigmas * sigma_px.array();
+  return (offset_px.array().abs() > limit_px).select(offset_px.array(), 0).matrix();
+}
 
-ColorOffset ColorOffsetCorrector::correct(PreparedView& view) {
+Eigen::Vector2i ColorOffset::moved_px() const { return corrected_px().array().round().cast<int>().matrix(); }
+
+void correct_color_offset(const ColorOffset& offset, RgbdFrame& frame) {
+  move_colors(offset.moved_px(), frame.color);
+  frame.camera.cx -= offset.corrected_px().x();
+  frame.camera.cy -= offset.corrected_px().y();
+}
+
+ColorOffsetEstimator::ColorOffsetEstimator(const ColorOffsetOptions& options) : options_(options) { options_.check(); }
+
+void ColorOffsetEstimator::add(const PreparedView& view, const ColorOffset& corrected) {
+  if (!options_.correct) return;
+  views_.push_back(measure_contrast(view, corrected.moved_px()));
+  if (views_.size() > kMaxViews) views_.pop_front();
+}
+
+ColorOffset ColorOffsetEstimator::offset() const {
   ColorOffset offset;
-  if (!options_.correct) return offset;
-  if (const std::optional<Eigen::Vector2d> measured = measure_color_offset(view)) measured_px_.push_back(*measured);
-  if (measured_px_.size() > kMaxViews) measured_px_.pop_front();
-  offset.num_views = static_cast<int>(measured_px_.size());
-  if (measured_px_.empty()) return offset;
-  for (int axis = 0; axis < 2; ++axis) {
-    std::vector<double> values;
-    for (const Eigen::Vector2d& measured_px : measured_px_) values.push_back(measured_px[axis]);
-    offset.offset_px[axis] = upper_median(values);
-    for (double& value : values) value = std::abs(value - offset.offset_px[axis]);
-    offset.spread_px[axis] = kNormalizedMad * upper_median(values);
-  }
-  if (offset.num_views < options_.min_views || offset.spread_px.maxCoeff() > options_.max_spread_px) return offset;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double standard_error =
-        kMedianOverMeanError * offset.spread_px[axis] / std::sqrt(static_cast<double>(offset.num_views));
-    const double error_px = 2 * std::hypot(standard_error, kSystematicError_px);
-    const double sure_px = std::floor(std::max(0.0, std::abs(offset.offset_px[axis]) + 0.5 - error_px));
-    offset.moved_px[axis] = static_cast<int>(std::copysign(sure_px, offset.offset_px[axis]));
-  }
-  move_colors(offset.moved_px, view.frame.color);
-  if (!view.averaged_color.empty()) move_colors(offset.moved_px, view.averaged_color);
+  offset.num_views = static_cast<int>(views_.size());
+  if (views_.size() < kMinViews) return offset;
+  Halves sums = {make_contrast(), make_contrast()};
+  for (const Halves& view : views_)
+    for (std::size_t half = 0; half < 2; ++half) add_contrast(view[half], 1, sums[half]);
+  const ContourContrast sum = sum_of(sums);
+  const std::optional<Eigen::Vector2d> peak = find_peak(sum);
+  const std::optional<Eigen::Vector2d> a = find_peak(sums[0]);
+  const std::optional<Eigen::Vector2d> b = find_peak(sums[1]);
+  if (!peak || !a || !b) return offset;
+  const std::optional<Eigen::Array2d> variance = find_jackknife_variance(views_, sum);
+  if (!variance) return offset;
+  offset.offset_px = *peak;
+  const Eigen::Array2d half_difference_px = 0.5 * (*a - *b).array();
+  offset.sigma_px =
+      (*variance + half_difference_px.square() + kSystematicError_px * kSystematicError_px).sqrt().matrix();
   return offset;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <deque>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "resight/core/options.hpp"
 #include "resight/sensor/prepared_view.hpp"
@@ -11,26 +14,38 @@ namespace resight {
 
 struct ColorOffsetOptions {
   bool correct = false;
-  int min_views = 3;
-  double max_spread_px = 0.5;
   void check() const { check_options("ColorOffsetOptions", *this); }
 };
 
 inline void declare(OptionVisitor& v, ColorOffsetOptions& o) {
-  v.field("correct", o.correct, "Colours that lie beside the depth are moved onto it, by whole pixels.", "ours");
-  v.only_if(o.correct, "correct", "true", [&] {
-    v.field("min_views", o.min_views, at_least(2), "With fewer measured views, colours stay where they are.");
-    v.field("max_spread_px", o.max_spread_px, positive(),
-            "If the views disagree by more (1.48 times the median deviation from the median), colours stay, too.");
-  });
+  v.field(
+      "correct", o.correct,
+      "Colours that lie beside the depth are moved onto it, by whole pixels, and the principal point of the depth by "
+      "the whole offset. Measured before the first view, where a sequence is recorded.",
+      "ours");
 }
 
-/// How far the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel p + offset.
+/// How far the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel p + offset. In
+/// pixels of prepared views, which may be reduced.
 struct ColorOffset {
-  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();  ///< Median of the views.
-  Eigen::Vector2d spread_px = Eigen::Vector2d::Zero();  ///< Of the views: 1.48 times the median deviation from it.
-  int num_views = 0;                                    ///< Measured ones.
-  Eigen::Vector2i moved_px = Eigen::Vector2i::Zero();   ///< By which the colours of the newest view were moved.
+  Eigen::Vector2d offset_px = Eigen::Vector2d::Zero();
+  /// Standard error: from how much views and halves of the image disagree, and a systematic one of 0.2 px. Infinite if
+  /// it is not known.
+  Eigen::Vector2d sigma_px = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  int num_views = 0;
+
+  /// What is corrected: the offset on axes where it is more than two standard errors. Nothing if one of these is above
+  /// 1 px.
+  [[nodiscard]] Eigen::Vector2d corrected_px() const;
+  /// By how many whole pixels colours are moved: the nearest ones.
+  [[nodiscard]] Eigen::Vector2i moved_px() const;
+};
+
+/// Contrast of the colours along the occluding contours of the depth, by the shift of the colours and the width of the
+/// lost depth; summed over pixels of the contours.
+struct ContourContrast {
+  std::vector<float> sums;
+  int num_pixels = 0;
 };
 
 /// Measures the offset in one view: the shift that puts the occluding contours of the depth onto the strongest edges of
@@ -39,18 +54,25 @@ struct ColorOffset {
 /// larger than 4 px.
 [[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view);
 
-/// Estimates the offset of a camera from its views so far, and corrects each view.
-class ColorOffsetCorrector {
- public:
-  explicit ColorOffsetCorrector(const ColorOffsetOptions& options = {});
+/// Moves the colours of a frame onto its depth (at the border, they repeat), and the principal point by the offset:
+/// intrinsics and pose of a frame are those of the colours, to which depth is registered, so that the depth of pixel p
+/// lies on the ray of pixel p + offset. `frame` has the size of prepared views.
+void correct_color_offset(const ColorOffset& offset, RgbdFrame& frame);
 
-  /// Measures the view and moves its colours by as many whole pixels as the views so far are sure of (two standard
-  /// errors, with a systematic one of 0.15 px). At the border, colours repeat.
-  ColorOffset correct(PreparedView& view);
+/// Estimates the offset of a camera from the contours of its newest 32 views together, of at least three.
+class ColorOffsetEstimator {
+ public:
+  using Halves = std::array<ContourContrast, 2>;  ///< The fields of a chequerboard.
+
+  explicit ColorOffsetEstimator(const ColorOffsetOptions& options = {});
+
+  /// Measures a view that was corrected by `corrected`. Does nothing unless options.correct.
+  void add(const PreparedView& view, const ColorOffset& corrected = {});
+  [[nodiscard]] ColorOffset offset() const;
 
  private:
   ColorOffsetOptions options_;
-  std::deque<Eigen::Vector2d> measured_px_;
+  std::deque<Halves> views_;
 };
 
 }  // namespace resight

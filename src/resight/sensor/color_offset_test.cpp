@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <vector>
 
 #include "resight/core/random.hpp"
 
@@ -61,41 +61,58 @@ TEST(MeasureColorOffset, NothingWithoutContoursColorsOrAgreement) {
   EXPECT_FALSE(measure_color_offset(prepare_view(see_boards({9, 0}))).has_value()) << "beyond the reach of the search";
 }
 
-TEST(ColorOffsetCorrector, MovesTheColorsOntoTheDepthOnceItIsSure) {
-  ColorOffsetCorrector corrector({.correct = true});
-  for (std::uint64_t view = 1; view <= 4; ++view) {
-    PreparedView prepared = prepare_view(see_boards({2, -1}, 1, view));
-    const ColorOffset offset = corrector.correct(prepared);
-    EXPECT_EQ(offset.num_views, static_cast<int>(view));
-    const bool sure = view >= 3;
-    EXPECT_EQ(offset.moved_px, sure ? Eigen::Vector2i(2, -1) : Eigen::Vector2i(0, 0));
-    EXPECT_NEAR(prepared.frame.color(31, 60).r, sure ? 150 : 90, 20) << "a pixel of a board, near its left border";
+ColorOffset estimate(const std::vector<Eigen::Vector2i>& offsets_px, const ColorOffset& corrected = {}) {
+  ColorOffsetEstimator estimator({.correct = true});
+  std::uint64_t seed = 0;
+  for (const Eigen::Vector2i& offset_px : offsets_px) {
+    RgbdFrame frame = see_boards(offset_px, 1, ++seed);
+    correct_color_offset(corrected, frame);
+    estimator.add(prepare_view(frame), corrected);
   }
+  return estimator.offset();
 }
 
-TEST(ColorOffsetCorrector, LeavesColorsThatAreRightOrUncertain) {
-  ColorOffsetCorrector exact({.correct = true});
-  ColorOffsetCorrector uncertain({.correct = true});
-  ColorOffsetCorrector off;
-  for (int view = 0; view < 6; ++view) {
-    const auto seed = static_cast<std::uint64_t>(view + 1);
-    const PreparedView right = prepare_view(see_boards({0, 0}, 1, seed));
-    PreparedView seen = right;
-    (void)exact.correct(seen);
-    EXPECT_EQ(seen.frame.color, right.frame.color);
-    const PreparedView jumping = prepare_view(see_boards({view % 3 - 3, 0}, 1, seed));
-    seen = jumping;
-    EXPECT_GT(uncertain.correct(seen).num_views, 0);
-    EXPECT_EQ(seen.frame.color, jumping.frame.color);
-    seen = jumping;
-    EXPECT_EQ(off.correct(seen).num_views, 0);
-    EXPECT_EQ(seen.frame.color, jumping.frame.color);
-  }
+TEST(ColorOffsetEstimator, IsSureFromThreeViewsOn) {
+  EXPECT_TRUE(estimate({{2, -1}, {2, -1}}).corrected_px().isZero());
+  const ColorOffset offset = estimate({{2, -1}, {2, -1}, {2, -1}});
+  EXPECT_EQ(offset.num_views, 3);
+  EXPECT_LT((offset.offset_px - Eigen::Vector2d(2, -1)).norm(), 0.2);
+  EXPECT_LT(offset.sigma_px.maxCoeff(), 0.3);
+  EXPECT_EQ(offset.corrected_px(), offset.offset_px);
+  EXPECT_EQ(offset.moved_px(), Eigen::Vector2i(2, -1));
 }
 
-TEST(ColorOffsetCorrector, RefusesNonsense) {
-  EXPECT_THROW(ColorOffsetCorrector({.correct = true, .min_views = 0}), std::invalid_argument);
-  EXPECT_THROW(ColorOffsetCorrector({.correct = true, .max_spread_px = -1}), std::invalid_argument);
+TEST(ColorOffsetEstimator, CorrectedViewsShowTheSameOffset) {
+  const std::vector<Eigen::Vector2i> views(4, {2, -1});
+  const ColorOffset raw = estimate(views);
+  EXPECT_LT((estimate(views, raw).offset_px - raw.offset_px).norm(), 1e-6);
+}
+
+TEST(ColorOffsetEstimator, CorrectsNothingThatIsRightOrUncertain) {
+  EXPECT_TRUE(estimate({{0, 0}, {0, 0}, {0, 0}, {0, 0}}).corrected_px().isZero());
+  const ColorOffset jumping = estimate({{-3, 0}, {3, 0}, {-3, 0}, {3, 0}});
+  EXPECT_GT(jumping.sigma_px.x(), 1) << "the views contradict each other";
+  EXPECT_TRUE(jumping.corrected_px().isZero());
+  const ColorOffset unknown = estimate({{9, 0}, {9, 0}, {9, 0}});
+  EXPECT_TRUE(std::isinf(unknown.sigma_px.x())) << "beyond the reach of the search";
+  EXPECT_TRUE(unknown.corrected_px().isZero());
+  ColorOffsetEstimator off;
+  for (int view = 0; view < 3; ++view) off.add(prepare_view(see_boards({2, -1})));
+  EXPECT_EQ(off.offset().num_views, 0);
+}
+
+TEST(CorrectColorOffset, PutsTheDepthOnTheRaysOfItsColors) {
+  const RgbdFrame beside = see_boards({2, -1});
+  RgbdFrame corrected = beside;
+  correct_color_offset({.offset_px = {2.2, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3}, corrected);
+  EXPECT_EQ(corrected.depth_m, beside.depth_m);
+  EXPECT_EQ(corrected.color(31, 60), beside.color(33, 59));
+  const Eigen::Vector3d point = corrected.camera.unproject(31, 60, 1.0);
+  EXPECT_LT((beside.camera.project(point) - Eigen::Vector2d(33.2, 59.1)).norm(), 1e-9);
+  RgbdFrame uncertain = beside;
+  correct_color_offset({.offset_px = {0.3, -0.9}, .sigma_px = {0.2, 0.2}, .num_views = 3}, uncertain);
+  EXPECT_EQ(uncertain.camera.cx, beside.camera.cx);
+  EXPECT_EQ(uncertain.camera.cy, beside.camera.cy + 0.9);
 }
 
 }  // namespace

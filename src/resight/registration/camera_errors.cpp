@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/registration/camera_errors.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "resight/sensor/reduce_frame.hpp"
+
+namespace resight {
+namespace {
+
+std::vector<int> spread_views(int num_views) {
+  const int count = std::min(num_views, kMaxCalibrationViews);
+  std::vector<int> views;
+  for (int k = 0; k < count; ++k) views.push_back(count > 1 ? k * (num_views - 1) / (count - 1) : 0);
+  return views;
+}
+
+// By the given poses. Poses that cannot be read are no evidence.
+bool stands_still(const Sequence& sequence, std::span<const int> views) {
+  std::optional<Rigid3> first;
+  for (const int v : views) {
+    const Result<Rigid3> pose = sequence.read_pose(v);
+    if (!pose) continue;
+    if (first && first->matrix() != pose->matrix()) return false;
+    first = *pose;
+  }
+  return true;
+}
+
+std::vector<RgbdFrame> read_views(const Sequence& sequence, std::span<const int> numbers) {
+  std::vector<RgbdFrame> frames;
+  for (const int v : numbers)
+    if (Result<RgbdFrame> frame = sequence.read_view(v)) frames.push_back(*std::move(frame));
+  return frames;
+}
+
+}  // namespace
+
+CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOptions& prepare,
+                                   const ColorOffsetOptions& color_offset, const DepthBiasOptions& depth_bias) {
+  CameraErrors errors;
+  const std::vector<int> numbers = spread_views(sequence.num_views());
+  const bool shows_bias = depth_bias.correct && !stands_still(sequence, numbers);
+  if (!color_offset.correct && !shows_bias) return errors;
+  ColorOffsetEstimator colors(color_offset);
+  const std::vector<RgbdFrame> frames = read_views(sequence, numbers);
+  std::vector<AlignmentView> aligned;
+  const auto prepare_all = [&] {
+    aligned.clear();
+    for (const RgbdFrame& frame : frames) {
+      const PreparedView view = prepare_corrected(frame, errors, prepare);
+      if (errors.color_offset.num_views == 0) colors.add(view);
+      if (shows_bias) aligned.push_back(make_alignment_view(view));
+    }
+  };
+  prepare_all();
+  errors.color_offset = colors.offset();
+  if (!shows_bias) return errors;
+  if (!errors.color_offset.corrected_px().isZero()) prepare_all();
+  std::vector<AlignmentTarget> views;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (!aligned[i].levels.empty()) views.push_back({&aligned[i], frames[i].world_from_camera});
+  errors.depth_bias = estimate_depth_bias(views, depth_bias);
+  return errors;
+}
+
+PreparedView prepare_corrected(RgbdFrame frame, const CameraErrors& errors, const PrepareViewOptions& prepare) {
+  correct_depth(errors.depth_bias, frame);
+  const int divisor = find_reduction(frame.camera, prepare);
+  if (divisor > 1) frame = reduce_frame(frame, divisor);
+  correct_color_offset(errors.color_offset, frame);
+  return prepare_view(std::move(frame), prepare);
+}
+
+}  // namespace resight

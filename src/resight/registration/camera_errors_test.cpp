@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resight/registration/camera_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "resight/sensor/testing/ball_scene.hpp"
+#include "resight/sensor/testing/memory_sequence.hpp"
+
+namespace resight {
+namespace {
+
+constexpr ColorOffsetOptions kColors{.correct = true};
+constexpr DepthBiasOptions kBias{.correct = true, .num_threads = 1};
+
+/// Views whose depth lies beside their colours: that of pixel p belongs to pixel p + offset.
+std::vector<RgbdFrame> see_beside(Eigen::Vector2i offset_px, double bias_per_m) {
+  std::vector<RgbdFrame> frames = test::render_biased_views(bias_per_m);
+  for (RgbdFrame& frame : frames) {
+    const Image<float> right = frame.depth_m;
+    for (int v = 0; v < right.height(); ++v)
+      for (int u = 0; u < right.width(); ++u) {
+        const bool is_inside = right.contains(u + offset_px.x(), v + offset_px.y());
+        frame.depth_m(u, v) =
+            is_inside ? right(u + offset_px.x(), v + offset_px.y()) : std::numeric_limits<float>::quiet_NaN();
+      }
+  }
+  return frames;
+}
+
+CameraErrors measure_errors(const std::vector<RgbdFrame>& frames) {
+  return measure_camera_errors(test::MemorySequence(frames), {}, kColors, kBias);
+}
+
+TEST(CameraErrors, OffsetAndBiasAreToldApart) {
+  constexpr double kBias_per_m = 0.006;
+  const CameraErrors errors = measure_errors(see_beside({3, 2}, kBias_per_m));
+  EXPECT_LT((errors.color_offset.offset_px - Eigen::Vector2d(3, 2)).norm(), 0.5)
+      << errors.color_offset.offset_px.transpose() << " +- " << errors.color_offset.sigma_px.transpose();
+  EXPECT_NEAR(errors.depth_bias.per_m, kBias_per_m, 0.002);
+  EXPECT_TRUE(errors.depth_bias.is_significant());
+}
+
+TEST(CameraErrors, CorrectedViewsLieWhereTheSceneIs) {
+  const std::vector<RgbdFrame> right = test::render_biased_views(0);
+  const std::vector<RgbdFrame> beside = see_beside({3, 2}, 0);
+  const CameraErrors errors = measure_errors(beside);
+  const auto mean_error_m = [&](const CameraErrors& corrected) {
+    const PreparedView truth = prepare_view(right[0]);
+    const PreparedView view = prepare_corrected(beside[0], corrected, {});
+    double sum_m = 0;
+    int count = 0;
+    for (int v = 20; v < 220; ++v)
+      for (int u = 20; u < 300; ++u) {
+        const float depth_m = view.frame.depth_m(u, v);
+        if (std::isnan(depth_m) || truth.frame.depth_m(u + 3, v + 2) != depth_m) continue;
+        sum_m +=
+            (view.frame.camera.unproject(u, v, depth_m) - truth.frame.camera.unproject(u + 3, v + 2, depth_m)).norm();
+        ++count;
+      }
+    EXPECT_GT(count, 10000);
+    return sum_m / count;
+  };
+  EXPECT_LT(mean_error_m(errors), 0.2 * mean_error_m({}));
+}
+
+TEST(CameraErrors, NothingIsMeasuredUnlessItIsCorrected) {
+  const CameraErrors errors = measure_camera_errors(test::MemorySequence(see_beside({3, 2}, 0.006)), {}, {}, {});
+  EXPECT_EQ(errors.color_offset.num_views, 0);
+  EXPECT_EQ(errors.depth_bias.num_views, 0);
+}
+
+TEST(CameraErrors, LargeViewsAreReducedFirst) {
+  const RgbdFrame frame = see_beside({4, 2}, 0)[0];
+  const PrepareViewOptions halved{.max_pixels = 160 * 120};
+  CameraErrors errors;
+  errors.color_offset = {.offset_px = {2, 1}, .sigma_px = {0.2, 0.2}, .num_views = 3};
+  const PreparedView given = prepare_view(frame, halved);
+  const PreparedView view = prepare_corrected(frame, errors, halved);
+  EXPECT_EQ(view.frame.camera.width, 160);
+  EXPECT_EQ(view.frame.camera.cx, given.frame.camera.cx - 2);
+  EXPECT_EQ(view.frame.color(50, 40), given.frame.color(52, 41));
+}
+
+}  // namespace
+}  // namespace resight
