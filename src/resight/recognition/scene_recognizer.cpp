@@ -20,7 +20,7 @@ struct SceneRecognizer::Impl {
   Impl(const ModelLibrary& models, RecognizerConfig settings, std::shared_ptr<ViewHypothesisStore> store, Clock clock)
       : library(models),
         config(checked_and_seeded(std::move(settings))),
-        color_offset(config.camera.color_offset),
+        corrector(config.camera.color_offset),
         scene(scene_options(config)),
         planner(make_search_planner(models, config)),
         source(models, config, std::move(store)),
@@ -42,9 +42,7 @@ struct SceneRecognizer::Impl {
 
   const ModelLibrary& library;
   RecognizerConfig config;
-  CameraErrors camera_errors;
-  ColorOffsetEstimator color_offset;
-  bool is_camera_measured = false;  // Before the first view.
+  CameraErrorCorrector corrector;
   DynamicScene scene;
   SearchPlanner planner;
   ViewHypothesisSource source;
@@ -81,15 +79,11 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
 void SceneRecognizer::Impl::add_to_scene(RgbdFrame frame, SceneUpdate& update) {
   update.view = scene.window().empty() ? 0 : scene.window().back().number + 1;
   update.view_name = frame.name;
-  update.camera_errors = camera_errors;
+  update.camera_errors = corrector.errors();
   PreparedView view;
   {
     const ScopedTimer timer(update.times, "prepare");
-    view = prepare_corrected(std::move(frame), camera_errors, config.prepare);
-    if (!is_camera_measured) {
-      color_offset.add(view, camera_errors.color_offset);
-      camera_errors.color_offset = color_offset.offset();
-    }
+    view = corrector.prepare(std::move(frame), config.prepare);
   }
   update.changes = scene.add_view(std::move(view), &update.times);
   update.world_from_camera = scene.window().back().raw.world_from_camera;
@@ -190,10 +184,7 @@ SceneRecognizer::SceneRecognizer(const ModelLibrary& library, RecognizerConfig c
 SceneRecognizer::~SceneRecognizer() = default;
 SceneRecognizer::SceneRecognizer(SceneRecognizer&&) noexcept = default;
 
-void SceneRecognizer::set_camera_errors(const CameraErrors& errors) {
-  impl_->camera_errors = errors;
-  impl_->is_camera_measured = true;
-}
+void SceneRecognizer::set_camera_errors(const CameraErrors& errors) { impl_->corrector.set(errors); }
 SceneUpdate SceneRecognizer::add_view(RgbdFrame frame, RecognitionTrace* trace) {
   return impl_->add_view(std::move(frame), trace);
 }

@@ -76,4 +76,18 @@ PreparedView prepare_corrected(RgbdFrame frame, const CameraErrors& errors, cons
   return prepare_view(std::move(frame), prepare);
 }
 
+void CameraErrorCorrector::set(const CameraErrors& errors) {
+  errors_ = errors;
+  is_set_ = true;
+}
+
+PreparedView CameraErrorCorrector::prepare(RgbdFrame frame, const PrepareViewOptions& options) {
+  PreparedView view = prepare_corrected(std::move(frame), errors_, options);
+  if (!is_set_) {
+    estimator_.add(view, errors_.color_offset);
+    errors_.color_offset = estimator_.offset();
+  }
+  return view;
+}
+
 }  // namespace resight

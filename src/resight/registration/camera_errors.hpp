@@ -27,4 +27,21 @@ struct CameraErrors {
 [[nodiscard]] PreparedView prepare_corrected(RgbdFrame frame, const CameraErrors& errors,
                                              const PrepareViewOptions& prepare);
 
+/// Prepares the views of a camera without its errors: those of set(), called before the first view, or the offset of
+/// the colours that the views so far show.
+class CameraErrorCorrector {
+ public:
+  explicit CameraErrorCorrector(const ColorOffsetOptions& color_offset = {}) : estimator_(color_offset) {}
+
+  void set(const CameraErrors& errors);
+  [[nodiscard]] PreparedView prepare(RgbdFrame frame, const PrepareViewOptions& options);
+  /// By which the next view will be corrected.
+  [[nodiscard]] const CameraErrors& errors() const { return errors_; }
+
+ private:
+  CameraErrors errors_;
+  ColorOffsetEstimator estimator_;
+  bool is_set_ = false;
+};
+
 }  // namespace resight

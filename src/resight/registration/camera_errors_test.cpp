@@ -73,6 +73,23 @@ TEST(CameraErrors, NothingIsMeasuredUnlessItIsCorrected) {
   EXPECT_EQ(errors.depth_bias.num_views, 0);
 }
 
+TEST(CameraErrorCorrector, LearnsTheOffsetFromTheViewsSoFarUnlessItIsSet) {
+  const std::vector<RgbdFrame> frames = see_beside({3, 2}, 0);
+  const CameraErrors measured = measure_errors(frames);
+  CameraErrorCorrector learning(kColors);
+  CameraErrorCorrector set(kColors);
+  set.set(measured);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double cx = learning.prepare(frames[i], {}).frame.camera.cx;
+    if (i < 3) {
+      EXPECT_EQ(cx, frames[i].camera.cx) << "of view " << i;
+    }
+    EXPECT_EQ(set.prepare(frames[i], {}).frame.camera.cx, frames[i].camera.cx - measured.color_offset.offset_px.x());
+  }
+  EXPECT_LT((learning.errors().color_offset.offset_px - measured.color_offset.offset_px).norm(), 0.1);
+  EXPECT_EQ(set.errors().color_offset.offset_px, measured.color_offset.offset_px);
+}
+
 TEST(CameraErrors, LargeViewsAreReducedFirst) {
   const RgbdFrame frame = see_beside({4, 2}, 0)[0];
   const PrepareViewOptions halved{.max_pixels = 160 * 120};
