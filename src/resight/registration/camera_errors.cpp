@@ -31,10 +31,19 @@ bool stands_still(const Sequence& sequence, std::span<const int> views) {
   return true;
 }
 
-std::vector<RgbdFrame> read_views(const Sequence& sequence, std::span<const int> numbers) {
+// prepare_view() refuses a frame that is not sound.
+RgbdFrame reduce(RgbdFrame frame, const PrepareViewOptions& prepare) {
+  if (!check_frame(frame)) return frame;
+  const int divisor = find_reduction(frame.camera, prepare);
+  return divisor > 1 ? reduce_frame(frame, divisor) : std::move(frame);
+}
+
+// Reduced at once, because all are kept.
+std::vector<RgbdFrame> read_views(const Sequence& sequence, std::span<const int> numbers,
+                                  const PrepareViewOptions& prepare) {
   std::vector<RgbdFrame> frames;
   for (const int v : numbers)
-    if (Result<RgbdFrame> frame = sequence.read_view(v)) frames.push_back(*std::move(frame));
+    if (Result<RgbdFrame> frame = sequence.read_view(v)) frames.push_back(reduce(*std::move(frame), prepare));
   return frames;
 }
 
@@ -47,7 +56,7 @@ CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOp
   const bool shows_bias = depth_bias.correct && !stands_still(sequence, numbers);
   if (!color_offset.correct && !shows_bias) return errors;
   ColorOffsetEstimator colors(color_offset);
-  const std::vector<RgbdFrame> frames = read_views(sequence, numbers);
+  const std::vector<RgbdFrame> frames = read_views(sequence, numbers, prepare);
   std::vector<AlignmentView> aligned;
   const auto prepare_all = [&] {
     aligned.clear();
@@ -70,8 +79,7 @@ CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOp
 
 PreparedView prepare_corrected(RgbdFrame frame, const CameraErrors& errors, const PrepareViewOptions& prepare) {
   correct_depth(errors.depth_bias, frame);
-  const int divisor = find_reduction(frame.camera, prepare);
-  if (divisor > 1) frame = reduce_frame(frame, divisor);
+  frame = reduce(std::move(frame), prepare);
   correct_color_offset(errors.color_offset, frame);
   return prepare_view(std::move(frame), prepare);
 }

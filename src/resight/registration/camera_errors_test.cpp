@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "resight/sensor/testing/ball_scene.hpp"
@@ -100,6 +101,9 @@ TEST(CameraErrors, LargeViewsAreReducedFirst) {
   EXPECT_EQ(view.frame.camera.width, 160);
   EXPECT_EQ(view.frame.camera.cx, given.frame.camera.cx - 2);
   EXPECT_EQ(view.frame.color(50, 40), given.frame.color(52, 41));
+  RgbdFrame unsound = frame;
+  unsound.depth_m = Image<float>(8, 6, 1.0F);
+  EXPECT_THROW((void)prepare_corrected(unsound, errors, halved), std::invalid_argument);
 }
 
 }  // namespace
