@@ -91,7 +91,7 @@ change_switches=(
   'depth_bias.correct = false'
 )
 
-[[ $page == docs/ablation.md ]] && require_commit
+[[ $page == docs/ablation.md ]] && require_commit --page
 commit=$(git rev-parse --short=12 HEAD)
 source scripts/common.sh
 resight=$build/apps/resight/resight

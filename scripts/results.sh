@@ -16,7 +16,7 @@ version=3 data=../shared/data out=out/results build=build/results pages=.
 source scripts/shards.sh
 read_options version data out build pages -- "$@"
 [[ $version =~ ^[23]$ ]] || usage
-[[ $pages == . ]] && require_commit scripts
+[[ $pages == . ]] && require_commit --pages scripts
 commit=$(git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 source scripts/common.sh
 resight=$build/apps/resight/resight

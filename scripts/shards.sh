@@ -47,9 +47,10 @@ exit_unless_finished() {
   exit 0
 }
 
-# require_commit PATH...: tables name a commit, so the programs must be those of a commit.
+# require_commit OPTION PATH...: tables name a commit, so the programs must be those of a commit. Names the option for
+# another page.
 require_commit() {
-  [[ -z $(git status --porcelain -- CMakeLists.txt cmake src apps bench "$@") ]] && return
-  echo "$(basename "$0"): there are uncommitted changes; commit them, or write to other pages" >&2
+  [[ -z $(git status --porcelain -- CMakeLists.txt cmake src apps bench "${@:2}") ]] && return
+  echo "$(basename "$0"): there are uncommitted changes; commit them, or write elsewhere with $1" >&2
   exit 2
 }

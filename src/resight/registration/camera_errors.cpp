@@ -58,7 +58,7 @@ CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOp
   ColorOffsetEstimator colors(color_offset);
   const std::vector<RgbdFrame> frames = read_views(sequence, numbers, prepare);
   std::vector<AlignmentView> aligned;
-  const auto prepare_all = [&] {
+  const auto align_views = [&] {
     aligned.clear();
     for (const RgbdFrame& frame : frames) {
       const PreparedView view = prepare_corrected(frame, errors, prepare);
@@ -66,10 +66,11 @@ CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOp
       if (shows_bias) aligned.push_back(make_alignment_view(view));
     }
   };
-  prepare_all();
+  align_views();
   errors.color_offset = colors.offset();
   if (!shows_bias) return errors;
-  if (!errors.color_offset.corrected_px().isZero()) prepare_all();
+  // Only a correction moves the views.
+  if (!errors.color_offset.corrected_px().isZero()) align_views();
   std::vector<AlignmentTarget> views;
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (!aligned[i].levels.empty()) views.push_back({&aligned[i], frames[i].world_from_camera});
