@@ -212,8 +212,9 @@ void read_trace_file(std::string_view bytes) {
 Seeds make_event_seeds() {
   const std::string pose = "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]";
   return {R"({"events":[{"view":2,"kind":"moved","object":"cup","known":true,"world_from_object_before":)" + pose +
-          R"(,"world_from_object_after":)" + pose + R"(},{"view":3,"kind":"added","object":"box","known":false,)" +
-          R"("world_from_object_before":null,"world_from_object_after":)" + pose + "}]}"};
+              R"(,"world_from_object_after":)" + pose + R"(},{"view":3,"kind":"added","object":"box","known":false,)" +
+              R"("world_from_object_before":null,"world_from_object_after":)" + pose + "}]}",
+          R"({"events":[[2,"moved","cup"],[3,"added","box"]]})"};
 }
 
 }  // namespace

@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # Leave-one-out ablation of preset `default`: switches each feature off alone, and measures what that changes on
 # generated, path-traced and real recordings. Writes the tables of docs/ablation.md. What is finished is kept in
-# OUT/<commit>/ and not computed again. A call computes on one core. Shards may run at the same time, also on several
-# machines that share OUT; the call after the last one writes the page.
+# OUT/<commit>/ and not computed again, and neither are rows that the page has for this commit. A call computes on one
+# core. Shards may run at the same time, also on several machines that share OUT; the call after the last one writes the
+# page. With --merge, nothing is computed, and the page gets the rows that are finished.
 #   scripts/ablation.sh [--shard I/N | --merge] [--data DIR=../shared/data] [--out DIR=out/ablation]
 #                       [--build DIR=build/ablation] [--no-build] [--page FILE=docs/ablation.md]
 # With --no-build, the programs are those in the build folder.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 usage() {
-  sed -n '7,9s/^# \{0,1\}//p' "$0" >&2
+  sed -n '8,10s/^# \{0,1\}//p' "$0" >&2
   exit 2
 }
 data=../shared/data out=out/ablation build=build/ablation page=docs/ablation.md
@@ -109,6 +110,12 @@ mkdir -p "$parts"
 # slug SETTINGS: a name for files.
 slug() { tr -cs 'a-zA-Z0-9._\n' '-' <<<"$1"; }
 
+# known_row NAME SETTINGS: the row of these settings in the table NAME of the page, if it is of this commit.
+known_row() {
+  [[ -n $2 ]] && sed -n "/^<!-- table: $1, commit $commit,/,/^<!-- end -->/p" "$page" |
+    grep -F "| \`${2//; /\`, \`}\` |"
+}
+
 # make_seed SEED NUMBER...: the chosen sequences in seed-SEED/data, their library beside it.
 make_seed() {
   local folder=$parts/seed-$1 number
@@ -135,10 +142,11 @@ make_data() {
   exec 9>&-
 }
 
-# evaluate FOLDER LIBRARY DATA SEED SETTINGS: a finished folder has tables.md.
+# evaluate FOLDER LIBRARY DATA SEED SETTINGS: a finished folder has tables.md, or its row is in the page.
 evaluate() {
-  local folder=$1 config=()
-  take_turn "$folder/tables.md" "${folder#"$parts/"}" || return 0
+  local folder=$1 done=$1/tables.md config=()
+  known_row switches "$5" >/dev/null && done=$page
+  take_turn "$done" "${folder#"$parts/"}" || return 0
   mkdir -p "$folder"
   if [[ -n $5 ]]; then
     tr ';' '\n' <<<"$5" >"$folder.toml"
@@ -165,7 +173,7 @@ evaluate_all() {
 
 # find_changes SETTINGS: bench_real_changes on all still and static sets.
 find_changes() {
-  local set kind file config=-
+  local set kind file done config=-
   mkdir -p "$parts/changes"
   if [[ -n $1 ]]; then
     config=$parts/changes/$(slug "$1").toml
@@ -175,7 +183,9 @@ find_changes() {
     kind="static $data/$set"
     [[ " ${still_sets[*]} " == *" $set "* ]] && kind="still $data/$set $data/$set/class_png"
     file=$parts/changes/$(slug "$set")-$(slug "${1:-default}").txt
-    take_turn "$file" "${file#"$parts/"}" || continue
+    done=$file
+    known_row change-switches "$1" >/dev/null && done=$page
+    take_turn "$done" "${file#"$parts/"}" || continue
     step "changes of $set, ${1:-default}" keep_output "$file" "$build/bench/bench_real_changes" $kind default "$config" \
       $previous_views || { missing+=("$file"); failed+=("$file"); }
   done
@@ -195,33 +205,41 @@ recorded_folders() {
   done
 }
 
+# switch_row SETTINGS: the row of the page, or that of finished runs. Empty: the figures of `default`.
+switch_row() {
+  local folder
+  known_row switches "$1" && return
+  for folder in $(generated_folders) $(recorded_folders); do
+    [[ -e $folder/$(slug "${1:-default}")/tables.md ]] || return 0
+  done
+  printf '%s\t%s\t%s\n' "$1" "$(compare "$1" $(generated_folders))" "$(compare "$1" $(recorded_folders))" |
+    awk -F '\t' '
+      function first(pair) { return substr(pair, 1, index(pair, ",") - 1) }
+      $1 == "" {
+        printf "| (nothing: `default`) | %s, %s | | | | | %s, %s | |\n", first($2), first($3), first($8), first($9)
+      }
+      $1 != "" {
+        gsub(/; /, "`, `", $1)
+        printf "| `%s` | %s, %s | %s | %s | %s | %s | %s, %s | %s |\n", $1, first($2), first($3), $4, $5, $6, $7,
+               first($8), first($9), $10
+      }'
+}
 write_switches() {
-  local settings generated recorded
+  local settings
   echo "| without | right, wrong | F | strict F | F of events | CPU | recorded: right, wrong | F |"
   echo "|---|---|---|---|---|---|---|---|"
-  for settings in "${switches[@]}"; do
-    generated=$(compare "$settings" $(generated_folders))
-    recorded=$(compare "$settings" $(recorded_folders))
-    printf '%s\t%s\t%s\n' "$settings" "$generated" "$recorded"
-  done | awk -F '\t' '
-    function first(pair) { return substr(pair, 1, index(pair, ",") - 1) }
-    function second(pair) { return substr(pair, index(pair, " ") + 1) }
-    NR == 1 {
-      printf "| (nothing: `default`) | %s, %s | | | | | %s, %s | |\n", second($2), second($3), second($8), second($9)
-    }
-    {
-      gsub(/; /, "`, `", $1)
-      printf "| `%s` | %s, %s | %s | %s | %s | %s | %s, %s | %s |\n", $1, first($2), first($3), $4, $5, $6, $7,
-             first($8), first($9), $10
-    }'
+  for settings in "" "${switches[@]}"; do switch_row "$settings"; done
 }
 
-# change_cells SETTINGS: sums over the still sets, then each static set.
-change_cells() {
-  local set name still=() static=()
+# change_row SETTINGS: sums over the still sets, then each static set.
+change_row() {
+  local set name file still=() static=()
+  known_row change-switches "$1" && return
   name=$(slug "${1:-default}")
   for set in "${still_sets[@]}"; do still+=("$parts/changes/$(slug "$set")-$name.txt"); done
   for set in "${static_sets[@]}"; do static+=("$parts/changes/$(slug "$set")-$name.txt"); done
+  for file in "${still[@]}" "${static[@]}"; do [[ -e $file ]] || return 0; done
+  [[ -n $1 ]] && printf '| `%s` | ' "${1//; /\`, \`}" || printf '| (nothing: `default`) | '
   awk '
     $1 == "counts" && $2 == "default" { for (i = 3; i <= NF; ++i) sum[i] += $i }
     END {
@@ -235,14 +253,14 @@ change_cells() {
       $2 == "default, removed" && !removed { removed = $3 }
       END { printf " %s, %s |", novel, removed }' "$set"
   done
+  printf '\n'
 }
 write_change_switches() {
   local settings set
   printf '| without | added P, R | removed P, R | thin things found | regions right | things found as a region |'
   for set in "${static_sets[@]}"; do printf ' `%s`: novel, removed |' "$set"; done
   printf '\n|---|---|---|---|---|---|---|---|---|\n'
-  echo "| (nothing: \`default\`) | $(change_cells "")"
-  for settings in "${change_switches[@]}"; do echo "| \`$settings\` | $(change_cells "$settings")"; done
+  for settings in "" "${change_switches[@]}"; do change_row "$settings"; done
 }
 
 # put NAME: makes the table NAME and puts it into the page.
@@ -253,8 +271,8 @@ put() {
 }
 
 ((merge)) || make_data
-for settings in "" "${switches[@]}"; do evaluate_all "$settings"; done
 for settings in "" "${change_switches[@]}"; do find_changes "$settings"; done
-exit_unless_finished
+for settings in "" "${switches[@]}"; do evaluate_all "$settings"; done
+((merge)) || exit_unless_finished
 put switches
 put change_switches

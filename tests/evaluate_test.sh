@@ -128,6 +128,13 @@ dataset=$work/other/data evaluate renamed --without-clustering || fail "evaluate
 grep -q 'found by obj_id' "$work/renamed.log" || fail "other names bring no warning: $(cat "$work/renamed.log")"
 cmp -s "$work/whole/results.json" "$work/renamed/results.json" || fail "objects with other names gave other results"
 
+# Nor do events in short form, whose places come from the ground truth.
+events=$work/other/data/events.json
+removal=$(tr -d ' \n' <"$events" | sed -nE 's/.*"kind":"removed".*"object":"(my_[^"]*)".*"view":([0-9]+).*/[\2,"removed","\1"]/p')
+[[ -n $removal ]] && echo "{\"events\": [$removal]}" >"$events"
+dataset=$work/other/data evaluate short --without-clustering || fail "evaluate failed: $(cat "$work/short.log")"
+cmp -s <(without_errors whole) <(without_errors short) || fail "events in short form gave other results"
+
 # Results of other data are stale: of another truth, image, change or name of an object, or of another library.
 expect_stale() { # expect_stale WHAT
   evaluate whole --without-clustering --merge

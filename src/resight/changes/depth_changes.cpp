@@ -56,21 +56,6 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
   return pair;
 }
 
-/// By how much a view contradicts the surfaces at these pixels: 0 at the least difference that counts, 1 from twice
-/// that on, and less where the colours are as before.
-std::vector<float> weigh_contradictions(const PreparedView& surfaces, const PreparedView& view,
-                                        const ViewComparison& comparison, std::span<const int> pixels,
-                                        double noise_scale, const DepthTestOptions& options) {
-  const double recolored_sigmas = std::min(options.recolored_sigmas.value_or(options.sigmas), options.sigmas);
-  std::vector<float> result = measure_contradiction(surfaces, view, pixels, noise_scale);
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const auto i = static_cast<std::size_t>(pixels[k]);
-    const double sigmas = comparison.recolored[i] != 0 ? recolored_sigmas : options.sigmas;
-    result[k] = std::clamp(result[k] / static_cast<float>(sigmas) - 1, 0.0F, 1.0F) * comparison.weight[i];
-  }
-  return result;
-}
-
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
                                std::size_t& num_explained) {
   Image<std::uint8_t> novel(view.cloud.width(), view.cloud.height());
@@ -126,24 +111,16 @@ void drop_filled_holes(const PreparedView& view, const PreparedView& newest, con
       for (const int i : region) novel[static_cast<std::size_t>(i)] = 0;
 }
 
-/// Mean of weigh_contradictions() over the earlier views that see through a novel surface; 0 at other pixels.
-Image<float> measure_novel(const PreparedView& view, std::span<const PreparedView* const> earlier_views,
-                           std::span<const PairEvidence> pairs, const DepthTestOptions& options,
-                           const Image<std::uint8_t>& novel) {
+/// Mean contradiction by the earlier views that see through a novel surface; 0 at other pixels.
+Image<float> measure_novel(std::span<const PairEvidence> pairs, const Image<std::uint8_t>& novel) {
   Image<float> sum(novel.width(), novel.height());
   Image<std::uint16_t> num(novel.width(), novel.height());
-  for (std::size_t e = 0; e < pairs.size(); ++e) {
-    std::vector<int> pixels;
-    for (std::size_t i = 0; i < novel.size(); ++i)
-      if (novel[i] != 0 && pairs[e].of_view.evidence[i] == Evidence::kSeenThrough)
-        pixels.push_back(static_cast<int>(i));
-    const std::vector<float> contradictions =
-        weigh_contradictions(view, *earlier_views[e], pairs[e].of_view, pixels, pairs[e].noise_scale, options);
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      sum[static_cast<std::size_t>(pixels[k])] += contradictions[k];
-      ++num[static_cast<std::size_t>(pixels[k])];
+  for (const PairEvidence& pair : pairs)
+    for (std::size_t i = 0; i < novel.size(); ++i) {
+      if (novel[i] == 0 || pair.of_view.evidence[i] != Evidence::kSeenThrough) continue;
+      sum[i] += pair.of_view.contradiction[i];
+      ++num[i];
     }
-  }
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (num[i] > 0) sum[i] /= static_cast<float>(num[i]);
   return sum;
@@ -170,15 +147,13 @@ struct GonePixels {
 /// saw a place decides: had the surface of an older one left before, it would have been cleared then.
 class RemovedSurface {
  public:
-  RemovedSurface(const PreparedView& view, const DepthTestOptions& options)
-      : view_(view),
-        options_(options),
-        met_(view.cloud.width(), view.cloud.height()),
+  explicit RemovedSurface(const PreparedView& view)
+      : met_(view.cloud.width(), view.cloud.height()),
         decided_(met_),
         removed_(decided_),
         contradictions_(view.cloud.width(), view.cloud.height()) {}
 
-  [[nodiscard]] GonePixels add(const PreparedView& earlier, const PairEvidence& pair) {
+  [[nodiscard]] GonePixels add(const PairEvidence& pair) {
     const Image<Evidence>& evidence = pair.of_earlier.evidence;
     GonePixels gone;
     std::vector<std::size_t> present;
@@ -190,27 +165,20 @@ class RemovedSurface {
       if (evidence[i] == Evidence::kPresent) present.push_back(at);
       if (evidence[i] == Evidence::kPresent || decided_[at] != 0) continue;
       removed_[at] = 1;
+      contradictions_[at] = std::max(contradictions_[at], pair.of_earlier.contradiction[i]);
       gone.in_earlier.push_back(static_cast<int>(i));
       gone.in_view.push_back(static_cast<int>(at));
     }
     for (const std::size_t at : present) decided_[at] = 1;
-    const std::vector<float> contradictions =
-        weigh_contradictions(earlier, view_, pair.of_earlier, gone.in_earlier, pair.noise_scale, options_);
-    for (std::size_t k = 0; k < contradictions.size(); ++k) {
-      float& largest = contradictions_[static_cast<std::size_t>(gone.in_view[k])];
-      largest = std::max(largest, contradictions[k]);
-    }
     return gone;
   }
   Image<std::uint8_t>& mask() { return removed_; }
   /// A pixel that no earlier view projects to is removed if most of those around it are.
   void fill_gaps();
-  /// Largest weigh_contradictions() of the removed pixels.
+  /// Largest contradiction per removed pixel.
   [[nodiscard]] const Image<float>& contradictions() const { return contradictions_; }
 
  private:
-  const PreparedView& view_;
-  const DepthTestOptions& options_;
   Image<std::uint8_t> met_;  // Pixels to which an earlier view projects.
   Image<std::uint8_t> decided_;
   Image<std::uint8_t> removed_;
@@ -246,15 +214,14 @@ DepthChanges find_depth_changes(const PreparedView& view, std::span<const Prepar
                [&](std::size_t e) { pairs[e] = compare_both_ways(view, *earlier_views[e], options, num_threads); });
   changes.novel = find_novel(view, pairs, changes.num_explained);
   if (!pairs.empty()) drop_filled_holes(view, *earlier_views.back(), pairs.back(), options.sigmas, changes.novel);
-  drop_weak_regions(measure_novel(view, earlier_views, pairs, options, changes.novel), options.min_region_px,
-                    changes.novel);
+  drop_weak_regions(measure_novel(pairs, changes.novel), options.min_region_px, changes.novel);
 
-  RemovedSurface removed(view, options);
+  RemovedSurface removed(view);
   std::vector<GonePixels> gone(pairs.size());
   for (std::size_t e = pairs.size(); e-- > 0;) {
     for (const Evidence evidence : pairs[e].of_earlier.evidence.data())
       ++changes.evidence_count[static_cast<std::size_t>(evidence)];
-    gone[e] = removed.add(*earlier_views[e], pairs[e]);
+    gone[e] = removed.add(pairs[e]);
   }
   drop_weak_regions(removed.contradictions(), options.min_region_px, removed.mask());
   for (const GonePixels& pixels : gone) {

@@ -84,6 +84,34 @@ TEST(DepthChanges, WhereColoursAreAsBeforeARegionMustBeLarger) {
   EXPECT_GT(count(detect_step(20, 40, true).novel_mask), 40 * 40 / 2);
 }
 
+/// A table, with or without a white plate of 50 x 50 pixels that is 1.3 standard deviations of a difference high.
+PreparedView see_plate(bool is_there, std::uint64_t seed) {
+  const PreparedView view = see_with_noise(table(), usual_pose(), seed);
+  RgbdFrame frame = view.frame;
+  for (int v = 0; v < frame.color.height(); ++v)
+    for (int u = 0; u < frame.color.width(); ++u) {
+      const bool is_plate = is_there && u >= 140 && u < 190 && v >= 110 && v < 160;
+      frame.color(u, v) = is_plate ? Rgb8{230, 230, 225} : Rgb8{180, 130, 90};
+      if (is_plate) frame.depth_m(u, v) -= 1.3F * std::sqrt(2.0F) * view.noise.axial_m(u, v);
+    }
+  return prepare_view(std::move(frame), {.normals = {.window_radius_px = 4}});
+}
+
+TEST(DepthChanges, AFlatThingComesAndGoesWithItsInside) {
+  const PreparedView empty = see_plate(false, 1), full = see_plate(true, 2);
+  const auto inside = [](const Image<std::uint8_t>& mask) {
+    int num = 0;
+    for (int v = 125; v < 145; ++v)
+      for (int u = 155; u < 175; ++u) num += mask(u, v) != 0 ? 1 : 0;
+    return num;
+  };
+  const ChangeResult came = detect(empty, full), left = detect(full, empty);
+  EXPECT_GT(inside(came.novel_mask), 350);
+  EXPECT_GT(inside(left.removed_mask), 350);
+  EXPECT_LT(count(came.novel_mask), 2600);
+  EXPECT_LT(count(left.removed_mask), 2600);
+}
+
 TEST(DepthChanges, NoiseIsNoChange) {
   const PreparedView before = see_with_noise(scene_with({kCarton}), usual_pose(), 1);
   for (const Rigid3& pose : {usual_pose(), kBeside}) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "resight/evaluation/locate_changes.hpp"
 #include "resight/evaluation/placement_changes.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/io/event_file.hpp"
@@ -98,6 +99,8 @@ Result<void> add_events(const fs::path& events, int num_views, const fs::path& u
   auto changes = read_true_changes(events, num_views);
   if (!changes) return changes.error();
   for (TrueChange& change : *changes) rename_object(new_names, change.object);
+  if (const auto located = locate_changes(truth.views, library, *changes); !located)
+    return Error{events.string() + ": " + located.error().message};
   truth.changes = std::move(*changes);
   truth.former_places = former_places_of(*truth.changes, library);
   auto surfaces = read_unknown_surfaces(unknown_models);

@@ -18,14 +18,15 @@ namespace resight {
 /// A true change of the scene, which happened before `view` was recorded.
 struct TrueChange {
   int view = 0;
-  ObjectEventKind kind = ObjectEventKind::kMoved;  ///< kAdded, kMoved or kRemoved.
-  std::string object;                              ///< Name of the model.
-  bool known = true;                               ///< Whether the object is in the library.
-  std::optional<Rigid3> world_from_object_before;  ///< Absent for kAdded.
-  std::optional<Rigid3> world_from_object_after;   ///< Absent for kRemoved.
+  ObjectEventKind kind = ObjectEventKind::kMoved;    ///< kAdded, kMoved or kRemoved.
+  std::string object;                                ///< Name of the model.
+  bool known = true;                                 ///< Whether the object is in the library.
+  std::optional<Rigid3> world_from_object_before{};  ///< Absent for kAdded, and before locate_changes().
+  std::optional<Rigid3> world_from_object_after{};   ///< Absent for kRemoved, and before locate_changes().
 };
 
-/// Reads the events of a sequence that has `num_views` views (read_event_file()).
+/// Reads the events of a sequence that has `num_views` views (read_event_file()). Those without poses need
+/// locate_changes().
 [[nodiscard]] Result<std::vector<TrueChange>> read_true_changes(const std::filesystem::path& file, int num_views);
 
 /// Former places of library objects according to the true changes. Unlike find_former_places(), an object that leaves

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "resight/core/check.hpp"
 #include "resight/core/statistics.hpp"
+#include "resight/geometry/area_sums.hpp"
 
 namespace resight {
 namespace {
@@ -41,49 +43,35 @@ Channels estimate_gain(const Image<Rgb8>& colors, const Image<Rgb8>& others, con
   return gain;
 }
 
-/// Sums of the differences of colours over squares, from one pixel in four.
-class SquareSums {
- public:
-  static constexpr int kStep_px = 2;
-  static constexpr float kMaxLevel = 255;  // No sum overflows below 33 megapixels.
+/// Means of the differences of colours over squares, from one pixel in four.
+class MeanDifferences {
+  using Sums = Eigen::Matrix<std::int64_t, 4, 1>;  // Three channels, and the number of pixels.
 
-  SquareSums(const Image<Rgb8>& colors, const Image<Rgb8>& others, const Image<int>& pixels, const Channels& gain)
-      : width_((colors.width() + kStep_px - 1) / kStep_px),
-        height_((colors.height() + kStep_px - 1) / kStep_px),
-        sums_((static_cast<std::size_t>(width_) + 1) * (static_cast<std::size_t>(height_) + 1),
-              Eigen::Vector4i::Zero()) {
-    for (int v = 0; v < height_; ++v) {
-      Eigen::Vector4i row = Eigen::Vector4i::Zero();
-      for (int u = 0; u < width_; ++u) {
-        const std::size_t i = colors.index(u * kStep_px, v * kStep_px);
-        if (pixels[i] >= 0) {
-          const Channels d = channels_of(colors[i]) - gain * channels_of(others[static_cast<std::size_t>(pixels[i])]);
-          row.head<3>() += d.max(-kMaxLevel).min(kMaxLevel).cast<int>().matrix();
-          ++row[3];
-        }
-        sums_[index(u + 1, v + 1)] = sums_[index(u + 1, v)] + row;
-      }
-    }
-  }
+ public:
+  MeanDifferences(const Image<Rgb8>& colors, const Image<Rgb8>& others, const Image<int>& pixels, const Channels& gain)
+      : sums_((colors.width() + kStep_px - 1) / kStep_px, (colors.height() + kStep_px - 1) / kStep_px,
+              [&](int u, int v) -> Sums {
+                const std::size_t i = colors.index(u * kStep_px, v * kStep_px);
+                if (pixels[i] < 0) return Sums::Zero();
+                const Channels d =
+                    channels_of(colors[i]) - gain * channels_of(others[static_cast<std::size_t>(pixels[i])]);
+                Sums value = Sums::Ones();
+                value.head<3>() = d.max(-kMaxLevel).min(kMaxLevel).cast<std::int64_t>().matrix();
+                return value;
+              }) {}
 
   /// Over the square around a pixel; zero without any pair of colours in it.
   [[nodiscard]] Channels mean(int u, int v, int radius_px) const {
-    const int left = std::max((u - radius_px) / kStep_px, 0);
-    const int top = std::max((v - radius_px) / kStep_px, 0);
-    const int right = std::min((u + radius_px) / kStep_px + 1, width_);
-    const int bottom = std::min((v + radius_px) / kStep_px + 1, height_);
-    const Eigen::Vector4i sum =
-        sums_[index(right, bottom)] - sums_[index(left, bottom)] - sums_[index(right, top)] + sums_[index(left, top)];
-    return sum.head<3>().cast<float>().array() / static_cast<float>(std::max(sum[3], 1));
+    const Sums sum = sums_.sum(std::max(u - radius_px, 0) / kStep_px, std::max(v - radius_px, 0) / kStep_px,
+                               (u + radius_px) / kStep_px, (v + radius_px) / kStep_px);
+    return sum.head<3>().cast<float>().array() / static_cast<float>(std::max<std::int64_t>(sum[3], 1));
   }
 
  private:
-  [[nodiscard]] std::size_t index(int u, int v) const {
-    return static_cast<std::size_t>(v) * (static_cast<std::size_t>(width_) + 1) + static_cast<std::size_t>(u);
-  }
-  int width_;
-  int height_;
-  std::vector<Eigen::Vector4i> sums_;
+  static constexpr int kStep_px = 2;
+  static constexpr float kMaxLevel = 255;
+
+  AreaSums<Sums> sums_;
 };
 
 class ColorComparison {
@@ -94,7 +82,7 @@ class ColorComparison {
         pixels_(view_pixels),
         radius_px_(radius_px),
         gain_(estimate_gain(colors_, others_, view_pixels)),
-        sums_(colors_, others_, view_pixels, gain_) {}
+        means_(colors_, others_, view_pixels, gain_) {}
 
   /// Grey levels between the colour and the most similar one in the other view. What is at most `enough` may be
   /// returned too large. The pixel must have one in the other view.
@@ -108,7 +96,7 @@ class ColorComparison {
   /// first, what lies beside a change would seem changed.
   [[nodiscard]] float deviation(int u, int v, float enough) const {
     const Channels color = channels_of(colors_(u, v));
-    const Channels even = color - sums_.mean(u, v, pixels_.width() / kSurroundingsPerWidth);
+    const Channels even = color - means_.mean(u, v, pixels_.width() / kSurroundingsPerWidth);
     return least_difference(pixels_(u, v), enough, [&](const Channels& other) {
       return std::min((color - other).square().sum(), (even - other).square().sum());
     });
@@ -130,7 +118,7 @@ class ColorComparison {
     return num == 0 ? 1 : std::max(kMinSimilarShare, static_cast<double>(num_similar) / num);
   }
 
-  /// The least deviation() of a change.
+  /// The limit of difference() and of deviation().
   [[nodiscard]] float find_limit() const {
     std::vector<float> sample;
     for (int v = 0; v < pixels_.height(); v += kSampleStep_px)
@@ -160,7 +148,7 @@ class ColorComparison {
   const Image<int>& pixels_;
   int radius_px_;
   Channels gain_;
-  SquareSums sums_;
+  MeanDifferences means_;
 };
 
 }  // namespace
@@ -178,10 +166,11 @@ ColorChanges find_color_changes(const PreparedView& surfaces, const PreparedView
     if (view_pixels[static_cast<std::size_t>(i)] < 0) continue;
     const int u = i % view_pixels.width();
     const int v = i / view_pixels.width();
-    if (comparison.difference(u, v, limit / 2) <= limit / 2)
+    const float difference = comparison.difference(u, v, limit / 2);
+    if (difference <= limit / 2)
       found.same.push_back(i);
-    else if (comparison.deviation(u, v, limit) > limit)
-      found.changed.push_back(i);
+    else if (difference > limit)
+      (comparison.deviation(u, v, limit) > limit ? found.standing_out : found.different).push_back(i);
   }
   return found;
 }

@@ -56,7 +56,7 @@ std::vector<int> find_in(const Image<Rgb8>& colors, const Image<Rgb8>& others, i
                          const Image<int>& pixels = same_pixels()) {
   std::vector<int> all(pixels.size());
   std::iota(all.begin(), all.end(), 0);
-  return find_color_changes(see_colors(colors), see_colors(others), pixels, all, radius_px).changed;
+  return find_color_changes(see_colors(colors), see_colors(others), pixels, all, radius_px).standing_out;
 }
 
 TEST(FindColorChanges, AThinThingThatComesOrGoes) {
@@ -73,8 +73,33 @@ TEST(FindColorChanges, OnlyCandidatesCount) {
   const std::vector<int> candidates{51 * kWallWidth + 70, 51 * kWallWidth + 61, 10};
   const ColorChanges found =
       find_color_changes(see_colors(wood_with_pen()), see_colors(wood()), same_pixels(), candidates, 1);
-  EXPECT_EQ(found.changed, (std::vector<int>{candidates[0], candidates[1]}));
+  EXPECT_EQ(found.standing_out, (std::vector<int>{candidates[0], candidates[1]}));
   EXPECT_EQ(found.same, std::vector<int>{candidates[2]});
+}
+
+TEST(FindColorChanges, TheInsideOfALargeThingDiffersButDoesNotStandOut) {
+  Image<Rgb8> colors = wood();
+  for (int v = 20; v < 100; ++v)
+    for (int u = 40; u < 120; ++u) colors(u, v) = kPen;
+  const auto pixel = [](int u, int v) { return v * kWallWidth + u; };
+  const std::vector<int> candidates{pixel(40, 60), pixel(80, 60), pixel(10, 60)};
+  const ColorChanges found = find_color_changes(see_colors(colors), see_colors(wood()), same_pixels(), candidates, 0);
+  EXPECT_EQ(found.standing_out, std::vector<int>{candidates[0]});
+  EXPECT_EQ(found.different, std::vector<int>{candidates[1]});
+  EXPECT_EQ(found.same, std::vector<int>{candidates[2]});
+}
+
+TEST(FindColorChanges, BetweenHalfOfTheLimitAndTheLimitNothingIsSaid) {
+  Image<Rgb8> colors = wood();  // The limit is 32 grey levels.
+  const auto found_with = [&](int difference) {
+    colors(70, 50).b = static_cast<std::uint8_t>(kWood.b + difference);
+    return find_color_changes(see_colors(colors), see_colors(wood()), same_pixels(), std::vector{50 * kWallWidth + 70},
+                              0);
+  };
+  EXPECT_EQ(found_with(14).same.size(), 1);
+  const ColorChanges between = found_with(24);
+  EXPECT_EQ(between.same.size() + between.different.size() + between.standing_out.size(), 0);
+  EXPECT_EQ(found_with(40).standing_out.size(), 1);
 }
 
 TEST(FindColorChanges, ExposureAndSoftShadowsAreNone) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "resight/core/options.hpp"
 #include "resight/evidence/surface_evidence.hpp"
@@ -25,7 +22,8 @@ inline void declare(OptionVisitor& v, CompareViewsOptions& o) {
           "noise of both views.",
           "Nguyen et al. 2012 (noise of the sensor)");
   v.field("recolored_sigmas", o.recolored_sigmas, positive(),
-          "The same where the colours differ, too. off: colours do not count.", "ours");
+          "The same where a colour stands out that did not before. off: colours do not count, and neither do means.",
+          "ours");
   v.field("window_radius_px", o.window_radius_px, between(0, 100),
           "A measurement within this many rows and columns may explain a surface, and must not contradict free space.");
   v.num_threads(o.num_threads);
@@ -36,26 +34,23 @@ struct ViewComparison {
   Image<Evidence> evidence;
   Image<int> pixels;  ///< Index of the pixel of the view that the surface projects to; -1: none, or at too grazing an
                       ///< angle.
-  Image<std::uint8_t> recolored;  ///< Non-zero where CompareViewsOptions::recolored_sigmas decided.
-  /// What a contradiction counts: less than 1 where colours are as before (ColorChanges::similar_share).
-  Image<float> weight;
+  /// By how much the view contradicts a surface that it sees through: 0 at the least difference that counts, 1 from
+  /// twice that on, and less where the colours are as before (ColorChanges::similar_share). 0 elsewhere.
+  Image<float> contradiction;
 };
 
 /// Compares the surfaces of one view with another view. The test is statistical: the distance between the surface and
 /// the measurement, along the normal of the surface, is compared with the noise of both views, which depends on range
 /// and angle (NoiseImages::normal_m). `noise_scale` multiplies it; see estimate_noise_scale(). Pixels without depth in
-/// either view are kUnobserved, and so is what projects between the measurements of a depth edge. What the view sees
-/// through needs less distance where the colours differ, too (find_color_changes()). Both poses must be in one world
-/// frame.
+/// either view are kUnobserved, and so is what projects between the measurements of a depth edge.
+///
+/// Two kinds of surface need less distance where the colours differ (find_color_changes()). Thin things: a surface that
+/// stands out in colour is seen through from `recolored_sigmas` on. Flat things: a surface is seen through if the mean
+/// distance within a few centimetres (MeanDistances) is more than `sigmas` standard deviations of such means.
+///
+/// Both poses must be in one world frame.
 [[nodiscard]] ViewComparison compare_views(const PreparedView& surfaces, const PreparedView& view, double noise_scale,
                                            const CompareViewsOptions& options = {});
-
-/// By how many standard deviations a view contradicts the surfaces at these pixels: the distances of compare_views(),
-/// divided by the noise and by `noise_scale`. Positive if the view sees through the surface, negative if it sees
-/// something in front of it; NaN where it says nothing. One value per pixel of `pixels`, which are indices into the
-/// images of `surfaces`.
-[[nodiscard]] std::vector<float> measure_contradiction(const PreparedView& surfaces, const PreparedView& view,
-                                                       std::span<const int> pixels, double noise_scale);
 
 /// How much larger the differences between two views are than the noise of the model: a robust standard deviation (1.48
 /// times the median absolute value) of the normalised distances of compare_views(), at least 0.7. Poses that are

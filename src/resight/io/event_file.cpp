@@ -28,30 +28,48 @@ Result<std::optional<Rigid3>> parse_event_pose(const json& event, const char* ke
   return std::optional(*pose);
 }
 
-Result<RecordedEvent> parse_event(const json& value, int num_views) {
-  const auto kind = io::as_text(io::member(value, "kind"));
+/// What both forms of an entry have.
+Result<RecordedEvent> parse_change(const json& view_value, const json& kind_value, const json& object_value,
+                                   int num_views) {
+  const auto kind = io::as_text(kind_value);
   if (!kind || (*kind != "added" && *kind != "moved" && *kind != "removed"))
     return Error{"kind: expected added, moved or removed"};
-  const auto view = io::as_integer(io::member(value, "view"));
+  const auto view = io::as_integer(view_value);
   if (!view || *view < 0) return Error{"view: expected a whole number of 0 or more"};
   if (*view >= num_views) return Error{fmt::format("view: {}, but the sequence has {} views", *view, num_views)};
-  auto object = io::as_text(io::member(value, "object"));
+  auto object = io::as_text(object_value);
   if (!object) return Error{"object: expected a text"};
   if (const auto valid = check_object_name(*object); !valid) return Error{"object: " + valid.error().message};
+  RecordedEvent event;
+  event.view = *view;
+  event.kind = *kind;
+  event.object = *std::move(object);
+  return event;
+}
+
+/// [view, kind, object]
+Result<RecordedEvent> parse_short_event(const json& value, int num_views) {
+  if (value.size() != 3) return Error{"expected an object, or [view, kind, object]"};
+  return parse_change(value[0], value[1], value[2], num_views);
+}
+
+Result<RecordedEvent> parse_event(const json& value, int num_views) {
+  if (value.is_array()) return parse_short_event(value, num_views);
+  auto event =
+      parse_change(io::member(value, "view"), io::member(value, "kind"), io::member(value, "object"), num_views);
+  if (!event) return event;
   const json& known = io::member(value, "known");
   if (!known.is_boolean()) return Error{"known: expected true or false"};
+  event->known = known.get<bool>();
   const auto before = parse_event_pose(value, "world_from_object_before");
   if (!before) return before.error();
   const auto after = parse_event_pose(value, "world_from_object_after");
   if (!after) return after.error();
-  if (before->has_value() != (*kind != "added") || after->has_value() != (*kind != "removed"))
-    return Error{fmt::format("the poses do not match the kind '{}'", *kind)};
-  return RecordedEvent{.view = *view,
-                       .kind = *kind,
-                       .object = *std::move(object),
-                       .known = known.get<bool>(),
-                       .world_from_object_before = *before,
-                       .world_from_object_after = *after};
+  if (before->has_value() != (event->kind != "added") || after->has_value() != (event->kind != "removed"))
+    return Error{fmt::format("the poses do not match the kind '{}'", event->kind)};
+  event->world_from_object_before = *before;
+  event->world_from_object_after = *after;
+  return event;
 }
 
 }  // namespace

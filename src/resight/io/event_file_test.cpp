@@ -45,6 +45,21 @@ TEST_F(EventFile, GoodEventsAreRead) {
   EXPECT_FALSE((*events)[1].world_from_object_before.has_value());
 }
 
+TEST_F(EventFile, TheShortFormHasNoPoses) {
+  const auto events = read(R"({"events": [[3, "moved", "mug"], [4, "added", "box"]]})");
+  ASSERT_TRUE(events.ok()) << events.error().message;
+  ASSERT_EQ(events->size(), 2U);
+  EXPECT_EQ((*events)[0].view, 3);
+  EXPECT_EQ((*events)[0].kind, "moved");
+  EXPECT_EQ((*events)[0].object, "mug");
+  EXPECT_FALSE((*events)[0].world_from_object_before.has_value());
+  EXPECT_FALSE((*events)[1].world_from_object_after.has_value());
+  EXPECT_THAT(fault_of(R"([3, "moved"])"), HasSubstr("events[0]: expected an object, or [view, kind, object]"));
+  EXPECT_THAT(fault_of(R"([3, "moved", "mug", 1])"), HasSubstr("expected an object, or [view, kind, object]"));
+  EXPECT_THAT(fault_of(R"(["mug", "moved", 3])"), HasSubstr("view: expected"));
+  EXPECT_THAT(fault_of(R"([5, "moved", "mug"])"), HasSubstr("view: 5, but the sequence has 5 views"));
+}
+
 TEST_F(EventFile, WhatIsNoListOfEventsIsRefused) {
   EXPECT_THAT(read("nonsense").error().message, HasSubstr("is not valid JSON: line 1"));
   for (const char* text : {"{}", "[]", "3", R"({"events": {}})", R"({"events": null})"})
