@@ -42,23 +42,24 @@ switches=(
   'verify.acceptance.min_pattern_similarity = "off"'
   'verify.acceptance.untextured.enabled = false'
   'verify.acceptance.require_unary_gain = false; verify.acceptance.untextured.min_gain = 0'
-  'verify.acceptance.min_explained_share = 0'
-  'verify.acceptance.min_visible_share = 0'
   'search.max_new_share = "off"'
   'search.place_interval = "off"'
   'poses.correct = false'
+  'changes.removed_hypotheses = "discard"'
+  'verify.visibility.arrival_share = "off"'
   'color_offset.correct = false'
   'depth_bias.correct = false'
-  'prepare.color_width_m = "off"'
   'verify.selection.score_power = 0'
+  'verify.appearance.sigma_saturation = 0; verify.appearance.sigma_ab = 0.17'
+  'verify.appearance.pattern_radius_m = "off"'
   'detections.further_instance_odds = 1'
   'detections.min_score = 0'
-  'detections.min_reported_share = 0'
-  'verify.appearance.pattern_radius_m = "off"'
-  'verify.appearance.sigma_saturation = 0; verify.appearance.sigma_ab = 0.17'
-  'verify.appearance.use_color = false'
+  'prepare.color_width_m = "off"'
   'verify.visibility.min_edge_distance_px = 0'
-  'verify.visibility.arrival_share = "off"'
+  'verify.acceptance.min_explained_share = 0'
+  'verify.acceptance.min_visible_share = 0'
+  'detections.min_reported_share = 0'
+  'verify.appearance.use_color = false'
   'verify.visibility.free_space = "majority"'
   'verify.refine.max_iterations = "off"'
   'verify.refine.symmetry_step_rad = "off"'
@@ -70,7 +71,6 @@ switches=(
   'history.confirm_score = 0'
   'history.min_new_share = 0'
   'remember_objects = false; search.max_new_share = "off"; search.place_interval = "off"'
-  'changes.removed_hypotheses = "discard"'
   'changes.test = "points"'
   'changes.enabled = false'
   'shape.enabled = false'
@@ -193,7 +193,7 @@ find_changes() {
 # compare SETTINGS FOLDER...: the row of bench_compare_results, with the feature against without it.
 compare() {
   local folder arguments=()
-  for folder in "${@:2}"; do arguments+=("$folder/$(slug "$1")" "$folder/default"); done
+  for folder in "${@:2}"; do arguments+=("$folder/$(slug "${1:-default}")" "$folder/default"); done
   "$compare" "${arguments[@]}" | awk -v title="" -f scripts/table_columns.awk \
     -v columns="right, A and B;wrong, A and B;F;strict F;F of events;CPU, B / A"
 }
