@@ -14,6 +14,7 @@ namespace resight {
 namespace {
 
 constexpr int kMinRadius_px = 2;
+constexpr int kMinToClear = 2;    // Views that see through a surface before it has left: one may err.
 constexpr int kMaxGap_px = 2;     // Within a region: the pixels of one view do not cover all of another's.
 constexpr int kMinAroundGap = 6;  // Of 25 pixels: a quarter. So many are met if the camera comes twice as near.
 
@@ -56,18 +57,23 @@ PairEvidence compare_both_ways(const PreparedView& view, const PreparedView& ear
   return pair;
 }
 
+/// From the newest earlier view to the oldest: a surface of before that kMinToClear newer views saw through had left,
+/// so that it explains nothing.
 Image<std::uint8_t> find_novel(const PreparedView& view, std::span<const PairEvidence> pairs,
                                std::size_t& num_explained) {
-  Image<std::uint8_t> novel(view.cloud.width(), view.cloud.height());
-  Image<std::uint8_t> explained(novel);
-  for (const PairEvidence& pair : pairs)
-    for (std::size_t i = 0; i < novel.size(); ++i) {
-      if (pair.of_view.evidence[i] == Evidence::kPresent) explained[i] = 1;
-      if (pair.of_view.evidence[i] == Evidence::kSeenThrough) novel[i] = 1;
+  Image<std::uint8_t> num_seen_through(view.cloud.width(), view.cloud.height());
+  Image<std::uint8_t> explained(num_seen_through);
+  for (std::size_t e = pairs.size(); e-- > 0;)
+    for (std::size_t i = 0; i < explained.size(); ++i) {
+      if (explained[i] != 0 || num_seen_through[i] >= kMinToClear) continue;
+      const Evidence evidence = pairs[e].of_view.evidence[i];
+      if (evidence == Evidence::kPresent) explained[i] = 1;
+      if (evidence == Evidence::kSeenThrough) ++num_seen_through[i];
     }
+  Image<std::uint8_t> novel(num_seen_through);
   for (std::size_t i = 0; i < novel.size(); ++i) {
     num_explained += explained[i];
-    if (explained[i] != 0) novel[i] = 0;
+    novel[i] = explained[i] == 0 && num_seen_through[i] > 0 ? 1 : 0;
   }
   return novel;
 }

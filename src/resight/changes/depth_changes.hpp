@@ -47,7 +47,8 @@ struct DepthChanges {
 
 /// Compares each pixel of the view with every earlier view, and the reverse (compare_views()).
 ///
-/// Novel: no earlier view has the surface, and at least one saw free space there. A hole in the depth of the newest
+/// Novel: no earlier view has the surface, and at least one saw free space there. What two newer of the earlier views
+/// saw through had left, and does not count: something else was at the same place. A hole in the depth of the newest
 /// earlier view, within a surface that it saw, is no free space when it fills later. Removed: the view sees through the
 /// surface of an earlier view. Both need neighbours, because neighbouring errors of depth are alike: a region is noise
 /// unless it is large or contradicts the other view clearly (DepthTestOptions::min_region_px). Where colours have

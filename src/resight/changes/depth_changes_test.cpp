@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
 #include "resight/changes/change_detector.hpp"
@@ -110,6 +111,18 @@ TEST(DepthChanges, AFlatThingComesAndGoesWithItsInside) {
   EXPECT_GT(inside(left.removed_mask), 350);
   EXPECT_LT(count(came.novel_mask), 2600);
   EXPECT_LT(count(left.removed_mask), 2600);
+}
+
+// The carton leaves, and comes back at its old place. One view without it may err, two do not.
+TEST(DepthChanges, WhatComesWhereSomethingElseWasIsNovel) {
+  const PreparedView with = see(scene_with({kCarton})), without = see(scene_with({}), kBeside);
+  const auto num_novel = [&](const std::vector<const PreparedView*>& earlier) {
+    return count(find_depth_changes(with, earlier, {}, 1).novel);
+  };
+  EXPECT_EQ(num_novel({&with, &without}), 0);
+  EXPECT_EQ(num_novel({&without, &with, &without}), 0);
+  EXPECT_GT(num_novel({&with, &without, &without}), 1500);
+  EXPECT_GT(num_novel({&with, &with, &without, &without}), 1500);
 }
 
 TEST(DepthChanges, NoiseIsNoChange) {
