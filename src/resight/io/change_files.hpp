@@ -8,7 +8,7 @@ namespace resight {
 
 /// The files that state the true changes of a sequence. A path is empty if there is no such file.
 struct ChangeFiles {
-  std::filesystem::path events;   ///< Events (read_event_file()) (JSON).
+  std::filesystem::path events;   ///< JSON, see read_event_file().
   std::filesystem::path changes;  ///< Chains of annotations (`.changes` of TUW, tuw_changes.hpp).
   [[nodiscard]] bool empty() const { return events.empty() && changes.empty(); }
 };
