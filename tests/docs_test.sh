@@ -35,7 +35,8 @@ done
 while read -r key; do  # options of settings files
   checked=$((checked + 1)); p=${key//./\\.}; p=${p//\*/[a-z_0-9.]*}
   grep -qE "^(\| \`$p\`|## \`\[$p\]\`)" docs/options.md || missing "a document names an option that is not there: $key"
-done < <(grep -hoE '`(poses|prepare|features|hypotheses|shape|changes|integrate|verify|detections|history|search|run|attention|match|removal|cluster|sift|shot)\.[a-z_.*0-9]+' README.md CHANGELOG.md CONTRIBUTING.md docs/*.md |
+done < <(grep -hoE '`(poses|prepare|features|hypotheses|shape|changes|integrate|verify|detections|history|search|run|attention|match|removal|cluster|sift|shot)\.[a-z_.*0-9]+' README.md CONTRIBUTING.md docs/*.md \
+  <(awk '/^## \[[0-9]/ { exit } /^### / { removed = /Removed/ } !removed' CHANGELOG.md) |  # options of today
   tr -d '`' | grep -vE '\.(json|csv|png|ply|cpp|hpp|toml)$|^poses\.txt' | sort -u)
 
 while read -r line; do

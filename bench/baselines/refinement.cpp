@@ -56,7 +56,7 @@ std::vector<int> visible_points(const PreparedModel& model, const Rigid3& world_
   for (const Eigen::Vector3f& p : model.points) points.push_back(pose * p);
   for (const Eigen::Vector3f& n : model.normals) normals.push_back(pose.rotation * n);
   return find_visible_points(points, normals, views, std::vector<std::uint8_t>{1}, options.visibility,
-                             {.spacing_m = options.resolution_m})
+                             options.resolution_m)
       .visible;
 }
 

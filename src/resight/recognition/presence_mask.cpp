@@ -157,14 +157,4 @@ void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8
   mask = std::move(kept_mask);
 }
 
-void reverify_removed(std::size_t num_hypotheses, std::vector<std::uint8_t>& mask) {
-  if (mask.empty()) return;
-  const std::size_t newest = mask.size() - num_hypotheses;
-  for (std::size_t h = 0; h < num_hypotheses; ++h) {
-    if (mask[newest + h] != 0) continue;
-    for (std::size_t i = h; i < newest; i += num_hypotheses) mask[i] = 0;
-    mask[newest + h] = 1;
-  }
-}
-
 }  // namespace resight

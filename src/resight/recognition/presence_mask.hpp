@@ -32,8 +32,5 @@ struct ViewChanges {
 
 /// Drops the hypotheses that the mask excludes from the current view, from both. Does nothing if the mask is empty.
 void discard_removed(std::vector<Hypothesis>& hypotheses, std::vector<std::uint8_t>& mask);
-/// Admits the hypotheses that the mask excludes from the current view to this view alone: it decides whether they are
-/// still there.
-void reverify_removed(std::size_t num_hypotheses, std::vector<std::uint8_t>& mask);
 
 }  // namespace resight

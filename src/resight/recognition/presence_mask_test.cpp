@@ -82,17 +82,10 @@ TEST(RemovedHypotheses, AreDiscarded) {
   EXPECT_EQ(hypotheses[1].id, 2U);
 }
 
-TEST(RemovedHypotheses, AreLeftToTheCurrentView) {
-  Mask mask{1, 1, 0, 1, 1, 0, 1, 0, 1};
-  reverify_removed(3, mask);
-  EXPECT_EQ(mask, (Mask{1, 0, 0, 1, 0, 0, 1, 1, 1}));
-}
-
 TEST(RemovedHypotheses, WithoutAMaskAllStay) {
   std::vector<Hypothesis> hypotheses(2);
   Mask mask;
   discard_removed(hypotheses, mask);
-  reverify_removed(2, mask);
   EXPECT_EQ(hypotheses.size(), 2U);
   EXPECT_TRUE(mask.empty());
   std::vector<Hypothesis> none;

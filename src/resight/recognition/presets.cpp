@@ -20,7 +20,6 @@ void set_default_verification(VerifyOptions& verify) {
   verify.support.max_distance_m = 0.01;        // Poses are refined.
   verify.visibility.min_edge_distance_px = 3;  // As integrate.min_edge_distance_px.
   verify.visibility.free_space = NewestViewFreeSpace{};
-  verify.visibility.arrival_share = 0.6;
   verify.appearance.sigma_l = 0.45;          // An object in shadow is darker than the fit has it.
   verify.appearance.sigma_ab = 0.1;          // Grey stays grey;
   verify.appearance.sigma_saturation = 0.8;  // cameras, gloss and light from other objects scale saturation.
@@ -37,7 +36,6 @@ void set_default_verification(VerifyOptions& verify) {
                        .min_pattern_similarity = 0.5,  // but its texture stays its own,
                        .min_newest_similarity = 0.4,   // whatever stood there before.
                        .min_shared_texture = 0.08,
-                       .untextured = UntexturedOptions{},
                        .require_unary_gain = true};
 }
 
@@ -57,7 +55,6 @@ void set_default(RecognizerConfig& config) {
   config.shape.skip_planes = true;
   config.shape.max_seeds = 600;
   config.changes.detection.test = DepthTestOptions{};
-  config.changes.removed_hypotheses = RemovedHypotheses::kReverify;
   set_default_verification(config.verify);
   config.detections.min_reported_share = 0.01;
   config.detections.min_score = 0.3;

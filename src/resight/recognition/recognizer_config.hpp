@@ -82,19 +82,12 @@ inline void declare(OptionVisitor& v, HypothesisOptions& o) {
       "ours");
 }
 
-/// What happens to hypotheses of objects that the detected changes say are gone.
-enum class RemovedHypotheses : std::uint8_t {
-  kDiscard,   ///< They are dropped (paper).
-  kReverify,  ///< The newest view alone verifies them.
-};
-
 /// Detected changes, and what follows from them.
 struct ChangeOptions {
   bool enabled = true;
   DetectChangesOptions detection{};
   double clear_tolerance_m = 0.02;
   RemovalSupportOptions removal{};
-  RemovedHypotheses removed_hypotheses = RemovedHypotheses::kDiscard;
 };
 
 inline void declare(OptionVisitor& v, ChangeOptions& o) {
@@ -104,9 +97,6 @@ inline void declare(OptionVisitor& v, ChangeOptions& o) {
     v.field("clear_tolerance_m", o.clear_tolerance_m, positive(),
             "Points within this distance of removed ones are cleared from older views.", "V4R");
     v.group("removal", o.removal);
-    v.choice("removed_hypotheses", o.removed_hypotheses,
-             {{"discard", "they are dropped (paper)"}, {"reverify", "the newest view alone verifies them"}},
-             "What happens to hypotheses of objects that the changes say are gone.");
   });
 }
 

@@ -120,8 +120,6 @@ TEST(RecognizerConfig, RefusesCombinationsWithoutEffect) {
   EXPECT_THROW(config.check(), std::invalid_argument) << "planes without segments, which this rule needs";
   config.verify.planes->spacing_m.reset();
   EXPECT_NO_THROW(config.check());
-  config.verify.acceptance.require_unary_gain = false;
-  EXPECT_THROW(config.check(), std::invalid_argument) << "a gain of untextured objects only";
 }
 
 TEST(OptionsReference, NamesEveryOptionWithItsValues) {

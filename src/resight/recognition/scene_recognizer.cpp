@@ -36,7 +36,7 @@ struct SceneRecognizer::Impl {
   [[nodiscard]] Hypotheses merge_and_cluster(SceneUpdate& update, RecognitionTrace* trace);
   [[nodiscard]] Hypotheses tracked_hypotheses() const;
   [[nodiscard]] Mask presence_of(const Hypotheses& hypotheses) const;
-  [[nodiscard]] Mask handle_removed(Hypotheses& hypotheses, SceneUpdate& update) const;
+  [[nodiscard]] Mask discard_absent(Hypotheses& hypotheses, SceneUpdate& update) const;
   void verify(VerifiedHypotheses& verified, SceneUpdate& update);
   void update_history(SceneUpdate& update);
 
@@ -62,7 +62,7 @@ SceneUpdate SceneRecognizer::Impl::add_view(RgbdFrame frame, RecognitionTrace* t
   budget.drop_late(
       verified.hypotheses, [&](const Hypothesis& h) { return pool.is_tracked(h); }, update.left_out);
   // Section III-B: changes exclude views in which an object was absent. Section III-A: verification in the others.
-  verified.present = handle_removed(verified.hypotheses, update);
+  verified.present = discard_absent(verified.hypotheses, update);
   verify(verified, update);
   update_history(update);
   // What this view showed decides where the next one is searched, and which hypotheses it takes over.
@@ -148,12 +148,11 @@ auto SceneRecognizer::Impl::presence_of(const Hypotheses& hypotheses) const -> M
   return compute_presence_mask(hypotheses, library, changes, config.changes.removal, config.verify.num_threads);
 }
 
-auto SceneRecognizer::Impl::handle_removed(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
+auto SceneRecognizer::Impl::discard_absent(Hypotheses& hypotheses, SceneUpdate& update) const -> Mask {
   if (!config.changes.enabled) return {};
   const ScopedTimer timer(update.times, "presence");
   Mask present = presence_of(hypotheses);
-  const bool reverify = config.changes.removed_hypotheses == RemovedHypotheses::kReverify;
-  reverify ? reverify_removed(hypotheses.size(), present) : discard_removed(hypotheses, present);
+  discard_removed(hypotheses, present);
   return present;
 }
 

@@ -68,36 +68,6 @@ TEST(SceneRecognizer, ATrackedObjectTakenAwayIsNotDetected) {
   EXPECT_EQ(last.events[0].kind, ObjectEventKind::kRemoved);
 }
 
-TEST(SceneRecognizer, ObjectsRemovedWithANeighborAreReverifiedInTheNewestView) {
-  BoxScene c;
-  c.config.remember_objects = false;
-  c.config.search = {};
-  c.config.hypotheses.min_carried_share = 0;  // Within the sleeve little of the box is seen.
-  // Their contours show that the poses are right. Otherwise a thin sleeve might be an error of the poses.
-  const Rigid3 world_from_box = c.world.solids[0].world_from_object;
-  for (const Eigen::Vector3d& beside_m :
-       {Eigen::Vector3d(0.25, 0.2, 0), Eigen::Vector3d(-0.25, 0.1, 0), Eigen::Vector3d(0, -0.3, 0)}) {
-    Solid post = placed(make_box(), world_from_box * Rigid3::from_translation(beside_m));
-    post.size_m += Eigen::Vector3d(-0.02, 0.03, 0.05);
-    post.paint = plain({160, 160, 160});
-    c.world.solids.push_back(post);
-  }
-  const World with_box = c.world;
-  Solid sleeve = placed(make_box(), c.world.solids[0].world_from_object);  // About the box, wider.
-  sleeve.size_m += Eigen::Vector3d(0.03, 0.03, -0.05);
-  sleeve.paint = plain({90, 90, 90});
-  World with_sleeve = with_box;
-  with_sleeve.solids.push_back(sleeve);
-  for (const bool judge : {true, false}) {
-    c.config.changes.removed_hypotheses = judge ? RemovedHypotheses::kReverify : RemovedHypotheses::kDiscard;
-    SceneRecognizer recognizer(c.library, c.config, c.store);
-    recognizer.add_view(render(with_sleeve, c.cameras[0]).frame);
-    recognizer.add_view(render(with_sleeve, c.cameras[1]).frame);
-    EXPECT_EQ(recognizer.add_view(render(with_box, c.cameras[2]).frame).detections.size(), judge ? 1U : 0U);
-    EXPECT_TRUE(recognizer.add_view(render({}, c.cameras[3]).frame).detections.empty());
-  }
-}
-
 TEST(SceneRecognizer, AnObjectOutOfSightIsTrackedButNotDetected) {
   BoxScene c;
   const Eigen::Vector3d eye = c.cameras[0].translation;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/acceptance.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "resight/appearance/appearance_match.hpp"
 #include "resight/verification/failed_test.hpp"
@@ -10,24 +9,6 @@
 
 namespace resight {
 namespace {
-
-// 1 for a hypothesis that shares no texture with the scene, 0 from max_shared_contrast on.
-double untextured_degree(const HypothesisEvidence& evidence, const UntexturedOptions& untextured) {
-  return std::clamp(1 - evidence.appearance.shared_texture / untextured.max_shared_contrast, 0.0, 1.0);
-}
-
-double min_explained_share(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (!options.untextured) return options.min_explained_share;
-  return std::lerp(options.min_explained_share,
-                   std::max(options.min_explained_share, options.untextured->min_explained_share),
-                   untextured_degree(evidence, *options.untextured));
-}
-
-double min_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (!options.require_unary_gain || !options.untextured) return 0;
-  return untextured_degree(evidence, *options.untextured) * options.untextured->min_gain *
-         evidence.costs.explained_scene;
-}
 
 /// The tests of one hypothesis, in their order; remembers the first that fails.
 class Tests {
@@ -48,8 +29,7 @@ std::optional<FailedTest> test_evidence(const HypothesisEvidence& evidence, cons
   tests.at_least(Verdict::kTooFewVisible, "visible points", evidence.num_visible, kMinVisiblePoints);
   tests.at_least(Verdict::kTooFewVisible, "visible share", evidence.visible_share, options.min_visible_share);
   tests.at_least(Verdict::kNoSupport, "explained points", evidence.num_explained, 1);
-  tests.at_least(Verdict::kNoSupport, "explained share", evidence.explained_share,
-                 min_explained_share(evidence, options));
+  tests.at_least(Verdict::kNoSupport, "explained share", evidence.explained_share, options.min_explained_share);
   if (appearance.texture_contrast >= kMinTextureContrast)
     tests.at_least(Verdict::kDifferentAppearance, "shared texture", appearance.shared_texture,
                    options.min_shared_texture * appearance.texture_contrast);
@@ -69,16 +49,14 @@ Verdict assess_evidence(const HypothesisEvidence& evidence, const AcceptanceOpti
   return failed ? failed->verdict : Verdict::kCost;
 }
 
-bool has_unary_gain(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
-  if (evidence.verdict != Verdict::kCost) return false;
-  return !options.require_unary_gain || unary_cost(evidence) < -min_gain(evidence, options);
+bool may_be_selected(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
+  return evidence.verdict == Verdict::kCost && (!options.require_unary_gain || unary_cost(evidence) < 0);
 }
 
 std::optional<FailedTest> find_failed_test(const HypothesisEvidence& evidence, const AcceptanceOptions& options) {
   if (auto failed = test_evidence(evidence, options)) return failed;
-  const double limit = min_gain(evidence, options);
   const double gain = -unary_cost(evidence);
-  if (gain <= limit) return FailedTest{.verdict = Verdict::kCost, .quantity = "gain", .value = gain, .limit = limit};
+  if (gain <= 0) return FailedTest{.verdict = Verdict::kCost, .quantity = "gain", .value = gain, .limit = 0};
   if (evidence.costs.unary <= 0) return std::nullopt;
   return FailedTest{
       .verdict = Verdict::kCost, .quantity = "gain weighted by score", .value = -evidence.costs.unary, .limit = 0};

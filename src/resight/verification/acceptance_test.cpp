@@ -27,9 +27,8 @@ AcceptanceOptions options() {
   o.min_explained_share = 0.6;
   o.min_pattern_similarity = 0.5;
   o.min_newest_similarity = 0.4;
-  o.require_unary_gain = true;
   o.min_shared_texture = 0.1;
-  o.untextured = UntexturedOptions{.max_shared_contrast = 1, .min_explained_share = 0.8, .min_gain = 0.2};
+  o.require_unary_gain = true;
   return o;
 }
 
@@ -61,49 +60,26 @@ TEST(Acceptance, EachLimitHasItsVerdict) {
   EXPECT_EQ(assess_evidence(few, options()), Verdict::kTooFewVisible);
 }
 
-TEST(Acceptance, UntexturedObjectsNeedMore) {
-  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.79, 0), Verdict::kNoSupport);
-  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.81, 0), Verdict::kCost);
-  // Half as much more of what shares half the contrast.
-  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.69, 0.5), Verdict::kNoSupport);
-  EXPECT_EQ(judge(&HypothesisEvidence::explained_share, 0.71, 0.5), Verdict::kCost);
-}
-
 TEST(Acceptance, TextureThatTheSceneDoesNotShareIsRejected) {
   EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 4, 0.39), Verdict::kDifferentAppearance);
   EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 4, 0.41), Verdict::kCost);
   EXPECT_EQ(judge(&AppearanceEvidence::texture_contrast, 0.9, 0), Verdict::kCost);  // There is no texture to share.
 }
 
-TEST(Acceptance, UntexturedObjectsMustGainAShareOfWhatTheyExplain) {
+TEST(Acceptance, WhatCostsMoreThanItExplainsIsNotSelected) {
   HypothesisEvidence e = good_evidence();
-  const auto pays = [&](double clutter, double shared_texture, const AcceptanceOptions& o) {
+  const auto may_cost = [&](double clutter, const AcceptanceOptions& o) {
     e.costs.clutter = clutter;
-    e.appearance.shared_texture = shared_texture;
-    return has_unary_gain(e, o);
+    return may_be_selected(e, o);
   };
-  // 500 explained, 50 of outliers: untextured objects may cost 350 more, textured ones 450.
-  EXPECT_TRUE(pays(345, 0, options()));
-  EXPECT_FALSE(pays(355, 0, options()));
-  EXPECT_TRUE(pays(445, 1, options()));
-  EXPECT_FALSE(pays(455, 1, options()));
+  // 500 explained, 50 of outliers.
+  EXPECT_TRUE(may_cost(445, options()));
+  EXPECT_FALSE(may_cost(455, options()));
   AcceptanceOptions any = options();
   any.require_unary_gain = false;
-  EXPECT_TRUE(pays(455, 0, any));
+  EXPECT_TRUE(may_cost(455, any));
   e.verdict = Verdict::kNoSupport;
-  EXPECT_FALSE(pays(0, 3, any));
-}
-
-TEST(Acceptance, WithoutUntexturedOptionsNothingMoreIsNeeded) {
-  AcceptanceOptions o = options();
-  o.untextured.reset();
-  HypothesisEvidence e = good_evidence();
-  e.appearance.shared_texture = 0;
-  e.explained_share = 0.61;
-  e.appearance.pattern_similarity = 0.51;
-  EXPECT_EQ(assess_evidence(e, o), Verdict::kCost);
-  e.costs.clutter = 445;
-  EXPECT_TRUE(has_unary_gain(e, o));
+  EXPECT_FALSE(may_cost(0, any));
 }
 
 TEST(FindFailedTest, NamesTheFirstTestWithItsNumbers) {
@@ -121,14 +97,13 @@ TEST(FindFailedTest, NamesTheFirstTestWithItsNumbers) {
 
 TEST(FindFailedTest, NamesTheGainThatIsTooSmall) {
   HypothesisEvidence e = good_evidence();
-  e.appearance.shared_texture = 0;
-  e.costs.clutter = 400;  // gains 500 - 50 - 400
+  e.costs.clutter = 460;  // gains 500 - 50 - 460
   const auto failed = find_failed_test(e, options());
   ASSERT_TRUE(failed.has_value());
   EXPECT_EQ(failed->verdict, Verdict::kCost);
-  EXPECT_DOUBLE_EQ(failed->value, 50);
-  EXPECT_DOUBLE_EQ(failed->limit, 100);
-  EXPECT_FALSE(has_unary_gain(e, options()));
+  EXPECT_DOUBLE_EQ(failed->value, -10);
+  EXPECT_DOUBLE_EQ(failed->limit, 0);
+  EXPECT_FALSE(may_be_selected(e, options()));
 }
 
 TEST(FindFailedTest, NamesTheGainOfAnUnlikelyHypothesis) {

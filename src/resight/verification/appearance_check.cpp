@@ -47,9 +47,9 @@ double color_confirmed_share(const ObjectModel& model, const Rigid3& world_from_
   const double num_explained = count_color_inliers(expected, seen, options.support.min_weight, options.appearance);
   if (num_explained < options.acceptance.min_explained_share * static_cast<double>(colors.size())) return 0;
   const TextureMatch match = match_texture(to_lab(colors.model), expected, seen, options.appearance);
-  const AcceptanceOptions& acceptance = options.acceptance;
-  if (acceptance.min_pattern_similarity && match.similarity < *acceptance.min_pattern_similarity) return 0;
-  if (acceptance.untextured && match.shared_texture < acceptance.untextured->max_shared_contrast) return 0;
+  const auto& min_similarity = options.acceptance.min_pattern_similarity;
+  if (match.shared_texture < kMinTextureContrast) return 0;  // Many things have its colour.
+  if (min_similarity && match.similarity < *min_similarity) return 0;
   return num_explained / static_cast<double>(model.surface.size());
 }
 

@@ -92,8 +92,8 @@ TEST(FindVisiblePoints, AgreesWithTheDepthImagesPointByPoint) {
   for (const Rigid3& pose : {c.solid.world_from_object, on_table(0.04, 0.05, 0.06, 0.5), on_table(0.1, 0, 0.05, 0.1)}) {
     const auto points = c.points_at(pose);
     const auto normals = c.normals_at(pose);
-    const ModelVisibility found = find_visible_points(points, normals, c.depth_views, c.everywhere,
-                                                      c.options.visibility, {.spacing_m = c.options.resolution_m});
+    const ModelVisibility found =
+        find_visible_points(points, normals, c.depth_views, c.everywhere, c.options.visibility, c.options.resolution_m);
     int wrong = 0;
     std::array<int, 4> count{};
     std::vector<std::uint8_t> visible(points.size(), 0);
@@ -126,7 +126,7 @@ TEST(FindVisiblePoints, AModelHidesItself) {
       }
   const std::vector<DepthView> views = {view};
   const std::vector<std::uint8_t> allowed = {1};
-  const ModelVisibility found = find_visible_points(points, normals, views, allowed, {}, {});
+  const ModelVisibility found = find_visible_points(points, normals, views, allowed, {}, 0.005);
   int rear_seen = 0;
   int rear_hidden = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -191,9 +191,8 @@ TEST(CueComputer, AgreesWithTheFormulasOverAllPairs) {
   c.scene = prepare_scene(merge(c.views), c.options);
   for (const Rigid3& pose :
        {c.solid.world_from_object, disturb(c.solid.world_from_object, {0.006, -0.004, 0.003}, {1, 1, 1}, 0.15)}) {
-    const ModelVisibility visibility =
-        find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views, c.everywhere, c.options.visibility,
-                            {.spacing_m = c.options.resolution_m});
+    const ModelVisibility visibility = find_visible_points(c.points_at(pose), c.normals_at(pose), c.depth_views,
+                                                           c.everywhere, c.options.visibility, c.options.resolution_m);
     CueComputer computer(c.model, pose, {}, c.scene, c.depth_views, c.everywhere, c.options);
     const PhotometricFit light = limit_chromaticity(computer.light(), Eigen::Array3f::Zero());
     const HypothesisCues cues = computer.finish(Eigen::Array3f::Zero());

@@ -22,7 +22,7 @@ enum class Verdict : std::uint8_t {
   kNoSupport,            ///< Less than acceptance.min_explained_share of the visible points is explained.
   kDifferentAppearance,  ///< Less than acceptance.min_pattern_similarity, min_newest_similarity or min_shared_texture.
   kSuppressed,           ///< Has unary gain, but does not pay beside `suppressed_by`.
-  kCost,                 ///< Costs more than it explains even alone, or (untextured) gains too little.
+  kCost,                 ///< Costs more than it explains even alone.
 };
 
 /// Short lower-case name for reports.
@@ -64,7 +64,7 @@ struct HypothesisEvidence {
   int num_visible = 0;          ///< Model points visible in at least one allowed view.
   int num_explained = 0;        ///< Of these, inliers.
   int num_correspondences = 0;  ///< Of the hypothesis, within support.max_distance_m at the pose.
-  /// One per view; 0 where the presence mask excludes it, and before the arrival (visibility.arrival_share).
+  /// One per view; 0 where the presence mask excludes it.
   std::vector<float> visible_share_per_view;
   /// Explained share of the points visible in that view; points that it sees through are not explained.
   std::vector<float> explained_share_per_view;

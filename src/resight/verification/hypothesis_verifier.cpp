@@ -211,7 +211,7 @@ VerifyResult HypothesisVerifier::verify(std::span<const Hypothesis> hypotheses, 
   std::vector<int> candidates;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     result.evidence[h] = std::move(cues[h].evidence);
-    if (has_unary_gain(result.evidence[h], options_.acceptance)) candidates.push_back(static_cast<int>(h));
+    if (may_be_selected(result.evidence[h], options_.acceptance)) candidates.push_back(static_cast<int>(h));
     cues[h].evidence = result.evidence[h];
   }
   merge_duplicates(hypotheses, library_, options_, candidates, result.evidence);

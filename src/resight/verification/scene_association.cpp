@@ -17,8 +17,7 @@ SceneAssociation::SceneAssociation(const PreparedModel& model, const Rigid3& pos
   normals.reserve(model.normals.size());
   for (const Eigen::Vector3f& p : model.points) points.push_back(motion * p);
   for (const Eigen::Vector3f& n : model.normals) normals.push_back(motion.rotation * n);
-  visibility = find_visible_points(points, normals, views, allowed, options.visibility,
-                                   {.spacing_m = options.resolution_m, .min_points = kMinVisiblePoints});
+  visibility = find_visible_points(points, normals, views, allowed, options.visibility, options.resolution_m);
   const auto* continuation = std::get_if<ContinuationClutter>(&options.clutter.rule);
   if (continuation != nullptr && continuation->noise_sigmas > 0) depth_noise_m = largest_depth_noise(views);
   if (!visibility.visible.empty()) compare_with_scene();
@@ -121,9 +120,9 @@ std::vector<int> find_roughly_visible(const PreparedModel& model, const Rigid3& 
     points.push_back(motion * model.points[i]);
     if (!model.normals.empty()) normals.push_back(motion.rotation * model.normals[i]);
   }
-  const ModelSampling rough{.spacing_m = options.resolution_m * std::sqrt(static_cast<double>(step)),
-                            .min_points = kMinVisiblePoints / static_cast<int>(step)};
-  std::vector<int> visible = find_visible_points(points, normals, views, allowed, options.visibility, rough).visible;
+  const double spacing_m = options.resolution_m * std::sqrt(static_cast<double>(step));
+  std::vector<int> visible =
+      find_visible_points(points, normals, views, allowed, options.visibility, spacing_m).visible;
   for (int& i : visible) i *= static_cast<int>(step);
   return visible;
 }

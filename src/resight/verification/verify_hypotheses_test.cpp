@@ -267,29 +267,6 @@ TEST(VerifyHypotheses, TellsTheShareThatIsSeenThroughAndTheScore) {
   EXPECT_EQ(gone.score, 0) << "rejected before";
 }
 
-TEST(VerifyHypotheses, ViewsOfBeforeItCameSayNothing) {
-  // They see through what the newest view cannot see: the far sides of the box.
-  const std::vector<Hypothesis> hypotheses = {make_hypothesis(kBox, on_table(0, 0, 0.07, 0.4))};
-  const std::vector<Rigid3> cameras = circle_of_cameras(3);
-  const auto evidence = [&](const std::vector<World>& worlds, std::optional<double> arrival_share) {
-    std::vector<PreparedView> views;
-    for (std::size_t v = 0; v < 3; ++v) views.push_back(render(worlds[v], cameras[v]));
-    const VerifyOptions options{.visibility = {.free_space = NewestViewFreeSpace{}, .arrival_share = arrival_share}};
-    return verify_hypotheses(hypotheses, make_library(), merge(views), references(views), {}, options).evidence[0];
-  };
-  const HypothesisEvidence came = evidence({{}, {}, one_box()}, 0.6);
-  EXPECT_TRUE(came.accepted);
-  EXPECT_GT(came.explained_share, 0.95);
-  EXPECT_EQ(came.visible_share_per_view[0], 0);
-  EXPECT_EQ(came.visible_share_per_view[1], 0);
-  EXPECT_EQ(evidence({{}, {}, one_box()}, std::nullopt).verdict, Verdict::kNoSupport);
-  // What came and went: the newest view sees through it, and nothing excuses that.
-  const HypothesisEvidence gone = evidence({{}, one_box(), {}}, 0.6);
-  EXPECT_FALSE(gone.accepted);
-  EXPECT_GT(gone.visible_share_per_view[2], 0.1);
-  EXPECT_GT(gone.visible_share_per_view[0], 0);
-}
-
 TEST(VerifyHypotheses, NoiseOfAFarSurfaceIsNoRestOfIt) {
   // The box is measured at its place and up to 14 mm too near.
   const auto clutter = [](double distance_m, double noise_sigmas) {

@@ -12,13 +12,6 @@
 namespace resight {
 namespace {
 
-// Whether a view sees through most of what it could see of the model.
-bool sees_through(std::span<const Evidence> evidence, double min_share, int min_points) {
-  const auto through = std::ranges::count(evidence, Evidence::kSeenThrough);
-  const auto seen = through + std::ranges::count(evidence, Evidence::kPresent);
-  return seen >= min_points && static_cast<double>(through) > min_share * static_cast<double>(seen);
-}
-
 // What the views see of each model point, from the newest view back.
 struct Seen {
   explicit Seen(std::size_t num_points)
@@ -32,12 +25,6 @@ struct Seen {
       best_facing[i] = std::max(best_facing[i], evidence.viewing_cosine[i]);
     }
   }
-  // Most of what was seen of it so far, and enough of it.
-  [[nodiscard]] bool is_there(double arrival_share, int min_points) const {
-    return std::ranges::count(newest, Evidence::kPresent) >= std::max(1, min_points) &&
-           !sees_through(newest, arrival_share, min_points);
-  }
-
   std::vector<float> best_facing;
   std::vector<int> num_views;
   std::vector<int> num_through;
@@ -66,12 +53,11 @@ std::vector<DepthView> prepare_depth_views(std::span<const VerificationView> vie
 
 ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                                     std::span<const DepthView> views, std::span<const std::uint8_t> allowed,
-                                    const VisibilityOptions& options, const ModelSampling& sampling) {
+                                    const VisibilityOptions& options, double spacing_m) {
   const SurfaceEvidenceOptions evidence_options{.margin = {.base_m = options.margin_m, .noise_sigmas = 0},
                                                 .min_viewing_cosine = kMinFacing,
-                                                .self_occlusion_spacing_m = sampling.spacing_m};
+                                                .self_occlusion_spacing_m = spacing_m};
   const auto* majority = std::get_if<MajorityFreeSpace>(&options.free_space);
-  const int min_points = sampling.min_points;
   ModelVisibility result;
   result.evidence.resize(views.size());
   Seen seen(points.size());
@@ -79,9 +65,6 @@ ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points, std
     if (allowed[v] == 0) continue;
     SurfaceEvidence evidence = classify_surface({points, normals}, views[v].world_from_camera.inverse(),
                                                 {views[v].camera, views[v].depth_m}, evidence_options);
-    if (options.arrival_share && sees_through(evidence.points, *options.arrival_share, min_points) &&
-        seen.is_there(*options.arrival_share, min_points))
-      break;  // It arrived since.
     seen.add(evidence);
     result.evidence[v] = std::move(evidence.points);
   }

@@ -27,15 +27,8 @@ struct DepthView {
 /// Points are not visible if they are seen at a more grazing angle: cosine between normal and viewing ray (84 deg).
 inline constexpr double kMinFacing = 0.1;
 
-/// How densely points sample a model.
-struct ModelSampling {
-  double spacing_m = 0.005;
-  int min_points = 20;  ///< Fewer observed points are no evidence of presence or absence.
-};
-
 struct ModelVisibility {
-  /// Per view and model point; empty for views that are not allowed or precede the arrival. Self-occluded points are
-  /// kOccluded.
+  /// Per view and model point; empty for views that are not allowed. Self-occluded points are kOccluded.
   std::vector<std::vector<Evidence>> evidence;
   std::vector<int> visible;  ///< Points observed (is_observed()) in at least one view, ascending.
   /// Per entry of `visible`: largest cosine between normal and viewing ray among those views.
@@ -46,14 +39,13 @@ struct ModelVisibility {
 };
 
 /// Visibility of model points at their pose in the world. Views are ordered from oldest to newest; `allowed` has one
-/// entry per view. Without normals, no point faces away. If a view sees through more than
-/// VisibilityOptions::arrival_share of the model while newer views confirm it, the object arrived later: this view and
-/// all older ones are ignored. Unlike V4R's GO3D, uses the intrinsics of the view and handles self-occlusion: back
-/// faces by their normals, the rest by a z-buffer with cells as wide as the point spacing.
+/// entry per view. Without normals, no point faces away. Unlike V4R's GO3D, uses the intrinsics of the
+/// view and handles self-occlusion: back faces by their normals, the rest by a z-buffer with cells of `spacing_m`, the
+/// distance between model points.
 [[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
                                                   std::span<const Eigen::Vector3f> normals_in_world,
                                                   std::span<const DepthView> views,
                                                   std::span<const std::uint8_t> allowed,
-                                                  const VisibilityOptions& options, const ModelSampling& sampling);
+                                                  const VisibilityOptions& options, double spacing_m);
 
 }  // namespace resight

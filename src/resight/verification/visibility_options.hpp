@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
 #include <variant>
 
 #include "resight/core/options.hpp"
@@ -30,7 +29,6 @@ struct VisibilityOptions {
   double margin_m = 0.02;
   double min_edge_distance_px = 0;
   std::variant<MajorityFreeSpace, NewestViewFreeSpace> free_space{};
-  std::optional<double> arrival_share{};
 };
 
 inline void declare(OptionVisitor& v, VisibilityOptions& o) {
@@ -45,9 +43,6 @@ inline void declare(OptionVisitor& v, VisibilityOptions& o) {
            {{"majority", "most of the views that observe the point"},
             {"newest_view", "the newest view that observes the point, whatever older ones saw"}},
            "Which views decide that a model point is seen through.");
-  v.field("arrival_share", o.arrival_share, between(0, 1),
-          "A view that sees through a larger share of the model, while newer views confirm it, is from before the "
-          "object arrived: this view and older ones are ignored. off: no view is.");
 }
 
 }  // namespace resight
