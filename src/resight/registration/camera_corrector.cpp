@@ -21,6 +21,9 @@ constexpr double kMaxSigmas = 4;
 // must fit the views before better by a tenth. This rule is not for a moving camera: exact poses pass the test above,
 // and poses of a tracker drift.
 constexpr double kMaxCostRatioOfStill = 0.9;
+// A pose that fits better must not do so by turning away from what contradicts it. The overlap of right poses varies by
+// a hundredth.
+constexpr double kMinOverlapRatio = 0.95;
 // Grey levels (Steinbruecker et al. 2011). Along planes, only brightness tells how the camera moved; but it misleads
 // where exposure changes, or colour is not exactly registered with depth. The fit of the depths decides.
 constexpr double kBrightnessSigma = 12;
@@ -62,8 +65,9 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
   AlignedView best = as_given;
+  const double min_overlap = std::max(options_.min_overlap, kMinOverlapRatio * as_given.overlap);
   const auto consider = [&](const AlignedView& found) {
-    if (found.overlap >= std::max(options_.min_overlap, as_given.overlap) && found.cost < best.cost) best = found;
+    if (found.overlap >= min_overlap && found.cost < best.cost) best = found;
   };
   if (!is_same_pose(moved, given)) consider(evaluate_alignment(view, targets, moved, align_));
   for (const Rigid3& start : {moved, given}) {

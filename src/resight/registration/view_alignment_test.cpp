@@ -216,6 +216,20 @@ TEST_F(Corrector, MendsAPoseThatIsOff) {
   EXPECT_LT(correction.sigma_rad, 0.003);
 }
 
+// Two of these wrong poses have a little more overlap with the first view than the right one has.
+TEST_F(Corrector, MendsAPoseThatIsOffInAnyDirection) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double rotation : {-0.012, 0.012}) {
+      CameraCorrector corrector(options());
+      corrector.add_view(prepared({}, first_pose(), 0.001));
+      PreparedView view = prepared({}, second_pose(), 0.001, 2);
+      view.frame.world_from_camera = second_pose() * Rigid3::from_axis_angle(Eigen::Vector3d::Unit(axis), rotation);
+      const Rigid3 corrected = corrector.add_view(view).world_from_camera;
+      EXPECT_LT(shift_m(corrected, second_pose()), 0.003) << axis << ", " << rotation;
+      EXPECT_LT(turn_rad(corrected, second_pose()), 0.003) << axis << ", " << rotation;
+    }
+}
+
 TEST_F(Corrector, LeavesARightPoseBitByBit) {
   CameraCorrector corrector(options());
   corrector.add_view(prepared({}, first_pose(), 0.001));
