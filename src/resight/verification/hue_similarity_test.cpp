@@ -6,11 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "resight/verification/square_test_util.hpp"
+
 namespace resight {
 namespace {
 
-constexpr int kSide = 20;
-constexpr float kSpacing_m = 0.005F;
+using test::kSide;
+using test::kSpacing_m;
+using test::square;
+
 constexpr double kCube_m = 0.015;
 
 AppearanceOptions options_of_cubes() {
@@ -18,13 +22,6 @@ AppearanceOptions options_of_cubes() {
   options.pattern_radius_m = kCube_m;
   options.sigma_ab = 0.1;
   return options;
-}
-
-std::vector<Eigen::Vector3f> square() {
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < kSide * kSide; ++i)
-    points.emplace_back(kSpacing_m * static_cast<float>(i % kSide), kSpacing_m * static_cast<float>(i / kSide), 0);
-  return points;
 }
 
 LabColor color_of(double hue_rad, double chroma) {

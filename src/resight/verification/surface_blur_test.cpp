@@ -6,19 +6,13 @@
 #include "resight/appearance/appearance_match.hpp"
 #include "resight/appearance/pattern_similarity.hpp"
 #include "resight/core/random.hpp"
+#include "resight/verification/square_test_util.hpp"
 
 namespace resight {
 namespace {
 
-constexpr int kSide = 20;
-constexpr float kSpacing_m = 0.005F;
-
-std::vector<Eigen::Vector3f> square() {
-  std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < kSide * kSide; ++i)
-    points.emplace_back(kSpacing_m * static_cast<float>(i % kSide), kSpacing_m * static_cast<float>(i / kSide), 0);
-  return points;
-}
+using test::kSide;
+using test::square;
 
 // `stripe_points`: width of its stripes; 0: one colour.
 std::vector<LabColor> colors(int stripe_points, double noise, std::uint64_t seed) {
