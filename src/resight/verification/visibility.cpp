@@ -25,6 +25,7 @@ struct Seen {
       best_facing[i] = std::max(best_facing[i], evidence.viewing_cosine[i]);
     }
   }
+
   std::vector<float> best_facing;
   std::vector<int> num_views;
   std::vector<int> num_through;

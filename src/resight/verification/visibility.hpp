@@ -39,9 +39,9 @@ struct ModelVisibility {
 };
 
 /// Visibility of model points at their pose in the world. Views are ordered from oldest to newest; `allowed` has one
-/// entry per view. Without normals, no point faces away. Unlike V4R's GO3D, uses the intrinsics of the
-/// view and handles self-occlusion: back faces by their normals, the rest by a z-buffer with cells of `spacing_m`, the
-/// distance between model points.
+/// entry per view. Without normals, no point faces away. Unlike V4R's GO3D, uses the intrinsics of the view and
+/// handles self-occlusion: back faces by their normals, the rest by a z-buffer. `spacing_m`: of the model points, and
+/// the width of the cells of that z-buffer.
 [[nodiscard]] ModelVisibility find_visible_points(std::span<const Eigen::Vector3f> points_in_world,
                                                   std::span<const Eigen::Vector3f> normals_in_world,
                                                   std::span<const DepthView> views,
