@@ -96,7 +96,7 @@ Json describe_recording(const Recording& recording) {
   json["messages"] = recording.messages().size();
   json["topics"] = Json::array();
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const double seconds = static_cast<double>(times[i].last_ns - times[i].first_ns) * 1e-9;
+    const double seconds = (static_cast<double>(times[i].last_ns) - static_cast<double>(times[i].first_ns)) * 1e-9;
     Json topic = {
         {"name", recording.topics()[i].name}, {"type", recording.topics()[i].type}, {"messages", times[i].count}};
     if (times[i].count > 1 && seconds > 0)

@@ -54,8 +54,8 @@ std::string_view find_writer(const fs::path& folder) {
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our
 /// results lie in the folder and one level below.
 void check_names_of_folders(const fs::path& out) {
-  constexpr std::array<std::string_view, 8> kExtensions = {".csv",   ".html", ".jpg", ".json",
-                                                           ".jsonl", ".md",   ".png", ".svg"};
+  constexpr std::array<std::string_view, 9> kExtensions = {".csv", ".html", ".jpg", ".json", ".jsonl",
+                                                           ".md",  ".ply",  ".png", ".svg"};
   std::error_code error;
   for (fs::recursive_directory_iterator it(out, fs::directory_options::skip_permission_denied, error), end;
        !error && it != end; it.increment(error)) {

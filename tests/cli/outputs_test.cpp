@@ -81,6 +81,8 @@ const Row kOutputRows[] = {
      "out/report\\.html: is a folder"},
     {"EvaluateWithAFolderForARun", write("out/runs/views.json/mine", ""),
      "evaluate --models models.resight --dataset views -k 0 --out out", 2, "out/runs/views\\.json: is a folder"},
+    {"ChangesWithAFolderForACloud", write("out/00002.ply/mine", ""), "changes --sequence views --out out", 2,
+     "out/00002\\.ply: is a folder"},
     {"ChangesWithAFolderForAMask", write("out/novel/00002.png/mine", ""), "changes --sequence views --out out", 2,
      "out/novel/00002\\.png: is a folder"},
     {"TrainBesideAForeignTemporaryName", link(".new.resight.resight-partial", "nowhere"),

@@ -40,8 +40,10 @@ class Reader {
     const json& value = find(key);
     if (value.is_null() && missing) return *missing;
     if (!value.is_number_integer()) return fail(0);
+    constexpr std::int64_t kLargest = std::numeric_limits<int>::max() / 2;
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{kLargest}) return fail(0);
     const auto number = value.get<std::int64_t>();
-    return std::abs(number) <= std::numeric_limits<int>::max() / 2 ? static_cast<int>(number) : fail(0);
+    return number >= -kLargest && number <= kLargest ? static_cast<int>(number) : fail(0);
   }
   bool boolean(const char* key) {
     const json& value = find(key);

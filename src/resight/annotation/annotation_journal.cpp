@@ -68,7 +68,8 @@ Result<AnnotationJournal::Opened> AnnotationJournal::open(const std::filesystem:
   std::vector<std::string> lines = split_lines(*text, journal.size_);
   bool was_cut_off = journal.size_ < text->size();
   if (lines.empty()) {
-    // The header may be shorter than what was cut off.
+    if (was_cut_off && !header.starts_with(*text))
+      return file_error(file, "exists already and is no journal of 'resight annotate'");
     if (was_cut_off && ::ftruncate(descriptor, 0) != 0) return system_failure(file, "cannot be repaired");
     if (const auto done = journal.append(header); !done) return done.error();
     sync_folder(file.parent_path());

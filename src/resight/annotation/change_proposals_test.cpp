@@ -103,6 +103,17 @@ TEST_F(ChangeProposals, AreFoundAgainWhereTheFileDoesNotFit) {
   }
 }
 
+TEST_F(ChangeProposals, NestingDoesNotOverflowTheStack) {
+  const fs::path file = folder_ / "proposals.json";
+  ASSERT_TRUE(write_proposals(file, "a", propose(scene_)).ok());
+  std::string text = *read_file(file);
+  const std::string key = "\"view\":";
+  constexpr std::size_t kDepth = 1000000;
+  text.insert(text.find(key) + key.size(), std::string(kDepth, '[') + std::string(kDepth, ']') + ",\"v\":");
+  std::ofstream(file) << text;
+  EXPECT_FALSE(read_proposals(file, "a", 6).has_value());
+}
+
 TEST_F(ChangeProposals, TheDigestTellsInputsApart) {
   const std::string digest = *digest_inputs(scene_, "settings");
   EXPECT_EQ(*digest_inputs(scene_, "settings"), digest);

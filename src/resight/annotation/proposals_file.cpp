@@ -69,9 +69,14 @@ std::optional<std::vector<double>> numbers_of(const json& list) {
 
 std::optional<ChangeProposal> proposal_from_json(const json& object, int num_views) {
   if (!object.is_object()) return std::nullopt;
-  const auto at = [&](const char* key) { return object.contains(key) ? object[key] : json(); };
-  const json view = at("view");
-  const json num_points = at("num_points");
+  static const json kNone;
+  // No copies: copying is recursive, and a stranger's file may be nested deeply.
+  const auto at = [&](const char* key) -> const json& {
+    const auto found = object.find(key);
+    return found == object.end() ? kNone : *found;
+  };
+  const json& view = at("view");
+  const json& num_points = at("num_points");
   const auto points = numbers_of(at("points"));
   const auto size_m = numbers_of(at("size_m"));
   const auto pose = annotation::pose_from_json(at("pose"));

@@ -30,8 +30,10 @@ std::vector<std::uint8_t> encode_descriptors(std::span<const float> descriptors,
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t begin = r * static_cast<std::size_t>(dimension);
     const std::span<const float> row = descriptors.subspan(begin, static_cast<std::size_t>(dimension));
-    const auto [low, high] = std::ranges::minmax(row);
-    require(low >= 0 && high > 0 && std::isfinite(high), "descriptors must be finite, not negative and not zero");
+    // Each value by itself: a maximum may lose a NaN.
+    const bool is_sound = std::ranges::all_of(row, [](float x) { return x >= 0 && std::isfinite(x); });
+    const float high = is_sound ? std::ranges::max(row) : 0;
+    require(high > 0, "descriptors must be finite, not negative and not zero");
     const float scale = 255.0F / high;
     for (std::size_t i = 0; i < row.size(); ++i) codes[begin + i] = static_cast<std::uint8_t>(row[i] * scale + 0.5F);
   }

@@ -74,6 +74,7 @@ TEST(DescriptorCode, RefusesWhatHasNoCode) {
   EXPECT_THROW(encode({1, std::numeric_limits<float>::infinity()}), std::invalid_argument);
   EXPECT_THROW(encode({std::numeric_limits<float>::quiet_NaN(), 1}), std::invalid_argument);
   EXPECT_THROW(encode({1, std::numeric_limits<float>::quiet_NaN()}), std::invalid_argument);
+  EXPECT_THROW(encode({0.5F, std::numeric_limits<float>::quiet_NaN(), 0.3F, 0.2F}), std::invalid_argument);
   EXPECT_THROW((void)encode_descriptors(std::vector<float>{1, 0, 0}, 2), std::invalid_argument);
   EXPECT_TRUE(encode_descriptors({}, 128).empty());
   EXPECT_TRUE(encode_descriptors({}, 0).empty());

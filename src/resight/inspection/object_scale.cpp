@@ -241,7 +241,8 @@ std::vector<Finding> find_scale_faults(const ObjectScales& scales, const ModelLi
   for (const auto& [object, log_scales] : of_object)
     if (const auto margin = excess_of(log_scales, kMaxLogOwnSize))
       findings.push_back(make_finding(library.objects[static_cast<std::size_t>(object)].name + " is", log_scales,
-                                      kMaxLogOwnSize, *margin, scales.found.front().view,
+                                      kMaxLogOwnSize, *margin,
+                                      std::ranges::find(scales.found, object, &ObjectScale::object)->view,
                                       "train its model again with the right --mesh-unit, or leave it out"));
   return findings;
 }

@@ -184,7 +184,7 @@ class GltfParts {
   /// The nodes are trees that are not too deep.
   GltfJson copy_nodes() {
     const std::size_t num_nodes = list("nodes").size();
-    std::vector<std::optional<std::size_t>> parents(num_nodes);
+    parents_.assign(num_nodes, std::nullopt);
     GltfJson nodes = GltfJson::array();
     for (std::size_t n = 0; n < num_nodes; ++n) {
       const GltfJson& node = list("nodes")[n];
@@ -193,13 +193,13 @@ class GltfParts {
       if (node.contains("mesh") && mesh < static_cast<std::int64_t>(mesh_vertices_.size()))
         num_vertices_ += mesh_vertices_[static_cast<std::size_t>(mesh)];
       for (const std::size_t child : node_list(member(node, "children"))) {
-        if (parents[child]) fail("a node has two parents");
-        parents[child] = n;
+        if (parents_[child]) fail("a node has two parents");
+        parents_[child] = n;
       }
     }
     for (std::size_t n = 0; n < num_nodes; ++n) {
       int depth = 0;
-      for (auto parent = parents[n]; parent && depth <= kMaxNodeDepth; parent = parents[*parent]) ++depth;
+      for (auto parent = parents_[n]; parent && depth <= kMaxNodeDepth; parent = parents_[*parent]) ++depth;
       if (depth > kMaxNodeDepth) fail(fmt::format("its nodes are nested more than {} deep", kMaxNodeDepth));
     }
     return nodes;
@@ -222,7 +222,8 @@ class GltfParts {
   GltfJson copy_scenes() {
     GltfJson scenes = GltfJson::array();
     for (const GltfJson& scene : list("scenes")) {
-      (void)node_list(member(scene, "nodes"));
+      for (const std::size_t root : node_list(member(scene, "nodes")))
+        if (parents_[root]) fail("a node of a scene has a parent");
       scenes.push_back(pick(scene, {"nodes"}));
     }
     return scenes;
@@ -231,8 +232,9 @@ class GltfParts {
   const GltfJson& document_;
   std::optional<std::int64_t> binary_bytes_;
   std::string fault_;
-  std::vector<double> mesh_vertices_;  ///< Per mesh.
-  double num_vertices_ = 0;            ///< Of all nodes.
+  std::vector<double> mesh_vertices_;                ///< Per mesh.
+  std::vector<std::optional<std::size_t>> parents_;  ///< Per node.
+  double num_vertices_ = 0;                          ///< Of all nodes.
 };
 
 Result<std::string> normalize_document(std::string_view text, std::optional<std::int64_t> binary_bytes) {

@@ -71,6 +71,11 @@ TEST(GltfFile, WhatAssimpWouldFollowOutOfTheFileIsRefused) {
        },
        "two parents"},
       {[](json& g) {
+         g["nodes"] = {{{"children", {1}}}, {{"mesh", 0}}};
+         g["scenes"][0]["nodes"] = {0, 1};
+       },
+       "a node of a scene has a parent"},
+      {[](json& g) {
          g["accessors"][1]["sparse"] = {{"count", 100000000}};
        },
        "sparse"},

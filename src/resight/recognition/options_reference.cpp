@@ -27,7 +27,7 @@ A settings file (`--config FILE`, TOML) sets options of a preset. A key `a.b.c` 
 num_previous_views = 3
 
 [changes]
-tolerance_m = 0.015
+sigmas = 3
 
 [verify.clutter]
 weight = 3

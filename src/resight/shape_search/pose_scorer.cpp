@@ -320,7 +320,7 @@ void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria&
 }
 
 double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed) const {
-  const float z = view_.cloud.z[confirmed.pixels.front()];
+  const float z = pixels_[confirmed.pixels.front()].z_m;  // Not of the cloud, which ends at prepare.max_depth_m.
   const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
   Silhouette silhouette(confirmed.outline, cell_px);
   for (std::size_t k = 0; k < confirmed.pixels.size(); ++k) {
