@@ -26,6 +26,19 @@ namespace {
 constexpr Rgb8 kRemovedColor{220, 30, 30};
 constexpr Rgb8 kNovelColor{30, 190, 60};
 
+// Ends of the names of the files of a view.
+constexpr const char* kOverlay = ".png";
+constexpr const char* kNovelMask = "_novel.png";
+constexpr const char* kRemovedMask = "_removed.png";
+constexpr const char* kCloud = ".ply";
+
+std::vector<std::string> list_files_of_views(const Sequence& sequence) {
+  std::vector<std::string> names;
+  for (int v = 0; v < sequence.num_views(); ++v)
+    for (const char* end : {kOverlay, kNovelMask, kRemovedMask, kCloud}) names.push_back(sequence.view_name(v) + end);
+  return names;
+}
+
 // The reconstruction with its changes: red = removed, green = novel, otherwise the colours of the scene.
 PointCloud paint(PointCloud scene, const ChangeResult& changes) {
   const auto add = [&](PointCloud cloud, Rgb8 color) {
@@ -49,11 +62,8 @@ Image<std::uint8_t> enlarge(const Image<std::uint8_t>& mask, int reduction, cons
 
 void write_masks(const std::filesystem::path& folder, const std::string& name, const ChangeResult& changes,
                  int reduction, const Camera& recorded) {
-  const auto write = [&](const char* kind, const Image<std::uint8_t>& mask) {
-    value_or_throw(write_mask(folder / fmt::format("{}_{}.png", name, kind), enlarge(mask, reduction, recorded)));
-  };
-  write("novel", changes.novel_mask);
-  write("removed", changes.removed_mask);
+  value_or_throw(write_mask(folder / (name + kNovelMask), enlarge(changes.novel_mask, reduction, recorded)));
+  value_or_throw(write_mask(folder / (name + kRemovedMask), enlarge(changes.removed_mask, reduction, recorded)));
 }
 
 std::string count_regions(const ViewChangeRecord& view) {
@@ -72,6 +82,7 @@ void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
+  check_result_names(arguments.out, "changes", list_files_of_views(*given));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   const auto tracked = estimate_poses(*given, arguments.poses, nullptr, arguments.num_threads);
   const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
@@ -86,10 +97,10 @@ void run_changes(const ChangesArguments& arguments) {
     const Camera camera = recorded.camera;
     const ChangeResult changes = scene.add_view(prepare_corrected(std::move(recorded), errors, config.prepare));
     const RgbdFrame& frame = scene.window().back().raw;
-    value_or_throw(write_color(folder.path() / (frame.name + ".png"), draw_changes(frame, changes)));
+    value_or_throw(write_color(folder.path() / (frame.name + kOverlay), draw_changes(frame, changes)));
     const int reduction = find_reduction(camera, config.prepare);
     write_masks(folder.path(), frame.name, changes, reduction, camera);
-    value_or_throw(write_ply(folder.path() / (frame.name + ".ply"), paint(scene.reconstruction(), changes)));
+    value_or_throw(write_ply(folder.path() / (frame.name + kCloud), paint(scene.reconstruction(), changes)));
     record.views.push_back({frame.name, frame.camera.width, reduction, frame.world_from_camera, changes.changed_share,
                             changes.pose_suspect,
                             find_change_regions(frame, changes, config.changes.detection.voxel_m)});

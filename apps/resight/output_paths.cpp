@@ -108,6 +108,14 @@ void check_output_folder(const fs::path& out, std::string_view command, const Pa
   if (find_sequence_folder(out).ok()) refuse_output(out, "is a sequence (choose another folder)");
 }
 
+void check_result_names(const fs::path& folder, std::string_view command, const std::vector<std::string>& names) {
+  if (find_writer(folder) == command) return;
+  for (const std::string& name : names)
+    if (is_there(folder / name))
+      refuse_output(folder / name,
+                    fmt::format("exists already and is no result of 'resight {}' (choose another folder)", command));
+}
+
 std::string path_from(const fs::path& folder, const fs::path& path) {
   std::error_code error;
   const fs::path relative = fs::relative(path, folder, error);

@@ -10,7 +10,7 @@ namespace resight::app {
 using Paths = std::vector<std::filesystem::path>;
 
 // One rule for all outputs: an input is never replaced, nor is a file that the command did not write. Only in an output
-// folder, files with the names of our results are. All functions throw an InputError, before any work is done.
+// folder, files with the fixed names of our results are. All functions throw an InputError, before any work is done.
 
 /// For a file to write. It may exist only if it begins with `signature`, as files of this `kind` do.
 void check_output_file(const std::filesystem::path& out, std::string_view signature, std::string_view kind,
@@ -23,6 +23,11 @@ void check_new_file(const std::filesystem::path& out);
 /// within an input only if the command has filled it before. It may not hold a folder that is called like a result
 /// (report.html).
 void check_output_folder(const std::filesystem::path& out, std::string_view command, const Paths& inputs);
+
+/// For files whose names follow from the input, such as those of views, in a folder that `command` fills. They may
+/// exist only if the folder holds results of the command.
+void check_result_names(const std::filesystem::path& folder, std::string_view command,
+                        const std::vector<std::string>& names);
 
 /// For a folder to write, which must be empty or not exist.
 void check_new_folder(const std::filesystem::path& out);
