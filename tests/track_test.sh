@@ -32,6 +32,24 @@ cp good.png "$depth"
 cmp -s <(grep -v '^#' whole.txt) <(grep -v '^#' parts.txt) || fail "an interrupted run ends with other poses"
 [ ! -e parts.txt.partial ] || fail "parts.txt.partial is left behind"
 
+# What was tracked is kept until all results are written: a cloud that finds no space takes no tracking again.
+(ulimit -f 300 && "$resight" track --sequence "$sequence" --out kept.txt --fused kept.ply >/dev/null 2>err)
+[ $? = 2 ] || fail "a cloud without space is no bad output: $(tail -1 err)"
+[ -s kept.txt ] || fail "the poses were not written before the cloud: $(tail -1 err)"
+"$resight" track --sequence "$sequence" --out kept.txt --fused kept.ply >/dev/null 2>err || fail "again: $(tail -1 err)"
+[ "$(grep -c 'tracked before' err)" = 7 ] || fail "what was tracked is lost if the cloud fails: $(cat err)"
+[ ! -e kept.txt.partial ] || fail "kept.txt.partial is left behind"
+
+# What an earlier run has left would pass for results of this one.
+head -n 1 whole.txt >stale_component3.txt
+echo "# static objects in another walk" >stale_objects.txt
+echo "notes of the user" >mine_objects.txt
+for name in stale mine; do
+  "$resight" track --sequence "$sequence" --poses whole.txt --out $name.txt >/dev/null 2>err || fail "$name: $(tail -1 err)"
+done
+for file in stale_component3.txt stale_objects.txt; do [ ! -e $file ] || fail "$file of an earlier run stays"; done
+[ -s mine_objects.txt ] || fail "a foreign file is removed"
+
 # From a file of poses on.
 "$resight" track --sequence "$sequence" --poses whole.txt --out again.txt >out 2>err || fail "from a file: $(tail -1 err)"
 grep -q '^7 of 7 views joined' out || fail "not all views joined from a file: $(cat out)"

@@ -9,7 +9,6 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/cameras/common_objects.hpp"
-#include "resight/cameras/track_journal.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/recognition/observe_objects.hpp"
 #include "sequence_input.hpp"
@@ -75,20 +74,15 @@ CameraTrack track_views(const Sequence& sequence, const TrackSequenceOptions& op
   TrackViewsOptions track;
   track.num_threads = options.num_threads;
   ViewTracker tracker(track);
-  std::optional<TrackJournal> journal;
-  if (options.journal && !options.refine)
-    journal = value_or_throw(TrackJournal::open(*options.journal, describe_job(sequence, options.sequence_folder)));
   Progress progress("track", sequence.num_views());
-  const int first = journal ? restore(tracker, sequence, *journal, progress) : 0;
+  const int first = options.journal != nullptr ? restore(tracker, sequence, *options.journal, progress) : 0;
   for (int v = first; v < sequence.num_views(); ++v) {
     const PreparedView view = read_prepared(sequence, v, options.num_threads);
     if (options.refine) tracker.add_posed_view(view);
     progress.report(v + 1, options.refine ? view.frame.name : describe(tracker.add_view(view)));
-    if (journal) value_or_throw(journal->append(tracker.last_step()));
+    if (options.journal != nullptr) value_or_throw(options.journal->append(tracker.last_step()));
   }
-  CameraTrack tracked = tracker.finish();
-  if (journal) journal->remove();
-  return tracked;
+  return tracker.finish();
 }
 
 // Surfaces of up to eight evenly spaced views per component: enough to detect contradictions between components.
@@ -116,6 +110,11 @@ void warn_of_components(const CameraTrack& track) {
 
 }  // namespace
 
+TrackJournal open_track_journal(const std::filesystem::path& file, const Sequence& sequence,
+                                const std::filesystem::path& folder) {
+  return value_or_throw(TrackJournal::open(file, describe_job(sequence, folder)));
+}
+
 JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options) {
   CameraTrack track = track_views(sequence, options);
   std::vector<ObservedObject> observed;
@@ -125,8 +124,10 @@ JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOpti
     const auto surfaces = read_surfaces(sequence, track);
     track = join_by_objects(std::move(track), observed, *options.library, surfaces);
   }
-  if (track.num_components > 1 && track.num_components == sequence.num_views())
+  if (track.num_components > 1 && track.num_components == sequence.num_views()) {
+    if (options.journal != nullptr) options.journal->remove();
     throw std::runtime_error("no two views could be joined: the relative poses of their cameras are unknown");
+  }
   warn_of_components(track);
   if (!options.adjust_objects) return {std::move(track), {}};
   return adjust_jointly(std::move(track), observed, *options.library);

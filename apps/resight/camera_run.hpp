@@ -6,6 +6,7 @@
 #include <string>
 
 #include "resight/cameras/joint_adjustment.hpp"
+#include "resight/cameras/track_journal.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/sensor/posed_sequence.hpp"
 
@@ -14,15 +15,20 @@ namespace resight::app {
 struct TrackSequenceOptions {
   bool refine = false;                    ///< From the given poses on (InputError where there are none).
   const ModelLibrary* library = nullptr;  ///< Views that cannot be joined otherwise are joined by the objects in them.
-  /// What has been tracked so far, beside the output: an interrupted run goes on from there. Removed at the end.
-  std::optional<std::filesystem::path> journal;
-  std::filesystem::path sequence_folder;  ///< Tells whose journal it is.
+  /// What has been tracked so far: an interrupted run goes on from there. Null with `refine`. The caller removes it
+  /// when the results are written.
+  TrackJournal* journal = nullptr;
   bool adjust_objects = false;  ///< The poses of the library's objects and of the cameras are adjusted jointly.
   int num_threads = 1;
 };
 
+/// Opens the journal in `file`. Steps of other views than those of the sequence in `folder` are ignored. Throws an
+/// InputError if the file is no journal.
+[[nodiscard]] TrackJournal open_track_journal(const std::filesystem::path& file, const Sequence& sequence,
+                                              const std::filesystem::path& folder);
+
 /// Estimates the camera poses of a sequence from its views, with progress. Warns about views that could not be joined.
-/// Throws std::runtime_error if no two views could be joined.
+/// Throws std::runtime_error if no two views could be joined; then nothing is left to go on from, nor is the journal.
 [[nodiscard]] JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options);
 
 /// Views of the largest component, with their poses. `sequence` must outlive the result.

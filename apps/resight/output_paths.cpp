@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "commands.hpp"
 #include "resight/core/files.hpp"
@@ -33,6 +34,13 @@ void check_not_input(const fs::path& out, const Paths& inputs) {
   }
 }
 
+/// Links on the way are resolved. A link at the end is not: the output takes its place.
+fs::path place_of(const fs::path& out) {
+  std::error_code error;
+  const fs::path clean = fs::absolute(out / "", error).lexically_normal().parent_path();
+  return fs::weakly_canonical(clean.parent_path(), error) / clean.filename();
+}
+
 /// Files by which the results of a command are known. `recognize` writes changes.json, too, so it comes first.
 struct ResultsMark {
   std::string_view command;
@@ -49,6 +57,14 @@ std::string_view find_writer(const fs::path& folder) {
   for (const ResultsMark& mark : kResultsMarks)
     if (fs::exists(folder / mark.file, error)) return mark.command;
   return {};
+}
+
+/// Links are resolved.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const fs::path inner = fs::weakly_canonical(path, error);
+  const fs::path outer = error ? fs::path() : fs::weakly_canonical(folder, error);
+  return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
 }
 
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our
@@ -89,11 +105,14 @@ void check_new_file(const fs::path& out) {
 
 void check_new_folder(const fs::path& out) { value_or_throw(check_writable_folder(out, ExistingFolder::kRefuse)); }
 
-bool is_within(const fs::path& path, const fs::path& folder) {
-  std::error_code error;
-  const fs::path inner = fs::weakly_canonical(path, error);
-  const fs::path outer = error ? fs::path() : fs::weakly_canonical(folder, error);
-  return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
+void check_apart(const Paths& outputs) {
+  std::set<fs::path> places;
+  for (const fs::path& out : outputs)
+    if (!places.insert(place_of(out)).second) refuse_output(out, "would be written twice (choose another name)");
+  for (const fs::path& out : outputs)
+    for (fs::path above = place_of(out).parent_path(); above.has_relative_path(); above = above.parent_path())
+      if (places.contains(above))
+        refuse_output(out, fmt::format("lies below another output, {} (choose another name)", above.string()));
 }
 
 void check_output_folder(const fs::path& out, std::string_view command, const Paths& inputs) {

@@ -32,8 +32,8 @@ void check_result_names(const std::filesystem::path& folder, std::string_view co
 /// For a folder to write, which must be empty or not exist.
 void check_new_folder(const std::filesystem::path& out);
 
-/// Whether `path` lies below `folder`, links resolved.
-[[nodiscard]] bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
+/// For all outputs of one call: none has the name of another or lies below it.
+void check_apart(const Paths& outputs);
 
 /// The path as seen from `folder`, links resolved, so that results find their inputs wherever they are called from, and
 /// after both were moved.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 
 #include "camera_run.hpp"
 #include "commands.hpp"
@@ -10,6 +11,7 @@
 #include "output_paths.hpp"
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/io/convert.hpp"
 #include "resight/io/trajectory.hpp"
 #include "resight/models/library_file.hpp"
@@ -38,11 +40,12 @@ std::filesystem::path file_of_component(const std::filesystem::path& out, int co
   return out.parent_path() / fmt::format("{}_component{}{}", out.stem().string(), component, out.extension().string());
 }
 
-// Takes every number: an earlier run may have had more components, and a user may have removed some files.
-Paths list_component_files(const std::filesystem::path& out) {
+// Existing files of further components by number. Takes every number: an earlier run may have had more components, and
+// a user may have removed some files.
+std::map<int, std::filesystem::path> find_component_files(const std::filesystem::path& out) {
   namespace fs = std::filesystem;
   const std::string begin = out.stem().string() + "_component";
-  Paths files;
+  std::map<int, std::filesystem::path> files;
   std::error_code error;
   for (fs::directory_iterator it(out.has_parent_path() ? out.parent_path() : fs::path("."), error), end;
        !error && it != end; it.increment(error)) {
@@ -50,15 +53,42 @@ Paths list_component_files(const std::filesystem::path& out) {
     int component = 0;
     if (name.starts_with(begin)) std::from_chars(name.data() + begin.size(), name.data() + name.size(), component);
     if (component > 0 && name == file_of_component(out, component).filename().string())
-      files.push_back(file_of_component(out, component));
+      files.emplace(component, file_of_component(out, component));
   }
-  std::ranges::sort(files);
   return files;
 }
 
 // poses_objects.txt
 std::filesystem::path file_of_objects(const std::filesystem::path& out) {
   return out.parent_path() / (out.stem().string() + "_objects" + out.extension().string());
+}
+
+// poses.txt.partial
+std::filesystem::path file_of_journal(const std::filesystem::path& out) { return out.string() + ".partial"; }
+
+// All files and folders that a run may write.
+Paths list_outputs(const TrackArguments& arguments, int num_views) {
+  Paths outputs;
+  for (int component = 0; component < std::max(1, num_views); ++component)
+    outputs.push_back(file_of_component(arguments.out, component));
+  outputs.push_back(file_of_journal(arguments.out));
+  if (arguments.models) outputs.push_back(file_of_objects(arguments.out));
+  if (arguments.fused) outputs.insert(outputs.end(), {*arguments.fused, picture_of_cloud(*arguments.fused)});
+  if (arguments.posed) outputs.push_back(*arguments.posed);
+  return outputs;
+}
+
+void remove_if_ours(const std::filesystem::path& file, std::string_view signature) {
+  const auto start = read_file_start(file, signature.size());
+  std::error_code ignored;
+  if (start.ok() && *start == signature) std::filesystem::remove(file, ignored);
+}
+
+// Removes what an earlier run has left that would pass for a result of this one.
+void remove_stale_files(const TrackArguments& arguments, int num_components) {
+  for (const auto& [component, file] : find_component_files(arguments.out))
+    if (component >= num_components) remove_if_ours(file, kPosesComment);
+  if (!arguments.models) remove_if_ours(file_of_objects(arguments.out), kObjectsComment);
 }
 
 void write_components(const TrackArguments& arguments, const CameraTrack& track) {
@@ -119,14 +149,9 @@ void check_outputs(const TrackArguments& arguments) {
     check_output_file(file, signature, "file of 'resight track'", inputs);
   };
   check(arguments.out, kPosesComment);
-  for (const std::filesystem::path& file : list_component_files(arguments.out)) check(file, kPosesComment);
+  for (const auto& [component, file] : find_component_files(arguments.out)) check(file, kPosesComment);
   if (arguments.models) check(file_of_objects(arguments.out), kObjectsComment);
-  if (arguments.posed) {
-    check_new_folder(*arguments.posed);
-    for (const std::filesystem::path& file : {arguments.out, arguments.fused.value_or(arguments.out)})
-      if (is_within(file, *arguments.posed))
-        throw InputError(file_error(file, "lies in the folder of --write-sequence, which must be new").message);
-  }
+  if (arguments.posed) check_new_folder(*arguments.posed);
   if (!arguments.fused) return;
   if (arguments.fused->extension() != ".ply")
     throw InputError(file_error(*arguments.fused, "is not the name of a point cloud (.ply was expected)").message);
@@ -137,35 +162,44 @@ void check_outputs(const TrackArguments& arguments) {
   if (!is_again) check_new_file(picture);
 }
 
+void write_outputs(const TrackArguments& arguments, const Sequence& sequence, const JointAdjustment& found,
+                   const std::optional<ModelLibrary>& library) {
+  const CameraTrack& track = found.track;
+  write_components(arguments, track);
+  if (library) write_objects(arguments, track, found.objects, *library);
+  remove_stale_files(arguments, track.num_components);
+  const PosedSequence posed = take_largest_component(sequence, track);
+  print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence.num_views(), track.edges.size(),
+        track.num_loops, arguments.out.string());
+  if (sequence.has_poses()) print_error(sequence, track);
+  if (arguments.fused) {
+    write_fused_cloud(posed, *arguments.fused, arguments.num_threads);
+    print("point cloud: {}\n", arguments.fused->string());
+  }
+  if (!arguments.posed) return;
+  value_or_throw(convert_sequence(posed, *arguments.posed, to_format(arguments.format)));
+  print("sequence with these poses: {}\n", arguments.posed->string());
+}
+
 }  // namespace
 
 void run_track(const TrackArguments& arguments) {
   check_outputs(arguments);
   const bool refine = arguments.poses != "auto";
   const auto sequence = open_input(arguments.sequence, with_poses(arguments.input, arguments.poses));
+  check_apart(list_outputs(arguments, sequence->num_views()));
   warn_about_faults(*sequence, refine);
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
-  const auto [track, objects] = track_sequence(*sequence, {.refine = refine,
+  std::optional<TrackJournal> journal;
+  if (!refine) journal = open_track_journal(file_of_journal(arguments.out), *sequence, arguments.sequence);
+  const JointAdjustment found = track_sequence(*sequence, {.refine = refine,
                                                            .library = library ? &*library : nullptr,
-                                                           .journal = arguments.out.string() + ".partial",
-                                                           .sequence_folder = arguments.sequence,
+                                                           .journal = journal ? &*journal : nullptr,
                                                            .adjust_objects = library.has_value(),
                                                            .num_threads = arguments.num_threads});
-  write_components(arguments, track);
-  if (library) write_objects(arguments, track, objects, *library);
-  const PosedSequence posed = take_largest_component(*sequence, track);
-  print("{} of {} views joined, {} edges, {} loops: {}\n", posed.num_views(), sequence->num_views(), track.edges.size(),
-        track.num_loops, arguments.out.string());
-  if (sequence->has_poses()) print_error(*sequence, track);
-  if (arguments.fused) {
-    write_fused_cloud(posed, *arguments.fused, arguments.num_threads);
-    print("point cloud: {}\n", arguments.fused->string());
-  }
-  if (!arguments.posed) return;
-  const DatasetFormat format = arguments.format == "bop" ? DatasetFormat::kBop : DatasetFormat::kTuw;
-  value_or_throw(convert_sequence(posed, *arguments.posed, format));
-  print("sequence with these poses: {}\n", arguments.posed->string());
+  write_outputs(arguments, *sequence, found, library);
+  if (journal) journal->remove();  // Last: whatever ends the program before, what was tracked is not lost.
 }
 
 }  // namespace resight::app
