@@ -103,13 +103,23 @@ TEST_F(CommandLineResults, FinishedViewsAreKeptUntilTheResultsReplaceThem) {
 TEST_F(CommandLineResults, AFolderIsWrittenByOneCommandAtATime) {
   const auto other = PendingDirectory::create(folder_ / "out", ExistingFolder::kFill);
   ASSERT_TRUE(other.ok());
-  for (const char* command : {kConvert, kRecognize, kChanges, kEvaluate}) {
+  for (const char* command : {kConvert, kRecognize, kChanges, kEvaluate, "demo --out out"}) {
     const Outcome outcome = run(folder_, command);
     EXPECT_EQ(outcome.status, 2) << command;
     EXPECT_THAT(testing::PrintToString(outcome.errors), testing::HasSubstr("another command is writing it")) << command;
   }
   EXPECT_TRUE(fs::is_empty(other->path()));
   EXPECT_FALSE(fs::exists(folder_ / "out")) << "evaluated before it was refused";
+}
+
+TEST_F(CommandLineResults, AnInterruptedDemoLeavesNothing) {
+  const std::vector<std::string> before = list(folder_);
+  EXPECT_EQ(run_script(folder_, "{ " RESIGHT_PROGRAM
+                                " demo --out out >../demo.out 2>&1 </dev/null & } && for i in $(seq 600); do "
+                                "find . -path '*out*models_info.json' | grep -q . && break; sleep 0.1; done; "
+                                "kill -TERM $!; wait $!"),
+            128 + SIGTERM);
+  EXPECT_EQ(list(folder_), before);
 }
 
 TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) {
