@@ -51,7 +51,7 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
 
 // The files of the true changes of a sequence, or none for a single view.
 ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequence) {
-  const auto folder = find_sequence_folder(in);
+  const auto folder = value_or_throw(find_sequence_folder(in));
   if (!folder) return {};
   std::vector<std::string> views;
   for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
@@ -68,9 +68,9 @@ void run_convert(const ConvertArguments& arguments) {
   if (!std::filesystem::exists(arguments.in))
     throw InputError(fmt::format("{}: no such file or folder", arguments.in.string()));
   const auto sequence = open_sequence(arguments.in, arguments.input);
+  // A damaged sequence, or several, are not passed over for the models beside them.
+  if (!sequence.ok() && value_or_throw(find_sequence_folder(arguments.in))) throw InputError(sequence.error().message);
   const auto models = find_models({arguments.in});
-  // A damaged sequence is not passed over for the models beside it.
-  if (!sequence.ok() && find_sequence_folder(arguments.in).ok()) throw InputError(sequence.error().message);
   if (!sequence.ok() && !models.ok())
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {

@@ -45,6 +45,8 @@ EvaluationSequence describe(const fs::path& folder, const Sequence& opened) {
   std::vector<std::string> views;
   for (int i = 0; i < opened.num_views(); ++i) views.push_back(opened.view_name(i));
   sequence.changes = find_change_files(folder, views);
+  for (const fs::path& file : {sequence.changes.events, sequence.changes.changes})
+    if (!file.empty()) value_or_throw(InputFile::open(file));
   sequence.annotations = find_tuw_annotation_directory(folder, views);
   sequence.unknown_models = folder.parent_path().parent_path() / "unknown" / "models";
   return sequence;
@@ -66,31 +68,52 @@ void make_names_unique(const fs::path& root, std::vector<EvaluationSequence>& se
   }
 }
 
-// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it.
+// The folders that may hold a sequence each. A link that leads nowhere might have led to one.
+std::vector<fs::path> list_folders(const fs::path& root) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
+    std::error_code unreadable;
+    if (it->path().filename().string().front() == '.') continue;
+    if (it->is_directory(unreadable))
+      folders.push_back(it->path());
+    else if (it->is_symlink(unreadable) && !it->exists(unreadable))
+      print_warning(file_error(it->path(), "is a link that leads nowhere; it is left out").message);
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be listed ({})", root.string(), error.message()));
+  std::ranges::sort(folders);
+  return folders;
+}
+
+// The root itself if it is a sequence, or those directly below it. BOP scenes for training are only evaluated by
+// themselves.
+std::vector<fs::path> list_sequences(const fs::path& root) {
+  const auto only = find_sequence_folder(root);
+  if (only.ok() && *only == root) return {root};
+  std::vector<fs::path> sequences;
+  for (const fs::path& folder : list_folders(root)) {
+    const auto sequence = find_sequence_folder(folder);
+    const bool is_sequence = sequence.ok() && *sequence == folder;
+    if (!is_sequence && folder.filename().string().starts_with("train")) continue;
+    if (value_or_throw(sequence)) sequences.push_back(**sequence);
+  }
+  if (sequences.empty() && only.ok() && *only) return {**only};
+  return sequences;
+}
+
+// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it. What is damaged
+// or cannot be told apart is an error: scores without it would pass for those of the whole data set.
 std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   const fs::path dataset = fs::absolute(given / "").parent_path().lexically_normal();
   std::error_code error;
   if (!fs::is_directory(dataset, error)) throw InputError(fmt::format("{}: is not a folder", given.string()));
   const fs::path root = fs::is_directory(dataset / "test", error) ? dataset / "test" : dataset;
-  std::vector<fs::path> folders;
-  // An entry that leads nowhere, such as a loop of links, is no sequence.
-  for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
-    std::error_code unreadable;
-    if (it->is_directory(unreadable) && it->path().filename().string().front() != '.') folders.push_back(it->path());
-  }
-  if (error) throw InputError(fmt::format("{}: cannot be listed ({})", root.string(), error.message()));
-  std::ranges::sort(folders);
   std::vector<EvaluationSequence> sequences;
-  if (root == dataset)
-    if (const auto opened = open_posed_sequence(dataset)) return {describe(*find_sequence_folder(dataset), **opened)};
-  for (const fs::path& folder : folders) {
-    const auto found = find_sequence_folder(folder);
-    if (!found) continue;
-    // A damaged sequence is an error: scores without it would pass for those of the whole data set.
-    if (const auto any = open_sequence(*found); !any) throw InputError(any.error().message);
-    const auto opened = open_posed_sequence(*found);
+  for (const fs::path& folder : list_sequences(root)) {
+    if (const auto any = open_sequence(folder); !any) throw InputError(any.error().message);
+    const auto opened = open_posed_sequence(folder);
     if (opened)
-      sequences.push_back(describe(*found, **opened));
+      sequences.push_back(describe(folder, **opened));
     else
       print_warning(opened.error().message);
   }

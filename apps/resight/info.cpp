@@ -195,7 +195,8 @@ Described describe(const InfoArguments& arguments) {
   if (std::filesystem::exists(path / "changes.json")) return {"results", describe_results(path / "changes.json")};
   const auto sequence = open_sequence(path, arguments.input);
   if (sequence.ok()) return {"sequence", describe_sequence(**sequence)};
-  if (find_sequence_folder(path).ok()) throw InputError(sequence.error().message);
+  // Models beside a damaged sequence, or beside several, do not stand for them.
+  if (value_or_throw(find_sequence_folder(path))) throw InputError(sequence.error().message);
   const auto models = find_models({path});
   if (models.ok()) return {"models", describe_models(*models)};
   throw InputError(sequence.error().message);

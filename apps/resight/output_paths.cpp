@@ -124,7 +124,8 @@ void check_output_folder(const fs::path& out, std::string_view command, const Pa
   if (!writer.empty()) refuse_output(out, fmt::format("holds results of 'resight {}' (choose another folder)", writer));
   for (const fs::path& input : inputs)
     if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
-  if (find_sequence_folder(out).ok()) refuse_output(out, "is a sequence (choose another folder)");
+  const auto sequence = find_sequence_folder(out);
+  if (sequence.ok() && *sequence) refuse_output(out, "is a sequence (choose another folder)");
 }
 
 void check_result_names(const fs::path& folder, std::string_view command, const std::vector<std::string>& names) {

@@ -76,7 +76,7 @@ ViewerScene open_results(const ViewArguments& arguments) {
 ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::path& input) {
   ViewerScene scene;
   scene.title = folder_name(input);
-  const bool is_folder_of_views = !is_library(input) && find_sequence_folder(input).ok();
+  const bool is_folder_of_views = !is_library(input) && value_or_throw(find_sequence_folder(input));
   if (is_folder_of_views || arguments.sequence) {
     scene.sequence = open_input(arguments.sequence.value_or(input), arguments.input);
     if (arguments.models) scene.library = open_library(*arguments.models);

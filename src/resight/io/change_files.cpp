@@ -12,8 +12,14 @@ namespace {
 
 using io::fs::path;
 
+/// A link that leads nowhere and a pipe count, too: who reads them is told, instead of that there are no changes.
+bool is_no_folder(const path& candidate) {
+  std::error_code error;
+  return io::fs::exists(io::fs::symlink_status(candidate, error)) && !io::is_folder(candidate);
+}
+
 path first_file(const std::vector<path>& candidates) {
-  const auto found = std::ranges::find_if(candidates, io::is_file);
+  const auto found = std::ranges::find_if(candidates, is_no_folder);
   return found == candidates.end() ? path() : *found;
 }
 

@@ -6,7 +6,8 @@
 
 namespace resight {
 
-/// The files that state the true changes of a sequence. A path is empty if there is no such file.
+/// The files that state the true changes of a sequence. A path is empty if there is no such file. It may name what
+/// cannot be read, such as a link that leads nowhere.
 struct ChangeFiles {
   std::filesystem::path events;   ///< JSON, see read_event_file().
   std::filesystem::path changes;  ///< Chains of annotations (`.changes` of TUW, tuw_changes.hpp).

@@ -83,23 +83,28 @@ constexpr std::string_view kExpectedSequences =
     "depth.txt), "
     "organised *.pcd views (TUW), or colour and depth images with their camera as described in docs/formats.md";
 
-}  // namespace
-
-Result<path> find_sequence_folder(const path& directory) {
-  if (io::is_file(directory) && is_recording(directory)) return directory;
+/// What is missing where no sequence was found.
+Error no_sequence_error(const path& directory) {
   if (io::is_file(directory))
     return io::file_error(directory, "is neither a folder nor a recording (ROS 1 bag 2.0, MCAP, ROS 2 bag)");
+  const std::string images = io::describe_image_folder(directory);
+  return io::file_error(directory, images.empty() ? fmt::format("no sequence found; {}", kExpectedSequences)
+                                                  : fmt::format("no sequence found: {} (docs/your-camera.md)", images));
+}
+
+}  // namespace
+
+Result<std::optional<path>> find_sequence_folder(const path& directory) {
+  if (io::is_file(directory)) return is_recording(directory) ? std::optional(directory) : std::nullopt;
   if (!io::is_folder(directory)) return io::file_error(directory, "no such directory");
-  if (find_format(directory) != nullptr || is_recording(directory)) return directory;
+  if (find_format(directory) != nullptr || is_recording(directory)) return std::optional(directory);
   const std::vector<path> below = find_sequences_below(directory);
-  if (below.size() == 1) return below.front();
+  if (below.size() == 1) return std::optional(below.front());
   if (below.size() > 1)
     return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
                                                  below.front().string()));
   if (const std::string locked = describe_locked_folder(directory); !locked.empty()) return Error{locked};
-  const std::string images = io::describe_image_folder(directory);
-  return io::file_error(directory, images.empty() ? fmt::format("no sequence found; {}", kExpectedSequences)
-                                                  : fmt::format("no sequence found: {} (docs/your-camera.md)", images));
+  return std::optional<path>();
 }
 
 namespace {
@@ -115,11 +120,13 @@ io::SequenceResult open_as_recorded(const path& directory, const OpenSequenceOpt
   if (const auto finished = check_finished(directory); !finished) return finished.error();
   const auto folder = find_sequence_folder(directory);
   if (!folder) return folder.error();
-  if (find_format(*folder) == nullptr) return io::open_recording_sequence(*folder, options);
-  auto sequence = find_format(*folder)->open(*folder, options);
+  if (!*folder) return no_sequence_error(directory);
+  const FormatEntry* format = find_format(**folder);
+  if (format == nullptr) return io::open_recording_sequence(**folder, options);
+  auto sequence = format->open(**folder, options);
   if (!sequence) return sequence;
   if (const auto done = io::apply_options(**sequence, options); !done)
-    return io::file_error(*folder, done.error().message);
+    return io::file_error(**folder, done.error().message);
   return sequence;
 }
 

@@ -55,8 +55,9 @@ struct OpenSequenceOptions {
   const DepthSensor* sensor = nullptr;
 };
 
-/// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Same errors.
-[[nodiscard]] Result<std::filesystem::path> find_sequence_folder(const std::filesystem::path& directory);
+/// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Empty if there is none.
+/// Fails if there are several, or if this cannot be found out.
+[[nodiscard]] Result<std::optional<std::filesystem::path>> find_sequence_folder(const std::filesystem::path& directory);
 
 /// Opens a sequence directory or a recording and detects the format from its contents. The error says what was
 /// expected.
