@@ -90,6 +90,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   const fs::path export_folder = arguments.out / "export";
   value_or_throw(check_export_folder(export_folder));  // Before the work, not after it.
   const std::shared_ptr<const Sequence> sequence = open_posed_input(arguments.sequence, arguments.input);
+  warn_about_faults(*sequence, true);
   const auto library = std::make_shared<const ModelLibrary>(value_or_throw(load_library(arguments.models)));
   const fs::path input = value_or_throw(find_sequence_folder(arguments.sequence)).value_or(arguments.sequence);
   const std::string name = folder_name(input);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "commands.hpp"
 #include "evaluation_plan.hpp"
@@ -19,6 +20,7 @@
 #include "resight/report/evaluation_report.hpp"
 #include "resight/report/worst_views.hpp"
 #include "resight/training/training.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -42,11 +44,13 @@ class Evaluation {
       if (unit.shard == arguments_.shard && !stored_run(unit)) mine.push_back(&unit);
     if (mine.empty()) return;
     std::size_t num_views = 0;
+    std::set<std::string> checked;
     for (const EvaluationUnit* unit : mine) {
       const auto sequence = value_or_throw(open_posed_sequence(unit->sequence.folder));
       if (!sequence->has_ground_truth())
         throw InputError(fmt::format("{}: has no ground truth to evaluate against", unit->sequence.folder.string()));
       num_views += static_cast<std::size_t>(sequence->num_views());
+      if (checked.insert(unit->sequence.name).second) warn_about_faults(*sequence, true, unit->sequence.name);
     }
     Progress progress("evaluate", static_cast<int>(num_views));
     int done = 0;

@@ -59,8 +59,10 @@ void print_notes(const Sequence& sequence) {
   for (const std::string& note : sequence.notes()) print_error_line("note: ", note);
 }
 
-void warn_about_faults(const Sequence& sequence, bool uses_poses) {
-  for (const Finding& f : check_quickly(sequence, uses_poses)) print_warning(f.message + "; remedy: " + f.remedy);
+void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name) {
+  const std::string where = name.empty() ? "" : name + ": ";
+  for (const Finding& f : check_quickly(sequence, uses_poses))
+    print_warning(where + f.message + "; remedy: " + f.remedy);
 }
 
 void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::vector<std::string>* given) {

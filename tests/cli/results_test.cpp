@@ -32,6 +32,14 @@ TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
   EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
 }
 
+TEST_F(CommandLineResults, AnnotateWarnsAboutTheViews) {
+  no_depth_at_all()(folder_);
+  const Outcome outcome = run(folder_, "annotate --models nowhere --sequence views --out out --no-open");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.errors, testing::ElementsAre(testing::HasSubstr("warning: only 0.0 % of the pixels have depth"),
+                                                   testing::HasSubstr("nowhere")));
+}
+
 TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views --out out --stream");
   ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
