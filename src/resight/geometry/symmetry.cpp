@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "resight/core/check.hpp"
+#include "resight/geometry/limits.hpp"
 
 namespace resight {
 namespace {
@@ -44,6 +45,16 @@ Eigen::Vector3d ball_center(const ObjectSymmetries& symmetries) {
 }
 
 }  // namespace
+
+bool is_possible_symmetry(const Rigid3& motion) {
+  return motion.is_rigid() && motion.translation.cwiseAbs().maxCoeff() <= 2 * kMaxObjectCoordinate_m;
+}
+
+bool is_possible_symmetry(const ObjectSymmetries::Continuous& symmetry) {
+  const double length = symmetry.axis.norm();
+  return length > 0 && std::isfinite(length) && symmetry.offset.allFinite() &&
+         symmetry.offset.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m;
+}
 
 std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, double max_step_rad) {
   check_positive("max_step_rad", max_step_rad);

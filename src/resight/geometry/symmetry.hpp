@@ -20,6 +20,10 @@ struct ObjectSymmetries {
   [[nodiscard]] bool none() const { return discrete.empty() && continuous.empty(); }
 };
 
+/// Whether this can be a symmetry of an object whose coordinates are at most kMaxObjectCoordinate_m. False for NaN.
+[[nodiscard]] bool is_possible_symmetry(const Rigid3& motion);
+[[nodiscard]] bool is_possible_symmetry(const ObjectSymmetries::Continuous& symmetry);
+
 /// All symmetry motions, starting with the identity. Continuous symmetries are sampled in steps of at most
 /// `max_step_rad`.
 [[nodiscard]] std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries,

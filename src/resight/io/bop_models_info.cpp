@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "resight/core/names.hpp"
+#include "resight/geometry/limits.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/internal/model_info.hpp"
@@ -18,7 +19,11 @@ Result<Rigid3> parse_discrete(const nlohmann::json& json, std::string_view what)
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = (*numbers)[i];
   matrix.topRightCorner<3, 1>() *= 1e-3;
-  return rigid_from_matrix(matrix, fmt::format("{}: symmetries_discrete", what));
+  auto motion = rigid_from_matrix(matrix, fmt::format("{}: symmetries_discrete", what));
+  if (motion.ok() && !is_possible_symmetry(*motion))
+    return Error{fmt::format("{}: symmetries_discrete: a translation is {:.4g} m long (at most {} m along each axis)",
+                             what, motion->translation.stableNorm(), 2 * kMaxObjectCoordinate_m)};
+  return motion;
 }
 
 Result<ObjectSymmetries::Continuous> parse_continuous(const nlohmann::json& json, std::string_view what) {
@@ -27,10 +32,13 @@ Result<ObjectSymmetries::Continuous> parse_continuous(const nlohmann::json& json
   const bool sized = axis && axis->size() == 3 && (!offset || offset->size() == 3);
   ObjectSymmetries::Continuous symmetry;
   if (sized) symmetry.axis = {(*axis)[0], (*axis)[1], (*axis)[2]};
-  if (!sized || !(symmetry.axis.norm() > 1e-6))
+  if (!sized || !(symmetry.axis.stableNorm() > 1e-6))
     return Error{fmt::format("{}: symmetries_continuous need an axis and an offset of 3 numbers", what)};
-  symmetry.axis.normalize();
+  symmetry.axis.stableNormalize();
   if (offset) symmetry.offset = Eigen::Vector3d((*offset)[0], (*offset)[1], (*offset)[2]) * 1e-3;
+  if (!is_possible_symmetry(symmetry))
+    return Error{fmt::format("{}: symmetries_continuous: an offset is {:.4g} m long (at most {} m along each axis)",
+                             what, symmetry.offset.stableNorm(), kMaxObjectCoordinate_m)};
   return symmetry;
 }
 

@@ -99,6 +99,13 @@ bool is_mesh_file(const std::filesystem::path& file) {
   return extension == "ply" || extension == "obj" || extension == "glb" || extension == "gltf" || extension == "stl";
 }
 
+Result<void> check_near_origin(const Eigen::AlignedBox3f& box_m, const std::filesystem::path& file) {
+  if (box_m.isEmpty() || box_m.min().cwiseAbs().cwiseMax(box_m.max().cwiseAbs()).maxCoeff() <= kMaxObjectCoordinate_m)
+    return {};
+  return io::file_error(file, fmt::format("the object is {:.4g} m away from its origin (at most {} m): move it there",
+                                          box_m.center().norm(), kMaxObjectCoordinate_m));
+}
+
 Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMeshOptions& options,
                         const std::filesystem::path& file) {
   Eigen::AlignedBox3f box;
@@ -108,10 +115,7 @@ Result<void> check_size(std::span<const Eigen::Vector3f> points_m, const ReadMes
     return io::file_error(
         file, fmt::format("the object is {:.4g} m large (expected {} to {} m): {}", size_m, options.min_size_m,
                           options.max_size_m, guess_unit(size_m, options.metres_per_unit)));
-  if (!box.isEmpty() && box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() > kMaxObjectCoordinate_m)
-    return io::file_error(file, fmt::format("the object is {:.4g} m away from its origin (at most {} m): move it there",
-                                            box.center().norm(), kMaxObjectCoordinate_m));
-  return {};
+  return check_near_origin(box, file);
 }
 
 Result<MeshFile> read_mesh(const std::filesystem::path& file, const ReadMeshOptions& options) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct MeshFile {
 
 /// Whether read_mesh() reads files with this extension (ply, obj, glb, gltf, stl).
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
+
+/// Fails if a corner of the box, in the frame of the object, is beyond kMaxObjectCoordinate_m.
+[[nodiscard]] Result<void> check_near_origin(const Eigen::AlignedBox3f& box_m, const std::filesystem::path& file);
 
 /// Fails if the extent of the points is not between the minimum and the maximum. The error suggests the unit of the
 /// file.

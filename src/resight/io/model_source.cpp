@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "resight/core/names.hpp"
@@ -12,6 +14,7 @@
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/io/mesh.hpp"
 #include "resight/io/pcd.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/io/tuw_models.hpp"
@@ -173,6 +176,36 @@ Result<ModelSource> read_mesh_model(const ModelLocation& location, double metres
   return model;
 }
 
+/// Around the pixels of the object, in its frame.
+Eigen::AlignedBox3f object_box(const TrainingView& view) {
+  const Image<float>& depth_m = view.frame.depth_m;
+  Eigen::AlignedBox3f box;
+  for (int v = 0; v < depth_m.height(); ++v)
+    for (int u = 0; u < depth_m.width(); ++u)
+      if (view.mask(u, v) != 0 && !std::isnan(depth_m(u, v)))
+        box.extend((view.frame.world_from_camera * view.frame.camera.unproject(u, v, depth_m(u, v))).cast<float>());
+  return box;
+}
+
+/// Views may see the object anywhere; what is made of them has the limits of a mesh.
+Result<ModelSource> with_checked_views(Result<ModelSource> model, const path& file) {
+  if (!model) return model;
+  for (const TrainingView& view : model->views) {
+    const auto done = check_near_origin(object_box(view), file);
+    if (!done) return Error{fmt::format("{} (view '{}')", done.error().message, view.frame.name)};
+  }
+  return model;
+}
+
+Result<ModelSource> read_by_format(const ModelLocation& location) {
+  if (location.format == "tuw") return read_tuw_model(location.path, location.name);
+  if (location.format == "bop") return io::read_bop_model(location);
+  const double metres_per_unit = location.metres_per_unit.value_or(1);
+  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name, metres_per_unit);
+  require(location.format == "mesh", "read_model: the format of the location must be tuw, bop, mesh or cloud");
+  return read_mesh_model(location, metres_per_unit);
+}
+
 }  // namespace
 
 Result<Locations> find_models(const std::vector<path>& paths) {
@@ -197,12 +230,7 @@ Result<Locations> find_models(const std::vector<path>& paths) {
 }
 
 Result<ModelSource> read_model(const ModelLocation& location) {
-  if (location.format == "tuw") return read_tuw_model(location.path, location.name);
-  if (location.format == "bop") return io::read_bop_model(location);
-  const double metres_per_unit = location.metres_per_unit.value_or(1);
-  if (location.format == "cloud") return io::read_cloud_model(location.path, location.name, metres_per_unit);
-  require(location.format == "mesh", "read_model: the format of the location must be tuw, bop, mesh or cloud");
-  return read_mesh_model(location, metres_per_unit);
+  return with_checked_views(read_by_format(location), location.path);
 }
 
 }  // namespace resight

@@ -176,6 +176,43 @@ TEST(CloudModel, OneViewInFrontOfTheCamera) {
   EXPECT_NEAR(scaled->views[0].frame.depth_m(310, 210), 0.8, 1e-5);
 }
 
+TEST(ModelSource, RefusesViewsThatAreFarFromTheOrigin) {
+  for (const double x_m : {60.0, 5000.0}) {
+    io::TestDirectory directory;
+    std::vector<TrainingView> views = {io::random_training_view("cloud_4", 1)};
+    views[0].frame.world_from_camera.translation.x() = x_m;
+    ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr, {}).ok());
+    const auto model = read_model(find_models({directory / "mug"})->front());
+    EXPECT_EQ(model.ok(), x_m < 100);
+    if (model.ok()) continue;
+    EXPECT_THAT(model.error().message, HasSubstr("mug: the object is "));
+    EXPECT_THAT(model.error().message,
+                HasSubstr("m away from its origin (at most 100 m): move it there (view 'cloud_"));
+  }
+}
+
+TEST(ModelSource, RefusesSymmetriesThatNoLibraryMayHave) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("cloud_4", 1)};
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr, {}).ok());
+  const auto read_with = [&](const std::string& symmetries) {
+    io::write_text(directory / "mug/model_info.json", "{" + symmetries + "}");
+    const auto found = find_models({directory / "mug"});
+    return found.ok() ? read_model(found->front()) : found.error();
+  };
+  const auto read_axis = [&](const std::string& axis, const std::string& offset) {
+    return read_with(R"("symmetries_continuous": [{"axis": )" + axis + R"(, "offset": )" + offset + "}]");
+  };
+  const auto huge = read_axis("[0, 0, 1e200]", "[0, 0, 99000]");
+  ASSERT_TRUE(huge.ok()) << huge.error().message;
+  EXPECT_EQ(huge->symmetries.continuous.at(0).axis, Eigen::Vector3d::UnitZ());
+  const std::string expected = "model_info.json: symmetries_continuous: an offset is 900 m long (at most 100 m";
+  EXPECT_THAT(read_axis("[0, 0, 1]", "[0, 900000, 0]").error().message, HasSubstr(expected));
+  EXPECT_FALSE(read_axis("[0, 0, 1]", "[0, 1e300, 0]").ok());
+  const auto moved = read_with(R"("symmetries_discrete": [[1,0,0,900000, 0,1,0,0, 0,0,1,0, 0,0,0,1]])");
+  EXPECT_THAT(moved.error().message, HasSubstr("symmetries_discrete: a translation is 900 m long (at most 200 m"));
+}
+
 // All sides of a ball, around the origin or in front of the camera. In a single view, no point hides another.
 TEST(CloudModel, AllSidesOfAnObjectAreItsSurface) {
   for (const float z : {0.0F, 0.8F}) {

@@ -71,7 +71,7 @@ bool read(const schema::Features* stored, FeatureType type, int dimension, Coded
 bool read(const schema::Motion& stored, Rigid3& motion) {
   for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = stored.rotation()->Get(static_cast<std::uint16_t>(i));
   for (int i = 0; i < 3; ++i) motion.translation(i) = stored.translation()->Get(static_cast<std::uint16_t>(i));
-  return motion.is_rigid() && motion.translation.cwiseAbs().maxCoeff() <= 2 * kMaxObjectCoordinate_m;
+  return is_possible_symmetry(motion);
 }
 
 bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
@@ -79,8 +79,7 @@ bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
     symmetry.axis(i) = stored.direction()->Get(static_cast<std::uint16_t>(i));
     symmetry.offset(i) = stored.offset()->Get(static_cast<std::uint16_t>(i));
   }
-  return symmetry.axis.allFinite() && symmetry.axis.norm() > 0 && symmetry.offset.allFinite() &&
-         symmetry.offset.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m;
+  return is_possible_symmetry(symmetry);
 }
 
 template <typename Stored, typename Value>

@@ -97,6 +97,8 @@ Result<LibraryBytes> read_library(const std::filesystem::path& path) {
 Result<void> save_library(const ModelLibrary& library, const std::filesystem::path& path) {
   const Result<std::vector<std::uint8_t>> payload = internal::encode_payload(library);
   if (!payload.ok()) return fail(path, payload.error().message);
+  if (const auto decoded = internal::decode_payload(*payload); !decoded.ok())
+    return fail(path, fmt::format("is not written, as it could not be read again ({})", decoded.error().message));
   Header header;
   std::ranges::copy(kLibrarySignature, header.magic.begin());
   header.options_hash = library.options_hash;

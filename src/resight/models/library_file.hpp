@@ -16,7 +16,7 @@ inline constexpr std::string_view kLibrarySignature = "RESIGHTM";
 /// Writes a library to one file: a header of 40 bytes (kLibrarySignature, format version, options hash, size and
 /// checksum of the payload, little-endian) and a FlatBuffers payload (model_library.fbs). The file appears under `path`
 /// only when it is complete. Equal libraries give equal bytes. Descriptors take 8 bits per component, as in memory
-/// (coded_features.hpp). Fails above 2 GB.
+/// (coded_features.hpp). Fails above 2 GB, and for content that load_library() refuses.
 [[nodiscard]] Result<void> save_library(const ModelLibrary& library, const std::filesystem::path& path);
 
 /// Reads a library. Fails if the file is damaged, of another kind or version, or (if `expected_options_hash`, a

@@ -11,6 +11,7 @@
 
 #include "resight/core/hash.hpp"
 #include "resight/core/random.hpp"
+#include "resight/models/internal/library_payload.hpp"
 
 namespace resight {
 namespace {
@@ -183,6 +184,17 @@ void fix_checksum(Bytes& bytes) {
   std::memcpy(bytes.data() + kChecksumAt, &sum, sizeof(sum));
 }
 
+// The bytes of a file with another library, which save_library() need not accept.
+Bytes with_content(Bytes file, const ModelLibrary& library) {
+  const Bytes payload = internal::encode_payload(library).value();
+  const std::uint64_t payload_bytes = payload.size();
+  std::memcpy(file.data() + kPayloadBytesAt, &payload_bytes, sizeof(payload_bytes));
+  file.resize(kHeaderBytes);
+  file.insert(file.end(), payload.begin(), payload.end());
+  fix_checksum(file);
+  return file;
+}
+
 TEST_F(LibraryFile, EachKindOfDamageHasItsLine) {
   struct Case {
     const char* name;
@@ -296,13 +308,20 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].name = "mug\x1b[2J"; }, "'mug\\x1b[2J'"},
       {[](ModelLibrary& l) { l.surface_voxel_m = 0; }, "voxel size"},
   };
+  ASSERT_TRUE(save_library(make_library(), path_).ok());
+  const Bytes good = read();
   for (const Case& c : cases) {
     ModelLibrary library = make_library();
     c.spoil(library);
-    ASSERT_TRUE(save_library(library, path_).ok());
+    write(with_content(good, library));
     const Result<ModelLibrary> loaded = load_library(path_);
     ASSERT_FALSE(loaded.ok()) << c.expected;
     EXPECT_THAT(loaded.error().message, HasSubstr(c.expected));
+    const Bytes before = read();
+    const Result<void> saved = save_library(library, path_);
+    ASSERT_FALSE(saved.ok()) << c.expected;
+    EXPECT_THAT(saved.error().message, HasSubstr(c.expected));
+    EXPECT_EQ(read(), before);
   }
 }
 
