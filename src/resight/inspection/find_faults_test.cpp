@@ -295,6 +295,36 @@ TEST(CheckQuickly, SaysWhichUnitIsWrong) {
   EXPECT_NE(found(5, 1).find("depth is five times what it says"), std::string::npos) << found(5, 1);
 }
 
+/// Views of a camera that moves by `step_m` and turns by `turn_rad` from each view to the next, with poses of a unit.
+test::MemorySequence moving_views(const Eigen::Vector3d& step_m, double turn_rad, double pose_factor, int num_views) {
+  const Rigid3 start = test::look_at_point({0.1, -1.3, 0.8}, {0, 0.1, 0.15});
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < num_views; ++v) {
+    const Rigid3 step{Rigid3::from_axis_angle({0, 1, 0}, v * turn_rad).rotation, v * step_m};
+    frames.push_back(render_view(start * step, 0.0015, v + 1));
+    frames.back().world_from_camera.translation *= pose_factor;
+  }
+  return test::MemorySequence(std::move(frames));
+}
+
+// A camera that moves along a wall sees the same depths everywhere.
+TEST(CheckQuickly, SeesPosesInMetresOfACameraThatHardlyTurns) {
+  for (const Eigen::Vector3d& step_m : {Eigen::Vector3d(0, 0, 0.06), {0, -0.06, 0}, {0.04, 0, 0.04}})
+    for (const double turn_rad : {0.0, 0.02}) {
+      const std::string found = names_of(check_quickly(moving_views(step_m, turn_rad, 0.001, 9), true));
+      EXPECT_NE(found.find("in metres where millimetres"), std::string::npos)
+          << step_m.transpose() << ", turned by " << turn_rad << ": " << found;
+    }
+}
+
+TEST(CheckQuickly, LeavesSlowAndStandingCamerasAlone) {
+  for (const double step_m : {0.0001, 0.0005, 0.006})
+    for (const double turn_rad : {0.0, 0.001, 0.02}) {
+      const auto views = moving_views({0.6 * step_m, 0, 0.8 * step_m}, turn_rad, 1, 7);
+      EXPECT_EQ(names_of(check_quickly(views, true)), "") << step_m << " m, turned by " << turn_rad;
+    }
+}
+
 TEST(CheckQuickly, LeavesPosesAloneThatAreNotUsed) {
   EXPECT_TRUE(check_quickly(test::BrokenSequence(good_sequence(), "poses_inverted"), false).empty());
 }

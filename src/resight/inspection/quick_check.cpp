@@ -15,7 +15,9 @@ namespace {
 constexpr int kStep_px = 8;
 constexpr double kSameDepth = 0.05;  // Depths of one surface differ by less; those of unrelated views rarely agree.
 constexpr double kMinMove_rad = 0.2;
-constexpr double kMinMove = 0.05;       // Of the median depth.
+constexpr double kMinMove = 0.05;         // Of the median depth.
+constexpr double kMinMoveInMetres = 0.1;  // Of the median depth.
+constexpr std::size_t kMaxViewsInMetres = 4;
 constexpr double kMaxGivenShare = 0.6;  // Good poses: 0.8 and more of what both views see.
 constexpr double kMinOtherShare = 0.75;
 constexpr int kMinPixels = 300;
@@ -35,16 +37,22 @@ double agreeing_share(const RgbdFrame& a, const RgbdFrame& b, const Rigid3& b_fr
   return num_seen < kMinPixels ? 0 : static_cast<double>(num_same) / num_seen;
 }
 
-/// The first view from which the camera has moved so far that readings of the poses differ.
-std::optional<int> find_moved_view(const Sequence& sequence, const Rigid3& first, double depth_m) {
+/// The first view from which the camera has moved so far that readings of the poses differ. If there is none, views
+/// that are as far or farther away if the poses are in metres where millimetres are expected: each by twice as far as
+/// the one before, because the depths of near views agree in any case, and views far apart do not overlap.
+std::vector<int> find_moved_views(const Sequence& sequence, const Rigid3& first, double depth_m) {
+  std::vector<int> views_in_metres;
+  double next_move_m = kMinMoveInMetres * depth_m;
   for (int v = 1; v < sequence.num_views(); ++v) {
     const auto pose = sequence.read_pose(v);
-    if (!pose.ok()) return std::nullopt;
-    if ((pose->translation - first.translation).norm() > kMinMove * depth_m ||
-        rotation_angle_rad(pose->rotation, first.rotation) > kMinMove_rad)
-      return v;
+    if (!pose.ok()) return {};
+    const double move_m = (pose->translation - first.translation).norm();
+    if (move_m > kMinMove * depth_m || rotation_angle_rad(pose->rotation, first.rotation) > kMinMove_rad) return {v};
+    if (1e3 * move_m < next_move_m || views_in_metres.size() == kMaxViewsInMetres) continue;
+    views_in_metres.push_back(v);
+    next_move_m = 2e3 * move_m;
   }
-  return std::nullopt;
+  return views_in_metres;
 }
 
 /// Another reading of the poses or of the depth. Depth of another unit is the same as translations of another unit.
@@ -110,10 +118,11 @@ std::vector<Finding> check_quickly(const Sequence& sequence, bool uses_poses) {
   std::vector<Finding> findings = find_view_faults(*first);
   if (!findings.empty() || !uses_poses || !sequence.has_poses()) return findings;
   const double depth_m = measure_depth_values(first->depth_m).median_m;
-  const auto moved = find_moved_view(sequence, first->world_from_camera, depth_m);
-  if (!moved) return findings;
-  const auto other = sequence.read_view(*moved);
-  if (other.ok()) check_poses(*first, *other, *moved, findings);
+  for (const int moved : find_moved_views(sequence, first->world_from_camera, depth_m)) {
+    const auto other = sequence.read_view(moved);
+    if (other.ok()) check_poses(*first, *other, moved, findings);
+    if (!findings.empty()) break;
+  }
   return findings;
 }
 
