@@ -133,7 +133,7 @@ bool run_check(const CheckArguments& arguments) {
   const CheckReport report = check_sequence(arguments, *sequence);
   if (arguments.out) write_findings(arguments, report, *sequence);
   if (arguments.as_json)
-    print_text(format_json(arguments, report, *sequence));
+    print_json(format_json(arguments, report, *sequence));
   else
     print_lines(arguments, report, *sequence);
   return report.findings.empty();

@@ -236,7 +236,7 @@ void run_info(const InfoArguments& arguments) {
   if (arguments.as_json) {
     Json json = {{"path", arguments.path.string()}, {"kind", described.kind}};
     json.update(described.content);
-    print_text(to_json_text(json, kIndentedJson) + "\n");
+    print_json(to_json_text(json, kIndentedJson) + "\n");
     return;
   }
   print("{}: {}\n", arguments.path.string(), described.kind);

@@ -58,7 +58,7 @@ void report_view(const RecognizeArguments& arguments, const ViewRecord& view, co
   const std::string line = format_view_line(view, library);
   finished.add(line);
   if (!arguments.stream) return;
-  print_text(line + "\n");
+  print_json(line + "\n");
   std::fflush(stdout);  // The reader of a pipe gets each view at once.
 }
 

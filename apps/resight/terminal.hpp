@@ -16,6 +16,8 @@ namespace resight::app {
 
 /// Prints to standard output. Line ends in `text` stay.
 void print_text(std::string_view text);
+/// Prints JSON to standard output, which remains JSON.
+void print_json(std::string_view json);
 /// Writes out what was printed. False if not all of it could be written.
 [[nodiscard]] bool finish_output();
 

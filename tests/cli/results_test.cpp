@@ -151,6 +151,26 @@ TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {
   EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("train 1/2")));
 }
 
+TEST_F(CommandLineResults, JsonOnTheTerminalKeepsAllNames) {
+  const std::string name = "v\xE2\x80\xAE\x7F";
+  fs::rename(folder_ / "views", folder_ / name);
+  for (const std::string command : {"info ", "check "}) {
+    const Json json = Json::parse(run(folder_, command + name + " --json").output, nullptr, false);
+    ASSERT_TRUE(json.is_object()) << command;
+    EXPECT_EQ(json["path"], name) << command;
+  }
+  const std::string view = "cloud_\xE2\x80\xAE\x7F_01";
+  fs::rename(folder_ / "tuw/cloud_01.pcd", folder_ / "tuw" / (view + ".pcd"));
+  std::istringstream lines(run(folder_, std::string(kRecognizeTuw) + " --stream").output);
+  std::vector<std::string> views;
+  for (std::string line; std::getline(lines, line);) {
+    const Json json = Json::parse(line, nullptr, false);
+    ASSERT_TRUE(json.is_object()) << line;
+    views.push_back(json["name"]);
+  }
+  EXPECT_THAT(views, testing::Contains(view));
+}
+
 TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
   fs::rename(folder_ / "views", folder_ / "v\xff");
   EXPECT_EQ(

@@ -36,19 +36,26 @@ bool is_harmless(std::uint32_t c) {
   return !control && !direction && !line_end;
 }
 
-void append_escaped(std::string& text, std::string_view bytes) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  for (const char c : bytes) {
-    const auto value = static_cast<unsigned char>(c);
+void append_hexadecimal(std::string& text, std::uint32_t value, int num_digits) {
+  for (int i = num_digits - 1; i >= 0; --i) text += "0123456789abcdef"[value >> (4 * i) & 15U];
+}
+
+void append_bytes(std::string& text, const CodePoint& /*c*/, std::string_view bytes) {
+  for (const char byte : bytes) {
     text += "\\x";
-    text += kDigits[value >> 4];
-    text += kDigits[value & 15U];
+    append_hexadecimal(text, static_cast<unsigned char>(byte), 2);
   }
 }
 
-}  // namespace
+/// All that is not harmless has four digits.
+void append_json_escape(std::string& text, const CodePoint& c, std::string_view /*bytes*/) {
+  constexpr std::uint32_t kReplacement = 0xFFFD;
+  text += "\\u";
+  append_hexadecimal(text, c.num_bytes > 0 ? c.value : kReplacement, 4);
+}
 
-std::string printable(std::string_view text) {
+template <typename AppendEscaped>
+std::string escape_harmful(std::string_view text, const AppendEscaped& append_escaped) {
   std::string result;
   while (!text.empty()) {
     const CodePoint c = decode(text);
@@ -56,10 +63,16 @@ std::string printable(std::string_view text) {
     if (c.num_bytes > 0 && is_harmless(c.value))
       result += bytes;
     else
-      append_escaped(result, bytes);
+      append_escaped(result, c, bytes);
     text.remove_prefix(bytes.size());
   }
   return result;
 }
+
+}  // namespace
+
+std::string printable(std::string_view text) { return escape_harmful(text, append_bytes); }
+
+std::string printable_json(std::string_view line) { return escape_harmful(line, append_json_escape); }
 
 }  // namespace resight

@@ -36,6 +36,12 @@ TEST(Printable, BytesThatAreNotUtf8AreEscaped) {
   EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80") << "half a surrogate pair";
 }
 
+TEST(Printable, JsonStaysJson) {
+  EXPECT_EQ(printable_json(R"({"a": "x\u001b\"y", "b": [1, 2]})"), R"({"a": "x\u001b\"y", "b": [1, 2]})");
+  EXPECT_EQ(printable_json("\"x\xE2\x80\xAE\x7F\xC2\x9B\""), R"("x\u202e\u007f\u009b")");
+  EXPECT_EQ(printable_json("\"a\xFF\""), R"("a\ufffd")");
+}
+
 TEST(ObjectNames, NamesArePartsOfLinesAndPaths) {
   for (const char* name : {"mug", "obj_000001", "Tasse (grün) #2", "a.b", "..."})
     EXPECT_TRUE(check_object_name(name).ok()) << name;
