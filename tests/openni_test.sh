@@ -46,6 +46,12 @@ LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight -
   --out no >lines 2>err
 [ $? = 2 ] || fail "a file that is no recording is no bad input: $(cat err)"
 
+mkfifo pipe.oni
+LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight --camera "openni2:$PWD/pipe.oni" \
+  --out no >lines 2>err
+[ $? = 2 ] || fail "a pipe is no bad input: $(cat err)"
+grep -q 'pipe.oni: is not a file' err || fail "the message does not say that a pipe is not a file: $(cat err)"
+
 LD_LIBRARY_PATH=none timeout 60 "${recognize[@]}" --out no >lines 2>err
 [ $? = 2 ] || fail "a missing camera is no bad input: $(cat err)"
 [ "$(wc -l <err)" = 1 ] || fail "expected one line without a camera: $(cat err)"

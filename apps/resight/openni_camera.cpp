@@ -2,6 +2,7 @@
 #include "openni_camera.hpp"
 
 #include "commands.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/io/intrinsics.hpp"
 #include "resight/sensor/rectify.hpp"
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #endif
 
@@ -66,6 +68,12 @@ Image<float> to_depth_image(const openni::VideoFrameRef& frame) {
       if (row[u] != 0) depth_m(u, v) = static_cast<float>(row[u] * unit_m);
   }
   return depth_m;
+}
+
+/// A URI that is a path names a recording. OpenNI2 would wait for a pipe without an end.
+void check_recording(const std::string& uri) {
+  std::error_code ignored;
+  if (std::filesystem::exists(uri, ignored)) value_or_throw(InputFile::open(uri));
 }
 
 /// A stream and its frame that waits for its partner.
@@ -169,6 +177,7 @@ FollowedView OpenniCamera::Impl::make_view() {
 }
 
 OpenniCamera::OpenniCamera(const OpenCameraOptions& options) : impl_(std::make_unique<Impl>()) {
+  check_recording(options.uri);
   const std::string what = options.uri.empty() ? "no camera was found" : options.uri + " cannot be opened";
   require_ok(impl_->device.open(options.uri.empty() ? openni::ANY_DEVICE : options.uri.c_str()), what);
   impl_->register_depth();
