@@ -15,25 +15,40 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at, int count) {
   return value;
 }
 
-/// Walks over the chunks: length, type, data, checksum. A chunk is critical if its type starts with a capital letter.
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+
+/// A chunk of a PNG: length, type, data, checksum.
+struct PngChunk {
+  std::string_view all;
+  std::string_view content;  ///< Type and data.
+  /// The pixels need it: its type starts with a capital letter.
+  [[nodiscard]] bool is_critical() const { return (content[0] & 0x20) == 0; }
+  [[nodiscard]] bool is_intact() const { return compute_crc32(content) == big_endian(all, 4 + content.size(), 4); }
+};
+
+/// Cuts the next whole chunk off; none at the end.
+std::optional<PngChunk> cut_png_chunk(std::string_view& rest) {
+  constexpr std::size_t kFrame = 12;
+  if (rest.size() < kFrame) return std::nullopt;
+  const std::size_t length = big_endian(rest, 0, 4);
+  if (length > rest.size() - kFrame) return std::nullopt;
+  const PngChunk chunk{rest.substr(0, length + kFrame), rest.substr(4, length + 4)};
+  rest.remove_prefix(chunk.all.size());
+  return chunk;
+}
+
 std::optional<ImageHeader> parse_png(std::string_view bytes) {
-  constexpr std::size_t kSignature = 8;
-  if (bytes.size() < kSignature + 25 || bytes.substr(12, 4) != "IHDR") return std::nullopt;
+  if (bytes.size() < kPngSignature.size() + 25 || bytes.substr(12, 4) != "IHDR") return std::nullopt;
   ImageHeader header;
   const std::uint32_t width = big_endian(bytes, 16, 4);
   const std::uint32_t height = big_endian(bytes, 20, 4);
   if (width > INT32_MAX || height > INT32_MAX) return std::nullopt;
   header.width = static_cast<int>(width);
   header.height = static_cast<int>(height);
-  std::size_t at = kSignature;
-  while (bytes.size() - at >= 12) {
-    const std::size_t length = big_endian(bytes, at, 4);
-    if (length > bytes.size() - at - 12) break;
-    const std::string_view content = bytes.substr(at + 4, length + 4);
-    const bool matters = (content[0] & 0x20) == 0;
-    if (matters && compute_crc32(content) != big_endian(bytes, at + 8 + length, 4)) header.intact = false;
-    if (content.starts_with("IEND")) header.complete = true;
-    at += length + 12;
+  bytes.remove_prefix(kPngSignature.size());
+  while (const auto chunk = cut_png_chunk(bytes)) {
+    if (chunk->is_critical() && !chunk->is_intact()) header.intact = false;
+    if (chunk->content.starts_with("IEND")) header.complete = true;
   }
   return header;
 }
@@ -41,35 +56,57 @@ std::optional<ImageHeader> parse_png(std::string_view bytes) {
 /// Whether a marker stands alone, without a segment.
 bool stands_alone(unsigned char marker) { return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD8); }
 
-/// Walks over the segments up to the start of frame, which contains the size. In the data behind it, the end marker
-/// cannot occur by chance.
+bool is_start_of_frame(unsigned char marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+/// Walks over the segments, and over the data of the scans between them, up to the end mark. The start of frame
+/// contains the size.
 std::optional<ImageHeader> parse_jpeg(std::string_view bytes) {
+  constexpr unsigned char kEndOfImage = 0xD9;
+  constexpr unsigned char kStartOfScan = 0xDA;
+  std::optional<ImageHeader> header;
   std::size_t at = 2;
-  while (at + 9 < bytes.size()) {
+  while ((at = bytes.find('\xff', at)) != bytes.npos && at + 1 < bytes.size()) {
     const auto marker = static_cast<unsigned char>(bytes[at + 1]);
-    if (bytes[at] != '\xff' || marker == 0xFF) {
+    if (marker == 0xFF) {
       ++at;  // fill bytes
       continue;
     }
-    const bool start_of_frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (start_of_frame) {
-      ImageHeader header;
-      header.height = static_cast<int>(big_endian(bytes, at + 5, 2));
-      header.width = static_cast<int>(big_endian(bytes, at + 7, 2));
-      header.complete = bytes.find("\xff\xd9", at) != bytes.npos;
-      return header;
+    if (marker == kEndOfImage) {
+      if (header) header->complete = true;
+      break;
     }
-    at += 2 + (stands_alone(marker) ? 0 : big_endian(bytes, at + 2, 2));
+    if (stands_alone(marker)) {
+      at += 2;
+      continue;
+    }
+    const bool tells_size = !header && is_start_of_frame(marker);
+    if (bytes.size() - at < (tells_size ? 9 : 4)) break;
+    if (tells_size)
+      header = {.width = static_cast<int>(big_endian(bytes, at + 7, 2)),
+                .height = static_cast<int>(big_endian(bytes, at + 5, 2))};
+    if (header && marker == kStartOfScan) ++header->num_scans;
+    at += 2 + big_endian(bytes, at + 2, 2);
   }
-  return std::nullopt;
+  return header;
 }
 
 }  // namespace
 
 std::optional<ImageHeader> parse_image_header(std::string_view bytes) {
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return parse_png(bytes);
+  if (bytes.starts_with(kPngSignature)) return parse_png(bytes);
   if (bytes.starts_with("\xff\xd8")) return parse_jpeg(bytes);
   return std::nullopt;
+}
+
+std::string keep_pixels(std::string_view bytes) {
+  if (!bytes.starts_with(kPngSignature)) return std::string(bytes);
+  std::string kept(kPngSignature);
+  bytes.remove_prefix(kPngSignature.size());
+  while (const auto chunk = cut_png_chunk(bytes))
+    if (chunk->is_critical()) kept += chunk->all;
+  return kept;
 }
 
 }  // namespace resight::io

@@ -16,6 +16,8 @@
 namespace resight {
 namespace {
 
+constexpr int kMaxScans = 100;  ///< Encoders make about ten.
+
 Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags, std::int64_t max_pixels) {
   const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
   const auto header = io::parse_image_header(bytes);
@@ -24,10 +26,12 @@ Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags,
       header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > max_pixels)
     return fail(fmt::format("the image size {}x{} is out of range (at most {} px per side and {} px in all)",
                             header->width, header->height, kMaxImageSide_px, max_pixels));
+  if (header->num_scans > kMaxScans) return fail(fmt::format("the image has more than {} scans", kMaxScans));
   if (!header->complete) return fail("the image is cut off");
   if (!header->intact) return fail("the image is damaged (a checksum does not match)");
   try {
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data()));
+    std::string pixels = io::keep_pixels(bytes);
+    const cv::Mat encoded(1, static_cast<int>(pixels.size()), CV_8UC1, pixels.data());
     cv::Mat image = cv::imdecode(encoded, flags);
     if (image.cols != header->width || image.rows != header->height)
       return fail("the image cannot be decoded (damaged?)");

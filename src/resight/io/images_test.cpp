@@ -3,12 +3,24 @@
 
 #include <gmock/gmock.h>
 
+#include "resight/core/crc32.hpp"
 #include "resight/io/internal/test_data.hpp"
 
 namespace resight {
 namespace {
 
 using testing::HasSubstr;
+
+std::string big_endian_bytes(std::uint32_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(number >> shift & 0xff);
+  return bytes;
+}
+
+std::string make_png_chunk(const std::string& content) {
+  return big_endian_bytes(static_cast<std::uint32_t>(content.size() - 4)) + content +
+         big_endian_bytes(compute_crc32(content));
+}
 
 TEST(Images, PngColourAndDepthAreExact) {
   io::TestDirectory directory;
@@ -77,8 +89,27 @@ TEST(Images, JpegMayBeFollowedByOtherData) {
   ASSERT_TRUE(write_color(directory / "c.jpg", Image<Rgb8>(32, 24, Rgb8{200, 100, 50})).ok());
   std::string bytes = *io::read_file(directory / "c.jpg");
   EXPECT_TRUE(decode_color(bytes + std::string(1000, 'x'), "motion.jpg").ok());
+  const std::string comment("\xff\xfe\x00\x03x", 5);
+  EXPECT_TRUE(decode_color(std::string(bytes).insert(bytes.size() - 2, comment), "comment.jpg").ok());
   bytes.resize(bytes.size() - 10);
   EXPECT_THAT(decode_color(bytes, "cut.jpg").error().message, HasSubstr("cut off"));
+}
+
+// The scan of an image, again and again: each one is decoded for the whole image.
+TEST(Images, AJpegOfTooManyScansIsRefused) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "c.jpg", Image<Rgb8>(32, 24, Rgb8{200, 100, 50})).ok());
+  const std::string bytes = io::read_text(directory / "c.jpg");
+  const std::size_t scan = bytes.rfind("\xff\xda");
+  std::string bomb = bytes.substr(0, scan);
+  bomb += std::string("\xff\xfe\x00\x04\xff\xd9", 6);  // A comment is no end mark.
+  for (int i = 0; i < 500; ++i) bomb += bytes.substr(scan, bytes.size() - scan - 2);
+  bomb += "\xff\xd9";
+  EXPECT_THAT(decode_color(bomb, "bomb.jpg").error().message, HasSubstr("more than 100 scans"));
+  // Behind the end, there may be other images.
+  std::string pictures = bytes;
+  for (int i = 0; i < 500; ++i) pictures += bytes;
+  EXPECT_TRUE(decode_color(pictures, "pictures.jpg").ok());
 }
 
 TEST(Images, DepthThatDoesNotFitIsAnError) {
@@ -125,6 +156,23 @@ TEST(Images, AFlippedBitInAPngIsFoundBeforeItIsDecoded) {
     EXPECT_THAT(decode_color(damaged, name).error().message, HasSubstr("a checksum does not match")) << at;
   }
   EXPECT_TRUE(decode_color(bytes, name).ok());
+}
+
+// A colour profile that is too short, and a damaged time: libpng would complain and print the name of the profile.
+TEST(Images, NoTextOfAPngReachesTheTerminal) {
+  io::TestDirectory directory;
+  const Image<Rgb8> color = io::random_frame("a", 1).color;
+  ASSERT_TRUE(write_color(directory / "c.png", color).ok());
+  std::string bytes = io::read_text(directory / "c.png");
+  const std::string stored_block("\x78\x01\x01\x84\x00\x7b\xff", 7);
+  const std::string profile = std::string("iCCP\x1b[31mforged\nline\0\0", 22) + stored_block + std::string(136, '\0');
+  constexpr std::size_t kBehindHeader = 33;
+  bytes.insert(kBehindHeader, make_png_chunk(profile) + make_png_chunk("tIMEwrong"));
+  testing::internal::CaptureStderr();
+  const auto decoded = decode_color(bytes, "c.png");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+  EXPECT_EQ(*decoded, color);
 }
 
 TEST(Images, NumpyDepth) {
