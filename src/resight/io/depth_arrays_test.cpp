@@ -68,6 +68,14 @@ TEST(DepthArrays, DeclaredSizesAreBounded) {
   EXPECT_THAT(parse_depth_exr(bytes, "d.exr", std::nullopt).error().message, HasSubstr("cut off"));
 }
 
+// A first part without fault, then one with an attribute of 688 MB, which OpenEXR would allocate.
+TEST(DepthArrays, AnOpenexrImageOfSeveralPartsIsRefused) {
+  const std::string first("a\0string\0\1\0\0\0x\0", 15);
+  const std::string second("b\0string\0\0\0\0\x2bxxxx", 17);
+  const std::string bytes = std::string("\x76\x2f\x31\x01\x02\x10\0\0", 8) + first + second;
+  EXPECT_THAT(parse_depth_exr(bytes, "d.exr", std::nullopt).error().message, HasSubstr("has several parts"));
+}
+
 TEST(DepthArrays, DamageIsAnError) {
   TestDirectory directory;
   Rng rng(3);

@@ -57,6 +57,12 @@ bool has_sound_header(std::string_view bytes) {
   return at < bytes.size();
 }
 
+/// OpenEXR reads the headers of all parts, of which has_sound_header() knows the first.
+bool has_several_parts(std::string_view bytes) {
+  constexpr unsigned char kMultipart = 0x10;
+  return (static_cast<unsigned char>(bytes[5]) & kMultipart) != 0;
+}
+
 /// Empty if there are several channels and none has the name of depth.
 std::string find_depth_channel(const Imf::ChannelList& channels) {
   constexpr std::array kNames = {"Z", "depth", "Y", "V", "R"};
@@ -97,6 +103,7 @@ Result<Image<float>> parse_depth_exr(std::string_view bytes, std::string_view na
                                      std::optional<double> metres_per_unit) {
   try {
     if (!has_sound_header(bytes)) return Error{fmt::format("{}: is cut off, or no OpenEXR image", name)};
+    if (has_several_parts(bytes)) return Error{fmt::format("{}: has several parts; expected one image", name)};
     ByteStream stream(bytes);
     auto depth_m = read_channel(stream, name, metres_per_unit.has_value());
     if (!depth_m) return depth_m;

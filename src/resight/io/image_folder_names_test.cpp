@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "resight/core/timing.hpp"
 #include "resight/io/image_folder_test_util.hpp"
+#include "resight/io/internal/image_series.hpp"
 
 namespace resight {
 namespace {
@@ -23,6 +25,31 @@ TEST(ImageFolder, PosesBesideNumpyDepthAreRead) {
   const auto posed = open_posed_sequence(directory.path());
   ASSERT_TRUE(posed.ok()) << posed.error().message;
   EXPECT_EQ((*posed)->read_pose(1)->translation, Eigen::Vector3d(1, 2, 3));
+}
+
+/// Series of one file each, all of the same number.
+std::vector<io::FileSeries> make_image_series(int count) {
+  std::vector<io::FileSeries> all;
+  for (int i = 0; i < count; ++i)
+    for (const io::SeriesKind kind : {io::SeriesKind::kColor, io::SeriesKind::kDepth}) {
+      const std::string name = std::string(static_cast<std::size_t>(i % 80), 'a') + std::to_string(i / 80) + "b1.png";
+      io::FileSeries series{.folder = "views", .pattern = name, .kind = kind, .files = {}};
+      series.files.emplace("1", io::SeriesFile{.file = series.folder / name, .name = name});
+      all.push_back(std::move(series));
+    }
+  return all;
+}
+
+TEST(ImageFolder, ManySeriesNeedNoMemoryForTheirPairs) {
+  const std::vector<io::FileSeries> all = make_image_series(300);
+  const std::size_t before = peak_memory_bytes();
+  EXPECT_THAT(io::pair_series(all, "views").error().message, HasSubstr("holds several series of views"));
+  EXPECT_LT(peak_memory_bytes() - before, 100'000'000U);
+}
+
+TEST(ImageFolder, MoreSeriesThanCanBePairedAreRefused) {
+  EXPECT_THAT(io::pair_series(make_image_series(1001), "views").error().message,
+              HasSubstr("holds too many series of images (1001 of colour and 1001 of depth)"));
 }
 
 TEST(ImageFolder, NamesThatAreTimes) {

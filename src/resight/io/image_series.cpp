@@ -220,10 +220,33 @@ bool holds_kind(const std::vector<FileSeries>& all, SeriesKind kind) {
   return std::ranges::any_of(all, [&](const FileSeries& series) { return series.kind == kind; });
 }
 
-struct Candidate {
-  PairedSeries paired;
-  int rank = 0;
+std::vector<ImagePair> find_pairs(const FileSeries& color, const FileSeries& depth) {
+  std::vector<ImagePair> pairs = pair_by_key(color, depth);
+  return pairs.empty() ? pair_by_time(color, depth) : pairs;
+}
+
+struct RankedSeries {
+  const FileSeries* series;
+  int rank;
 };
+
+std::vector<RankedSeries> rank_kind(const std::vector<FileSeries>& all, SeriesKind kind) {
+  std::vector<RankedSeries> ranked;
+  for (const FileSeries& series : all)
+    if (series.kind == kind) ranked.push_back({&series, rank_of(series)});
+  return ranked;
+}
+
+struct Candidate {
+  const FileSeries* color = nullptr;
+  const FileSeries* depth = nullptr;
+  int rank = 0;
+  std::size_t num_pairs = 0;
+};
+
+bool is_better(const Candidate& a, const Candidate& b) {
+  return a.rank != b.rank ? a.rank > b.rank : a.num_pairs > b.num_pairs;
+}
 
 }  // namespace
 
@@ -252,30 +275,39 @@ std::vector<FileSeries> find_series(const fs::path& folder) {
 }
 
 Result<std::optional<PairedSeries>> pair_series(const std::vector<FileSeries>& all, const fs::path& folder) {
-  std::vector<Candidate> candidates;
-  for (const FileSeries& color : all)
-    for (const FileSeries& depth : all) {
-      if (color.kind != SeriesKind::kColor || depth.kind != SeriesKind::kDepth) continue;
-      auto pairs = pair_by_key(color, depth);
-      if (pairs.empty()) pairs = pair_by_time(color, depth);
-      if (pairs.empty()) continue;
-      std::ranges::sort(pairs, [](const ImagePair& a, const ImagePair& b) {
-        return natural_less(a.color.file.filename().string(), b.color.file.filename().string());
-      });
-      candidates.push_back({{color, depth, std::move(pairs)}, rank_of(color) + 10 * rank_of(depth)});
+  constexpr std::size_t kMaxCandidates = 100'000;
+  const std::vector<RankedSeries> colors = rank_kind(all, SeriesKind::kColor);
+  const std::vector<RankedSeries> depths = rank_kind(all, SeriesKind::kDepth);
+  if (colors.size() * depths.size() > kMaxCandidates)
+    return file_error(folder,
+                      fmt::format("holds too many series of images ({} of colour and {} of depth); names of one "
+                                  "series differ in their numbers only",
+                                  colors.size(), depths.size()));
+  Candidate best;
+  std::optional<Candidate> equal;
+  for (const RankedSeries& color : colors)
+    for (const RankedSeries& depth : depths) {
+      const Candidate candidate{color.series, depth.series, color.rank + 10 * depth.rank,
+                                find_pairs(*color.series, *depth.series).size()};
+      if (candidate.num_pairs == 0) continue;
+      if (best.num_pairs == 0 || is_better(candidate, best)) {
+        best = candidate;
+        equal.reset();
+      } else if (!equal && !is_better(best, candidate)) {
+        equal = candidate;
+      }
     }
-  if (candidates.empty()) return std::optional<PairedSeries>();
-  std::ranges::stable_sort(candidates, [](const Candidate& a, const Candidate& b) {
-    return a.rank != b.rank ? a.rank > b.rank : a.paired.pairs.size() > b.paired.pairs.size();
-  });
-  if (candidates.size() > 1 && candidates[1].rank == candidates[0].rank &&
-      candidates[1].paired.pairs.size() == candidates[0].paired.pairs.size())
+  if (best.num_pairs == 0) return std::optional<PairedSeries>();
+  if (equal)
     return file_error(
         folder, fmt::format("holds several series of views: {} with {}, and {} with {}; give one of them a folder of "
                             "its own",
-                            candidates[0].paired.color.label(), candidates[0].paired.depth.label(),
-                            candidates[1].paired.color.label(), candidates[1].paired.depth.label()));
-  return std::optional(std::move(candidates.front().paired));
+                            best.color->label(), best.depth->label(), equal->color->label(), equal->depth->label()));
+  PairedSeries paired{*best.color, *best.depth, find_pairs(*best.color, *best.depth)};
+  std::ranges::sort(paired.pairs, [](const ImagePair& a, const ImagePair& b) {
+    return natural_less(a.color.file.filename().string(), b.color.file.filename().string());
+  });
+  return std::optional(std::move(paired));
 }
 
 std::string describe_images(const std::vector<FileSeries>& all) {

@@ -13,7 +13,7 @@ namespace resight::io {
 namespace {
 
 constexpr std::size_t kMaxFields = 1000;
-constexpr int kMaxCount = 65536;
+constexpr int kMaxValues = 4096;  ///< Of a point. The longest descriptors have about 2000.
 constexpr std::size_t kHeaderBytes = 65536;
 
 class PcdHeaderParser {
@@ -95,7 +95,7 @@ class PcdHeaderParser {
       }
       const auto number = parse_integer(word);
       if (words[0] == "COUNT") {
-        if (!number || *number < 1 || *number > kMaxCount) return wrong("COUNT", fmt::format("1 to {}", kMaxCount));
+        if (!number || *number < 1 || *number > kMaxValues) return wrong("COUNT", fmt::format("1 to {}", kMaxValues));
         field.count = static_cast<int>(*number);
       } else {
         if (!number || (*number != 1 && *number != 2 && *number != 4 && *number != 8))
@@ -157,6 +157,7 @@ class PcdHeaderParser {
       header_.point_bytes += field.bytes();
       header_.values_per_point += static_cast<std::size_t>(field.count);
     }
+    if (header_.values_per_point > kMaxValues) return wrong("COUNT", fmt::format("at most {} in all", kMaxValues));
     if (header_.camera) {
       header_.camera->width = header_.width;
       header_.camera->height = header_.height;

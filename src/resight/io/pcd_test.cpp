@@ -132,6 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"NegativeCount", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 -1\nWIDTH 1\nDATA ascii\n1 2 3",
                   "COUNT"},
         BadHeader{"HugeCount", "FIELDS x y z\nCOUNT 1 1 2000000000\nWIDTH 1\nDATA ascii\n1 2 3", "COUNT"},
+        BadHeader{"HugePoint", "FIELDS x y z a b\nCOUNT 1 1 1 3000 3000\nWIDTH 0\nDATA ascii\n", "COUNT"},
         BadHeader{"OddSize", "FIELDS x y z\nSIZE 4 4 3\nWIDTH 1\nDATA ascii\n1 2 3", "SIZE"},
         BadHeader{"HalfFloat", "FIELDS x y z\nSIZE 4 4 2\nTYPE F F F\nWIDTH 1\nDATA ascii\n1 2 3", "SIZE"},
         BadHeader{"FewerTypes", "FIELDS x y z\nTYPE F F\nWIDTH 1\nDATA ascii\n1 2 3", "TYPE"},
