@@ -36,12 +36,13 @@ std::filesystem::path write_redirect(const std::string& address) {
   return is_written ? std::filesystem::path(name) : std::filesystem::path();
 }
 
-/// Runs xdg-open, without its messages. The browser goes on after it.
+/// Runs xdg-open, without its messages. The browser goes on after it, so it inherits no socket and no file.
 void open_with_desktop(const std::filesystem::path& page) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   for (const int output : {STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&actions, output, "/dev/null", O_WRONLY, 0);
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
   std::string program = "xdg-open";
   std::string argument = page.string();
   char* const arguments[] = {program.data(), argument.data(), nullptr};
