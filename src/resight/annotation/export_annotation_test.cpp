@@ -9,6 +9,7 @@
 #include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/annotated_scene_test.hpp"
 #include "resight/annotation/annotation_checks.hpp"
+#include "resight/annotation/object_masks.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/io/change_files.hpp"
@@ -78,6 +79,16 @@ TEST_F(ExportAnnotationTest, MasksAndFilesOfTuwAreThere) {
   EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small" / (view + ".anno")));
   EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small" / (view + "_cereal_blue_0.txt")));
   EXPECT_TRUE(fs::exists(folder_ / "export" / "tuw" / "small.changes"));
+}
+
+TEST_F(ExportAnnotationTest, ObjectsBehindTheCameraHaveNoMask) {
+  ObjectMaskRenderer renderer(scene_->library);
+  const RgbdFrame& frame = scene_->frames[0];
+  AnnotatedObject object{.object = 0};
+  object.world_from_object = frame.world_from_camera * Rigid3::from_translation({0, 0, -0.6});
+  EXPECT_TRUE(renderer.render({&object, 1}, frame).empty());
+  object.world_from_object = frame.world_from_camera * Rigid3::from_translation({0, 0, 0.6});
+  EXPECT_EQ(renderer.render({&object, 1}, frame).size(), 1U);
 }
 
 TEST_F(ExportAnnotationTest, AnExportReplacesAnEarlierOneAndNothingElse) {

@@ -34,8 +34,9 @@ struct PixelBounds {
     u1 = std::max(u1, u);
     v1 = std::max(v1, v);
   }
+  [[nodiscard]] bool empty() const { return u1 < u0; }
   [[nodiscard]] PixelRectangle rectangle() const {
-    return u1 < u0 ? PixelRectangle{}
+    return empty() ? PixelRectangle{}
                    : PixelRectangle{.left = u0, .top = v0, .width = u1 - u0 + 1, .height = v1 - v0 + 1};
   }
 };
@@ -51,16 +52,17 @@ PixelBounds find_bounds(const PointCloud& surface, const Camera& camera, const R
     bounds.add(static_cast<int>(std::clamp<double>(px.x(), -camera.width, 2.0 * camera.width)),
                static_cast<int>(std::clamp<double>(px.y(), -camera.height, 2.0 * camera.height)));
   }
-  if (bounds.u1 < bounds.u0) return bounds;
+  if (bounds.empty()) return bounds;
   return {bounds.u0 - kBorder_px, bounds.v0 - kBorder_px, bounds.u1 + kBorder_px, bounds.v1 + kBorder_px};
 }
 
 /// Casts a ray per pixel: fills the silhouette, and `depth_m` where it is in the image.
 void cast_silhouette(const RaycastScene& scene, const PixelBounds& bounds, const RgbdFrame& frame,
                      const Rigid3& camera_from_object, ObjectMask& mask, Image<float>& depth_m) {
+  if (bounds.empty()) return;  // All of it is behind the camera.
   const Rigid3f object_from_camera(camera_from_object.inverse());
   const Camera& camera = frame.camera;
-  std::vector<Ray> rays(static_cast<std::size_t>(std::max(0, bounds.u1 - bounds.u0 + 1)));
+  std::vector<Ray> rays(static_cast<std::size_t>(bounds.u1 - bounds.u0 + 1));
   std::vector<RayHit> hits(rays.size());
   PixelBounds found;
   for (int v = bounds.v0; v <= bounds.v1; ++v) {

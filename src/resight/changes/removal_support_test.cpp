@@ -14,7 +14,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// The slow twin: flood over all pairs.
+/// The slow reference: flood over all pairs.
 std::vector<std::vector<int>> cluster_slowly(const Points& points, double distance_m, int min_points) {
   const auto distance = static_cast<float>(distance_m);
   std::vector<int> label(points.size(), -1);

@@ -15,7 +15,7 @@ namespace {
 using namespace testing_scene;
 using Points = std::vector<Eigen::Vector3f>;
 
-/// The slow twin of the z-buffer: every query against every blocker, as the text of Sec. III-B1 goes.
+/// The slow reference of the z-buffer: every query against every blocker, as the text of Sec. III-B1 goes.
 Evidence classify_slowly(const Eigen::Vector3f& query, const Points& blockers, const SphericalBins& bins,
                          float margin_m) {
   Evidence evidence = Evidence::kUnobserved;

@@ -3,7 +3,7 @@
 
 namespace resight {
 
-/// The law of a depth camera's noise. At the depth z (m) and the angle theta between surface normal and viewing ray,
+/// The noise model of a depth camera. At the depth z (m) and the angle theta between surface normal and viewing ray,
 /// with r = theta / (pi/2 - theta), the standard deviations are
 ///   axial   = constant_m + quadratic_per_m (z - nearest_m)^2 + grazing r^2 / sqrt(z)  metres, along z,
 ///   lateral = lateral_px + lateral_grazing_px r                                       pixels, in the image.

@@ -23,7 +23,7 @@ constexpr DepthNoise stereo_noise(double focal_px, double baseline_m) {
   return with_axial(0.001063, 0.08 / (focal_px * baseline_m));
 }
 
-// No source gives other laws of lateral noise and of angles, so those of the Kinect v1 hold for all.
+// No source gives other models of the lateral noise and of the angle, so those of the Kinect v1 hold for all.
 constexpr std::array<DepthSensor, 4> kSensors{{
     {"structured-light", DepthNoise{}, "Kinect v1: Nguyen et al. 2012"},
     {"active-stereo", stereo_noise(424, 0.050), "RealSense D435, 848 px wide, 90 deg: Intel, Tuning Depth Cameras"},

@@ -56,7 +56,7 @@ TEST(DepthSensor, TheNoiseOfAViewIsThatOfItsCamera) {
   const NoiseImages structured = model_noise(back_project(camera, depth_m), camera);
   camera.noise = find_depth_sensor("time-of-flight")->noise;
   const NoiseImages of_time = model_noise(back_project(camera, depth_m), camera);
-  // Without normals, the noise is that of the largest angle; the law of angles is the same.
+  // Without normals, the noise is that of the largest angle; the dependence on the angle is the same.
   EXPECT_NEAR(structured.axial_m(320, 240) - of_time.axial_m(320, 240),
               nguyen_noise(2, 0, 525).axial_m - axial_noise_m(camera.noise, 2), 1e-6);
   EXPECT_EQ(structured.lateral_m(320, 240), of_time.lateral_m(320, 240));

@@ -17,14 +17,14 @@ constexpr int kRowsPerTask = 32;
 
 /// DepthNoise, as a template for the double of noise_sigma() and the float of whole images.
 template <typename T>
-struct NoiseLaw {
-  explicit NoiseLaw(const DepthNoise& law)
-      : constant_m(static_cast<T>(law.constant_m)),
-        quadratic_per_m(static_cast<T>(law.quadratic_per_m)),
-        nearest_m(static_cast<T>(law.nearest_m)),
-        grazing(static_cast<T>(law.grazing)),
-        lateral_px(static_cast<T>(law.lateral_px)),
-        lateral_grazing_px(static_cast<T>(law.lateral_grazing_px)) {}
+struct NoiseModel {
+  explicit NoiseModel(const DepthNoise& noise)
+      : constant_m(static_cast<T>(noise.constant_m)),
+        quadratic_per_m(static_cast<T>(noise.quadratic_per_m)),
+        nearest_m(static_cast<T>(noise.nearest_m)),
+        grazing(static_cast<T>(noise.grazing)),
+        lateral_px(static_cast<T>(noise.lateral_px)),
+        lateral_grazing_px(static_cast<T>(noise.lateral_grazing_px)) {}
   T constant_m, quadratic_per_m, nearest_m, grazing, lateral_px, lateral_grazing_px;
 
   [[nodiscard]] T lateral_sigma_m(T z_m, T ratio, T focal_px) const {
@@ -63,15 +63,15 @@ inline float angle_ratio(float c) {
 /// is not vectorised. `trust` is 1, or NaN if there are no normals.
 void model_row(const float* __restrict x, const float* __restrict y, const float* __restrict z,
                const float* __restrict nx, const float* __restrict ny, const float* __restrict nz, int width,
-               float trust, float focal_px, const NoiseLaw<float> law, float* __restrict lateral_m,
+               float trust, float focal_px, const NoiseModel<float> noise, float* __restrict lateral_m,
                float* __restrict axial_m, float* __restrict normal_m) {
   for (int u = 0; u < width; ++u) {
     const float along_ray = std::abs(nx[u] * x[u] + ny[u] * y[u] + nz[u] * z[u]);
     const float range = std::sqrt(x[u] * x[u] + y[u] * y[u] + z[u] * z[u]);
     const float cosine = trust * along_ray / range;
     const float ratio = angle_ratio(cosine);
-    const float lateral = law.lateral_sigma_m(z[u], ratio, focal_px);
-    const float axial = law.axial_sigma_m(z[u], ratio);
+    const float lateral = noise.lateral_sigma_m(z[u], ratio, focal_px);
+    const float axial = noise.axial_sigma_m(z[u], ratio);
     const float cosine_sq = cosine < 1.0F ? cosine * cosine : 1.0F;  // NaN (no normal) becomes 1.
     lateral_m[u] = lateral;
     axial_m[u] = axial;
@@ -81,19 +81,19 @@ void model_row(const float* __restrict x, const float* __restrict y, const float
 
 }  // namespace
 
-NoiseSigma noise_sigma(const DepthNoise& law, double z_m, double angle_rad, double focal_px) {
+NoiseSigma noise_sigma(const DepthNoise& noise, double z_m, double angle_rad, double focal_px) {
   check_positive("noise_sigma: z_m", z_m);
   check_not_negative("noise_sigma: angle_rad", angle_rad);
   check_positive("noise_sigma: focal_px", focal_px);
   const double angle = std::min(angle_rad, kMaxAngleRad);
   const double ratio = angle / (std::numbers::pi / 2 - angle);
-  const NoiseLaw<double> sigma(law);
+  const NoiseModel<double> sigma(noise);
   return {sigma.lateral_sigma_m(z_m, ratio, focal_px), sigma.axial_sigma_m(z_m, ratio)};
 }
 
-double axial_noise_m(const DepthNoise& law, double z_m) {
+double axial_noise_m(const DepthNoise& noise, double z_m) {
   check_positive("axial_noise_m: z_m", z_m);
-  return NoiseLaw<double>(law).axial_sigma_m(z_m, 0);
+  return NoiseModel<double>(noise).axial_sigma_m(z_m, 0);
 }
 
 NoiseSigma nguyen_noise(double z_m, double angle_rad, double focal_px) {
@@ -109,7 +109,7 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
   const auto focal_px = static_cast<float>((camera.fx + camera.fy) / 2);
   NoiseImages noise{Image<float>(width, height), Image<float>(width, height), Image<float>(width, height)};
   const OrganizedCloud& c = cloud_in_camera;
-  const NoiseLaw<float> law(camera.noise);
+  const NoiseModel<float> model(camera.noise);
   const bool has_normals = !c.nx.empty();
   const float trust = has_normals ? 1.0F : std::numeric_limits<float>::quiet_NaN();
   const auto normals = [&](const Image<float>& image) -> const Image<float>& { return has_normals ? image : c.z; };
@@ -117,7 +117,7 @@ NoiseImages model_noise(const OrganizedCloud& cloud_in_camera, const Camera& cam
       static_cast<std::size_t>(height), kRowsPerTask, num_threads, [&](std::size_t first, std::size_t last) {
         for (int v = static_cast<int>(first); v < static_cast<int>(last); ++v)
           model_row(c.x.row(v).data(), c.y.row(v).data(), c.z.row(v).data(), normals(c.nx).row(v).data(),
-                    normals(c.ny).row(v).data(), normals(c.nz).row(v).data(), width, trust, focal_px, law,
+                    normals(c.ny).row(v).data(), normals(c.nz).row(v).data(), width, trust, focal_px, model,
                     noise.lateral_m.row(v).data(), noise.axial_m.row(v).data(), noise.normal_m.row(v).data());
       });
   return noise;

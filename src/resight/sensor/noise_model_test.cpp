@@ -44,7 +44,7 @@ TEST(NguyenNoise, GrowsWithDepthAndAngle) {
       EXPECT_GT(steeper.lateral_m, here.lateral_m);
       EXPECT_GT(steeper.axial_m, here.axial_m);
       EXPECT_GT(nguyen_noise(z + 0.1, angle, 525).lateral_m, here.lateral_m);
-      // At grazing angles, the axial term with 1/sqrt(z) decreases with depth. The law holds where this term is small.
+      // At grazing angles, the axial term with 1/sqrt(z) decreases with depth. The rule holds where this term is small.
       if (angle < 45 * kDegree) {
         EXPECT_GT(nguyen_noise(z + 0.1, angle, 525).axial_m, here.axial_m);
       }

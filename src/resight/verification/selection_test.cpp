@@ -68,7 +68,7 @@ double slow_cost(const RandomCues& random, const std::vector<std::uint8_t>& acti
   return cost;
 }
 
-// The exact twin in whole numbers, from the problem itself.
+// The exact reference in whole numbers, from the problem itself.
 FixedCost cost_from_scratch(const SelectionProblem& problem, const std::vector<std::uint8_t>& active) {
   Selection fresh(problem);
   for (int c = 0; c < problem.num_candidates(); ++c)
