@@ -13,6 +13,7 @@
 #include "recognition_run.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/unfinished_folder.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
 #include "resight/recognition/view_hypotheses.hpp"
@@ -92,6 +93,7 @@ std::vector<fs::path> list_sequences(const fs::path& root) {
   if (only.ok() && *only == root) return {root};
   std::vector<fs::path> sequences;
   for (const fs::path& folder : list_folders(root)) {
+    value_or_throw(check_finished(folder));  // Half a sequence would be passed over.
     const auto sequence = find_sequence_folder(folder);
     const bool is_sequence = sequence.ok() && *sequence == folder;
     if (!is_sequence && folder.filename().string().starts_with("train")) continue;

@@ -113,6 +113,7 @@ ViewerScene open_views_or_models(const ViewArguments& arguments) {
 /// Checked by the first view, so that a wrong folder is noticed at once.
 void add_changes(const fs::path& folder, ViewerScene& scene) {
   if (!scene.sequence) throw InputError(file_error(folder, "needs the sequence that it is of (pass it, too)").message);
+  value_or_throw(check_finished(folder));
   const fs::path first = folder / (scene.sequence->view_name(0) + ".ply");
   std::error_code error;
   if (!fs::is_regular_file(first, error))

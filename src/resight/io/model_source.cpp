@@ -105,6 +105,8 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
   for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
   for (const std::string& name : io::list_directories(directory)) {
     const path folder = directory / name;
+    // Half a model would be passed over.
+    if (const auto finished = check_finished(folder); !finished) return finished.error();
     if (is_tuw_model(folder)) {
       auto location = locate_tuw_model(folder);
       if (!location) return location.error();
@@ -218,6 +220,8 @@ Result<Locations> find_models(const std::vector<path>& paths) {
   }
   if (all.empty()) return Error{"no path to models was given"};
   name_by_folder(all);
+  for (const ModelLocation& location : all)
+    if (const auto finished = check_finished(location.path); !finished) return finished.error();
   for (const ModelLocation& location : all)
     if (const auto checked = check_object_name(location.name); !checked)
       return io::file_error(location.path, checked.error().message);

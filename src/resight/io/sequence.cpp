@@ -121,6 +121,7 @@ io::SequenceResult open_as_recorded(const path& directory, const OpenSequenceOpt
   const auto folder = find_sequence_folder(directory);
   if (!folder) return folder.error();
   if (!*folder) return no_sequence_error(directory);
+  if (const auto finished = check_finished(**folder); !finished) return finished.error();  // It may lie below.
   const FormatEntry* format = find_format(**folder);
   if (format == nullptr) return io::open_recording_sequence(**folder, options);
   auto sequence = format->open(**folder, options);
