@@ -156,9 +156,16 @@ Json describe_models(const std::vector<ModelLocation>& models) {
   return json;
 }
 
-// Numbers and texts of a results file, without its lists.
+// Numbers and texts of a results file, without its lists. An object in the order of its keys takes the square of their
+// number: those inside others are left out, and a file of very many keys is none of ours.
 Json describe_results(const std::filesystem::path& file) {
-  const Json all = Json::parse(value_or_throw(read_file(file)), nullptr, false);
+  constexpr int kMaxKeys = 1000;
+  int num_keys = 0;
+  const auto is_kept = [&](int depth, Json::parse_event_t event, const Json&) {
+    return event != Json::parse_event_t::key || (depth == 1 && ++num_keys <= kMaxKeys);
+  };
+  const Json all = Json::parse(value_or_throw(read_file(file)), is_kept, false);
+  if (num_keys > kMaxKeys) throw InputError(file_error(file, "has too many keys for results of resight").message);
   if (!all.is_object()) throw InputError(file_error(file, "is not valid JSON").message);
   Json json;
   for (const auto& [name, value] : all.items())

@@ -151,6 +151,17 @@ TEST_F(CommandLineResults, TrainingChecksEveryInputBeforeItBegins) {
   EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("train 1/2")));
 }
 
+TEST_F(CommandLineResults, VeryManyKeysAreNoResults) {
+  std::string keys = "\"version\": 1";
+  for (int i = 0; i < 200000; ++i) keys += ", \"" + std::to_string(i) + "\": {\"" + std::to_string(i) + "\": 1}";
+  write_text(folder_ / "many/summary.json", "{" + keys + "}");
+  EXPECT_EQ(run(folder_, "info many").status, 2);
+  write_text(folder_ / "deep/summary.json", "{\"version\": 1, \"times\": {" + keys + "}}");
+  const Outcome deep = run(folder_, "info deep --json");
+  EXPECT_EQ(deep.status, 0);
+  EXPECT_EQ(Json::parse(deep.output)["version"], 1);
+}
+
 TEST_F(CommandLineResults, JsonOnTheTerminalKeepsAllNames) {
   const std::string name = "v\xE2\x80\xAE\x7F";
   fs::rename(folder_ / "views", folder_ / name);

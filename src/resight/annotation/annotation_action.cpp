@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kMaxRepair = 0.01;
 constexpr double kExact = 1e-12;
-constexpr std::size_t kMaxChanges = 1000;
 constexpr std::size_t kMaxTitleBytes = 200;
 
 constexpr std::array<std::pair<RegionVerdict, std::string_view>, 3> kVerdicts{
@@ -258,8 +257,8 @@ Result<AnnotationAction> parse_action(std::string_view text) {
   AnnotationEdit edit{.title = read.text("title"), .changes = {}};
   if (!read.is_valid()) return Error{"an action is \"undo\", \"redo\", or an object with a title and changes"};
   const auto changes = parsed.find("changes");
-  if (changes == parsed.end() || !changes->is_array() || changes->empty() || changes->size() > annotation::kMaxChanges)
-    return Error{"an edit has 1 to 1000 changes"};
+  if (changes == parsed.end() || !changes->is_array() || changes->empty())
+    return Error{"an edit has at least one change"};
   for (const json& one : *changes) {
     auto change = annotation::change_from_json(one);
     if (!change) return Error{"a change has an unknown name, a missing value, or one that is not finite or not rigid"};

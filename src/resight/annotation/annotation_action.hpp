@@ -23,7 +23,7 @@ using AnnotationAction = std::variant<AnnotationEdit, UndoEdit, RedoEdit>;
 [[nodiscard]] std::string format_action(const AnnotationAction& action);
 
 /// Reads what format_action() writes. Poses that deviate by up to 0.01 per element from a rigid motion are repaired.
-/// Fails for other JSON, more than 1,000 changes, and numbers that are not finite. Numbers of views and objects are
+/// Fails for other JSON, no changes, and numbers that are not finite. Numbers of views and objects are
 /// checked by apply_change().
 [[nodiscard]] Result<AnnotationAction> parse_action(std::string_view text);
 

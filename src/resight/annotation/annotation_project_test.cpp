@@ -71,6 +71,16 @@ TEST_F(AnnotationProjectTest, ActionsSurviveAndCanBeUndone) {
   EXPECT_EQ(project->act(RedoEdit{}, 4).kind, Kind::kInvalid);
 }
 
+// The detections of a long sequence are one edit.
+TEST_F(AnnotationProjectTest, AnEditMayHaveThousandsOfChanges) {
+  AnnotationEdit edit{.title = "Start from detections", .changes = {}};
+  for (int i = 0; i < 3000; ++i) edit.changes.emplace_back(PutObject{make_object(0.1 * i)});
+  EXPECT_EQ(open()->act(edit, 0).kind, Kind::kApplied);
+  const auto project = open();
+  ASSERT_NE(project, nullptr);
+  EXPECT_EQ(project->document().objects.size(), 3000U);
+}
+
 TEST_F(AnnotationProjectTest, UndoOfEveryKindOfChangeRestoresTheDocument) {
   const auto project = open();
   ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);

@@ -64,7 +64,7 @@ std::string to_line(const TrackerStep& step) {
 // Reads one step. Edges may lead from earlier views only. None if the line is damaged.
 std::optional<TrackerStep> read_line(const std::string& line, int view) {
   try {
-    const ordered_json values = ordered_json::parse(line);
+    const auto values = nlohmann::json::parse(line);  // The keys may be of any number.
     TrackerStep step;
     step.view.name = values.at("name").get<std::string>();
     step.view.world_from_camera = read_pose(values.at("world_from_camera"));
@@ -73,7 +73,7 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
     step.view.num_matches = values.at("num_matches").get<int>();
     step.view.overlap = values.at("overlap").get<double>();
     read_matrix(values.at("sigma"), step.view.sigma);
-    for (const ordered_json& e : values.at("edges")) {
+    for (const nlohmann::json& e : values.at("edges")) {
       PoseEdge edge{e.at("a").get<int>(), e.at("b").get<int>(), read_pose(e.at("a_from_b")), {}};
       read_matrix(e.at("information"), edge.information);
       if (edge.a < 0 || edge.a >= view || edge.b != view) return std::nullopt;

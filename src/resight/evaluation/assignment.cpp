@@ -12,49 +12,56 @@ namespace {
 
 constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// A square cost table. Padding rows, padding columns and forbidden pairs cost more than all allowed pairs together, so
-/// that the cheapest complete assignment has as many allowed pairs as possible.
-struct SquareCost {
-  int size = 0;
-  std::vector<double> values;
-  [[nodiscard]] double at(int row, int column) const { return values[static_cast<std::size_t>(row * size + column)]; }
-};
+/// A cost table with at least as many columns as rows: that of the caller, or its transpose. Forbidden pairs cost more
+/// than all allowed pairs together, so that the cheapest assignment of all rows has as many allowed pairs as possible.
+class WideCost {
+ public:
+  WideCost(std::span<const double> cost, int num_rows, int num_columns)
+      : cost_(cost), num_given_columns_(num_columns), is_transposed_(num_rows > num_columns) {
+    double largest = 0;
+    for (const double value : cost)
+      if (!std::isnan(value)) largest = std::max(largest, value);
+    rows = std::min(num_rows, num_columns);
+    columns = std::max(num_rows, num_columns);
+    forbidden_ = (largest + 1.0) * (columns + 1);
+  }
+  [[nodiscard]] double at(int row, int column) const {
+    const double value = is_transposed_ ? given(column, row) : given(row, column);
+    return std::isnan(value) ? forbidden_ : value;
+  }
+  [[nodiscard]] bool is_forbidden(int row, int column) const { return at(row, column) == forbidden_; }
+  [[nodiscard]] bool is_transposed() const { return is_transposed_; }
+  int rows = 0;
+  int columns = 0;
 
-SquareCost make_square(std::span<const double> cost, int num_rows, int num_columns) {
-  double largest = 0;
-  for (const double value : cost) {
-    if (!std::isnan(value)) largest = std::max(largest, value);
+ private:
+  [[nodiscard]] double given(int row, int column) const {
+    return cost_[static_cast<std::size_t>(row) * static_cast<std::size_t>(num_given_columns_) +
+                 static_cast<std::size_t>(column)];
   }
-  SquareCost square;
-  square.size = std::max(num_rows, num_columns);
-  const double forbidden = (largest + 1.0) * (square.size + 1);
-  square.values.assign(static_cast<std::size_t>(square.size) * static_cast<std::size_t>(square.size), forbidden);
-  for (int row = 0; row < num_rows; ++row) {
-    for (int column = 0; column < num_columns; ++column) {
-      const double value = cost[static_cast<std::size_t>(row * num_columns + column)];
-      if (!std::isnan(value)) square.values[static_cast<std::size_t>(row * square.size + column)] = value;
-    }
-  }
-  return square;
-}
+  std::span<const double> cost_;
+  int num_given_columns_;
+  bool is_transposed_;
+  double forbidden_ = 0;
+};
 
 /// Hungarian method: rows are added one by one, each along the cheapest augmenting path in the reduced costs.
 class HungarianSolver {
  public:
-  explicit HungarianSolver(const SquareCost& cost)
+  explicit HungarianSolver(const WideCost& cost)
       : cost_(cost),
-        row_potential_(slots(), 0.0),
+        row_potential_(static_cast<std::size_t>(cost.rows), 0.0),
         column_potential_(slots(), 0.0),
         row_of_column_(slots(), -1),
         previous_column_(slots(), -1) {}
 
   std::vector<int> solve() {
-    for (int row = 0; row < cost_.size; ++row) add_row(row);
+    for (int row = 0; row < cost_.rows; ++row) add_row(row);
     return row_of_column_;
   }
 
  private:
-  [[nodiscard]] std::size_t slots() const { return static_cast<std::size_t>(cost_.size); }
+  [[nodiscard]] std::size_t slots() const { return static_cast<std::size_t>(cost_.columns); }
 
   void add_row(int start_row) {
     std::vector<double> slack(slots(), kUnreachable);
@@ -77,7 +84,7 @@ class HungarianSolver {
   /// Updates the slack of the columns that have not been reached, from `row`; returns the column with the least slack.
   int relax(int row, int from_column, const std::vector<char>& reached, std::vector<double>& slack) {
     int best = -1;
-    for (int column = 0; column < cost_.size; ++column) {
+    for (int column = 0; column < cost_.columns; ++column) {
       const auto c = static_cast<std::size_t>(column);
       if (reached[c]) continue;
       const double reduced =
@@ -113,7 +120,7 @@ class HungarianSolver {
     }
   }
 
-  const SquareCost& cost_;
+  const WideCost& cost_;
   std::vector<double> row_potential_;
   std::vector<double> column_potential_;
   std::vector<int> row_of_column_;
@@ -133,13 +140,12 @@ std::vector<int> assign_optimally(std::span<const double> cost, int num_rows, in
   std::vector<int> column_of_row(static_cast<std::size_t>(num_rows), -1);
   if (num_rows == 0 || num_columns == 0) return column_of_row;
 
-  const SquareCost square = make_square(cost, num_rows, num_columns);
-  const std::vector<int> row_of_column = HungarianSolver(square).solve();
-  for (int column = 0; column < num_columns; ++column) {
+  const WideCost wide(cost, num_rows, num_columns);
+  const std::vector<int> row_of_column = HungarianSolver(wide).solve();
+  for (int column = 0; column < wide.columns; ++column) {
     const int row = row_of_column[static_cast<std::size_t>(column)];
-    if (row >= num_rows) continue;
-    if (std::isnan(cost[static_cast<std::size_t>(row * num_columns + column)])) continue;
-    column_of_row[static_cast<std::size_t>(row)] = column;
+    if (row < 0 || wide.is_forbidden(row, column)) continue;
+    column_of_row[static_cast<std::size_t>(wide.is_transposed() ? column : row)] = wide.is_transposed() ? row : column;
   }
   return column_of_row;
 }

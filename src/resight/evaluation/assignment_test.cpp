@@ -90,6 +90,14 @@ TEST(AssignOptimally, HandlesEmptySides) {
   EXPECT_EQ(assign_optimally({}, 2, 0), (std::vector<int>{-1, -1}));
 }
 
+TEST(AssignOptimally, NeedsNoSquareOfTheLongerSide) {
+  constexpr int kMany = 200000;  // Its square would take 300 GB.
+  std::vector<double> cost(kMany, 2.0);
+  cost[kMany - 7] = 1.0;
+  EXPECT_EQ(assign_optimally(cost, 1, kMany), std::vector<int>{kMany - 7});
+  EXPECT_EQ(assign_optimally(cost, kMany, 1)[kMany - 7], 0);
+}
+
 TEST(AssignOptimally, RefusesBadInput) {
   const std::vector<double> negative = {-1.0};
   const std::vector<double> infinite = {std::numeric_limits<double>::infinity()};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -16,6 +17,12 @@ namespace resight {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using StoredJson = nlohmann::json;  // Finds a key in logarithmic time: the keys of a file may be of any number.
+
+// Limits for numbers in files. Their sums over all views fit into the integers of the scores.
+constexpr int kMaxCount = 1'000'000;
+constexpr int kMaxHypotheses = 100'000'000;
+constexpr std::int64_t kMaxPoints = 1'000'000'000'000;
 
 constexpr std::array<std::pair<DetectionVerdict, std::string_view>, 4> kVerdicts{
     {{DetectionVerdict::kCorrect, "correct"},
@@ -24,12 +31,31 @@ constexpr std::array<std::pair<DetectionVerdict, std::string_view>, 4> kVerdicts
      {DetectionVerdict::kIgnored, "ignored"}}};
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-double number_from(const Json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+
+double size_from(const StoredJson& value) {
+  const auto size = value.get<double>();
+  check_not_negative("a size, distance or time", size);
+  return size;
+}
+double optional_size_from(const StoredJson& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : size_from(value);
+}
+
+// A conversion of other numbers would be undefined.
+std::int64_t integer_from(const StoredJson& value, std::int64_t least, std::int64_t largest) {
+  const bool is_small = value.is_number_integer() &&
+                        !(value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{INT64_MAX});
+  if (!is_small || value.get<std::int64_t>() < least || value.get<std::int64_t>() > largest)
+    throw std::runtime_error(value.dump() + " is no integer from " + std::to_string(least) + " to " +
+                             std::to_string(largest));
+  return value.get<std::int64_t>();
+}
+int count_from(const StoredJson& value, int largest = kMaxCount) {
+  return static_cast<int>(integer_from(value, 0, largest));
 }
 
 // Of a preset or of a stage that takes time. It goes into tables as it is.
-std::string plain_name_from(const Json& j) {
+std::string plain_name_from(const StoredJson& j) {
   auto name = j.get<std::string>();
   const auto is_plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ' ' || c == '-' || c == '_';
@@ -39,7 +65,7 @@ std::string plain_name_from(const Json& j) {
 }
 
 // Empty, or the name of a LossStage, which heads a column.
-std::string loss_stage_from(const Json& j) {
+std::string loss_stage_from(const StoredJson& j) {
   auto name = j.get<std::string>();
   bool is_known = name.empty();
   for (int stage = 0; stage <= static_cast<int>(LossStage::kRejected); ++stage)
@@ -49,11 +75,14 @@ std::string loss_stage_from(const Json& j) {
 }
 
 Json score_json(const RecognitionScore& s) { return {s.true_positives, s.false_positives, s.false_negatives}; }
-RecognitionScore score_from(const Json& j) { return {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>()}; }
+RecognitionScore score_from(const StoredJson& j) {
+  return {count_from(j.at(0)), count_from(j.at(1)), count_from(j.at(2))};
+}
 
 Json points_json(const ChangePointScore& s) { return {s.reported, s.right, s.expected, s.found}; }
-ChangePointScore points_from(const Json& j) {
-  return {j.at(0).get<long>(), j.at(1).get<long>(), j.at(2).get<long>(), j.at(3).get<long>()};
+ChangePointScore points_from(const StoredJson& j) {
+  const auto points = [&](std::size_t i) { return static_cast<long>(integer_from(j.at(i), 0, kMaxPoints)); };
+  return {points(0), points(1), points(2), points(3)};
 }
 
 Json pose_json(const Rigid3& pose) {
@@ -63,12 +92,13 @@ Json pose_json(const Rigid3& pose) {
     for (int c = 0; c < 4; ++c) rows.push_back(m(r, c));
   return rows;
 }
-Rigid3 pose_from(const Json& j) {
+Rigid3 pose_from(const StoredJson& j) {
   Rigid3 pose;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) pose.rotation(r, c) = j.at(static_cast<std::size_t>(4 * r + c)).get<double>();
     pose.translation[r] = j.at(static_cast<std::size_t>(4 * r + 3)).get<double>();
   }
+  require(pose.is_rigid(), "a pose is not a rigid motion");
   return pose;
 }
 
@@ -84,17 +114,17 @@ Json truth_json(const EvaluatedTruth& t) {
           {"rotation_error_rad", number(t.rotation_error_rad)},
           {"lost_at", t.lost_at}};
 }
-EvaluatedTruth truth_from(const Json& j) {
+EvaluatedTruth truth_from(const StoredJson& j) {
   EvaluatedTruth t;
   t.object = j.at("object").get<std::string>();
-  t.instance = j.at("instance").get<int>();
-  t.visible_share = number_from(j.at("visible_share"));
-  t.distance_m = j.at("distance_m").get<double>();
+  t.instance = static_cast<int>(integer_from(j.at("instance"), -1, kMaxCount));
+  t.visible_share = optional_size_from(j.at("visible_share"));
+  t.distance_m = size_from(j.at("distance_m"));
   t.counts = j.at("counts").get<bool>();
   t.found = j.at("found").get<bool>();
   t.found_strictly = j.at("found_strictly").get<bool>();
-  t.center_error_m = number_from(j.at("center_error_m"));
-  t.rotation_error_rad = number_from(j.at("rotation_error_rad"));
+  t.center_error_m = optional_size_from(j.at("center_error_m"));
+  t.rotation_error_rad = optional_size_from(j.at("rotation_error_rad"));
   t.lost_at = loss_stage_from(j.at("lost_at"));
   return t;
 }
@@ -108,8 +138,9 @@ DetectionVerdict verdict_from(const std::string& text) {
 Json counts_json(const HypothesisCounts& c) {
   return {c.correspondences, c.generated, c.merged, c.clustered, c.accepted};
 }
-HypothesisCounts counts_from(const Json& j) {
-  return {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>(), j.at(3).get<int>(), j.at(4).get<int>()};
+HypothesisCounts counts_from(const StoredJson& j) {
+  const auto count = [&](std::size_t i) { return count_from(j.at(i), kMaxHypotheses); };
+  return {count(0), count(1), count(2), count(3), count(4)};
 }
 
 Json view_json(const EvaluatedView& view) {
@@ -135,26 +166,26 @@ Json view_json(const EvaluatedView& view) {
           {"times", times}};
 }
 
-double probability_from(const Json& j) {
+double probability_from(const StoredJson& j) {
   const double probability = j.get<double>();
   check_in_range("score", probability, 0, 1);
   return probability;
 }
 
-EvaluatedView view_from(const Json& j) {
+EvaluatedView view_from(const StoredJson& j) {
   EvaluatedView view;
   view.name = j.at("name").get<std::string>();
-  for (const Json& t : j.at("truth")) view.truth.push_back(truth_from(t));
-  for (const Json& d : j.at("detections"))
+  for (const StoredJson& t : j.at("truth")) view.truth.push_back(truth_from(t));
+  for (const StoredJson& d : j.at("detections"))
     view.detections.push_back({d.at("object").get<std::string>(), pose_from(d.at("camera_from_object")),
                                probability_from(d.at("score")), verdict_from(d.at("verdict").get<std::string>())});
   view.score = score_from(j.at("score"));
   view.strict_score = score_from(j.at("strict_score"));
-  view.num_detected_former_places = j.at("num_detected_former_places").get<int>();
+  view.num_detected_former_places = count_from(j.at("num_detected_former_places"));
   view.counts = counts_from(j.at("counts"));
   view.points = {points_from(j.at("removed_points")), points_from(j.at("novel_points"))};
-  for (const Json& t : j.at("times"))
-    view.times.add(plain_name_from(t.at(0)), t.at(1).get<double>(), t.at(2).get<double>());
+  for (const StoredJson& t : j.at("times"))
+    view.times.add(plain_name_from(t.at(0)), size_from(t.at(1)), size_from(t.at(2)));
   return view;
 }
 
@@ -195,20 +226,20 @@ std::string format_run(const EvaluatedRun& run) {
 
 Result<EvaluatedRun> parse_run(std::string_view text, const std::string& name) {
   try {
-    const Json j = Json::parse(text);
+    const auto j = StoredJson::parse(text);
     EvaluatedRun run;
     run.sequence = j.at("sequence").get<std::string>();
     run.preset = plain_name_from(j.at("preset"));
-    run.num_previous_views = j.at("num_previous_views").get<int>();
+    run.num_previous_views = count_from(j.at("num_previous_views"));
     run.is_clustered = j.at("is_clustered").get<bool>();
     run.fingerprint = j.at("fingerprint").get<std::string>();
-    run.num_threads = j.at("num_threads").get<int>();
-    run.num_former_places = j.at("num_former_places").get<int>();
-    run.num_published_places = j.at("num_published_places").get<int>();
+    run.num_threads = count_from(j.at("num_threads"));
+    run.num_former_places = count_from(j.at("num_former_places"));
+    run.num_published_places = count_from(j.at("num_published_places"));
     run.has_changes = j.at("has_changes").get<bool>();
-    run.events = {score_from(j.at("events")), score_from(j.at("departures")), score_from(j.at("arrivals")),
-                  j.at("delays_views").get<std::vector<int>>()};
-    for (const Json& view : j.at("views")) run.views.push_back(view_from(view));
+    run.events = {score_from(j.at("events")), score_from(j.at("departures")), score_from(j.at("arrivals")), {}};
+    for (const StoredJson& delay : j.at("delays_views")) run.events.delays.push_back(count_from(delay));
+    for (const StoredJson& view : j.at("views")) run.views.push_back(view_from(view));
     return run;
   } catch (const std::exception& error) {
     return Error{name + ": is not a result of 'resight evaluate': " + error.what()};

@@ -72,10 +72,20 @@ TEST(EvaluatedRun, DamageIsReportedInOneLine) {
   const std::string stage = with("\"rejected\"", "\"a | b\"");
   const std::string time = with("\"sift\"", "\"a | b\"");
   const std::string preset = with("\"mvr\"", "\"a | b\"");
+  // Numbers that no run has, and that would not fit into the integers of the sums.
+  const std::string huge = with("\"num_threads\":1", "\"num_threads\":1e300");
+  const std::string many = with("\"score\":[1", "\"score\":[2000000000");
+  const std::string unsigned_count = with("\"score\":[1", "\"score\":[18446744073709551615");
+  const std::string negative = with("\"novel_points\":[0", "\"novel_points\":[-5");
+  const std::string early = with("\"delays_views\":[0", "\"delays_views\":[-1");
+  const std::string near = with("\"distance_m\":0.0", "\"distance_m\":-2.0");
+  const std::string quick = with("0.25,0.5]", "-0.25,0.5]");
+  const std::string skew = with("[1.0,0.0,0.0,0.1", "[3.0,0.0,0.0,0.1");
   for (const std::string& bad :
-       {text.substr(0, text.size() / 2), high_score, stage, time, preset, std::string("[]"), std::string()}) {
+       {huge, many, unsigned_count, negative, early, near, quick, skew, text.substr(0, text.size() / 2), high_score,
+        stage, time, preset, std::string("[]"), std::string()}) {
     const auto run = parse_run(bad, "a.json");
-    ASSERT_FALSE(run.ok());
+    ASSERT_FALSE(run.ok()) << bad;
     EXPECT_TRUE(run.error().message.starts_with("a.json: ")) << run.error().message;
     EXPECT_EQ(run.error().message.find('\n'), std::string::npos);
   }
