@@ -95,7 +95,7 @@ struct ViewTracker::Impl {
   std::vector<Keyframe> keyframes;
   std::vector<TrackedView> views;
   std::vector<PoseEdge> edges;
-  std::optional<std::size_t> first_given;
+  std::optional<int> last_given;
 };
 
 // Keyframes of the component with the most similar viewpoints, nearest first.
@@ -281,17 +281,16 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   TrackedView tracked;
   tracked.name = view.frame.name;
   tracked.world_from_camera = view.frame.world_from_camera;
-  tracked.component = first_given ? views[*first_given].component : number;
+  tracked.component = last_given ? views[static_cast<std::size_t>(*last_given)].component : number;
   AlignmentView alignment = make_alignment_view(view, options.view);
   tracked.is_keyframe = can_align(alignment);
-  if (first_given) {
-    const int last = number - 1;
-    edges.push_back({last, number,
-                     views[static_cast<std::size_t>(last)].world_from_camera.inverse() * tracked.world_from_camera,
-                     twist_information(options.given_sigma_rad, options.given_sigma_m)});
-  } else {
-    first_given = views.size();
-  }
+  // Other views may have been added meanwhile: their poses are not given.
+  if (last_given)
+    edges.push_back(
+        {*last_given, number,
+         views[static_cast<std::size_t>(*last_given)].world_from_camera.inverse() * tracked.world_from_camera,
+         twist_information(options.given_sigma_rad, options.given_sigma_m)});
+  last_given = number;
   if (tracked.is_keyframe) keyframes.push_back({number, std::move(alignment), extract(view, nullptr)});
   views.push_back(std::move(tracked));
 }
@@ -391,7 +390,7 @@ CameraTrack ViewTracker::Impl::finish() {
     const auto component = static_cast<std::size_t>(view.component);
     if (first_from_world.size() <= component) first_from_world.resize(component + 1);
     if (!first_from_world[component])
-      first_from_world[component] = first_given ? Rigid3::identity() : view.world_from_camera.inverse();
+      first_from_world[component] = last_given ? Rigid3::identity() : view.world_from_camera.inverse();
     view.world_from_camera = *first_from_world[component] * view.world_from_camera;
     view.world_from_camera.rotation = nearest_rotation(view.world_from_camera.rotation);
   }

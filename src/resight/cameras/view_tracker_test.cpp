@@ -181,6 +181,24 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
   EXPECT_LT(test::shift_m(refined[0], truth[0]), 1e-9) << "the first view defines the world frame";
 }
 
+TEST(ViewTracker, GivenPosesAreRelatedToEachOther) {
+  ViewTracker tracker;
+  const auto add_given = [&](int v) {
+    PreparedView view = see({}, walk(v, 9), v);
+    view.frame.world_from_camera = walk(v, 9);
+    tracker.add_posed_view(view);
+  };
+  add_given(0);
+  RgbdFrame blind = test::render_ball_scene({}, walk(1, 9));
+  std::ranges::fill(blind.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
+  tracker.add_view(prepare_view(blind));
+  add_given(2);
+  const TrackerStep step = tracker.last_step();
+  ASSERT_EQ(step.edges.size(), 1U);
+  EXPECT_EQ(step.edges[0].a, 0);
+  EXPECT_LT(test::shift_m(step.edges[0].a_from_b, walk(0, 9).inverse() * walk(2, 9)), 1e-9);
+}
+
 TEST(ViewTracker, SameForAnyNumberOfThreads) {
   std::vector<CameraTrack> tracks;
   for (const int num_threads : {1, 4}) {

@@ -99,4 +99,14 @@ float diameter(std::span<const Eigen::Vector3f> points) {
   return std::sqrt(best_sq);
 }
 
+std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const auto& f : mesh.faces)
+    for (const int v : f) used[v] = 1;
+  std::vector<Eigen::Vector3f> vertices;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] != 0) vertices.push_back(mesh.vertices[i]);
+  return vertices;
+}
+
 }  // namespace resight

@@ -50,7 +50,7 @@ std::optional<PoseEdge> measure_edge(std::span<const Rigid3> poses, std::span<co
   return PoseEdge{a, b, poses[a].inverse() * best->world_from_camera, edge_information(best->information)};
 }
 
-// Mean displacement of the object points that `view` observes.
+// Mean displacement of the object points that `view` observes; NaN if it observes none.
 double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object) {
   double sum = 0;
   int num = 0;
@@ -61,7 +61,7 @@ double surface_shift_m(const TrainingView& view, const Rigid3& motion_of_object)
       sum += (motion_of_object * p - p).norm();
       ++num;
     }
-  return num == 0 ? 0 : sum / num;
+  return num == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / num;
 }
 
 }  // namespace
@@ -108,10 +108,11 @@ std::vector<PoseEdge> measure_edges(std::span<const Rigid3> object_from_camera, 
 }
 
 double median_error_m(std::span<const TrainingView> views, std::span<const PoseEdge> edges) {
-  if (edges.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::vector<double> errors;
   for (const PoseEdge& e : edges)
     errors.push_back(surface_shift_m(views[e.b], pose_of(views[e.a]) * e.a_from_b * pose_of(views[e.b]).inverse()));
+  std::erase_if(errors, [](double error_m) { return std::isnan(error_m); });
+  if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::ranges::sort(errors);
   return errors[errors.size() / 2];
 }

@@ -9,6 +9,7 @@
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/random.hpp"
 #include "resight/modelling/build_model.hpp"
+#include "resight/modelling/internal/object_edges.hpp"
 #include "resight/modelling/recorded_object_test_util.hpp"
 
 namespace resight {
@@ -38,6 +39,21 @@ std::vector<Rigid3> poses_of(const ObjectTrack& track) {
   std::vector<Rigid3> poses;
   for (const TrainingView& view : track.views) poses.push_back(view.frame.world_from_camera);
   return poses;
+}
+
+TEST(MedianError, AViewWithoutTheObjectMeasuresNothing) {
+  TrainingView seen;
+  seen.frame = test::record("milk_carton", 120).front().frame;
+  seen.mask = Image<std::uint8_t>(seen.frame.depth_m.width(), seen.frame.depth_m.height(), 255);
+  TrainingView unseen = seen;
+  std::ranges::fill(unseen.mask.data(), 0);
+  const std::vector<TrainingView> views{seen, seen, unseen};
+  const Rigid3 shift = Rigid3::from_translation({0.01, 0, 0});
+  const PoseEdge measured{.a = 0, .b = 1, .a_from_b = shift, .information = {}};
+  const PoseEdge empty{.a = 0, .b = 2, .a_from_b = shift, .information = {}};
+  EXPECT_NEAR(median_error_m(views, std::vector<PoseEdge>{empty, measured}), 0.01, 1e-6);
+  EXPECT_TRUE(std::isnan(median_error_m(views, std::vector<PoseEdge>{empty})));
+  EXPECT_TRUE(std::isnan(median_error_m(views, {})));
 }
 
 // The whole pipeline in memory: both sides of an object on a turntable, in front of a more textured background.

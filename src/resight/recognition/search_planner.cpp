@@ -27,7 +27,8 @@ SearchPlanner::SearchPlanner(const ModelLibrary& library, const SearchPlannerOpt
 // than in any search, or was not all that the last view saw at its place.
 bool SearchPlanner::needs_search(const TrackedObject& tracked, int number, double depth_m) const {
   const auto last = search_of_track_.find(tracked.track);
-  return !tracked.is_confirmed || last == search_of_track_.end() || number - tracked.since_view < kPlaceMinViews ||
+  return !tracked.is_confirmed || last == search_of_track_.end() || last->second.view < 0 ||
+         number - tracked.since_view < kPlaceMinViews ||
          number - last->second.view >= options_.place_interval.value_or(0) || tracked.seen_view + 1 != number ||
          last->second.explained_share < options_.min_explained_share ||
          depth_m * kMaxDistanceRatio < last->second.depth_m;

@@ -57,7 +57,7 @@ class SearchPlanner {
 
  private:
   struct PlaceSearch {
-    int view = -1;                // Last view that searched the place of the object.
+    int view = -1;                // Last view that searched the place of the object; -1: none.
     double depth_m = 0;           // Of the object's centre: the least of the searched views.
     double explained_share = -1;  // Of the object, by the last view.
   };

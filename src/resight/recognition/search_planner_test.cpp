@@ -88,6 +88,16 @@ TEST_F(SearchPlannerTest, OnlyThePixelsOfTheObjectAreSkipped) {
       EXPECT_EQ(skipped(u, v) != 0, frame_.depth_m(u, v) < 1.5F && u < skipped.width() / 2) << u << " " << v;
 }
 
+// Its centre is beside the image, and only searches that see the centre count.
+TEST_F(SearchPlannerTest, APlaceThatWasNeverSearchedIsSearched) {
+  tracked_.world_from_object = test::plate_at(-0.64, 0, 1);
+  frame_ = see_plates({tracked_.world_from_object});
+  for (int number = 0; number < 3; ++number) {
+    EXPECT_TRUE(is_searched(number, frame_)) << number;
+    record(number);
+  }
+}
+
 TEST_F(SearchPlannerTest, ATentativeObjectIsSearchedFor) {
   confirm();
   tracked_.is_confirmed = false;

@@ -47,6 +47,7 @@ DynamicScene::DynamicScene(const DynamicSceneOptions& options)
 }
 
 ChangeResult DynamicScene::add_view(PreparedView view, StageTimes* times) {
+  check_prepared(view);  // Before it changes anything.
   StageTimes own;
   StageTimes& measured = times != nullptr ? *times : own;
   CorrectedCamera camera;
@@ -82,9 +83,7 @@ ChangeResult DynamicScene::add_at_pose(PreparedView view) {
   ViewVoxels voxels;
   // Runs both at once: change detection and clearing number no voxels, and clearing does not affect the new view.
   run_both(
-      options_.integrate.num_threads,
-      // First, because it rejects views that are not prepared.
-      [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },
+      options_.integrate.num_threads, [&] { voxels = reduce_to_voxels(view, numbers_, options_.integrate); },
       [&] {
         changes = find_changes(view);
         clear_from_window(changes.removed_in_world);

@@ -171,6 +171,23 @@ TEST(DynamicScene, SerialIsParallel) {
   }
 }
 
+TEST(DynamicScene, AViewThatIsNotPreparedChangesNothing) {
+  DynamicSceneOptions options;
+  options.integrate.num_threads = 3;
+  options.poses.correct = true;
+  DynamicScene scene(options), other(options);
+  for (const Step& step : story()) {
+    const PreparedView view = see(step.scene, step.pose);
+    PreparedView unprepared = see(with({}), step.pose);  // All boxes would be removed.
+    unprepared.frame.world_from_camera.translation.x() += 0.01;
+    unprepared.noise.axial_m = {};
+    EXPECT_THROW((void)scene.add_view(std::move(unprepared)), std::invalid_argument);
+    const ChangeResult changes = scene.add_view(view);
+    EXPECT_EQ(changes.removed_in_world.points, other.add_view(view).removed_in_world.points);
+    EXPECT_EQ(scene.reconstruction().points, other.reconstruction().points);
+  }
+}
+
 TEST(DynamicScene, RefusesNonsense) {
   DynamicSceneOptions options;
   options.num_previous_views = -1;

@@ -11,13 +11,6 @@ namespace {
 
 constexpr int kNoSlot = -1;
 
-void check_view(const PreparedView& view) {
-  const std::size_t size = view.cloud.z.size();
-  require(view.cloud.nx.size() == size && view.frame.color.size() == size && view.edge_distance_px.size() == size &&
-              view.noise.lateral_m.size() == size && view.noise.axial_m.size() == size,
-          "integrate_views: a view is not prepared (its images differ in size from its cloud, or it has no normals)");
-}
-
 /// Not inlined: a point must round identically when its voxel is found and when it is stored.
 [[gnu::noinline]] Eigen::Vector3f point_in_world(const Rigid3f& world_from_camera, const OrganizedCloud& cloud,
                                                  std::size_t i) {
@@ -147,6 +140,13 @@ void update_order(const std::vector<int>& changed, const std::vector<std::uint8_
 
 }  // namespace
 
+void check_prepared(const PreparedView& view) {
+  const std::size_t size = view.cloud.z.size();
+  require(view.cloud.nx.size() == size && view.frame.color.size() == size && view.edge_distance_px.size() == size &&
+              view.noise.lateral_m.size() == size && view.noise.axial_m.size() == size,
+          "integrate_views: a view is not prepared (its images differ in size from its cloud, or it has no normals)");
+}
+
 int VoxelNumbers::number_of(std::uint64_t key) {
   constexpr std::uint64_t kWithin = (3ULL << 42U) | (3ULL << 21U) | 3ULL;  // Two bits per axis; see voxel_key().
   const std::uint64_t block_key = key & ~kWithin;
@@ -183,7 +183,7 @@ void VoxelNumbers::assign_to(ViewVoxels& view) {
 
 ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers, const IntegrateOptions& options) {
   options.check();
-  check_view(view);
+  check_prepared(view);
   const PixelKeys key_of(view, options);
   const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
   ViewVoxels voxels;
@@ -211,7 +211,7 @@ ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers, con
 
 void update_voxels(const PreparedView& view, ViewVoxels& voxels, const IntegrateOptions& options) {
   options.check();
-  check_view(view);
+  check_prepared(view);
   require(voxels.slot_of_pixel.size() == view.cloud.z.size(),
           "update_voxels: the view differs in size from the one that was reduced");
   const std::vector<int> changed = find_changed_slots(view, voxels, options);

@@ -69,6 +69,9 @@ class VoxelNumbers {
   std::vector<int> slot_of_number_;
 };
 
+/// Throws std::invalid_argument if the images of the view differ in size from its cloud, or it has no normals.
+void check_prepared(const PreparedView& view);
+
 /// Reduces a view with normals to voxels. Points without a normal are ignored. In ties, the first pixel wins. Throws
 /// std::invalid_argument if the view is not prepared.
 [[nodiscard]] ViewVoxels reduce_to_voxels(const PreparedView& view, VoxelNumbers& numbers,

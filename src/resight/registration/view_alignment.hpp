@@ -42,7 +42,8 @@ struct AlignedView {
   /// Correlation of brightness over the pairs; NaN without texture.
   double brightness_correlation = 0;
   int num_pairs = 0;
-  double cost = 0;  ///< Mean truncated squared distance of the view's points to the nearest target, in [0, 1].
+  double cost = 0;  ///< Mean truncated squared distance of the view's points to the nearest target, in [0, 1]. 0 if
+                    ///< none can be compared: then no other pose is better.
 };
 
 /// Moves `view` from the given pose onto the targets, from coarse to fine: projective point-to-plane alignment

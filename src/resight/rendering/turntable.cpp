@@ -25,13 +25,14 @@ struct Bounds {
 };
 
 Bounds bounds_of(const TriangleMesh& mesh) {
-  Eigen::Vector3f low = mesh.vertices.front();
+  const std::vector<Eigen::Vector3f> vertices = used_vertices(mesh);
+  Eigen::Vector3f low = vertices.front();
   Eigen::Vector3f high = low;
-  for (const auto& v : mesh.vertices) {
+  for (const auto& v : vertices) {
     low = low.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  return {(0.5F * (low + high)).cast<double>(), static_cast<double>(diameter(mesh.vertices))};
+  return {(0.5F * (low + high)).cast<double>(), static_cast<double>(diameter(vertices))};
 }
 
 // Camera poses around the object. For the other side, the object is turned upside down, not the camera: in the object

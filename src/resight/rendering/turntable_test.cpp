@@ -68,6 +68,18 @@ TEST(Turntable, SmallObjectsAreHalfAMetreAwayAndNoiseIsSeeded) {
   EXPECT_NE(render_turntable(mesh, options)[1].frame.color, views[1].frame.color);
 }
 
+TEST(Turntable, VerticesWithoutFacesDoNotMoveTheCamera) {
+  TriangleMesh mesh = make_procedural_object("soup_pea")->mesh;
+  TurntableOptions options;
+  options.step_deg = 180;
+  const TrainingView expected = render_turntable(mesh, options)[0];
+  mesh.vertices.emplace_back(3.0F, 0.0F, 0.0F);
+  if (!mesh.normals.empty()) mesh.normals.emplace_back(0.0F, 0.0F, 1.0F);
+  if (!mesh.colors.empty()) mesh.colors.push_back({});
+  const TrainingView view = render_turntable(mesh, options)[0];
+  EXPECT_EQ(view.frame.world_from_camera.matrix(), expected.frame.world_from_camera.matrix());
+}
+
 TEST(Turntable, RefusesBadOptions) {
   TurntableOptions options;
   options.step_deg = 0;

@@ -144,16 +144,6 @@ Result<ObjectModel> train_from_renderings(const std::string& name, const Triangl
   return make_model(name, *features, std::move(surface));
 }
 
-std::vector<Eigen::Vector3f> used_vertices(const TriangleMesh& mesh) {
-  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
-  for (const auto& f : mesh.faces)
-    for (const int v : f) used[v] = 1;
-  std::vector<Eigen::Vector3f> vertices;
-  for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i] != 0) vertices.push_back(mesh.vertices[i]);
-  return vertices;
-}
-
 Result<void> check_diameter(const std::string& name, const char* kind, double size_m) {
   if (size_m > kMaxDiameter_m) {
     return fail(name, fmt::format("the {} is {:g} m across (expected {} to {}): it looks as if it were in millimetres",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace resight {
 namespace {
@@ -11,8 +12,10 @@ namespace {
 constexpr double kWeightOne = 65536.0;
 constexpr FixedCost kCostPerWeight = 256;  // 2^24 / 2^16
 
+/// Weights beyond the largest integer, some 30,000, count as that.
 std::int32_t to_weight(float weight) {
-  return static_cast<std::int32_t>(std::lround(static_cast<double>(weight) * kWeightOne));
+  constexpr double kLargest = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::lround(std::min(kLargest, weight * kWeightOne)));
 }
 
 std::vector<FixedWeight> merge_weights(const HypothesisCues& cues, double score_power) {

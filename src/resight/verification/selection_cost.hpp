@@ -69,7 +69,7 @@ class Selection {
   struct PointState {
     std::int32_t num_explaining = 0;
     std::int32_t best = 0;
-    std::int32_t clutter = 0;
+    std::int64_t clutter = 0;  // Sums of many weights.
     std::int64_t sum = 0;
   };
   struct Explainer {

@@ -106,6 +106,22 @@ TEST(Selection, CostKeptUpToDateIsTheCostFromScratch) {
   }
 }
 
+TEST(Selection, ManyLargeWeightsOfClutterAddUp) {
+  RandomCues random(4, 2, 1, 1);
+  for (HypothesisCues& h : random.cues) {
+    h.explained.clear();
+    h.clutter = {{0, 20000.0F}};
+  }
+  random.voxels.clear();
+  const SelectionOptions options;
+  const SelectionProblem problem = make_selection_problem(random.pointers, random.voxels, options);
+  Selection selection(problem);
+  for (int c = 0; c < 4; ++c) selection.switch_candidate(c);
+  EXPECT_NEAR(from_fixed(selection.cost()), slow_cost(random, selection.active(), options), 0.05);
+  random.cues[0].clutter = {{0, 1e6F}};
+  EXPECT_GT(make_selection_problem(random.pointers, random.voxels, options).weights[0].at(0).clutter, 2000000000);
+}
+
 // Minimum over all sets.
 FixedCost minimum(const SelectionProblem& problem) {
   FixedCost best = 0;

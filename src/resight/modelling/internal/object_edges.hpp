@@ -42,8 +42,8 @@ inline constexpr double kMatchSigmas = 3;
                                                   std::span<const std::pair<int, int>> pairs, StartKind kind,
                                                   const TrackObjectOptions& options);
 
-/// Distance between the object's surfaces as placed by the two views of an edge: median over the edges, metres; NaN
-/// without edges.
+/// Distance between the object's surfaces as placed by the two views of an edge: median over the edges whose second
+/// view observes the object, metres; NaN without such edges.
 [[nodiscard]] double median_error_m(std::span<const TrainingView> views, std::span<const PoseEdge> edges);
 
 /// Measures the pairs again from their current poses and returns median_error_m() of their edges.
