@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "resight/io/internal/recording_topics.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
 
@@ -44,6 +45,40 @@ void add_info(TestRecording& recording, const std::string& topic, const std::vec
               const std::string& model = "plumb_bob") {
   recording.add(topic, "sensor_msgs/CameraInfo", 9,
                 recordings::camera_info_message("camera", kImageWidth, kImageHeight, model, distortion, kIntrinsics));
+}
+
+/// Topics of images with a message each. Counts how often somebody asks for the list of messages.
+class CountingRecording final : public Recording {
+ public:
+  explicit CountingRecording(int num_topics) {
+    for (int t = 0; t < num_topics; ++t) {
+      topics_.push_back({"/camera" + std::to_string(t), "sensor_msgs/Image", MessageLayout::kRos1});
+      messages_.push_back({.topic = t});
+    }
+  }
+  [[nodiscard]] std::string format() const override { return "mcap"; }
+  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
+  [[nodiscard]] const std::vector<MessageEntry>& messages() const override {
+    ++num_lists;
+    return messages_;
+  }
+  [[nodiscard]] Result<std::string> read(const MessageEntry& /*entry*/, std::size_t /*max_bytes*/) const override {
+    return recordings::image_message(1, "camera", "bgr8", 1, 1, "rgb");
+  }
+  [[nodiscard]] const std::string& damage() const override { return damage_; }
+  mutable int num_lists = 0;
+
+ private:
+  std::vector<RecordedTopic> topics_;
+  std::vector<MessageEntry> messages_;
+  std::string damage_;
+};
+
+// The list of messages may be long.
+TEST(RecordingTopics, FirstMessagesAreFoundInOnePass) {
+  const CountingRecording recording(50);
+  EXPECT_THAT(io::find_view_topics(recording, {}).error().message, HasSubstr("several topics of colour images"));
+  EXPECT_EQ(recording.num_lists, 1);
 }
 
 class RecordingOptions : public testing::Test {

@@ -91,13 +91,14 @@ Result<void> RecordedPoses::read_librealsense(const Recording& recording, const 
   if (color.empty() || depth.empty()) return {};
   std::optional<Rigid3> color_from_reference;
   std::optional<Rigid3> depth_from_reference;
+  const FirstMessages first(recording);
   for (std::size_t t = 0; t < recording.topics().size(); ++t) {
     const RecordedTopic& topic = recording.topics()[t];
     const bool is_unit =
         topic.name.ends_with("/option/Depth_Units/value") || topic.name.ends_with("/option/Depth Units/value");
     const bool is_transform = topic.type == "geometry_msgs/Transform";
     if (!is_transform && !(is_unit && topic.type == "std_msgs/Float32")) continue;
-    const auto bytes = read_first_message(recording, static_cast<int>(t), 4096);
+    const auto bytes = first.read(static_cast<int>(t), 4096);
     if (!bytes) return bytes.error();
     if (!*bytes) continue;
     if (is_unit) {

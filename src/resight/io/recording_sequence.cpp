@@ -277,10 +277,11 @@ namespace {
 /// By the names of the topics, and by what RealSense's recordings say of the device ("Name": "Intel RealSense D435").
 const DepthSensor* detect_sensor(const Recording& recording) {
   constexpr std::size_t kMaxInfoBytes = 512;
+  const FirstMessages first(recording);
   std::string text;
   for (std::size_t t = 0; t < recording.topics().size(); ++t) {
     if (recording.topics()[t].type != "diagnostic_msgs/KeyValue") continue;
-    const auto info = read_first_message(recording, static_cast<int>(t), kMaxInfoBytes);
+    const auto info = first.read(static_cast<int>(t), kMaxInfoBytes);
     if (info.ok() && *info) text += **info + "\n";
   }
   for (const RecordedTopic& topic : recording.topics()) text += topic.name + "\n";

@@ -43,12 +43,12 @@ int rank_topic(const RecordedTopic& topic, ImageContent content) {
   return contains(name, "depth") && !contains(name, "rgb") ? rank - 16 : rank;
 }
 
-Result<std::vector<ImageTopic>> list_image_topics(const Recording& recording) {
+Result<std::vector<ImageTopic>> list_image_topics(const Recording& recording, const FirstMessages& first) {
   std::vector<ImageTopic> images;
   const auto& topics = recording.topics();
   for (std::size_t t = 0; t < topics.size(); ++t) {
     if (!is_image_type(topics[t].type)) continue;
-    const auto bytes = read_first_message(recording, static_cast<int>(t), kImageStartBytes);
+    const auto bytes = first.read(static_cast<int>(t), kImageStartBytes);
     if (!bytes) return bytes.error();
     if (!*bytes) continue;
     const auto start = decode_image_start(**bytes, topics[t]);
@@ -113,13 +113,13 @@ std::vector<std::string> info_names(std::string_view image_topic) {
   return names;
 }
 
-Result<std::optional<CameraInfoMessage>> find_camera_info(const Recording& recording, std::string_view image_topic,
-                                                          const std::string& given) {
+Result<std::optional<CameraInfoMessage>> find_camera_info(const Recording& recording, const FirstMessages& first,
+                                                          std::string_view image_topic, const std::string& given) {
   const std::vector<std::string> names = given.empty() ? info_names(image_topic) : std::vector<std::string>{given};
   for (const std::string& name : names) {
     const int topic = find_topic(recording, name);
     if (topic < 0 || recording.topics()[static_cast<std::size_t>(topic)].type != "sensor_msgs/CameraInfo") continue;
-    const auto bytes = read_first_message(recording, topic, 1U << 16);
+    const auto bytes = first.read(topic, 1U << 16);
     if (!bytes) return bytes.error();
     if (!*bytes) continue;
     auto info = decode_camera_info(**bytes, recording.topics()[static_cast<std::size_t>(topic)].layout, name);
@@ -138,17 +138,24 @@ int find_topic(const Recording& recording, std::string_view name) {
   return it == topics.end() ? -1 : static_cast<int>(it - topics.begin());
 }
 
-Result<std::optional<std::string>> read_first_message(const Recording& recording, int topic, std::size_t max_bytes) {
-  const auto& messages = recording.messages();
-  const auto it = std::ranges::find(messages, topic, &MessageEntry::topic);
-  if (it == messages.end()) return std::optional<std::string>();
-  auto bytes = recording.read(*it, max_bytes);
+FirstMessages::FirstMessages(const Recording& recording)
+    : recording_(recording), of_topic_(recording.topics().size(), nullptr) {
+  for (const MessageEntry& message : recording.messages())
+    if (const MessageEntry*& first = of_topic_[static_cast<std::size_t>(message.topic)]; first == nullptr)
+      first = &message;
+}
+
+Result<std::optional<std::string>> FirstMessages::read(int topic, std::size_t max_bytes) const {
+  const MessageEntry* message = of_topic_[static_cast<std::size_t>(topic)];
+  if (message == nullptr) return std::optional<std::string>();
+  auto bytes = recording_.read(*message, max_bytes);
   if (!bytes) return bytes.error();
   return std::optional(std::move(*bytes));
 }
 
 Result<ViewTopics> find_view_topics(const Recording& recording, const RecordingTopics& given) {
-  const auto images = list_image_topics(recording);
+  const FirstMessages first(recording);
+  const auto images = list_image_topics(recording, first);
   if (!images) return images.error();
   const auto color = choose_image_topic(recording, *images, ImageContent::kColor, given.color);
   if (!color) return color.error();
@@ -163,10 +170,10 @@ Result<ViewTopics> find_view_topics(const Recording& recording, const RecordingT
   const auto name_of = [&](int topic) -> const std::string& {
     return recording.topics()[static_cast<std::size_t>(topic)].name;
   };
-  auto color_info = find_camera_info(recording, name_of(color->topic), given.camera_info);
+  auto color_info = find_camera_info(recording, first, name_of(color->topic), given.camera_info);
   if (!color_info) return color_info.error();
   topics.color_info = std::move(*color_info);
-  auto depth_info = find_camera_info(recording, name_of(depth->topic), "");
+  auto depth_info = find_camera_info(recording, first, name_of(depth->topic), "");
   if (!depth_info) return depth_info.error();
   topics.depth_info = std::move(*depth_info);
   return topics;

@@ -74,7 +74,7 @@ std::optional<ChunkHead> parse_chunk_head(std::string_view bytes) {
 
 class McapFile final : public IndexedRecording {
  public:
-  explicit McapFile(RandomAccessFile file) : file_(std::move(file)) {}
+  explicit McapFile(RandomAccessFile file) : file_(std::move(file)), chunk_sizes_(file_.size()) {}
 
   [[nodiscard]] std::string format() const override { return "mcap"; }
 
@@ -105,6 +105,7 @@ class McapFile final : public IndexedRecording {
   std::vector<McapChunk> chunks_;
   std::map<std::uint16_t, std::string> type_of_schema_;
   std::map<std::uint16_t, int> topic_of_channel_;
+  ChunkSizes chunk_sizes_;
   ChunkCache cache_;
 };
 
@@ -126,6 +127,7 @@ Result<void> McapFile::add_schema(std::string_view content) {
   const auto id = reader.value<std::uint16_t>();
   const std::string_view name = reader.counted<std::uint32_t>();
   if (!reader.ok()) return fail("a schema record is damaged");
+  if (const auto done = check_name(name); !done) return fail(done.error().message);
   type_of_schema_[id] = without_msg(name);
   return {};
 }
@@ -138,15 +140,12 @@ Result<void> McapFile::add_channel(std::string_view content) {
   const std::string_view encoding = reader.counted<std::uint32_t>();
   if (!reader.ok()) return fail("a channel record is damaged");
   if (topic_of_channel_.contains(id)) return {};
-  if (index_.topics.size() >= kMaxTopics) return fail(fmt::format("holds more than {} channels", kMaxTopics));
   const MessageLayout layout = encoding == "cdr"    ? MessageLayout::kCdr
                                : encoding == "ros1" ? MessageLayout::kRos1
                                                     : MessageLayout::kOther;
-  const RecordedTopic added{std::string(topic), type_of_schema_[schema], layout};
-  const auto same = std::ranges::find_if(
-      index_.topics, [&](const RecordedTopic& t) { return t.name == added.name && t.type == added.type; });
-  topic_of_channel_[id] = static_cast<int>(same - index_.topics.begin());
-  if (same == index_.topics.end()) index_.topics.push_back(added);
+  const auto number = index_.add_topic({std::string(topic), type_of_schema_[schema], layout});
+  if (!number) return fail(number.error().message);
+  topic_of_channel_[id] = *number;
   return {};
 }
 
@@ -164,8 +163,7 @@ Result<std::uint32_t> McapFile::add_chunk(const McapRecord& record) {
   if (!bytes) return bytes.error();
   const auto head = parse_chunk_head(*bytes);
   if (!head || head->stored_bytes > record.bytes - head->head_bytes) return fail("a chunk record is damaged");
-  if (head->size > kMaxChunkBytes)
-    return fail(fmt::format("a chunk declares {} bytes (at most {})", head->size, kMaxChunkBytes));
+  if (const auto done = chunk_sizes_.add(head->size); !done) return fail(done.error().message);
   if (head->compression.empty() && head->size != head->stored_bytes)
     return fail("the size of a chunk is wrong (damaged)");
   chunks_.push_back({head->compression, record.offset + head->head_bytes, head->stored_bytes, head->size, head->crc});
@@ -345,6 +343,7 @@ Result<void> McapFile::build_index() {
   }
   index_ = {};
   chunks_.clear();
+  chunk_sizes_.clear();
   cache_.clear();
   topic_of_channel_.clear();
   if (const auto done = scan(); !done) index_.damage = done.error().message;

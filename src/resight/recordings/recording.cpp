@@ -18,16 +18,18 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A ROS 2 bag of several files, one after the other.
-class SplitRecording final : public Recording {
+class SplitRecording final : public IndexedRecording {
  public:
   void add(std::unique_ptr<Recording> part) {
-    if (!damage_.empty()) return;
+    if (!index_.damage.empty()) return;
     std::vector<int> topic_of_part;
     for (const RecordedTopic& topic : part->topics()) {
-      const auto same = std::ranges::find_if(
-          topics_, [&](const RecordedTopic& t) { return t.name == topic.name && t.type == topic.type; });
-      topic_of_part.push_back(static_cast<int>(same - topics_.begin()));
-      if (same == topics_.end()) topics_.push_back(topic);
+      const auto number = index_.add_topic(topic);
+      if (!number) {
+        index_.damage = number.error().message;
+        return;
+      }
+      topic_of_part.push_back(*number);
     }
     for (const MessageEntry& message : part->messages()) {
       MessageEntry entry = message;
@@ -35,30 +37,24 @@ class SplitRecording final : public Recording {
       entry.part = static_cast<std::uint32_t>(parts_.size());
       entry.offset = places_in_part_.size();
       places_in_part_.push_back(message);
-      entries_.push_back(entry);
+      index_.messages.push_back(entry);
     }
-    damage_ = part->damage();
+    index_.damage = part->damage();
     parts_.push_back(std::move(part));
   }
   void lacks(const std::vector<std::string>& missing) {
     const std::string text = fmt::format("{} of the files of metadata.yaml {} missing ({})", missing.size(),
                                          missing.size() == 1 ? "is" : "are", printable(missing.front()));
-    damage_ += (damage_.empty() ? "" : "; ") + text;
+    index_.damage += (index_.damage.empty() ? "" : "; ") + text;
   }
   [[nodiscard]] std::string format() const override { return parts_.front()->format(); }
-  [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
-  [[nodiscard]] const std::vector<MessageEntry>& messages() const override { return entries_; }
-  [[nodiscard]] const std::string& damage() const override { return damage_; }
   [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override {
     return parts_.at(entry.part)->read(places_in_part_.at(entry.offset), max_bytes);
   }
 
  private:
   std::vector<std::unique_ptr<Recording>> parts_;
-  std::vector<RecordedTopic> topics_;
-  std::vector<MessageEntry> entries_;
   std::vector<MessageEntry> places_in_part_;  ///< The entry of each message in its part.
-  std::string damage_;
 };
 
 RecordingResult open_file(const fs::path& file) {
@@ -123,6 +119,30 @@ std::string without_msg(std::string_view type) {
   const std::size_t middle = type.find("/msg/");
   if (middle == type.npos) return std::string(type);
   return std::string(type.substr(0, middle)) + std::string(type.substr(middle + 4));
+}
+
+Result<void> check_name(std::string_view name) {
+  if (name.size() <= kMaxNameBytes) return {};
+  return Error{fmt::format("the name of a topic or type has {} bytes (at most {})", name.size(), kMaxNameBytes)};
+}
+
+Result<int> RecordingIndex::add_topic(RecordedTopic topic) {
+  for (const std::string& name : {topic.name, topic.type})
+    if (const auto done = check_name(name); !done) return done.error();
+  const std::pair key(topic.name, topic.type);
+  if (const auto found = numbers_.find(key); found != numbers_.end()) return found->second;
+  if (topics.size() >= kMaxTopics) return Error{fmt::format("holds more than {} topics", kMaxTopics)};
+  const int number = static_cast<int>(topics.size());
+  numbers_.emplace(key, number);
+  topics.push_back(std::move(topic));
+  return number;
+}
+
+Result<void> ChunkSizes::add(std::uint64_t size) {
+  if (size > kMaxChunkBytes) return Error{fmt::format("a chunk declares {} bytes (at most {})", size, kMaxChunkBytes)};
+  sum_ += size;
+  if (sum_ <= max_sum_) return {};
+  return Error{fmt::format("its chunks declare {} bytes, far more than such a file can hold", sum_)};
 }
 
 }  // namespace recordings

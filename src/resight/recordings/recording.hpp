@@ -53,6 +53,7 @@ inline constexpr std::uint64_t kMaxMessageBytes = std::uint64_t{1} << 28;
 inline constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 28;  ///< Uncompressed.
 inline constexpr std::size_t kMaxMessages = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxTopics = 10000;
+inline constexpr std::size_t kMaxNameBytes = 1024;  ///< Of a topic and of a type.
 
 /// Whether a file (by its first bytes) or a folder (by metadata.yaml, *.db3 or *.mcap in it) is a recording.
 [[nodiscard]] bool is_recording(const std::filesystem::path& where);

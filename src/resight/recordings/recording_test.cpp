@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -347,6 +348,60 @@ TEST(Recording, ChunksOfBagsWithinEachOtherAreNotIndexed) {
   EXPECT_EQ((*recording)->damage(), "") << "the whole file is read instead of its index";
   ASSERT_EQ((*recording)->messages().size(), 1U);
   EXPECT_EQ(*(*recording)->read((*recording)->messages().front(), kMaxMessageBytes), "hello");
+}
+
+TEST(Recording, LongNamesAreRefused) {
+  const std::string name(2000, 'a');
+  TemporaryFile file;
+  for (const bool is_topic : {false, true}) {
+    recordings::TestRecording mcap;
+    mcap.add(is_topic ? name : "/a", is_topic ? "std_msgs/String" : name, 1, "hello");
+    const auto recording = open_recording(file.write(mcap.bytes()));
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_THAT((*recording)->damage(), HasSubstr("2000 bytes"));
+    EXPECT_TRUE((*recording)->topics().empty());
+
+    const std::string number = bag_field("conn", recordings::packed(std::uint32_t{0}));
+    const std::string connection = bag_record('\7', number + bag_field("topic", is_topic ? name : "/a"),
+                                              bag_field("type", is_topic ? "std_msgs/String" : name));
+    const auto bag = open_recording(file.write("#ROSBAG V2.0\n" + bag_header(0) + connection));
+    ASSERT_TRUE(bag.ok()) << bag.error().message;
+    EXPECT_THAT((*bag)->damage(), HasSubstr("2000 bytes"));
+    EXPECT_TRUE((*bag)->topics().empty());
+  }
+}
+
+TEST(Recording, ChunksThatDeclareFarMoreThanTheFileHoldsAreRefused) {
+  TemporaryFile file;
+  const auto declared = recordings::packed(std::uint32_t{200'000'000});
+  const std::string bag =
+      "#ROSBAG V2.0\n" + bag_header(0) +
+      bag_record('\5', bag_field("compression", "bz2") + bag_field("size", declared), std::string(300, 'x'));
+  EXPECT_THAT((*open_recording(file.write(bag)))->damage(), HasSubstr("its chunks declare 200000000 bytes"));
+  const std::string chunk = mcap_record(6, std::string(16, '\0') + recordings::packed(std::uint64_t{200'000'000}) +
+                                               recordings::packed(std::uint32_t{0}) + recordings::packed_text("zstd") +
+                                               recordings::packed(std::uint64_t{300}) + std::string(300, 'x'));
+  EXPECT_THAT((*open_recording(file.write("\x89MCAP0\r\n" + chunk)))->damage(),
+              HasSubstr("its chunks declare 200000000 bytes"));
+}
+
+// A copy of a bag, whose ids are neither unique nor an index: each message is found by its row.
+TEST(Recording, MessagesOfADatabaseNeedNoIndexOfTheirIds) {
+  TemporaryFile file;
+  const fs::path& path = file.write("");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  const char* sql =
+      "CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, serialization_format TEXT);"
+      "CREATE TABLE messages(id INTEGER, topic_id INTEGER, timestamp INTEGER, data BLOB);"
+      "INSERT INTO topics VALUES(1, '/a', 'std_msgs/msg/String', 'cdr');"
+      "INSERT INTO messages VALUES(7, 1, 10, x'0102'), (7, 1, 11, x'030405');";
+  ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  const auto recording = open_recording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(read_all(**recording), (std::vector<std::string>{"\1\2", "\3\4\5"}));
+  EXPECT_EQ(*(*recording)->read((*recording)->messages()[1], 2), "\3\4");
 }
 
 /// Every file with bytes exchanged is refused or read.

@@ -81,7 +81,7 @@ struct BagRecord {
 
 class Ros1Bag final : public IndexedRecording {
  public:
-  explicit Ros1Bag(RandomAccessFile file) : file_(std::move(file)) {}
+  explicit Ros1Bag(RandomAccessFile file) : file_(std::move(file)), chunk_sizes_(file_.size()) {}
 
   [[nodiscard]] std::string format() const override { return "rosbag"; }
 
@@ -108,6 +108,7 @@ class Ros1Bag final : public IndexedRecording {
   RandomAccessFile file_;
   std::vector<BagChunk> chunks_;
   std::map<std::uint32_t, int> topic_of_connection_;
+  ChunkSizes chunk_sizes_;
   ChunkCache cache_;
 };
 
@@ -134,16 +135,11 @@ Result<void> Ros1Bag::add_connection(const BagFields& fields, std::string_view d
   const auto content = BagFields::parse(data);
   if (!number || !topic || !content) return fail("a connection record is damaged");
   if (topic_of_connection_.contains(*number)) return {};
-  if (index_.topics.size() >= kMaxTopics) return fail(fmt::format("holds more than {} connections", kMaxTopics));
   const std::string type(content->text("type").value_or(""));
   // Several publishers of one topic have connections of their own.
-  for (std::size_t t = 0; t < index_.topics.size(); ++t)
-    if (index_.topics[t].name == *topic && index_.topics[t].type == type) {
-      topic_of_connection_[*number] = static_cast<int>(t);
-      return {};
-    }
-  topic_of_connection_[*number] = static_cast<int>(index_.topics.size());
-  index_.topics.push_back({std::string(*topic), type, MessageLayout::kRos1});
+  const auto added = index_.add_topic({std::string(*topic), type, MessageLayout::kRos1});
+  if (!added) return fail(added.error().message);
+  topic_of_connection_[*number] = *added;
   return {};
 }
 
@@ -161,7 +157,7 @@ Result<std::uint64_t> Ros1Bag::add_chunk(const BagRecord& record) {
   const auto compression = fields ? fields->text("compression") : std::nullopt;
   const auto size = fields ? fields->number<std::uint32_t>("size") : std::nullopt;
   if (!compression || !size || !fields->is(BagOp::kChunk)) return fail("a chunk record is damaged");
-  if (*size > kMaxChunkBytes) return fail(fmt::format("a chunk declares {} bytes (at most {})", *size, kMaxChunkBytes));
+  if (const auto done = chunk_sizes_.add(*size); !done) return fail(done.error().message);
   if (*compression == "none" && *size != record.data_bytes) return fail("the size of a chunk is wrong (damaged)");
   chunks_.push_back({std::string(*compression), record.data_offset, record.data_bytes, *size});
   return chunks_.size() - 1;
@@ -284,6 +280,7 @@ Result<void> Ros1Bag::build_index() {
     if (read_end_index(end_index).ok() && chunks_.size() == num_chunks) return {};
     index_ = {};
     chunks_.clear();
+    chunk_sizes_.clear();
     cache_.clear();
     topic_of_connection_.clear();
   } else if (num_chunks == 0 && end_index == first->end()) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 
@@ -22,6 +23,10 @@ struct StatementCloser {
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 };
 using Database = std::unique_ptr<sqlite3, DatabaseCloser>;
+struct BlobCloser {
+  void operator()(sqlite3_blob* blob) const { sqlite3_blob_close(blob); }
+};
+using Blob = std::unique_ptr<sqlite3_blob, BlobCloser>;
 using Statement = std::unique_ptr<sqlite3_stmt, StatementCloser>;
 
 /// The tables of a hostile file may be views that never end.
@@ -82,11 +87,11 @@ Result<void> Ros2Sqlite::read_topics() {
   sqlite3_stmt* row = statement->get();
   int code = SQLITE_ROW;
   while ((code = sqlite3_step(row)) == SQLITE_ROW) {
-    if (index_.topics.size() >= kMaxTopics) return file_error(file_, "holds too many topics");
-    topic_of_id_[sqlite3_column_int64(row, 0)] = static_cast<int>(index_.topics.size());
     const bool is_cdr = column_text(row, 3) == "cdr";
-    index_.topics.push_back({std::string(column_text(row, 1)), without_msg(column_text(row, 2)),
-                             is_cdr ? MessageLayout::kCdr : MessageLayout::kOther});
+    const auto number = index_.add_topic({std::string(column_text(row, 1)), without_msg(column_text(row, 2)),
+                                          is_cdr ? MessageLayout::kCdr : MessageLayout::kOther});
+    if (!number) return file_error(file_, number.error().message);
+    topic_of_id_[sqlite3_column_int64(row, 0)] = *number;
   }
   if (code != SQLITE_DONE) return fail();
   return {};
@@ -94,7 +99,7 @@ Result<void> Ros2Sqlite::read_topics() {
 
 Result<void> Ros2Sqlite::build_index() {
   if (const auto done = read_topics(); !done) return done;
-  const auto statement = prepare("SELECT id, topic_id, timestamp FROM messages ORDER BY id");
+  const auto statement = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY id, rowid");
   if (!statement) return statement.error();
   sqlite3_stmt* row = statement->get();
   int code = SQLITE_ROW;
@@ -123,15 +128,16 @@ Result<std::string> Ros2Sqlite::read(const MessageEntry& entry, std::size_t max_
   return message;
 }
 
+/// By the row, which needs no index of the ids.
 Result<std::string> Ros2Sqlite::read_blob(const MessageEntry& entry, std::size_t max_bytes) const {
-  const auto statement = prepare("SELECT substr(data, 1, ?2) FROM messages WHERE id = ?1");
-  if (!statement) return statement.error();
-  sqlite3_bind_int64(statement->get(), 1, static_cast<sqlite3_int64>(entry.offset));
-  sqlite3_bind_int64(statement->get(), 2, static_cast<sqlite3_int64>(max_bytes));
-  if (sqlite3_step(statement->get()) != SQLITE_ROW) return fail();
-  const auto* blob = static_cast<const char*>(sqlite3_column_blob(statement->get(), 0));
-  const int bytes = sqlite3_column_bytes(statement->get(), 0);
-  return blob == nullptr ? std::string() : std::string(blob, static_cast<std::size_t>(bytes));
+  sqlite3_blob* raw = nullptr;
+  const int code =
+      sqlite3_blob_open(database_.get(), "main", "messages", "data", static_cast<sqlite3_int64>(entry.offset), 0, &raw);
+  const Blob blob(raw);
+  if (code != SQLITE_OK) return fail();
+  std::string bytes(std::min(static_cast<std::size_t>(sqlite3_blob_bytes(raw)), max_bytes), '\0');
+  if (sqlite3_blob_read(raw, bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK) return fail();
+  return bytes;
 }
 
 /// What the writer of a database has not moved into it yet lies in a file beside it. To read that file, SQLite would

@@ -25,9 +25,17 @@ struct ViewTopics {
 /// lists the topics to choose from.
 [[nodiscard]] Result<ViewTopics> find_view_topics(const Recording& recording, const RecordingTopics& given);
 
-/// The first message of a topic; none if it has none.
-[[nodiscard]] Result<std::optional<std::string>> read_first_message(const Recording& recording, int topic,
-                                                                    std::size_t max_bytes);
+/// Where the first message of each topic is, found in one pass. The recording must outlive it.
+class FirstMessages {
+ public:
+  explicit FirstMessages(const Recording& recording);
+  /// None if the topic has no messages.
+  [[nodiscard]] Result<std::optional<std::string>> read(int topic, std::size_t max_bytes) const;
+
+ private:
+  const Recording& recording_;
+  std::vector<const MessageEntry*> of_topic_;
+};
 
 /// Index of a topic by its name, or -1.
 [[nodiscard]] int find_topic(const Recording& recording, std::string_view name);
