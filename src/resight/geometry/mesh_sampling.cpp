@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/geometry/mesh_sampling.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "resight/core/check.hpp"
@@ -19,6 +20,13 @@ float find_outward_sign(const TriangleMesh& mesh) {
   double volume = 0;
   for (const auto& f : mesh.faces) volume += (mesh.vertices[f[0]] - center).dot(face_cross(mesh, f));
   return volume < 0 ? -1.0F : 1.0F;
+}
+
+double total_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& f : mesh.faces)
+    if (const float twice_area = face_cross(mesh, f).norm(); twice_area > 0) area += 0.5 * twice_area;
+  return area;
 }
 
 struct Barycentric {
@@ -50,6 +58,7 @@ Eigen::Vector3f outward_normal(const TriangleMesh& mesh, const std::array<int, 3
 
 PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
   check_positive("samples_per_sq_m", samples_per_sq_m);
+  const double density = std::min(samples_per_sq_m, kMaxSurfaceSamples / total_area(mesh));
   const float sign = find_outward_sign(mesh);
   PointCloud cloud;
   // Carried from face to face, so that faces smaller than the share of one sample are sampled in proportion.
@@ -60,7 +69,7 @@ PointCloud sample_surface(const TriangleMesh& mesh, double samples_per_sq_m) {
     const float twice_area = cross.norm();
     if (!(twice_area > 0)) continue;
     const Eigen::Vector3f face_normal = cross * (sign / twice_area);
-    wanted += 0.5 * twice_area * samples_per_sq_m;
+    wanted += 0.5 * twice_area * density;
     while (static_cast<double>(cloud.size()) + 0.5 < wanted) {
       const Barycentric b = spread_point(cloud.size());
       cloud.points.push_back(interpolate(mesh.vertices, f, b));

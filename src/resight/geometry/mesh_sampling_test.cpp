@@ -35,6 +35,17 @@ TriangleMesh make_cylinder(float radius) {
   return mesh;
 }
 
+// Of a square of 16 m2, a million points per m2 would be too many.
+TEST(SampleSurface, TheNumberOfPointsIsBounded) {
+  TriangleMesh square;
+  square.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  square.faces = {{0, 1, 2}, {0, 2, 3}};
+  const PointCloud cloud = sample_surface(square, 1e6);
+  EXPECT_LE(cloud.size(), 10'000'000U);
+  EXPECT_GT(cloud.size(), 9'999'000U);
+  EXPECT_LT((centroid(cloud.points) - Eigen::Vector3f(2, 2, 0)).norm(), 0.01F);
+}
+
 double mesh_area(const TriangleMesh& mesh) {
   double area = 0;
   for (const auto& f : mesh.faces) {

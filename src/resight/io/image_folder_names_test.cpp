@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/core/timing.hpp"
 #include "resight/io/image_folder_test_util.hpp"
 #include "resight/io/internal/image_series.hpp"
 
@@ -42,9 +41,9 @@ std::vector<io::FileSeries> make_image_series(int count) {
 
 TEST(ImageFolder, ManySeriesNeedNoMemoryForTheirPairs) {
   const std::vector<io::FileSeries> all = make_image_series(300);
-  const std::size_t before = peak_memory_bytes();
+  const io::MemoryGrowth growth;
   EXPECT_THAT(io::pair_series(all, "views").error().message, HasSubstr("holds several series of views"));
-  EXPECT_LT(peak_memory_bytes() - before, 100'000'000U);
+  EXPECT_LT(growth.bytes(), 100'000'000U);
 }
 
 TEST(ImageFolder, MoreSeriesThanCanBePairedAreRefused) {

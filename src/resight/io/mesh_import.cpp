@@ -41,27 +41,29 @@ class TextureLoader {
   TextureLoader(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings)
       : scene_(scene), file_(file), warnings_(warnings) {}
 
-  const Image<Rgb8>& load(const std::string& name) {
+  Image<Rgb8>& load(const std::string& name) {
     const auto [it, is_new] = loaded_.try_emplace(name);
     if (!is_new) return it->second;
     auto texture = read(name);
-    if (texture && static_cast<std::int64_t>(texture->size()) > pixels_left_)
-      texture = Error{name + ": the textures have more than " + std::to_string(kMaxImagePixels) + " px in all"};
-    if (texture) pixels_left_ -= static_cast<std::int64_t>(texture->size());
-    if (texture)
-      it->second = std::move(*texture);
-    else
+    if (!texture) {
       warnings_.push_back(file_.string() + ": its texture is left out: " + texture.error().message);
+      return it->second;
+    }
+    pixels_left_ -= static_cast<std::int64_t>(texture->size());
+    it->second = std::move(*texture);
     return it->second;
   }
 
  private:
+  /// Refuses what is larger than the pixels that are left before it is decoded.
   Result<Image<Rgb8>> read(const std::string& name) const {
     const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
-    if (embedded == nullptr) return read_texture(file_.parent_path(), name);
+    if (embedded == nullptr) return read_texture(file_.parent_path(), name, pixels_left_);
     if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
       return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
-                          file_.string() + " (texture)");
+                          file_.string() + " (texture)", pixels_left_);
+    if (std::int64_t{embedded->mWidth} * embedded->mHeight > pixels_left_)
+      return Error{file_.string() + " (texture): the image has more than " + std::to_string(pixels_left_) + " px"};
     Image<Rgb8> texture(static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight));
     for (std::size_t i = 0; i < texture.size(); ++i)
       texture[i] = {embedded->pcData[i].r, embedded->pcData[i].g, embedded->pcData[i].b};
@@ -73,6 +75,12 @@ class TextureLoader {
   std::vector<std::string>& warnings_;
   std::map<std::string, Image<Rgb8>> loaded_;
   std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
+};
+
+/// A part beside its texture, which other parts may have, too.
+struct TexturedPart {
+  MeshPart part;
+  Image<Rgb8>* texture = nullptr;  ///< Of the loader; null: none.
 };
 
 TriangleMesh convert_geometry(const aiMesh& source) {
@@ -104,10 +112,11 @@ void forget_plain_color(MeshPart& part) {
   drop_plain_colors(part.mesh.colors);
 }
 
-MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
-  MeshPart part;
+TexturedPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
+  TexturedPart converted;
+  MeshPart& part = converted.part;
   part.mesh = convert_geometry(source);
-  if (source.mMaterialIndex >= scene.mNumMaterials) return part;
+  if (source.mMaterialIndex >= scene.mNumMaterials) return converted;
   const aiMaterial& material = *scene.mMaterials[source.mMaterialIndex];
   aiString material_name;
   material.Get(AI_MATKEY_NAME, material_name);
@@ -117,36 +126,39 @@ MeshPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader&
                    (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
                     material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
   if (part.has_color) part.color = to_color(color);
-  const std::string texture = texture_name(material);
-  if (!texture.empty() && !part.mesh.uvs.empty()) part.mesh.texture = textures.load(texture);
-  if (part.mesh.has_texture())
+  const std::string name = texture_name(material);
+  if (name.empty()) return converted;
+  if (!part.mesh.uvs.empty())
+    if (Image<Rgb8>& texture = textures.load(name); !texture.empty()) converted.texture = &texture;
+  if (converted.texture != nullptr)
     part.mesh.colors.clear();
-  else if (!texture.empty())
+  else
     forget_plain_color(part);
-  return part;
-}
-
-/// Merges parts with the same texture, so that a shared texture is not stacked several times.
-bool try_merge(std::vector<MeshPart>& parts, const MeshPart& part) {
-  for (MeshPart& other : parts) {
-    const bool same_kind = other.mesh.uvs.empty() == part.mesh.uvs.empty() &&
-                           other.mesh.normals.empty() == part.mesh.normals.empty() &&
-                           other.mesh.colors.empty() == part.mesh.colors.empty();
-    if (!same_kind || !part.mesh.has_texture() || !(other.mesh.texture == part.mesh.texture)) continue;
-    TriangleMesh geometry = part.mesh;
-    geometry.texture = {};
-    other.mesh.append(geometry);
-    return true;
-  }
-  return false;
+  return converted;
 }
 
 /// Removes normals and uvs unless all parts have them, because they would be lost or wrong in the joined mesh.
-void unify_attributes(std::vector<MeshPart>& parts) {
-  if (std::ranges::any_of(parts, [](const MeshPart& p) { return p.mesh.normals.empty(); }))
-    for (MeshPart& part : parts) part.mesh.normals.clear();
-  for (MeshPart& part : parts)
-    if (!part.mesh.has_texture()) part.mesh.uvs.clear();
+void unify_attributes(std::vector<TexturedPart>& parts) {
+  if (std::ranges::any_of(parts, [](const TexturedPart& p) { return p.part.mesh.normals.empty(); }))
+    for (TexturedPart& part : parts) part.part.mesh.normals.clear();
+  for (TexturedPart& part : parts)
+    if (part.texture == nullptr) part.part.mesh.uvs.clear();
+}
+
+/// Merges parts with the same texture, so that a shared texture is neither copied nor stacked several times.
+std::vector<MeshPart> merge_parts(std::vector<TexturedPart> parts) {
+  std::vector<MeshPart> merged;
+  std::map<const Image<Rgb8>*, std::size_t> part_of_texture;
+  for (TexturedPart& part : parts) {
+    const auto [it, is_new] = part_of_texture.try_emplace(part.texture, merged.size());
+    if (part.texture != nullptr && !is_new) {
+      merged[it->second].mesh.append(part.part.mesh);
+      continue;
+    }
+    merged.push_back(std::move(part.part));
+    if (part.texture != nullptr) merged.back().mesh.texture = std::move(*part.texture);
+  }
+  return merged;
 }
 
 /// Removes all importers but that of this extension. Assimp would otherwise choose by the content, and parse any of its
@@ -164,9 +176,9 @@ void keep_importer(Assimp::Importer& importer, std::string_view extension) {
 
 }  // namespace
 
-Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name) {
+Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name, std::int64_t max_pixels) {
   const auto file = path_below(folder, name);
-  return file ? read_color(*file) : file.error();
+  return file ? read_color(*file, max_pixels) : file.error();
 }
 
 Result<ImportedParts> import_mesh_parts(const fs::path& file) {
@@ -189,12 +201,14 @@ Result<ImportedParts> import_mesh_parts(const fs::path& file) {
   if (!opened.failure().empty())
     imported.warnings.push_back(file.string() + ": a file that it names is left out: " + opened.failure());
   TextureLoader textures(*scene, file, imported.warnings);
+  std::vector<TexturedPart> parts;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-    MeshPart part = convert_part(*scene->mMeshes[i], *scene, textures);
-    if (!part.mesh.empty() && !try_merge(imported.parts, part)) imported.parts.push_back(std::move(part));
+    TexturedPart part = convert_part(*scene->mMeshes[i], *scene, textures);
+    if (!part.part.mesh.empty()) parts.push_back(std::move(part));
   }
-  if (imported.parts.empty()) return file_error(file, "has no triangles");
-  unify_attributes(imported.parts);
+  if (parts.empty()) return file_error(file, "has no triangles");
+  unify_attributes(parts);
+  imported.parts = merge_parts(std::move(parts));
   return imported;
 }
 

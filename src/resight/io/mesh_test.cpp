@@ -47,6 +47,49 @@ TEST(Mesh, ObjTextureStandsUpright) {
   EXPECT_EQ(num_green, 2);
 }
 
+/// A triangle of each material m0, m1, .. with its texture.
+void write_textured_triangles(const io::TestDirectory& directory, const std::vector<std::string>& textures) {
+  std::string obj = "mtllib many.mtl\nvt 0 0\nvt 1 0\nvt 1 1\n";
+  std::string mtl;
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const std::string material = "m" + std::to_string(i);
+    const std::string z = " " + std::to_string(0.01 * static_cast<double>(i)) + "\n";
+    mtl += "newmtl " + material + "\nmap_Kd " + textures[i] + "\n";
+    obj += "v 0 0" + z + "v 0.1 0" + z + "v 0.1 0.1" + z + "usemtl " + material + "\nf -3/1 -2/2 -1/3\n";
+  }
+  io::write_text(directory / "many.obj", obj);
+  io::write_text(directory / "many.mtl", mtl);
+}
+
+// The header of the second texture declares all pixels that a mesh may have. Nothing behind it is right.
+TEST(Mesh, ATextureBeyondTheLimitIsNotDecoded) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "a.jpg", Image<Rgb8>(8, 8, Rgb8{255, 0, 0})).ok());
+  std::string large = io::read_text(directory / "a.jpg");
+  const std::size_t size = large.find("\xff\xc0") + 5;
+  large.replace(size, 4, std::string("\x20\x00\x40\x00", 4));  // 8192 rows of 16384 px
+  io::write_text(directory / "b.jpg", large);
+  write_textured_triangles(directory, {"a.jpg", "b.jpg"});
+  const io::MemoryGrowth growth;
+  const auto read = read_mesh(directory / "many.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->warnings.size(), 1U);
+  EXPECT_THAT(read->warnings[0], HasSubstr("b.jpg: the image size 16384x8192 is out of range"));
+  EXPECT_LT(growth.bytes(), 100'000'000U);
+}
+
+TEST(Mesh, PartsShareTheirTexture) {
+  io::TestDirectory directory;
+  ASSERT_TRUE(write_color(directory / "t.png", Image<Rgb8>(4096, 4096, Rgb8{255, 0, 0})).ok());
+  write_textured_triangles(directory, std::vector<std::string>(20, "t.png"));
+  const io::MemoryGrowth growth;
+  const auto read = read_mesh(directory / "many.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->mesh.texture.width(), 4096);
+  EXPECT_EQ(read->mesh.faces.size(), 20U);
+  EXPECT_LT(growth.bytes(), 60'000'000U);
+}
+
 TEST(Mesh, MissingTextureIsAWarning) {
   io::TestDirectory directory;
   write_square_obj(directory, 0.2);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 
 #include "resight/core/result.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
+#include "resight/io/images.hpp"
 
 namespace resight::io {
 
@@ -25,7 +27,8 @@ struct MeshPart {
 void drop_plain_colors(std::vector<Rgb8>& colors);
 
 /// Reads a texture that a mesh in `folder` names. It must lie below the folder.
-[[nodiscard]] Result<Image<Rgb8>> read_texture(const std::filesystem::path& folder, std::string_view name);
+[[nodiscard]] Result<Image<Rgb8>> read_texture(const std::filesystem::path& folder, std::string_view name,
+                                               std::int64_t max_pixels = kMaxImagePixels);
 
 /// The parts of a mesh file, with a line for each reference that could not be read.
 struct ImportedParts {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "resight/core/random.hpp"
+#include "resight/core/timing.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/sensor/training_view.hpp"
 
@@ -37,6 +38,21 @@ class TestDirectory {
 
  private:
   std::filesystem::path path_;
+};
+
+/// By how much the peak of the memory has grown since this was made. 0 with the sanitizers, which keep freed memory.
+class MemoryGrowth {
+ public:
+  [[nodiscard]] std::size_t bytes() const {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return 0;
+#else
+    return peak_memory_bytes() - before_;
+#endif
+  }
+
+ private:
+  std::size_t before_ = peak_memory_bytes();
 };
 
 inline void write_text(const std::filesystem::path& file, const std::string& text) {
