@@ -55,9 +55,11 @@ void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, 
 
 // Nothing if the views do not show one.
 void add_depth_bias(const CheckArguments& arguments, const Sequence& sequence, CheckReport& report) {
-  const DepthBias bias =
-      measure_camera_errors(sequence, {}, {.correct = true}, {.correct = true, .num_threads = arguments.num_threads})
-          .depth_bias;
+  PrepareViewOptions prepare;
+  prepare.max_pixels = kMaxWorkingPixels;
+  const DepthBias bias = measure_camera_errors(sequence, prepare, {.correct = true},
+                                               {.correct = true, .num_threads = arguments.num_threads})
+                             .depth_bias;
   if (bias.is_significant())
     report.facts.push_back(fmt::format(
         "depth at 1 m is {:.1f} +- {:.1f} mm too {}, and at 2 m four times as much; preset default corrects it in "

@@ -12,6 +12,8 @@
 #include "resight/io/sequence.hpp"
 #include "resight/modelling/track_object.hpp"
 #include "resight/modelling/write_model.hpp"
+#include "resight/sensor/prepared_view.hpp"
+#include "resight/sensor/reduce_frame.hpp"
 #include "sequence_input.hpp"
 
 namespace resight::app {
@@ -35,7 +37,7 @@ std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder, const Op
   if (step > 1) print("{}: {} views, takes one of {}\n", folder.string(), sequence->num_views(), step);
   std::vector<RgbdFrame> frames;
   for (int view = 0; view < sequence->num_views(); view += step)
-    frames.push_back(value_or_throw(sequence->read_view(view)));
+    frames.push_back(value_or_throw(read_reduced_view(*sequence, view, kMaxWorkingPixels)));
   return frames;
 }
 

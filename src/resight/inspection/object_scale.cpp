@@ -146,6 +146,7 @@ std::optional<ObjectScale> find_object(const std::vector<Correspondence>& matche
 FeatureSet extract_scaled_features(RgbdFrame frame, double median_m, int num_threads) {
   for (float& z_m : frame.depth_m.data()) z_m = static_cast<float>(z_m / median_m);
   PrepareViewOptions options;
+  options.max_pixels = kMaxWorkingPixels;
   options.min_depth_m.reset();
   options.num_threads = num_threads;
   return extract_sift(prepare_view(std::move(frame), options));

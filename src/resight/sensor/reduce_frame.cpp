@@ -74,4 +74,11 @@ RgbdFrame reduce_frame(const RgbdFrame& frame, int divisor) {
   return reduced;
 }
 
+Result<RgbdFrame> read_reduced_view(const Sequence& sequence, int view, int max_pixels) {
+  Result<RgbdFrame> frame = sequence.read_view(view);
+  if (!frame) return frame;
+  const int divisor = find_reduction(frame->camera, max_pixels);
+  return divisor > 1 ? Result<RgbdFrame>(reduce_frame(*frame, divisor)) : std::move(frame);
+}
+
 }  // namespace resight

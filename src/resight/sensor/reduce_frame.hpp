@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "resight/core/result.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 
@@ -12,5 +14,8 @@ namespace resight {
 /// fewer than half of the pixels have one. Blocks that the right and lower border cut are dropped. `divisor`: at least
 /// 1, at most width and height (else std::invalid_argument).
 [[nodiscard]] RgbdFrame reduce_frame(const RgbdFrame& frame, int divisor);
+
+/// Reads a view that is to be kept, reduced if it has more than `max_pixels`.
+[[nodiscard]] Result<RgbdFrame> read_reduced_view(const Sequence& sequence, int view, int max_pixels);
 
 }  // namespace resight

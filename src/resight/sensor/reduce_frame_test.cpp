@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "resight/sensor/prepared_view.hpp"
+#include "resight/sensor/testing/memory_sequence.hpp"
 
 namespace resight {
 namespace {
@@ -60,6 +61,13 @@ TEST(ReduceFrame, ColoursAreMeansAndDepthsAreMeasured) {
   EXPECT_TRUE(std::isnan(reduced.depth_m(1, 0)));
   EXPECT_THROW((void)reduce_frame(frame, 3), std::invalid_argument);
   EXPECT_THROW((void)reduce_frame(frame, 0), std::invalid_argument);
+}
+
+TEST(ReadReducedView, LargeViewsAreReduced) {
+  const test::MemorySequence sequence({slanted_plane(67, 50), slanted_plane(30, 50), RgbdFrame{}});
+  EXPECT_EQ(read_reduced_view(sequence, 0, 3000)->camera.width, 33);
+  EXPECT_EQ(read_reduced_view(sequence, 1, 3000)->depth_m, slanted_plane(30, 50).depth_m);
+  EXPECT_FALSE(read_reduced_view(sequence, 2, 3000).ok());
 }
 
 TEST(PrepareView, LargeViewsAreReduced) {
