@@ -11,6 +11,7 @@
 
 #include "folder_files.hpp"
 #include "recognition_run.hpp"
+#include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/core/unfinished_folder.hpp"
