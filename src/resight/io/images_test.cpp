@@ -87,7 +87,7 @@ TEST(Images, NoMarkerHidesTheSizeOfAJpeg) {
 TEST(Images, JpegMayBeFollowedByOtherData) {
   io::TestDirectory directory;
   ASSERT_TRUE(write_color(directory / "c.jpg", Image<Rgb8>(32, 24, Rgb8{200, 100, 50})).ok());
-  std::string bytes = *io::read_file(directory / "c.jpg");
+  std::string bytes = io::read_text(directory / "c.jpg");
   EXPECT_TRUE(decode_color(bytes + std::string(1000, 'x'), "motion.jpg").ok());
   const std::string comment("\xff\xfe\x00\x03x", 5);
   EXPECT_TRUE(decode_color(std::string(bytes).insert(bytes.size() - 2, comment), "comment.jpg").ok());
