@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "check_pictures.hpp"
 #include "commands.hpp"
@@ -43,9 +44,15 @@ struct CheckReport {
   [[nodiscard]] bool is_sound() const { return findings.empty() && unmeasured.empty(); }
 };
 
-void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, CheckReport& report) {
-  const ModelLibrary library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
+std::optional<ModelLibrary> load_models(const CheckArguments& arguments) {
+  if (!arguments.models) return std::nullopt;
+  ModelLibrary library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
   if (library.objects.empty()) throw InputError(fmt::format("{}: contains no models", arguments.models->string()));
+  return library;
+}
+
+void add_model_sizes(const CheckArguments& arguments, const Sequence& sequence, const ModelLibrary& library,
+                     CheckReport& report) {
   const ObjectScales scales = value_or_throw(measure_object_scales(
       sequence, library, {.max_views = std::min(12, arguments.max_views), .num_threads = arguments.num_threads}));
   for (Finding& f : find_scale_faults(scales, library)) report.findings.push_back(std::move(f));
@@ -72,7 +79,8 @@ bool leaves_depth_alone(const Finding& finding) {
   return finding.fault == "color_offset" || finding.fault == "motion_blur" || finding.fault == "black_image";
 }
 
-CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequence) {
+CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequence,
+                           const std::optional<ModelLibrary>& library) {
   CheckReport report;
   report.measured = value_or_throw(
       measure_sequence(sequence, {.max_views = arguments.max_views, .num_threads = arguments.num_threads}));
@@ -80,7 +88,7 @@ CheckReport check_sequence(const CheckArguments& arguments, const Sequence& sequ
   report.facts = list_facts(report.measured);
   if (sequence.has_poses() && std::ranges::all_of(report.findings, leaves_depth_alone))
     add_depth_bias(arguments, sequence, report);
-  if (arguments.models) add_model_sizes(arguments, sequence, report);
+  if (library) add_model_sizes(arguments, sequence, *library, report);
   for (std::string& what : list_unmeasured(report.measured, report.knows_sizes))
     report.unmeasured.push_back(std::move(what));
   return report;
@@ -131,8 +139,9 @@ void print_lines(const CheckArguments& arguments, const CheckReport& report, con
 
 bool run_check(const CheckArguments& arguments) {
   if (arguments.out) check_output_folder(*arguments.out, "check", {arguments.sequence});
+  const std::optional<ModelLibrary> library = load_models(arguments);
   const auto sequence = open_input(arguments.sequence, arguments.input);
-  const CheckReport report = check_sequence(arguments, *sequence);
+  const CheckReport report = check_sequence(arguments, *sequence, library);
   if (arguments.out) write_findings(arguments, report, *sequence);
   if (arguments.as_json)
     print_json(format_json(arguments, report, *sequence));

@@ -13,6 +13,7 @@
 #include "resight/io/sequence.hpp"
 #include "resight/io/tuw_models.hpp"
 #include "resight/rendering/turntable.hpp"
+#include "resight/training/training.hpp"
 #include "sequence_input.hpp"
 
 namespace resight::app {
@@ -20,6 +21,18 @@ namespace {
 
 constexpr double kSurfaceVoxel_m = 0.002;  // Of 3D_model.pcd.
 constexpr double kSamplesPerSquareMetre = 4 / (kSurfaceVoxel_m * kSurfaceVoxel_m);
+
+// Reads every model once before the work, so that a mistake in the last one is found at once.
+void check_models(const std::vector<ModelLocation>& models, DatasetFormat format) {
+  for (const ModelLocation& location : models) {
+    const ModelSource source = value_or_throw(read_model(location));
+    if (format == DatasetFormat::kTuw && !source.mesh && source.views.empty())
+      throw InputError(file_error(location.path, "is a cloud without views, of which a TUW model consists").message);
+    if (source.views.empty()) continue;
+    if (const auto checked = check_training_input(source.name, source.views); !checked)
+      throw InputError(file_error(location.path, checked.error().message).message);
+  }
+}
 
 // A TUW model consists of views, so a mesh is rendered on a virtual turntable.
 std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& models,
@@ -36,8 +49,6 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
           voxel_downsample(sample_surface(*source.mesh, kSamplesPerSquareMetre), kSurfaceVoxel_m);
       value_or_throw(write_tuw_model(folder.path(), source.name, render_turntable(*source.mesh, options), &surface,
                                      source.symmetries, source.bop_id));
-    } else if (source.views.empty()) {
-      throw InputError(file_error(models[m].path, "is a cloud without views, of which a TUW model consists").message);
     } else {
       value_or_throw(write_tuw_model(folder.path(), source.name, source.views,
                                      source.surface ? &*source.surface : nullptr, source.symmetries, source.bop_id));
@@ -78,7 +89,10 @@ void run_convert(const ConvertArguments& arguments) {
     const ConversionSummary summary =
         value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence)));
     print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
-  } else if (format == DatasetFormat::kTuw) {
+    return;
+  }
+  check_models(*models, format);
+  if (format == DatasetFormat::kTuw) {
     for (const std::string& warning : render_tuw_models(*models, arguments)) print_warning(warning);
     print("{} models: {}\n", models->size(), arguments.out.string());
   } else {

@@ -36,6 +36,10 @@ std::vector<std::string> list_given(const CLI::App& command) {
   return given;
 }
 
+CLI::Validator finite_seconds() {
+  return number_validator([](double) { return true; }, "a number of seconds", "SECONDS");
+}
+
 void add_recording_options(CLI::App* command, RecordingTopics& topics) {
   const std::string& group = kRecordingGroup;
   command->add_option("--color-topic", topics.color, "Topic of the colour images")->group(group);
@@ -119,9 +123,11 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::
   command
       ->add_option("--from", options.views.from_s,
                    "Takes views from this time on, seconds since the first (needs times)")
+      ->check(finite_seconds())
       ->group(group);
   command
       ->add_option("--until", options.views.to_s, "Takes views up to this time, seconds since the first (needs times)")
+      ->check(finite_seconds())
       ->group(group);
   command->add_option("--max-views", options.views.max_views, "Takes only the first n of these views")
       ->check(CLI::Range(1, 1000000))

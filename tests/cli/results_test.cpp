@@ -182,6 +182,32 @@ TEST_F(CommandLineResults, JsonOnTheTerminalKeepsAllNames) {
   EXPECT_THAT(views, testing::Contains(view));
 }
 
+TEST_F(CommandLineResults, TrainingFindsEmptyMasksBeforeItBegins) {
+  copy("tuw/cloud_01.pcd", "meshes/z/views/cloud_01.pcd")(folder_);
+  write_text(folder_ / "meshes/z/views/pose_01.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  write_text(folder_ / "meshes/z/views/object_indices_01.txt", "");
+  const Outcome outcome = run(folder_, kTrain);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.errors,
+      testing::ElementsAre(testing::HasSubstr("meshes/z: model 'z': the masks of all training views are empty")));
+  EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("train 1/2")));
+}
+
+TEST_F(CommandLineResults, ModelsAreCheckedBeforeTheFirstIsRendered) {
+  const auto expect_early_refusal = [&](const char* line) {
+    const Outcome outcome = run(folder_, "convert meshes out --to tuw");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.errors, testing::ElementsAre(testing::HasSubstr(line)));
+    EXPECT_THAT(read_text(folder_.string() + ".stderr"), testing::Not(testing::HasSubstr("convert 1/2")));
+  };
+  write_text(folder_ / "meshes/z.ply", "ply\n");
+  expect_early_refusal("z.ply: ");
+  fs::remove(folder_ / "meshes/z.ply");
+  write_text(folder_ / "meshes/z.pcd", kUnorganizedPcd);
+  expect_early_refusal("z.pcd: is a cloud without views");
+}
+
 TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
   fs::rename(folder_ / "views", folder_ / "v\xff");
   EXPECT_EQ(

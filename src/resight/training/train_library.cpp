@@ -63,12 +63,26 @@ Result<void> check_names(std::span<const ModelLocation> locations) {
   return {};
 }
 
+Result<void> check_source(const ModelSource& source) {
+  if (!source.views.empty())
+    if (auto checked = check_training_input(source.name, source.views); !checked.ok()) return checked;
+  if (source.mesh.has_value()) return check_training_input(source.name, *source.mesh);
+  const bool is_used = source.views.empty() || is_usable_surface(source.surface);
+  return source.surface.has_value() && is_used ? check_training_input(source.name, *source.surface) : Result<void>();
+}
+
+Error training_error(const ModelLocation& location, const Error& error) {
+  return Error{fmt::format("{}: {}", location.path.string(), error.message)};
+}
+
 // Reads every model once before hours of training, so that a mistake in the last one does not lose the others.
 Result<void> check_models(std::span<const ModelLocation> locations) {
   std::vector<ObjectModel> ids;
   for (const ModelLocation& location : locations) {
     const Result<ModelSource> source = read_model(location);
     if (!source.ok()) return source.error();
+    if (const Result<void> checked = check_source(*source); !checked.ok())
+      return training_error(location, checked.error());
     ObjectModel& model = ids.emplace_back();
     model.name = source->name;
     model.bop_id = source->bop_id;
@@ -128,7 +142,7 @@ Result<ModelLibrary> train_library(std::span<const ModelLocation> locations, con
     Result<ModelSource> source = read_model(location);
     if (!source.ok()) return source.error();
     Result<ObjectModel> model = train_object(*source, options);
-    if (!model.ok()) return Error{fmt::format("{}: {}", location.path.string(), model.error().message)};
+    if (!model.ok()) return training_error(location, model.error());
     if (warning) warn_about(*model, *source, location.path.string(), warning);
     library.objects.push_back(*std::move(model));
   }

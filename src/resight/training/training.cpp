@@ -31,7 +31,23 @@ constexpr Rgb8 kUnknownColor{128, 128, 128};
 
 Error fail(const std::string& name, const std::string& what) { return {fmt::format("model '{}': {}", name, what)}; }
 
-Result<void> check_views(const std::string& name, std::span<const TrainingView> views) {
+Result<void> check_diameter(const std::string& name, const char* kind, double size_m) {
+  if (size_m > kMaxDiameter_m) {
+    return fail(name, fmt::format("the {} is {:g} m across (expected {} to {}): it looks as if it were in millimetres",
+                                  kind, size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  if (size_m < kMinDiameter_m) {
+    return fail(name,
+                fmt::format("the {} is only {:g} m across (expected {} to {}): metres are needed, this looks like "
+                            "another unit",
+                            kind, size_m, kMinDiameter_m, kMaxDiameter_m));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_training_input(const std::string& name, std::span<const TrainingView> views) {
   if (views.empty()) return fail(name, "no training views");
   bool any_object_pixel = false;
   for (const TrainingView& view : views) {
@@ -47,6 +63,29 @@ Result<void> check_views(const std::string& name, std::span<const TrainingView> 
   if (!any_object_pixel) return fail(name, "the masks of all training views are empty");
   return {};
 }
+
+Result<void> check_training_input(const std::string& name, const TriangleMesh& mesh) {
+  if (mesh.empty()) return fail(name, "the mesh has no triangles");
+  const int num_vertices = static_cast<int>(mesh.vertices.size());
+  for (const auto& f : mesh.faces)
+    for (const int v : f) {
+      if (v < 0 || v >= num_vertices) {
+        return fail(name, fmt::format("a triangle refers to vertex {}, but the mesh has {} vertices", v, num_vertices));
+      }
+      if (!mesh.vertices[v].allFinite()) return fail(name, fmt::format("vertex {} of the mesh is not finite", v));
+    }
+  return check_diameter(name, "mesh", diameter(used_vertices(mesh)));
+}
+
+Result<void> check_training_input(const std::string& name, const PointCloud& cloud) {
+  if (cloud.size() < kMinCloudPoints)
+    return fail(name, fmt::format("only {} points (expected {} or more)", cloud.size(), kMinCloudPoints));
+  if (!std::ranges::all_of(cloud.points, [](const Eigen::Vector3f& p) { return p.allFinite(); }))
+    return fail(name, "a point is not finite");
+  return check_diameter(name, "cloud", diameter(cloud.points));
+}
+
+namespace {
 
 // No sensor measures the same colour everywhere: such colours were set by hand or by default.
 bool has_measured_color(std::span<const TrainingView> views) {
@@ -136,7 +175,7 @@ std::vector<TrainingView> render_views(const TriangleMesh& mesh, const TrainOpti
 Result<ObjectModel> train_from_renderings(const std::string& name, const TriangleMesh& mesh, PointCloud surface,
                                           const TrainOptions& options) {
   const std::vector<TrainingView> views = render_views(mesh, options);
-  const Result<void> checked = check_views(name, views);
+  const Result<void> checked = check_training_input(name, views);
   if (!checked.ok()) return checked.error();
   Result<ObjectFeatures> features =
       reduce_features(name, process_views(views, options, false).features, surface.has_colors(), options);
@@ -144,44 +183,9 @@ Result<ObjectModel> train_from_renderings(const std::string& name, const Triangl
   return make_model(name, *features, std::move(surface));
 }
 
-Result<void> check_diameter(const std::string& name, const char* kind, double size_m) {
-  if (size_m > kMaxDiameter_m) {
-    return fail(name, fmt::format("the {} is {:g} m across (expected {} to {}): it looks as if it were in millimetres",
-                                  kind, size_m, kMinDiameter_m, kMaxDiameter_m));
-  }
-  if (size_m < kMinDiameter_m) {
-    return fail(name,
-                fmt::format("the {} is only {:g} m across (expected {} to {}): metres are needed, this looks like "
-                            "another unit",
-                            kind, size_m, kMinDiameter_m, kMaxDiameter_m));
-  }
-  return {};
-}
-
-Result<void> check_mesh(const std::string& name, const TriangleMesh& mesh) {
-  if (mesh.empty()) return fail(name, "the mesh has no triangles");
-  const int num_vertices = static_cast<int>(mesh.vertices.size());
-  for (const auto& f : mesh.faces)
-    for (const int v : f) {
-      if (v < 0 || v >= num_vertices) {
-        return fail(name, fmt::format("a triangle refers to vertex {}, but the mesh has {} vertices", v, num_vertices));
-      }
-      if (!mesh.vertices[v].allFinite()) return fail(name, fmt::format("vertex {} of the mesh is not finite", v));
-    }
-  return check_diameter(name, "mesh", diameter(used_vertices(mesh)));
-}
-
-Result<void> check_cloud(const std::string& name, const PointCloud& cloud) {
-  if (cloud.size() < kMinCloudPoints)
-    return fail(name, fmt::format("only {} points (expected {} or more)", cloud.size(), kMinCloudPoints));
-  if (!std::ranges::all_of(cloud.points, [](const Eigen::Vector3f& p) { return p.allFinite(); }))
-    return fail(name, "a point is not finite");
-  return check_diameter(name, "cloud", diameter(cloud.points));
-}
-
 // Downsamples a cloud evenly, orients its normals outwards, and adds grey colours if there are none.
 Result<PointCloud> prepare_cloud(const std::string& name, const PointCloud& cloud, int num_threads) {
-  const Result<void> checked = check_cloud(name, cloud);
+  const Result<void> checked = check_training_input(name, cloud);
   if (!checked.ok()) return checked.error();
   PointCloud even = voxel_downsample(cloud, std::max(kMinCloudSpacing_m, diameter(cloud.points) / kMaxCloudSpacings));
   if (even.size() < kMinCloudPoints) return fail(name, "most of the points coincide");
@@ -204,14 +208,14 @@ PointCloud fuse_evenly(PointCloud cloud, double voxel_size_m) {
 Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
                                       const TrainOptions& options) {
   options.check();
-  const Result<void> checked = check_views(name, views);
+  const Result<void> checked = check_training_input(name, views);
   if (!checked.ok()) return checked.error();
   return reduce_features(name, process_views(views, options, false).features, has_measured_color(views), options);
 }
 
 Result<PointCloud> train_surface(const std::string& name, const TriangleMesh& mesh, const TrainOptions& options) {
   options.check();
-  const Result<void> checked = check_mesh(name, mesh);
+  const Result<void> checked = check_training_input(name, mesh);
   if (!checked.ok()) return checked.error();
   const double voxel_face = options.surface_voxel_m * options.surface_voxel_m;
   PointCloud samples = sample_surface(mesh, kSamplesPerVoxelFace / voxel_face);
@@ -233,7 +237,7 @@ Result<PointCloud> train_surface(const std::string& name, const PointCloud& clou
 Result<ObjectModel> train_object(const std::string& name, std::span<const TrainingView> views,
                                  const TrainOptions& options) {
   options.check();
-  const Result<void> checked = check_views(name, views);
+  const Result<void> checked = check_training_input(name, views);
   if (!checked.ok()) return checked.error();
   const ViewPart joined = process_views(views, options, true);
   if (joined.samples.cloud.empty()) {

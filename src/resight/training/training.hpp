@@ -77,6 +77,12 @@ struct ObjectFeatures {
 [[nodiscard]] Result<ObjectModel> train_object(const std::string& name, const PointCloud& cloud,
                                                const TrainOptions& options = {});
 
+/// What train_object() refuses before it begins: views without a pixel of the object, of an invalid frame or mask size;
+/// a mesh or a cloud that it cannot use. Takes little time.
+[[nodiscard]] Result<void> check_training_input(const std::string& name, std::span<const TrainingView> views);
+[[nodiscard]] Result<void> check_training_input(const std::string& name, const TriangleMesh& mesh);
+[[nodiscard]] Result<void> check_training_input(const std::string& name, const PointCloud& cloud);
+
 /// Extracts and merges only the features, as train_object() does before it codes them.
 [[nodiscard]] Result<ObjectFeatures> train_features(const std::string& name, std::span<const TrainingView> views,
                                                     const TrainOptions& options = {});
