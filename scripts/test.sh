@@ -7,7 +7,8 @@
 #   scripts/test.sh         all of these
 #   scripts/test.sh --fast  format, build and tests, for the inner loop
 #   scripts/test.sh --long  before a release: all of these, every public header and program of bench/ alone, the program
-#                           under ThreadSanitizer, and the tests of all modules under all sanitizers
+#                           under ThreadSanitizer, the tests of all modules under all sanitizers, 200 faults of each
+#                           command that writes, and a sequence of 2,000 views (hours)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 fast=0
@@ -133,5 +134,7 @@ if ((long)); then
   step "each public header and program of bench/ compiles alone" check_headers
   step "build the program with TSan" build_tsan resight_app
   step "program with TSan" run_tsan_program
+  step "commands that are disturbed" tests/faults_test.sh build/ci/apps/resight/resight 200
+  step "memory and time of 2,000 views" scripts/soak.sh 2000 build/ci/apps/resight/resight
 fi
 count_tests
