@@ -208,8 +208,8 @@ TEST(CropToBalls, KeepsAllPointsNearAndNoneFar) {
 }
 
 TEST(FindSmoothSegments, AgreesWithASlowTwin) {
-  // Two sheets that meet at 90 degrees, a third apart, of several blocks of cells. The reference floods from every point
-  // over all pairs.
+  // Two sheets that meet at 90 degrees, a third apart, of several blocks of cells. The reference floods from every
+  // point over all pairs.
   std::vector<Eigen::Vector3f> points;
   std::vector<Eigen::Vector3f> normals;
   for (int i = 0; i < 32; ++i)
