@@ -37,10 +37,10 @@ inline DatasetFormat to_format(const std::string& name) {
 /// Three decimals, or "-" for NaN.
 [[nodiscard]] std::string format_share(double share);
 
-/// What the user is told of the output of a command.
+/// The output of a command as its messages name it.
 template <typename Arguments>
-std::string name_output(const Arguments& arguments) {
-  return (arguments.told_out.empty() ? arguments.out : arguments.told_out).string();
+std::string shown_output(const Arguments& arguments) {
+  return (arguments.shown_out.empty() ? arguments.out : arguments.shown_out).string();
 }
 
 /// Prints one line to standard error.
@@ -50,7 +50,7 @@ struct TrainArguments {
   std::vector<std::filesystem::path> inputs;
   std::optional<double> metres_per_unit;  ///< Of meshes and clouds; none: as their layout has it.
   std::filesystem::path out;
-  std::filesystem::path told_out;  ///< The name of `out` for the user, if it is moved later.
+  std::filesystem::path shown_out;  ///< What messages name instead of `out`, if it is moved later.
   int num_threads = 1;
 };
 
@@ -110,7 +110,7 @@ struct SimulateArguments {
   /// Object recorded by the presets *-recording; empty = milk_carton.
   std::string object;
   std::filesystem::path out;
-  std::filesystem::path told_out;  ///< The name of `out` for the user, if it is moved later.
+  std::filesystem::path shown_out;  ///< What messages name instead of `out`, if it is moved later.
   std::string format = "tuw";
   std::uint64_t seed = 1;
   bool noise_free = false;

@@ -37,14 +37,14 @@ void run_demo(const DemoArguments& arguments) {
                 .script = {},
                 .object = {},
                 .out = data,
-                .told_out = arguments.out / "data",
+                .shown_out = arguments.out / "data",
                 .format = "bop",
                 .seed = arguments.seed,
                 .num_threads = arguments.num_threads});
   run_train({.inputs = {data / "models"},
              .metres_per_unit = {},
              .out = models,
-             .told_out = arguments.out / "models.resight",
+             .shown_out = arguments.out / "models.resight",
              .num_threads = arguments.num_threads});
 
   const ModelLibrary library = value_or_throw(load_library(models, TrainOptions{}.hash()));

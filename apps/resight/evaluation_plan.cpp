@@ -104,8 +104,8 @@ std::vector<fs::path> list_sequences(const fs::path& root) {
   return sequences;
 }
 
-// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it. What is damaged
-// or cannot be told apart is an error: scores without it would pass for those of the whole data set.
+// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it. A damaged
+// sequence, and several in one folder, are errors: scores without them would pass for those of the whole data set.
 std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   const fs::path dataset = fs::absolute(given / "").parent_path().lexically_normal();
   std::error_code error;

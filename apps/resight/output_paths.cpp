@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <map>
 
 #include "commands.hpp"
 #include "resight/core/files.hpp"
@@ -106,12 +106,12 @@ void check_new_file(const fs::path& out) {
 void check_new_folder(const fs::path& out) { value_or_throw(check_writable_folder(out, ExistingFolder::kRefuse)); }
 
 void check_apart(const Paths& outputs) {
-  std::set<fs::path> places;
+  std::map<fs::path, fs::path> out_at;  // By its place.
   for (const fs::path& out : outputs)
-    if (!places.insert(place_of(out)).second) refuse_output(out, "would be written twice (choose another name)");
-  for (const fs::path& out : outputs)
-    for (fs::path above = place_of(out).parent_path(); above.has_relative_path(); above = above.parent_path())
-      if (places.contains(above))
+    if (!out_at.emplace(place_of(out), out).second) refuse_output(out, "would be written twice (choose another name)");
+  for (const auto& [place, out] : out_at)
+    for (fs::path above = place.parent_path(); above.has_relative_path(); above = above.parent_path())
+      if (out_at.contains(above))
         refuse_output(out, fmt::format("lies below another output, {} (choose another name)", above.string()));
 }
 

@@ -44,7 +44,7 @@ void simulate_scene(const SimulateArguments& arguments) {
         write_simulation(simulation, arguments.out, to_format(arguments.format), write_options(arguments, progress)));
   }
   print("{} objects, {} views, {} changes: {}\n", num_models, simulation.num_views(), simulation.events().size(),
-        name_output(arguments));
+        shown_output(arguments));
 }
 
 void simulate_benchmark(const SimulateArguments& arguments) {
@@ -70,7 +70,7 @@ void simulate_benchmark(const SimulateArguments& arguments) {
                                      {.num_threads = arguments.num_threads}, options));
   }
   print("{} version {}, seed {}: {} sequences, {} objects, {} views, {} changes: {}\n", kBenchmark, benchmark.version,
-        arguments.seed, scripts.size(), num_models, num_views, num_changes, name_output(arguments));
+        arguments.seed, scripts.size(), num_models, num_views, num_changes, shown_output(arguments));
 }
 
 void simulate_recordings(const SimulateArguments& arguments) {
@@ -88,7 +88,7 @@ void simulate_recordings(const SimulateArguments& arguments) {
                          [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
   }
   print("{} of {}, seed {}: {}/side_1, side_2\n", arguments.preset, object.name, arguments.seed,
-        name_output(arguments));
+        shown_output(arguments));
 }
 
 void simulate_benchmark_recordings(const SimulateArguments& arguments) {
@@ -101,7 +101,7 @@ void simulate_benchmark_recordings(const SimulateArguments& arguments) {
         [&progress, done = 0](const std::string& what) mutable { progress.report(++done, what); }));
   }
   print("{} version {}, seed {}: recordings of {} objects: {}\n", kBenchmark, kDynamicTabletopVersion, arguments.seed,
-        num_recorded, name_output(arguments));
+        num_recorded, shown_output(arguments));
 }
 
 bool is_recording(const std::string& preset) { return preset == kTurntableRecording || preset == kWalkRecording; }

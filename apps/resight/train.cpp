@@ -54,7 +54,7 @@ void run_train(const TrainArguments& arguments) {
   for (const ObjectModel& object : library.objects)
     print("{:>4} {:<28} {:5.1f} cm, {:6d} surface points, {:5d} SIFT, {:5d} SHOT\n", object.bop_id, object.name,
           100 * object.diameter_m, object.surface.size(), object.sift.size(), object.shot.size());
-  print("{} objects trained: {}\n", library.objects.size(), name_output(arguments));
+  print("{} objects trained: {}\n", library.objects.size(), shown_output(arguments));
 }
 
 }  // namespace resight::app

@@ -12,7 +12,7 @@ namespace {
 
 using io::fs::path;
 
-/// A link that leads nowhere and a pipe count, too: who reads them is told, instead of that there are no changes.
+/// Links that lead nowhere and pipes count. Reading them fails; without them, the sequence would have no changes.
 bool is_no_folder(const path& candidate) {
   std::error_code error;
   return io::fs::exists(io::fs::symlink_status(candidate, error)) && !io::is_folder(candidate);
