@@ -84,7 +84,8 @@ TEST_F(ExportAnnotationTest, MasksAndFilesOfTuwAreThere) {
 TEST_F(ExportAnnotationTest, ObjectsBehindTheCameraHaveNoMask) {
   ObjectMaskRenderer renderer(scene_->library);
   const RgbdFrame& frame = scene_->frames[0];
-  AnnotatedObject object{.object = 0};
+  AnnotatedObject object;
+  object.object = 0;
   object.world_from_object = frame.world_from_camera * Rigid3::from_translation({0, 0, -0.6});
   EXPECT_TRUE(renderer.render({&object, 1}, frame).empty());
   object.world_from_object = frame.world_from_camera * Rigid3::from_translation({0, 0, 0.6});
