@@ -47,6 +47,7 @@ switches=(
   'color_offset.correct = false'
   'depth_bias.correct = false'
   'verify.selection.score_power = 0'
+  'detections.weigh_competing_poses = false'
   'verify.appearance.sigma_saturation = 0; verify.appearance.sigma_ab = 0.17'
   'verify.appearance.pattern_radius_m = "off"'
 )

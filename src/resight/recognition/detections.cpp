@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "resight/recognition/competing_poses.hpp"
 #include "resight/recognition/instance_prior.hpp"
 #include "resight/verification/appearance_check.hpp"
 
@@ -36,6 +37,7 @@ void confirm_by_colors(Detection& detection, const RgbdFrame& current, const Mod
 std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const std::deque<DynamicScene::View>& window,
                                        const ModelLibrary& library, const RecognizerConfig& config) {
   std::vector<Detection> detections;
+  std::vector<double> pose_scores;
   for (std::size_t h = 0; h < verified.hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = verified.hypotheses[h];
     const HypothesisEvidence& evidence = verified.evidence[h];
@@ -45,13 +47,17 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     detection.hypothesis_id = hypothesis.id;
     detection.world_from_object = evidence.world_from_object;
     detection.uncertainty = evidence.uncertainty;
-    detection.score = evidence.score;
+    const PlaceScore score =
+        config.detections.weigh_competing_poses ? score_place(verified, h, library) : PlaceScore{evidence.score, 1};
+    detection.score = score.place;
+    pose_scores.push_back(score.pose);
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     detection.views = evidence_of_views(verified, h, window);
     confirm_by_colors(detection, window.back().raw, library, config);
   }
   apply_instance_prior(detections, config.detections.further_instance_odds);
+  for (std::size_t i = 0; i < detections.size(); ++i) detections[i].score *= pose_scores[i];
   return detections;
 }
 

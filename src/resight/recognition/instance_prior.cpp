@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/instance_prior.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "resight/core/odds.hpp"
+
 namespace resight {
-namespace {
-
-constexpr double kMaxScore = 1 - 1e-12;  // Keeps the odds finite.
-
-double odds_of(const Detection& detection) {
-  const double score = std::min(detection.score, kMaxScore);
-  return score / (1 - score);
-}
-
-}  // namespace
 
 // With a = further_instance_odds, odds o_i = s_i / (1 - s_i) and A = the product of all 1 + a o_i, the terms of all
 // subsets sum to 1 + (A - 1) / a, and those of the subsets with detection i to o_i A / (1 + a o_i).
@@ -23,12 +14,12 @@ void apply_instance_prior(std::vector<Detection>& detections, double further_ins
   std::map<int, double> log_products;  // By object.
   std::map<int, int> num_instances;
   for (const Detection& detection : detections) {
-    log_products[detection.object] += std::log1p(further_instance_odds * odds_of(detection));
+    log_products[detection.object] += std::log1p(further_instance_odds * odds_of(detection.score));
     ++num_instances[detection.object];
   }
   for (Detection& detection : detections) {
     if (num_instances[detection.object] == 1) continue;
-    const double further_odds = further_instance_odds * odds_of(detection);
+    const double further_odds = further_instance_odds * odds_of(detection.score);
     const double others = (1 - further_instance_odds) * std::exp(-log_products[detection.object]);
     detection.score = further_odds / (1 + further_odds) / (1 - others);
   }

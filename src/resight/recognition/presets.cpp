@@ -59,6 +59,7 @@ void set_default(RecognizerConfig& config) {
   config.detections.min_reported_share = 0.01;
   config.detections.min_score = 0.3;
   config.detections.further_instance_odds = 0.2;
+  config.detections.weigh_competing_poses = true;
   config.verify.selection.score_power = 0.5;
   config.verify.score = {.offset = -34.6,
                          .correspondence_weight = 0.6,

@@ -105,6 +105,7 @@ struct DetectionOptions {
   double min_reported_share = 0;
   double min_score = 0;
   double further_instance_odds = 1;
+  bool weigh_competing_poses = false;
 };
 
 inline void declare(OptionVisitor& v, DetectionOptions& o) {
@@ -121,6 +122,8 @@ inline void declare(OptionVisitor& v, DetectionOptions& o) {
           "Prior odds of each further instance of an object, as a share of those of the first: look-alikes pass for "
           "further instances. 1: as likely as the first, for scenes with many copies.",
           "fitted");
+  v.field("weigh_competing_poses", o.weigh_competing_poses,
+          "An object is less likely right if other poses of it explain the place about as well.", "ours");
 }
 
 /// Every setting of the recogniser. Start from a preset, then change single fields. The keys of settings files are the
