@@ -27,14 +27,6 @@ fs::path clean_path(const fs::path& path) {
   return clean;
 }
 
-/// The outermost component of the path that does not exist; empty if the path exists.
-fs::path first_missing(const fs::path& path) {
-  std::error_code error;
-  fs::path missing;
-  for (fs::path p = path; !p.empty() && !fs::exists(p, error) && p != p.root_path(); p = p.parent_path()) missing = p;
-  return missing;
-}
-
 std::string reason_of(const std::error_code& error) { return "cannot be written (" + error.message() + ")"; }
 
 /// Whether the folder holds anything but the hidden folder of this name.

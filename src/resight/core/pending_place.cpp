@@ -35,14 +35,6 @@ PlaceRegistry& registry() {
   return only;
 }
 
-/// The outermost component of the path that does not exist; empty if the path exists.
-fs::path first_missing_folder(const fs::path& path) {
-  std::error_code error;
-  fs::path missing;
-  for (fs::path p = path; !p.empty() && !fs::exists(p, error) && p != p.root_path(); p = p.parent_path()) missing = p;
-  return missing;
-}
-
 /// Removes created folders from the inside out, as far as they are empty.
 void remove_empty_folders(const fs::path& innermost, const fs::path& outermost) {
   if (outermost.empty()) return;
@@ -92,7 +84,7 @@ Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bo
   constexpr int kMaxAttempts = 100;  // Each fails only if another process interferes.
   bool is_refused = false;           // Folders such as /proc take no file, and say that it is missing.
   for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-    if (opened.first_made.empty()) opened.first_made = first_missing_folder(path.parent_path());
+    if (opened.first_made.empty()) opened.first_made = first_missing(path.parent_path());
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error) {
@@ -123,6 +115,13 @@ Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bo
 }
 
 }  // namespace
+
+fs::path first_missing(const fs::path& path) {
+  std::error_code error;
+  fs::path missing;
+  for (fs::path p = path; !p.empty() && !fs::exists(p, error) && p != p.root_path(); p = p.parent_path()) missing = p;
+  return missing;
+}
 
 std::string PendingPlace::name_for(const std::string& final_name) {
   constexpr std::size_t kMaxShownBytes = 200;  // Leaves room for the rest.

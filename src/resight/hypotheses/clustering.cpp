@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
@@ -188,9 +189,7 @@ ClusterResult cluster_hypotheses(std::span<const Hypothesis> hypotheses, const M
                                  const ClusterHypothesesOptions& options, const EstimatePoseOptions& pose) {
   options.check();
   pose.check();
-  for (const Hypothesis& h : hypotheses)
-    require(h.object >= 0 && static_cast<std::size_t>(h.object) < library.objects.size(),
-            "cluster_hypotheses: an object is not in the library");
+  for (const Hypothesis& h : hypotheses) std::ignore = library.object(h.object);  // Throws early.
   const std::vector<Cluster> clusters = assign_members(hypotheses, library, options);
   ClusterResult result;
   result.hypotheses.resize(clusters.size());

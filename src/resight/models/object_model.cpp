@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/models/object_model.hpp"
 
+#include "resight/core/check.hpp"
+
 namespace resight {
 
 int ModelLibrary::find(const std::string& name) const {
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (objects[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+const ObjectModel& ModelLibrary::object(int index) const {
+  require(index >= 0 && static_cast<std::size_t>(index) < objects.size(),
+          "object " + std::to_string(index) + " is not in the library, which has " + std::to_string(objects.size()));
+  return objects[static_cast<std::size_t>(index)];
 }
 
 }  // namespace resight

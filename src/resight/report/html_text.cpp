@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "resight/core/check.hpp"
 #include "resight/report/internal/html.hpp"
 
 namespace resight::report {
@@ -68,11 +67,7 @@ std::string duration(double seconds) {
 
 std::string css_color(Rgb8 color) { return fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b); }
 
-std::string object_name(int object, const ModelLibrary& library) {
-  require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
-          "report: an object is not in the library");
-  return escape(library.objects[static_cast<std::size_t>(object)].name);
-}
+std::string object_name(int object, const ModelLibrary& library) { return escape(library.object(object).name); }
 
 std::string object_tag(int object, const ModelLibrary& library) {
   return fmt::format("<span class=\"patch\" style=\"background:{}\"></span>{}", css_color(object_color(object)),

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 #include "resight/core/check.hpp"
 #include "resight/report/internal/drawing.hpp"
@@ -179,10 +180,7 @@ Image<Rgb8> draw_overlay(const RgbdFrame& frame, const ModelLibrary& library, co
   require_valid(frame);
   require(marks.empty() || marks.size() == update.detections.size(),
           "draw_overlay: marks must be empty or one per detection");
-  for (const Detection& detection : update.detections) {
-    require(detection.object >= 0 && detection.object < static_cast<int>(library.objects.size()),
-            "draw_overlay: the object of a detection is not in the library");
-  }
+  for (const Detection& detection : update.detections) std::ignore = library.object(detection.object);  // Throws early.
   Image<Rgb8> picture = frame.color;
   if (options.show_changes)
     tint_changes(picture, frame.camera, update.world_from_camera, update.changes, options.change_opacity);

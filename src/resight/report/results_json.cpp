@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "resight/core/check.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/core/statistics.hpp"
 #include "resight/report/internal/json_values.hpp"
@@ -19,12 +18,6 @@ using report::pose_json;
 using report::score_json;
 using report::to_text;
 using Json = nlohmann::ordered_json;
-
-const ObjectModel& model_of(int object, const ModelLibrary& library) {
-  require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
-          "results: an object is not in the library");
-  return library.objects[static_cast<std::size_t>(object)];
-}
 
 Json optional_pose_json(const std::optional<Rigid3>& pose) { return pose ? pose_json(*pose) : Json(nullptr); }
 
@@ -46,7 +39,7 @@ Json uncertainty_json(const PoseUncertainty& uncertainty) {
 
 Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrary& library) {
   const Detection& detection = view.update.detections[index];
-  const ObjectModel& model = model_of(detection.object, library);
+  const ObjectModel& model = library.object(detection.object);
   Json evidence = Json::array();
   for (const DetectionViewEvidence& e : detection.views) {
     evidence.push_back({{"view", e.view},
@@ -72,7 +65,7 @@ Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrar
 Json event_json(const ObjectEvent& event, const ModelLibrary& library) {
   return {{"view", event.view},
           {"kind", to_string(event.kind)},
-          {"object", model_of(event.object, library).name},
+          {"object", library.object(event.object).name},
           {"track", event.track},
           {"world_from_object_before", optional_pose_json(event.world_from_object_before)},
           {"world_from_object_after", optional_pose_json(event.world_from_object_after)},

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/report/stored_view.hpp"
 
-#include "resight/core/check.hpp"
-
 namespace resight {
 namespace {
-
-const ObjectModel& stored_model(int object, const ModelLibrary& library) {
-  require(object >= 0 && static_cast<std::size_t>(object) < library.objects.size(),
-          "to_stored_view: an object is not in the library");
-  return library.objects[static_cast<std::size_t>(object)];
-}
 
 StoredDetection to_stored_detection(const Detection& detection, const ObjectModel& model, const std::string& verdict) {
   StoredDetection stored;
@@ -40,7 +32,7 @@ StoredView to_stored_view(const ViewRecord& view, const ModelLibrary& library) {
   stored.world_from_camera = update.world_from_camera;
   for (std::size_t i = 0; i < update.detections.size(); ++i) {
     const Detection& detection = update.detections[i];
-    stored.detections.push_back(to_stored_detection(detection, stored_model(detection.object, library),
+    stored.detections.push_back(to_stored_detection(detection, library.object(detection.object),
                                                     view.evaluation ? to_string(view.marks.at(i)) : std::string()));
   }
   stored.num_novel_points = static_cast<int>(view.num_novel_points);
@@ -53,7 +45,7 @@ StoredView to_stored_view(const ViewRecord& view, const ModelLibrary& library) {
 std::vector<StoredEvent> to_stored_events(const ViewRecord& view, const ModelLibrary& library) {
   std::vector<StoredEvent> stored;
   for (const ObjectEvent& event : view.update.events)
-    stored.push_back({event.view, to_string(event.kind), stored_model(event.object, library).name, event.track,
+    stored.push_back({event.view, to_string(event.kind), library.object(event.object).name, event.track,
                       event.world_from_object_before, event.world_from_object_after, event.confidence});
   return stored;
 }

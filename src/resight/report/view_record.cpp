@@ -42,10 +42,8 @@ std::vector<DetectedObject> to_detected_objects(const SceneUpdate& update, const
   const Rigid3 camera_from_world = update.world_from_camera.inverse();
   std::vector<DetectedObject> objects;
   for (const Detection& detection : update.detections) {
-    require(detection.object >= 0 && static_cast<std::size_t>(detection.object) < library.objects.size(),
-            "to_detected_objects: the object of a detection is not in the library");
-    objects.push_back({library.objects[static_cast<std::size_t>(detection.object)].name,
-                       camera_from_world * detection.world_from_object, detection.score});
+    objects.push_back(
+        {library.object(detection.object).name, camera_from_world * detection.world_from_object, detection.score});
   }
   return objects;
 }

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "resight/core/parallel.hpp"
+#include "resight/geometry/fibonacci_sphere.hpp"
 #include "resight/training/internal/rotation_group.hpp"
 #include "resight/training/internal/self_overlap.hpp"
 
@@ -55,11 +56,7 @@ struct Directions {
 
 std::vector<Vector3d> half_sphere() {
   std::vector<Vector3d> directions;
-  for (int i = 0; i < kSphereDirections / 2; ++i) {  // a spiral from pole to equator
-    const double z = 1 - (i + 0.5) * 2 / kSphereDirections;
-    const double r = std::sqrt(1 - z * z);
-    directions.emplace_back(r * std::cos(kGoldenAngle_rad * i), r * std::sin(kGoldenAngle_rad * i), z);
-  }
+  for (int i = 0; i < kSphereDirections / 2; ++i) directions.push_back(fibonacci_direction(i, kSphereDirections));
   return directions;
 }
 

@@ -9,6 +9,9 @@
 
 namespace resight {
 
+/// The outermost component of the path that does not exist; empty if the path exists.
+[[nodiscard]] std::filesystem::path first_missing(const std::filesystem::path& path);
+
 /// A temporary file or folder that becomes another one when it is complete, or is removed. Its name is that of the
 /// final one with a dot before and ".resight-partial" behind. It is locked as long as its process lives: a process that
 /// wants the same name knows by the lock whether the place is in use, or was left behind, and removes it.
