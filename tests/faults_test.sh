@@ -3,7 +3,8 @@
 # Each command that writes is disturbed: killed or interrupted at a random moment, by a limit on the size of files, by a
 # read-only folder, by a full disk. Called again, it must end with the bytes of a run that was not disturbed (times
 # excepted), and nothing else may be left. "Again": the folder holds results of a run before. The moments follow from a
-# fixed seed, and from the speed of the machine. Fails also if fewer than half of the runs were disturbed.
+# fixed seed (RESIGHT_FAULT_SEED gives another one), and from the speed of the machine. Fails also if fewer than half of
+# the runs were disturbed.
 # Usage: faults_test.sh PATH_OF_RESIGHT [ROUNDS per command, a tenth for slow ones] [COMMAND...]
 set -uo pipefail
 resight=$(realpath "$1")
@@ -11,7 +12,7 @@ rounds=${2:-1}
 chosen=("${@:3}")
 source "$(dirname "${BASH_SOURCE[0]}")/small_scene.sh"
 cd "$work" || exit 1
-RANDOM=1
+RANDOM=${RESIGHT_FAULT_SEED:-1}
 
 # Commands run in a folder of their own beside the data.
 declare -A arguments=(
@@ -190,6 +191,20 @@ for command in "${commands[@]}"; do
   list "$command" >"$command.list"
 done
 
+total_tried=0
+total_disturbed=0
+report() { # report COMMAND: a line with how often each fault disturbed it
+  local fault counts="" tried=${num_tried[$1]:-0} disturbed=0
+  for fault in "${faults[@]}"; do
+    counts+=" $fault ${num_disturbed[$1.$fault]:-0}"
+    disturbed=$((disturbed + ${num_disturbed[$1.$fault]:-0}))
+  done
+  echo "$1 (${duration_ms[$1]} ms), disturbed:$counts"
+  ((tried < 5 || disturbed > 0)) || fail "$1: none of $tried runs was disturbed"
+  total_tried=$((total_tried + tried))
+  total_disturbed=$((total_disturbed + disturbed))
+}
+
 for ((i = 0; i < ${#commands[@]}; ++i)); do
   command=${commands[i]}
   num_rounds=$rounds
@@ -213,22 +228,7 @@ for ((i = 0; i < ${#commands[@]}; ++i)); do
     list round >round.list
     cmp -s round.list "$command.list" || fail "$command, $what: other results: $(diff round.list "$command.list" | head -5)"
   done
-done
-
-total_tried=0
-total_disturbed=0
-for command in "${commands[@]}"; do
-  counts=""
-  of_command=0
-  for fault in "${faults[@]}"; do
-    counts+=" $fault ${num_disturbed[$command.$fault]:-0}"
-    of_command=$((of_command + ${num_disturbed[$command.$fault]:-0}))
-  done
-  tried=${num_tried[$command]:-0}
-  total_tried=$((total_tried + tried))
-  total_disturbed=$((total_disturbed + of_command))
-  echo "$command (${duration_ms[$command]} ms), disturbed:$counts"
-  ((tried < 5 || of_command > 0)) || fail "$command: none of $tried runs was disturbed"
+  report "$command"
 done
 echo "killed while files were moved: $num_mixtures; finished views were kept: $num_kept"
 ((total_disturbed > 0 && 2 * total_disturbed >= total_tried)) ||
