@@ -104,6 +104,7 @@ build_asan() {
 }
 run_asan() {
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  export ASAN_OPTIONS=quarantine_size_mb=16  # Tests of memory count what was freed, too.
   run_modules asan-ubsan "${asan_modules[@]}" && tests/threads_test.sh build/asan-ubsan/apps/resight/resight
 }
 build_tsan() {  # build_tsan TARGET...

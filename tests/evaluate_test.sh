@@ -42,6 +42,14 @@ done
 [[ $(find "$work/whole/runs" -name '*.json' | wc -l) == 16 ]] || fail "expected 16 runs, there are: $(ls "$work/whole/runs")"
 grep -q '"true_positives": [1-9]' "$work/whole/results.json" || fail "nothing was recognised"
 
+# A preset that is named twice counts once, and what an evaluation with other options has left goes.
+cp -r "$work/whole" "$work/again"
+touch "$work/again/bop.md" "$work/again/worst/other.jpg"
+"$resight" evaluate --models "$work/models.resight" --dataset "$dataset" --out "$work/again" --without-clustering \
+  --presets mvr,mvr-chd,mvr -k 0,2 >"$work/again.log" 2>&1 || fail "evaluate failed: $(cat "$work/again.log")"
+cmp -s "$work/whole/tables.md" "$work/again/tables.md" || fail "a preset counts twice"
+[[ ! -e $work/again/bop.md && ! -e $work/again/worst/other.jpg ]] || fail "results of an earlier evaluation are left"
+
 # The point of the paper (Section III-B): with change detection, no ghost of the removed object remains, and precision
 # rises. Columns of "Recognition over K": preset, K, precision, .., ghosts, ghosts per former place, ghosts by the
 # published rule.

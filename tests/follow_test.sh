@@ -51,6 +51,11 @@ cmp -s out/changes.json whole/changes.json || fail "changes differ from those of
 "$resight" view whole --no-open --changes live 2>err
 grep -q "live: holds no results of 'resight changes'" err || fail "the results do not open their sequence: $(cat err)"
 
+# Poses that are the other way round are noticed when the camera has moved.
+"$resight" recognize --models models.resight --sequence "$source_folder" --pose-convention world-to-camera --follow \
+  --keep-late --idle-timeout-s 1 --out inverted >/dev/null 2>err || fail "with inverted poses: $(tail -1 err)"
+grep -q 'warning: .*the poses are world to camera' err || fail "no line says that poses are inverted: $(cat err)"
+
 # All views are there: the newest one wins, and the idle time ends the run.
 "$resight" "${follow[@]}" --sequence live --poses fixed --follow --idle-timeout-s 1 --out newest >lines 2>err ||
   fail "with an idle time: $(tail -1 err)"

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "camera_run.hpp"
@@ -32,11 +36,21 @@ constexpr const char* kNovelMask = "_novel.png";
 constexpr const char* kRemovedMask = "_removed.png";
 constexpr const char* kCloud = ".ply";
 
-std::vector<std::string> list_files_of_views(const Sequence& sequence) {
-  std::vector<std::string> names;
-  for (int v = 0; v < sequence.num_views(); ++v)
-    for (const char* end : {kOverlay, kNovelMask, kRemovedMask, kCloud}) names.push_back(sequence.view_name(v) + end);
-  return names;
+// Those that an earlier run over more views, or over other ones, has left in the folder of our results.
+void remove_files_of_other_views(const std::filesystem::path& folder, const std::vector<ViewChangeRecord>& views) {
+  std::set<std::string> names;
+  for (const ViewChangeRecord& view : views) names.insert(view.view_name);
+  std::vector<std::string> others;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string file = it->path().filename().string();
+    if (!file.ends_with(kRemovedMask)) continue;
+    const std::string view = file.substr(0, file.size() - std::string_view(kRemovedMask).size());
+    if (!names.contains(view)) others.push_back(view);
+  }
+  for (const std::string& view : others)  // The mask by which they are known goes last.
+    for (const char* end : {kOverlay, kNovelMask, kCloud, kRemovedMask})
+      std::filesystem::remove(folder / (view + end), error);
 }
 
 // The reconstruction with its changes: red = removed, green = novel, otherwise the colours of the scene.
@@ -82,7 +96,6 @@ void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
-  check_result_names(arguments.out, "changes", list_files_of_views(*given));
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   const auto tracked = estimate_poses(*given, arguments.poses, nullptr, arguments.num_threads);
   const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
@@ -109,6 +122,7 @@ void run_changes(const ChangesArguments& arguments) {
   }
   value_or_throw(write_file(folder.path() / "changes.json", format_scene_changes_json(record)));
   value_or_throw(folder.commit());
+  remove_files_of_other_views(arguments.out, record.views);
   print("{} views: {}\n", sequence.num_views(), arguments.out.string());
 }
 

@@ -50,7 +50,9 @@ class Evaluation {
       if (!sequence->has_ground_truth())
         throw InputError(fmt::format("{}: has no ground truth to evaluate against", unit->sequence.folder.string()));
       num_views += static_cast<std::size_t>(sequence->num_views());
-      if (checked.insert(unit->sequence.name).second) warn_about_faults(*sequence, true, unit->sequence.name);
+      if (!checked.insert(unit->sequence.name).second) continue;
+      print_notes(*sequence, unit->sequence.name);
+      warn_about_faults(*sequence, true, unit->sequence.name);
     }
     Progress progress("evaluate", static_cast<int>(num_views));
     int done = 0;
@@ -75,10 +77,11 @@ class Evaluation {
     if (!missing.empty()) return report_missing(missing);
     // All tables of one evaluation appear together. Shards that end at the same time wait for each other.
     auto folder = value_or_throw(PendingDirectory::create(arguments_.out, ExistingFolder::kFill, kMergeWait_s));
-    draw_worst_views(runs, folder.path());
+    const std::set<std::string> pictures = draw_worst_views(runs, folder.path());
     value_or_throw(write_evaluation(folder.path(), {plan_.dataset_name, RESIGHT_VERSION}, runs, kNumPictures));
     const std::string bop = arguments_.bop ? write_bop(runs, folder.path()) : "";
     value_or_throw(folder.commit());
+    remove_old_results(pictures);
     print_table(runs);
     print_text(bop);
   }
@@ -138,15 +141,32 @@ class Evaluation {
     return open_posed_sequence(unit->sequence.folder);
   }
 
-  void draw_worst_views(const std::vector<EvaluatedRun>& runs, const std::filesystem::path& folder) const {
+  // Of earlier evaluations into the same folder.
+  void remove_old_results(const std::set<std::string>& pictures) const {
+    std::error_code error;
+    if (!arguments_.bop) std::filesystem::remove(arguments_.out / "bop.md", error);
+    std::vector<std::filesystem::path> old;
+    for (std::filesystem::directory_iterator it(arguments_.out / "worst", error), end; !error && it != end;
+         it.increment(error))
+      if (it->path().extension() == ".jpg" && !pictures.contains("worst/" + it->path().filename().string()))
+        old.push_back(it->path());
+    for (const std::filesystem::path& picture : old) std::filesystem::remove(picture, error);
+  }
+
+  // Returns the names of the pictures.
+  std::set<std::string> draw_worst_views(const std::vector<EvaluatedRun>& runs,
+                                         const std::filesystem::path& folder) const {
+    std::set<std::string> pictures;
     for (const WorstView& worst : find_worst_views(runs, kNumPictures)) {
       const auto sequence = value_or_throw(open_evaluated(worst.run->sequence));
       const RgbdFrame frame = value_or_throw(sequence->read_view(worst.view));
       const auto truth = value_or_throw(sequence->read_ground_truth(worst.view));
       const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, truth, worst.evaluated()));
+      pictures.insert(worst_view_picture(worst));
       value_or_throw(write_file(folder / worst_view_picture(worst),
                                 std::string_view(reinterpret_cast<const char*>(jpeg.data()), jpeg.size())));
     }
+    return pictures;
   }
 
   // Returns the text to be printed.

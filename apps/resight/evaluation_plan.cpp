@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMaxNameBytes = 255 - std::string_view("..json.resight-partial").size();  // Of a run.
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -84,6 +86,13 @@ std::vector<fs::path> list_folders(const fs::path& root) {
   }
   if (error) throw InputError(fmt::format("{}: cannot be listed ({})", root.string(), error.message()));
   std::ranges::sort(folders);
+  std::set<fs::path> places;
+  std::erase_if(folders, [&](const fs::path& folder) {
+    std::error_code unknown;
+    const bool is_new = places.insert(fs::canonical(folder, unknown)).second || unknown;
+    if (!is_new) print_warning(file_error(folder, "is the same folder as another one; it is left out").message);
+    return !is_new;
+  });
   return folders;
 }
 
@@ -177,7 +186,9 @@ std::string fingerprint(const RecognizerConfig& config, std::uint64_t hash) {
 std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
   std::vector<RecognizerConfig> configs;
   const std::vector<int> previous_views = parse_previous_views(arguments.previous_views);
-  const std::vector<std::string> presets = split(arguments.presets, ',');
+  std::vector<std::string> presets;
+  for (const std::string& preset : split(arguments.presets, ','))
+    if (std::ranges::find(presets, preset) == presets.end()) presets.push_back(preset);
   if (presets.empty()) throw InputError("--presets: '' (names like mvr,default were expected)");
   for (const std::string& preset : presets)
     for (const bool clustered : {true, false}) {
@@ -238,6 +249,8 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
       num_groups += is_new ? 1 : 0;
       const std::string name = fmt::format("{}.{}.k{}{}", sequence.name, config.preset, config.num_previous_views,
                                            config.hypotheses.cluster ? "" : ".unclustered");
+      if (name.size() > kMaxNameBytes)
+        throw InputError(file_error(sequence.folder, "has a name that is too long for files of results").message);
       plan.units.push_back(
           {name, fingerprint(config, hash), sequence, config, entry->second, entry->second % arguments.num_shards + 1});
     }

@@ -51,6 +51,7 @@ std::optional<FollowedView> FolderViews::next() {
     if (view) {
       if (!has_view_) tell_first_view(*view, follower_.notes());
       has_view_ = true;
+      for (const Finding& f : pose_check_.add(view->frame, 0)) print_warning(f.message + "; remedy: " + f.remedy);
       return view;
     }
     if (is_idle_for_too_long(begin, arguments_)) break;

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "openni_camera.hpp"
+#include "resight/inspection/quick_check.hpp"
 #include "resight/io/follow_sequence.hpp"
 
 namespace resight::app {
@@ -32,6 +33,7 @@ class FolderViews final : public LiveViews {
 
   SequenceFollower follower_;
   FollowArguments arguments_;
+  PoseCheck pose_check_;
   std::string told_;
   bool has_view_ = false;
 };

@@ -29,10 +29,15 @@ T value_or_fail(Result<T> result) {
   return std::move(result).value();
 }
 
-std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder, const OpenSequenceOptions& input) {
-  const std::unique_ptr<Sequence> sequence = open_input(folder, input);
+std::unique_ptr<Sequence> open_object_views(const std::filesystem::path& folder, const OpenSequenceOptions& input) {
+  std::unique_ptr<Sequence> sequence = open_input(folder, input);
   if (sequence->num_views() < 2)
     throw InputError(file_error(folder, "has only one view (several were expected)").message);
+  return sequence;
+}
+
+std::vector<RgbdFrame> read_frames(const std::filesystem::path& folder, const OpenSequenceOptions& input) {
+  const std::unique_ptr<Sequence> sequence = open_object_views(folder, input);
   const int step = (sequence->num_views() + kMaxModelViews - 1) / kMaxModelViews;
   if (step > 1) print("{}: {} views, takes one of {}\n", folder.string(), sequence->num_views(), step);
   std::vector<RgbdFrame> frames;
@@ -86,6 +91,9 @@ void run_model(const ModelArguments& arguments) {
   BuildModelOptions build_options;
   build_options.num_threads = arguments.num_threads;
 
+  if (arguments.sequences.size() > 1)  // Before the first one takes its time.
+    for (const std::filesystem::path& folder : arguments.sequences)
+      static_cast<void>(open_object_views(folder, arguments.input));
   std::optional<ObjectTrack> whole;
   if (arguments.onto) whole = read_model_views(*arguments.onto);
   for (const std::filesystem::path& folder : arguments.sequences) {

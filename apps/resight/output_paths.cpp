@@ -10,7 +10,6 @@
 #include "commands.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
-#include "resight/io/sequence.hpp"
 
 namespace resight::app {
 namespace {
@@ -41,30 +40,42 @@ fs::path place_of(const fs::path& out) {
   return fs::weakly_canonical(clean.parent_path(), error) / clean.filename();
 }
 
-/// Files by which the results of a command are known. `recognize` writes changes.json, too, so it comes first.
+/// Files by which the results of a command are known, and how they begin. `recognize` writes changes.json, too, so it
+/// comes first.
 struct ResultsMark {
   std::string_view command;
   std::string_view file;
+  std::string_view signature;
 };
-constexpr ResultsMark kResultsMarks[] = {{"recognize", "summary.json"}, {"recognize", "finished_views.jsonl"},
-                                         {"evaluate", "results.json"},  {"evaluate", "runs"},
-                                         {"check", "findings.json"},    {"annotate", "annotation.jsonl"},
-                                         {"changes", "changes.json"}};
+constexpr ResultsMark kResultsMarks[] = {{"recognize", "summary.json", "{\n \"version\": "},
+                                         {"recognize", "finished_views.jsonl", "{\"view\":"},
+                                         {"evaluate", "results.json", "{\n \"format\": \"resight evaluation"},
+                                         {"check", "findings.json", "{\n \"path\": "},
+                                         {"annotate", "annotation.jsonl", "{\"format\":\"resight annotation"},
+                                         {"annotate", "proposals.json", "{\"digest\":"},
+                                         {"changes", "changes.json", "{\n \"version\": "}};
+constexpr std::string_view kRunSignature = "{\"sequence\":";
+
+/// Also if it was cut off: the command may have been killed.
+bool begins_with(const fs::path& file, std::string_view signature) {
+  const auto start = read_file_start(file, signature.size());
+  return start.ok() && signature.starts_with(*start);
+}
+
+/// Runs that `evaluate` has stored before its tables: nothing else is in the folder `runs`.
+bool holds_only_runs(const fs::path& runs) {
+  std::error_code error;
+  fs::directory_iterator it(runs, error);
+  return !error && std::ranges::all_of(it, [](const fs::directory_entry& entry) {
+    return entry.path().filename().string().starts_with('.') || begins_with(entry.path(), kRunSignature);
+  });
+}
 
 /// The command whose results the folder holds; empty if none.
 std::string_view find_writer(const fs::path& folder) {
-  std::error_code error;
   for (const ResultsMark& mark : kResultsMarks)
-    if (fs::exists(folder / mark.file, error)) return mark.command;
-  return {};
-}
-
-/// Links are resolved.
-bool is_within(const fs::path& path, const fs::path& folder) {
-  std::error_code error;
-  const fs::path inner = fs::weakly_canonical(path, error);
-  const fs::path outer = error ? fs::path() : fs::weakly_canonical(folder, error);
-  return !error && std::ranges::mismatch(outer, inner).in1 == outer.end();
+    if (begins_with(folder / mark.file, mark.signature)) return mark.command;
+  return holds_only_runs(folder / "runs") ? "evaluate" : std::string_view();
 }
 
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our
@@ -122,18 +133,7 @@ void check_output_folder(const fs::path& out, std::string_view command, const Pa
   const std::string_view writer = find_writer(out);
   if (writer == command || check_writable_folder(out, ExistingFolder::kRefuse).ok()) return;
   if (!writer.empty()) refuse_output(out, fmt::format("holds results of 'resight {}' (choose another folder)", writer));
-  for (const fs::path& input : inputs)
-    if (is_within(out, input)) refuse_output(out, "is a folder of the input (choose another output)");
-  const auto sequence = find_sequence_folder(out);
-  if (sequence.ok() && *sequence) refuse_output(out, "is a sequence (choose another folder)");
-}
-
-void check_result_names(const fs::path& folder, std::string_view command, const std::vector<std::string>& names) {
-  if (find_writer(folder) == command) return;
-  for (const std::string& name : names)
-    if (is_there(folder / name))
-      refuse_output(folder / name,
-                    fmt::format("exists already and is no result of 'resight {}' (choose another folder)", command));
+  refuse_output(out, fmt::format("holds files that are no results of 'resight {}' (choose another folder)", command));
 }
 
 std::string path_from(const fs::path& folder, const fs::path& path) {

@@ -19,15 +19,9 @@ void check_output_file(const std::filesystem::path& out, std::string_view signat
 /// For a file to write that must not exist.
 void check_new_file(const std::filesystem::path& out);
 
-/// For a folder that `command` fills. It may exist, but not hold results of another command, and be a sequence or lie
-/// within an input only if the command has filled it before. It may not hold a folder that is called like a result
-/// (report.html).
+/// For a folder that `command` fills. It is new, or empty, or holds results of that command, which are known by how
+/// they begin. It may not hold a folder that is called like a result (report.html).
 void check_output_folder(const std::filesystem::path& out, std::string_view command, const Paths& inputs);
-
-/// For files whose names follow from the input, such as those of views, in a folder that `command` fills. They may
-/// exist only if the folder holds results of the command.
-void check_result_names(const std::filesystem::path& folder, std::string_view command,
-                        const std::vector<std::string>& names);
 
 /// For a folder to write, which must be empty or not exist.
 void check_new_folder(const std::filesystem::path& out);

@@ -59,8 +59,9 @@ void add_recording_options(CLI::App* command, RecordingTopics& topics) {
 
 }  // namespace
 
-void print_notes(const Sequence& sequence) {
-  for (const std::string& note : sequence.notes()) print_error_line("note: ", note);
+void print_notes(const Sequence& sequence, const std::string& name) {
+  const std::string where = name.empty() ? "" : name + ": ";
+  for (const std::string& note : sequence.notes()) print_error_line("note: ", where + note);
 }
 
 void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name) {

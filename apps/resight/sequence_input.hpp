@@ -22,7 +22,7 @@ void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::
 void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options);
 
 /// Prints what was assumed or left out to standard error.
-void print_notes(const Sequence& sequence);
+void print_notes(const Sequence& sequence, const std::string& name = "");
 /// Warns about faults that few views show (check_quickly()), one line each on standard error. `name`: tells several
 /// sequences apart.
 void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name = "");

@@ -26,10 +26,18 @@ TEST_F(CommandLineResults, TheReportIsTitledAfterTheSequence) {
 }
 
 TEST_F(CommandLineResults, ResultsOfARunBeforeAreReplacedAndOtherFilesStay) {
-  for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(run(folder_, "recognize --models models.resight --sequence views --out full").status, 0);
-  EXPECT_EQ(read_text(folder_ / "full/mine.txt"), "mine");
-  EXPECT_EQ(list(folder_ / "full").size(), 6U) << testing::PrintToString(list(folder_ / "full"));
+  const std::string recognize = "recognize --models models.resight --sequence views --out out";
+  EXPECT_EQ(run(folder_, recognize).status, 0);
+  std::ofstream(folder_ / "out/mine.txt") << "mine";
+  EXPECT_EQ(run(folder_, recognize).status, 0);
+  EXPECT_EQ(read_text(folder_ / "out/mine.txt"), "mine");
+  EXPECT_EQ(list(folder_ / "out").size(), 6U) << testing::PrintToString(list(folder_ / "out"));
+}
+
+TEST_F(CommandLineResults, ChangesOfOtherViewsGo) {
+  EXPECT_EQ(run(folder_, "changes --sequence views --out out").status, 0);
+  EXPECT_EQ(run(folder_, "changes --sequence views --max-views 2 --out out").status, 0);
+  EXPECT_EQ(list(folder_ / "out").size(), 2 * 4 + 1U) << testing::PrintToString(list(folder_ / "out"));
 }
 
 TEST_F(CommandLineResults, AnnotateWarnsAboutTheViews) {

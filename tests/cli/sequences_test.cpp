@@ -5,6 +5,7 @@
 namespace resight::cli_test {
 namespace {
 
+const std::string kLongestName = "set/" + std::string(240, 'a');
 const std::string kTrackLongName = "track --sequence " + kLongName + " --out poses.txt";
 constexpr const char* kOtherNames = R"({"1": {"diameter": 140, "name": "die"}})";
 
@@ -58,6 +59,20 @@ const Row kSequenceRows[] = {
     {"EvaluateBesideALinkToNowhere", both(move("views", "set/test/views"), link("set/test/kitchen", "nowhere")),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0,
      "warning: .*set/test/kitchen: is a link that leads nowhere; it is left out", "out/results.json"},
+    {"EvaluateBesideALinkToIt", both(move("views", "set/views"), link("set/views2", "views")),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 0,
+     "warning: .*set/views2: is the same folder as another one; it is left out", "out/results.json"},
+    {"EvaluateTruthOfOneView", write("views/scene_gt.json", "{\"0\": []}"),
+     "evaluate --models models.resight --dataset views --presets mvr -k 0 --out out", 0,
+     "note: views: scene_gt\\.json does not name 2 of 3 images", "out/results.json"},
+    {"RecognizeWithNamesThatLeadNowhere", link("models/models_info.json", "nowhere"), kRecognize, 2,
+     "models/models_info\\.json: "},
+    {"VisibilityThatLeadsNowhere",
+     both(move("views/scene_gt_info.json", "info.json"), link("views/scene_gt_info.json", "nowhere")), kRecognize, 2,
+     "scene_gt_info\\.json: "},
+    {"EvaluateAFolderWhoseNameIsTooLong", both(move("views", "set/v"), move("set/v", kLongestName.c_str())),
+     "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2,
+     "has a name that is too long for files of results"},
     {"EvaluateBesideTwoSequencesInAFolder",
      both(both(copy("views", "set/views"), move("views", "set/home/a")), move("tuw", "set/home/b")),
      "evaluate --models models.resight --dataset set --presets mvr -k 0 --out out", 2,

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 
 #include "resight/core/random.hpp"
 #include "resight/inspection/quick_check.hpp"
@@ -273,6 +275,29 @@ TEST(CheckQuickly, SeesWhatTheFirstViewsShow) {
     const test::BrokenSequence broken(good_sequence(), name);
     EXPECT_EQ(check_quickly(broken, true).size(), 1U) << name << " " << names_of(check_quickly(broken, true));
   }
+}
+
+TEST(CheckQuickly, SeesWhatLaterViewsShow) {
+  for (const int faulty : {3, 5}) {
+    std::vector<RgbdFrame> frames;
+    for (int v = 0; v < 6; ++v) frames.push_back(good_sequence().read_view(v).value());
+    std::ranges::fill(frames[static_cast<std::size_t>(faulty)].depth_m.data(), std::numeric_limits<float>::quiet_NaN());
+    const std::vector<Finding> findings = check_quickly(test::MemorySequence(std::move(frames)), true);
+    ASSERT_EQ(findings.size(), 1U) << names_of(findings);
+    EXPECT_EQ(findings.front().view, faulty);
+  }
+}
+
+// As views come one by one from a camera.
+TEST(PoseCheck, SaysOnceThatPosesAreInverted) {
+  const test::BrokenSequence broken(good_sequence(), "poses_inverted");
+  PoseCheck check;
+  std::vector<Finding> findings;
+  for (int v = 0; v < broken.num_views(); ++v)
+    std::ranges::move(check.add(broken.read_view(v).value(), v), std::back_inserter(findings));
+  ASSERT_EQ(findings.size(), 1U) << names_of(findings);
+  EXPECT_EQ(findings.front().fault, "pose_convention");
+  EXPECT_TRUE(check.is_done());
 }
 
 TEST(CheckQuickly, SaysWhichUnitIsWrong) {

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "resight/inspection/find_faults.hpp"
 
@@ -17,7 +21,7 @@ constexpr double kSameDepth = 0.05;  // Depths of one surface differ by less; th
 constexpr double kMinMove_rad = 0.2;
 constexpr double kMinMove = 0.05;         // Of the median depth.
 constexpr double kMinMoveInMetres = 0.1;  // Of the median depth.
-constexpr std::size_t kMaxViewsInMetres = 4;
+constexpr int kMaxNearViews = 4;
 constexpr double kMaxGivenShare = 0.6;  // Good poses: 0.8 and more of what both views see.
 constexpr double kMinOtherShare = 0.75;
 constexpr int kMinPixels = 300;
@@ -35,24 +39,6 @@ double agreeing_share(const RgbdFrame& a, const RgbdFrame& b, const Rigid3& b_fr
       if (std::abs(b.depth_m(pixel->u, pixel->v) - in_b.z()) < kSameDepth * in_b.z()) ++num_same;
     }
   return num_seen < kMinPixels ? 0 : static_cast<double>(num_same) / num_seen;
-}
-
-/// The first view from which the camera has moved so far that readings of the poses differ. If there is none, views
-/// that are as far or farther away if the poses are in metres where millimetres are expected: each by twice as far as
-/// the one before, because the depths of near views agree in any case, and views far apart do not overlap.
-std::vector<int> find_moved_views(const Sequence& sequence, const Rigid3& first, double depth_m) {
-  std::vector<int> views_in_metres;
-  double next_move_m = kMinMoveInMetres * depth_m;
-  for (int v = 1; v < sequence.num_views(); ++v) {
-    const auto pose = sequence.read_pose(v);
-    if (!pose.ok()) return {};
-    const double move_m = (pose->translation - first.translation).norm();
-    if (move_m > kMinMove * depth_m || rotation_angle_rad(pose->rotation, first.rotation) > kMinMove_rad) return {v};
-    if (1e3 * move_m < next_move_m || views_in_metres.size() == kMaxViewsInMetres) continue;
-    views_in_metres.push_back(v);
-    next_move_m = 2e3 * move_m;
-  }
-  return views_in_metres;
 }
 
 /// Another reading of the poses or of the depth. Depth of another unit is the same as translations of another unit.
@@ -112,16 +98,64 @@ void check_poses(const RgbdFrame& a, const RgbdFrame& b, int view, std::vector<F
 
 }  // namespace
 
+bool PoseCheck::wants(const Rigid3& world_from_camera) const {
+  return !is_done_ && first_ && (has_moved(world_from_camera) || may_have_moved(world_from_camera));
+}
+
+std::vector<Finding> PoseCheck::add(const RgbdFrame& frame, int view) {
+  std::vector<Finding> findings;
+  if (!first_) {
+    first_ = frame;
+    depth_m_ = measure_depth_values(frame.depth_m).median_m;
+    next_move_m_ = kMinMoveInMetres * depth_m_;
+    return findings;
+  }
+  if (!wants(frame.world_from_camera)) return findings;
+  check_poses(*first_, frame, view, findings);
+  is_done_ = !findings.empty() || has_moved(frame.world_from_camera);
+  ++num_near_views_;
+  next_move_m_ = 2e3 * move_m(frame.world_from_camera);
+  return findings;
+}
+
+double PoseCheck::move_m(const Rigid3& pose) const {
+  return (pose.translation - first_->world_from_camera.translation).norm();
+}
+
+bool PoseCheck::has_moved(const Rigid3& pose) const {
+  return move_m(pose) > kMinMove * depth_m_ ||
+         rotation_angle_rad(pose.rotation, first_->world_from_camera.rotation) > kMinMove_rad;
+}
+
+bool PoseCheck::may_have_moved(const Rigid3& pose) const {
+  return num_near_views_ < kMaxNearViews && 1e3 * move_m(pose) >= next_move_m_;
+}
+
 std::vector<Finding> check_quickly(const Sequence& sequence, bool uses_poses) {
+  std::vector<Finding> findings;
   const auto first = sequence.read_view(0);
-  if (!first.ok()) return {};
-  std::vector<Finding> findings = find_view_faults(*first);
-  if (!findings.empty() || !uses_poses || !sequence.has_poses()) return findings;
-  const double depth_m = measure_depth_values(first->depth_m).median_m;
-  for (const int moved : find_moved_views(sequence, first->world_from_camera, depth_m)) {
-    const auto other = sequence.read_view(moved);
-    if (other.ok()) check_poses(*first, *other, moved, findings);
-    if (!findings.empty()) break;
+  if (!first.ok()) return findings;
+  const int num_views = sequence.num_views();
+  for (const int v : std::set<int>{0, num_views / 2, num_views - 1}) {
+    const auto view = v == 0 ? first : sequence.read_view(v);
+    if (!view.ok()) continue;
+    for (Finding& finding : find_view_faults(*view)) {
+      if (std::ranges::find(findings, finding.fault, &Finding::fault) != findings.end()) continue;
+      finding.view = v;
+      if (v > 0) finding.message = fmt::format("view {}: {}", sequence.view_name(v), finding.message);
+      findings.push_back(std::move(finding));
+    }
+  }
+  const bool is_first_good = findings.empty() || findings.front().view > 0;
+  if (!is_first_good || !uses_poses || !sequence.has_poses()) return findings;
+  PoseCheck check;
+  std::ignore = check.add(*first, 0);
+  for (int v = 1; v < num_views && !check.is_done(); ++v) {
+    const auto pose = sequence.read_pose(v);
+    if (!pose.ok()) break;
+    if (!check.wants(*pose)) continue;
+    if (const auto view = sequence.read_view(v); view.ok())
+      std::ranges::move(check.add(*view, v), std::back_inserter(findings));
   }
   return findings;
 }

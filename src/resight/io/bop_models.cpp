@@ -24,7 +24,7 @@ bool is_model_file(const std::string& name) {
 }
 
 bool is_models_folder(const fs::path& directory) {
-  return is_file(directory / "models_info.json") || std::ranges::any_of(list_files(directory), is_model_file);
+  return is_there(directory / "models_info.json") || std::ranges::any_of(list_files(directory), is_model_file);
 }
 
 Result<std::vector<ModelLocation>> list_models_folder(const fs::path& folder) {
@@ -38,7 +38,7 @@ Result<std::vector<ModelLocation>> list_models_folder(const fs::path& folder) {
     add(id);
     found[id].path = folder / name;
   }
-  if (is_file(folder / "models_info.json")) {
+  if (is_there(folder / "models_info.json")) {
     const auto infos = read_models_info(folder / "models_info.json");
     if (!infos) return infos.error();
     for (const auto& [id, info] : *infos) {
@@ -152,7 +152,7 @@ Result<ModelSource> read_bop_model(const ModelLocation& location) {
     return model;
   }
   const fs::path folder = fs::absolute(location.path).lexically_normal().parent_path();
-  if (is_file(folder / "models_info.json")) {
+  if (is_there(folder / "models_info.json")) {
     const auto infos = read_models_info(folder / "models_info.json");
     if (!infos) return infos.error();
     if (const auto it = infos->find(location.bop_id); it != infos->end()) {

@@ -107,7 +107,7 @@ std::optional<fs::path> find_models_info(const fs::path& directory) {
   if (!base.has_filename()) base = base.parent_path();
   for (int level = 0; level < 4 && !base.empty(); ++level, base = base.parent_path()) {
     for (const char* folder : {"models", "models_eval", "models_cad", "models_fine"})
-      if (is_file(base / folder / "models_info.json")) return base / folder / "models_info.json";
+      if (is_there(base / folder / "models_info.json")) return base / folder / "models_info.json";
   }
   return std::nullopt;
 }

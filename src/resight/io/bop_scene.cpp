@@ -107,8 +107,7 @@ Result<GroundTruthObject> parse_object(const nlohmann::json& entry, const Names&
 Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
   const fs::path file = scene / "scene_gt.json";
   // A dangling link or a pipe is ground truth that cannot be read, not none.
-  std::error_code ignored;
-  table.has_ground_truth = fs::exists(fs::symlink_status(file, ignored));
+  table.has_ground_truth = is_there(file);
   if (!table.has_ground_truth) return {};
   const auto truth = read_json(file);
   if (!truth) return truth.error();
@@ -116,7 +115,7 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
   if (!members) return members.error();
   const std::map<int, const nlohmann::json*> lists(members->begin(), members->end());
   Result<nlohmann::json> info = nlohmann::json();
-  if (is_file(scene / "scene_gt_info.json")) info = read_json(scene / "scene_gt_info.json");
+  if (is_there(scene / "scene_gt_info.json")) info = read_json(scene / "scene_gt_info.json");
   if (!info) return info.error();
   Names names;
   if (const auto models = find_models_info(scene)) {
@@ -124,9 +123,13 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
     if (!read) return read.error();
     names = std::move(*read);
   }
+  std::size_t num_unnamed = 0;
   for (ListedView& view : table.views) {
     const auto entry = lists.find(view.image_id);
-    if (entry == lists.end()) continue;
+    if (entry == lists.end()) {
+      ++num_unnamed;
+      continue;
+    }
     const nlohmann::json& list = *entry->second;
     const std::string what = fmt::format("{}: image {}", file.string(), view.image_id);
     if (!list.is_array()) return Error{what + ": expected a list of objects"};
@@ -138,6 +141,9 @@ Result<void> read_ground_truth(const fs::path& scene, SequenceTable& table) {
       view.ground_truth.push_back(std::move(*object));
     }
   }
+  if (num_unnamed > 0)
+    table.notes.push_back(fmt::format("scene_gt.json does not name {} of {} images: they count as without objects",
+                                      num_unnamed, table.views.size()));
   return {};
 }
 

@@ -34,6 +34,11 @@ Result<fs::path> path_below(const fs::path& folder, std::string_view name) {
 std::vector<std::string> list_files(const fs::path& directory) { return list_entries(directory, false); }
 std::vector<std::string> list_directories(const fs::path& directory) { return list_entries(directory, true); }
 
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(path, error));
+}
+
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);

@@ -96,17 +96,8 @@ std::string format_worst_views(std::span<const WorstView> views, int num_picture
 }
 
 std::string worst_view_picture(const WorstView& view) {
-  std::string name = fmt::format("{}{}_k{}_{}_{}", view.run->preset, view.run->is_clustered ? "" : "_unclustered",
-                                 view.run->num_previous_views, view.run->sequence, view.evaluated().name);
-  // The name becomes a path and a link.
-  std::ranges::replace_if(
-      name,
-      [](char c) {
-        return std::string_view("/\\ ()<>[]#?%\"'|").find(c) != std::string_view::npos ||
-               static_cast<unsigned char>(c) < ' ';
-      },
-      '-');
-  return "worst/" + name + ".jpg";
+  return fmt::format("worst/{}{}_k{}_{}.jpg", view.run->preset, view.run->is_clustered ? "" : "_unclustered",
+                     view.run->num_previous_views, view.rank + 1);
 }
 
 Image<Rgb8> draw_evaluated_view(const RgbdFrame& frame, const ModelLibrary& library,

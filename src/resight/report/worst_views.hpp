@@ -30,7 +30,7 @@ struct WorstView {
 /// rank below `num_pictures` refer to the picture worst_view_picture().
 [[nodiscard]] std::string format_worst_views(std::span<const WorstView> views, int num_pictures = 0);
 
-/// Path of a view's picture relative to the page: "worst/<preset>_k<K>_<sequence>_<view>.jpg".
+/// Path of a view's picture relative to the page: "worst/<preset>_k<K>_<rank>.jpg".
 [[nodiscard]] std::string worst_view_picture(const WorstView& view);
 
 /// Draws the view with its right and wrong detections, and missed objects in white. `truth`: ground truth of the view.

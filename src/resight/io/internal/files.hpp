@@ -32,6 +32,8 @@ inline constexpr std::uintmax_t kMaxBinaryBytes = std::uintmax_t{4} << 30;
 /// missing.
 [[nodiscard]] std::vector<std::string> list_files(const fs::path& directory);
 [[nodiscard]] std::vector<std::string> list_directories(const fs::path& directory);
+/// Whether there is anything of this name, also a link that leads nowhere: what cannot be read is not absent.
+[[nodiscard]] bool is_there(const fs::path& path);
 /// Like fs::exists() and similar functions, but errors (no permission, name too long) count as false.
 [[nodiscard]] bool is_file(const fs::path& path);
 [[nodiscard]] bool is_folder(const fs::path& path);

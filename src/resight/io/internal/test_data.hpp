@@ -40,16 +40,10 @@ class TestDirectory {
   std::filesystem::path path_;
 };
 
-/// By how much the peak of the memory has grown since this was made. 0 with the sanitizers, which keep freed memory.
+/// By how much the peak of the memory has grown since this was made.
 class MemoryGrowth {
  public:
-  [[nodiscard]] std::size_t bytes() const {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return 0;
-#else
-    return peak_memory_bytes() - before_;
-#endif
-  }
+  [[nodiscard]] std::size_t bytes() const { return peak_memory_bytes() - before_; }
 
  private:
   std::size_t before_ = peak_memory_bytes();
