@@ -78,6 +78,7 @@ const Row kConversionRows[] = {
     {"ViewSequencesBesideEachOther", kNothing, "view views tuw --no-open", 2, "views: holds no results"},
     {"MissingScript", kNothing, "simulate no.toml --out out", 2, "no\\.toml: "},
     {"ScriptThatIsNoToml", write("s.toml", "[[object\n"), "simulate s.toml --out out", 2, "s\\.toml: "},
+    {"EndlessScript", kNothing, "simulate /dev/zero --out out", 2, "/dev/zero: is not a file"},
     {"PipeAsScript", pipe("s.toml"), "simulate s.toml --out out", 2, "s\\.toml: is not a file"},
     {"EmptyScript", write("s.toml", ""), "simulate s.toml --out out", 2, "s\\.toml: "},
 };

@@ -9,6 +9,10 @@ namespace {
 
 const std::string kRecognizeVeryLongName =
     "recognize --models " + std::string(50000, 'a') + " --sequence views --out out";
+constexpr const char* kGltfWithBuffer = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"uri": "z.bin", "byteLength": 36}]})";
 const std::string kRecognizeLongName = "recognize --models " + kLongName + " --sequence views --out out";
 
 TriangleMesh make_cube_with(float x) {
@@ -50,6 +54,12 @@ const Row kLibraryRows[] = {
      "loop: cannot be opened"},
     {"LibraryWithALongName", kNothing, kRecognizeLongName.c_str(), 2, "aaa: cannot be opened"},
     {"MessageOfAVeryLongName", kNothing, kRecognizeVeryLongName.c_str(), 2, "model library a{1986} \\.\\.\\.$"},
+    {"EndlessLibrary", kNothing, "recognize --models /dev/zero --sequence views --out out", 2,
+     "/dev/zero: is not a file"},
+    {"EvaluateAPipeAsLibrary", pipe("models.resight"),
+     "evaluate --models models.resight --dataset views -k 0 --out out", 2, "models\\.resight: is not a file"},
+    {"BufferThatIsAPipe", both(write("meshes/z.gltf", kGltfWithBuffer), pipe("meshes/z.bin")), kTrain, 2,
+     "z\\.gltf: .*z\\.bin"},
     {"PipeAsLibrary", pipe("models.resight"), kRecognize, 2, "models\\.resight: is not a file"},
     {"EvaluateAFolderAsLibrary", kNothing, "evaluate --models empty --dataset views --out out", 2,
      "empty: is not a file"},

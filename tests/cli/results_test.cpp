@@ -130,12 +130,14 @@ TEST_F(CommandLineResults, AFolderIsWrittenByOneCommandAtATime) {
 
 TEST_F(CommandLineResults, AnInterruptedDemoLeavesNothing) {
   const std::vector<std::string> before = list(folder_);
-  EXPECT_EQ(run_script(folder_, "{ " RESIGHT_PROGRAM
-                                " demo --out out >../demo.out 2>&1 </dev/null & } && for i in $(seq 600); do "
-                                "find . -path '*out*models_info.json' | grep -q . && break; sleep 0.1; done; "
-                                "kill -TERM $!; wait $!"),
-            128 + SIGTERM);
-  EXPECT_EQ(list(folder_), before);
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    EXPECT_EQ(run_script(folder_, "{ " RESIGHT_PROGRAM
+                                  " demo --out out >../demo.out 2>&1 </dev/null & } && for i in $(seq 600); do "
+                                  "find . -path '*out*models_info.json' | grep -q . && break; sleep 0.1; done; kill -" +
+                                      std::to_string(signal) + " $!; wait $!"),
+              128 + signal);
+    EXPECT_EQ(list(folder_), before);
+  }
 }
 
 TEST_F(CommandLineResults, AClosedPipeEndsTheProgramAndLeavesOnlyFinishedViews) {
