@@ -22,7 +22,9 @@ without_locks() { # without_locks STATUS PATTERN COMMAND...: one line on standar
 write_scene 2 -110 -100 false >scene.toml
 without_locks 0 '' simulate scene.toml --out data --format bop
 without_locks 0 '' convert data/test/000001 new --to tuw
-mkdir -p filled/mine
+mkdir filled
+without_locks 0 '' changes --sequence data/test/000001 --out filled
+mkdir filled/mine
 without_locks 0 '' changes --sequence data/test/000001 --out filled
 [[ -s filled/changes.json && -d filled/mine ]] || fail "an existing folder was not filled"
 find . -name '*.resight-*' | grep -q . && fail "left: $(find . -name '*.resight-*')"

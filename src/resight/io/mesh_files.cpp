@@ -32,6 +32,21 @@ std::string_view trim_start(std::string_view line) {
   return line;
 }
 
+// Assimp joins only faces.
+std::string join_continued_lines(std::string text) {
+  if (text.find("\\\n") == text.npos && text.find("\\\r") == text.npos) return text;
+  std::string result;
+  result.reserve(text.size());
+  for (std::string_view rest = text; !rest.empty();) {
+    std::string_view line = cut_line(rest);
+    const bool goes_on = line.ends_with('\\') && !trim_start(line).starts_with('#');
+    if (goes_on) line.remove_suffix(1);
+    result += line;
+    result += goes_on ? ' ' : '\n';
+  }
+  return result;
+}
+
 }  // namespace
 
 Result<void> check_obj(std::string_view text) {
@@ -60,6 +75,7 @@ Result<void> check_obj(std::string_view text) {
 
 std::string normalize_obj(std::string text) {
   text.erase(0, text.size() - without_mark(text).size());
+  text = join_continued_lines(std::move(text));
   if (text.find(" .") == text.npos && text.find("\t.") == text.npos) return text;
   std::string result;
   result.reserve(text.size() + text.size() / 8);

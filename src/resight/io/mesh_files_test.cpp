@@ -32,6 +32,11 @@ TEST(MeshFiles, NumbersMayBeginWithAPoint) {
   EXPECT_EQ(io::normalize_obj("  v\t.5 -.5 0.5\no a .b\n"), "  v\t0.5 -.5 0.5\no a .b\n");
 }
 
+TEST(MeshFiles, LinesMayGoOn) {
+  EXPECT_EQ(io::normalize_obj("v 1 \\\n .2 3\nv 1\\\r\n2 3\n# a\\\nv 4 5 6\n"),
+            "v 1   0.2 3\nv 1 2 3\n# a\\\nv 4 5 6\n");
+}
+
 TEST(MeshFiles, ObjFilesThatTakeAssimpTooLongAreRefused) {
   const auto repeated = [](const std::string& text, int count) {
     std::string all;
