@@ -28,8 +28,9 @@ endif()
 
 find_package(OpenEXR 3 REQUIRED)
 
-# Compression and storage of recordings, and archives of NumPy arrays.
-foreach(library "lz4;lz4frame.h" "bz2;bzlib.h" "zstd;zstd.h" "sqlite3;sqlite3.h" "zip;zip.h")
+# Compression and storage of recordings, archives of NumPy arrays, and images.
+foreach(library "lz4;lz4frame.h" "bz2;bzlib.h" "zstd;zstd.h" "sqlite3;sqlite3.h" "zip;zip.h" "png;png.h"
+                "jpeg;jpeglib.h")
   list(GET library 0 name)
   list(GET library 1 header)
   string(TOUPPER ${name} prefix)

@@ -6,7 +6,7 @@
 #include "resight/core/crc32.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
-#include "resight/io/internal/image_header.hpp"
+#include "resight/io/internal/image_decoder.hpp"
 #include "resight/io/internal/recording_images.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
 
@@ -52,9 +52,15 @@ std::string with_checksums(std::string_view bytes) {
   return png;
 }
 
+Result<io::ImageHeader> read_header(std::string_view bytes) {
+  const auto decoder = io::make_image_decoder(bytes);
+  if (!decoder) return decoder.error();
+  return (*decoder)->read_header();
+}
+
 void decode(std::string_view bytes) {
   const std::string image = with_checksums(bytes);
-  const auto header = io::parse_image_header(image);
+  const auto header = read_header(image);
   // Large images are valid, but slow.
   if (header && static_cast<std::int64_t>(header->width) * header->height > kMaxFuzzPixels) return;
   (void)decode_color(image, "fuzz.png", kMaxFuzzPixels);
@@ -123,7 +129,7 @@ void read_image_message(std::string_view bytes) {
 
 std::vector<FuzzReader> image_readers() {
   return {
-      {"image_header", make_image_seeds, [](std::string_view bytes) { (void)io::parse_image_header(bytes); }},
+      {"image_header", make_image_seeds, [](std::string_view bytes) { (void)read_header(bytes); }},
       {"image", make_image_seeds, decode, 2000},
       {"npy", make_npy_seeds, read_npy},
       {"npz",

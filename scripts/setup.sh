@@ -13,7 +13,7 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-features2d-dev
   libceres-dev libtbb-dev libnanoflann-dev libembree-dev libassimp-dev
   libflatbuffers-dev flatbuffers-compiler liblzf-dev
-  liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev libzip-dev libopenexr-dev
+  liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev libzip-dev libopenexr-dev libpng-dev libjpeg-dev
   nlohmann-json3-dev libtomlplusplus-dev libfmt-dev libcli11-dev libboost-dev
 )
 for option in "$@"; do

@@ -3,52 +3,86 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <vector>
 
-#include "resight/io/internal/bgr_image.hpp"
 #include "resight/io/internal/files.hpp"
-#include "resight/io/internal/image_header.hpp"
+#include "resight/io/internal/image_decoder.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {
 namespace {
 
-constexpr int kMaxScans = 100;  ///< Encoders make about ten.
+struct OpenImage {
+  std::unique_ptr<io::ImageDecoder> decoder;
+  io::ImageHeader header;
+};
 
-Result<cv::Mat> decode(std::string_view bytes, std::string_view name, int flags, std::int64_t max_pixels) {
-  const auto fail = [&](std::string_view what) { return Error{fmt::format("{}: {}", name, what)}; };
-  const auto header = io::parse_image_header(bytes);
-  if (!header) return fail("is not a supported image (expected PNG or JPEG)");
-  if (header->width <= 0 || header->height <= 0 || header->width > kMaxImageSide_px ||
-      header->height > kMaxImageSide_px || std::int64_t{header->width} * header->height > max_pixels)
-    return fail(fmt::format("the image size {}x{} is out of range (at most {} px per side and {} px in all)",
-                            header->width, header->height, kMaxImageSide_px, max_pixels));
-  if (header->num_scans > kMaxScans) return fail(fmt::format("the image has more than {} scans", kMaxScans));
-  if (!header->complete) return fail("the image is cut off");
-  if (!header->intact) return fail("the image is damaged (a checksum does not match)");
-  try {
-    std::string pixels = io::keep_pixels(bytes);
-    const cv::Mat encoded(1, static_cast<int>(pixels.size()), CV_8UC1, pixels.data());
-    cv::Mat image = cv::imdecode(encoded, flags);
-    if (image.cols != header->width || image.rows != header->height)
-      return fail("the image cannot be decoded (damaged?)");
-    return image;
-  } catch (const cv::Exception&) {
-    return fail("the image cannot be decoded (damaged?)");
-  }
+/// Reads the header and checks the size before there is memory for the pixels.
+Result<OpenImage> open_image(std::string_view bytes, std::int64_t max_pixels) {
+  auto decoder = io::make_image_decoder(bytes);
+  if (!decoder) return decoder.error();
+  const auto header = (*decoder)->read_header();
+  if (!header) return header.error();
+  const int width = header->width;
+  const int height = header->height;
+  if (width > kMaxImageSide_px || height > kMaxImageSide_px || std::int64_t{width} * height > max_pixels)
+    return Error{fmt::format("the image size {}x{} is out of range (at most {} px per side and {} px in all)", width,
+                             height, kMaxImageSide_px, max_pixels)};
+  return OpenImage{std::move(*decoder), *header};
 }
 
-Result<cv::Mat> read(const std::filesystem::path& file, int flags, std::int64_t max_pixels) {
-  const auto bytes = io::read_file(file);
-  if (!bytes) return bytes.error();
-  return decode(*bytes, file.string(), flags, max_pixels);
+Result<Image<Rgb8>> decode_rgb(std::string_view bytes, std::int64_t max_pixels) {
+  const auto image = open_image(bytes, max_pixels);
+  if (!image) return image.error();
+  Image<Rgb8> color(image->header.width, image->header.height);
+  static_assert(sizeof(Rgb8) == 3);
+  auto* pixels = reinterpret_cast<std::uint8_t*>(color.data().data());
+  if (const auto done = image->decoder->read_pixels(io::PixelLayout::kRgb8, pixels); !done) return done.error();
+  return color;
 }
 
-/// Keeps the orientation of the file, so that depth and colour remain registered.
-constexpr int kColorFlags = cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION;
+struct StoredImage {
+  io::ImageHeader header;
+  std::vector<std::uint8_t> bytes;  ///< Row by row without gaps.
+};
+
+Result<StoredImage> decode_stored(std::string_view bytes, std::int64_t max_pixels) {
+  const auto image = open_image(bytes, max_pixels);
+  if (!image) return image.error();
+  const auto& [width, height, num_channels, channel_bytes] = image->header;
+  const auto num_pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::vector<std::uint8_t> pixels(num_pixels * static_cast<std::size_t>(num_channels * channel_bytes));
+  if (const auto done = image->decoder->read_pixels(io::PixelLayout::kStored, pixels.data()); !done)
+    return done.error();
+  return StoredImage{image->header, std::move(pixels)};
+}
+
+Result<Image<std::uint16_t>> decode_raw(std::string_view bytes) {
+  const auto image = decode_stored(bytes, kMaxViewPixels);
+  if (!image) return image.error();
+  const auto& [width, height, num_channels, channel_bytes] = image->header;
+  if (num_channels != 1)
+    return Error{fmt::format("{} channels of {} bytes; expected a depth image: one channel of 16 bits", num_channels,
+                             channel_bytes)};
+  Image<std::uint16_t> raw(width, height);
+  if (channel_bytes == 2)
+    std::memcpy(raw.data().data(), image->bytes.data(), image->bytes.size());
+  else
+    std::ranges::copy(image->bytes, raw.data().begin());
+  return raw;
+}
+
+/// The result of a decoder, whose error does not say which image is meant.
+template <typename T>
+Result<T> named(Result<T> image, std::string_view name) {
+  if (!image) return Error{fmt::format("{}: {}", name, image.error().message)};
+  return image;
+}
 
 Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
   const std::string extension = io::extension_of(file);
@@ -68,15 +102,13 @@ Result<void> encode(const std::filesystem::path& file, const cv::Mat& image) {
 }  // namespace
 
 Result<Image<Rgb8>> decode_color(std::string_view bytes, std::string_view name, std::int64_t max_pixels) {
-  const auto bgr = decode(bytes, name, kColorFlags, max_pixels);
-  if (!bgr) return bgr.error();
-  return io::from_bgr(*bgr);
+  return named(decode_rgb(bytes, max_pixels), name);
 }
 
 Result<Image<Rgb8>> read_color(const std::filesystem::path& file, std::int64_t max_pixels) {
-  const auto bgr = read(file, kColorFlags, max_pixels);
-  if (!bgr) return bgr.error();
-  return io::from_bgr(*bgr);
+  const auto bytes = io::read_file(file);
+  if (!bytes) return bytes.error();
+  return decode_color(*bytes, file.string(), max_pixels);
 }
 
 Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file) {
@@ -86,16 +118,7 @@ Result<Image<std::uint16_t>> read_depth_raw(const std::filesystem::path& file) {
 }
 
 Result<Image<std::uint16_t>> decode_depth_raw(std::string_view bytes, std::string_view name) {
-  const auto image = decode(bytes, name, cv::IMREAD_UNCHANGED, kMaxViewPixels);
-  if (!image) return image.error();
-  if (image->channels() != 1 || (image->depth() != CV_16U && image->depth() != CV_8U))
-    return Error{fmt::format("{}: {} channels of {} bytes; expected a depth image: one channel of 16 bits", name,
-                             image->channels(), image->elemSize1())};
-  Image<std::uint16_t> raw(image->cols, image->rows);
-  for (int v = 0; v < image->rows; ++v)
-    for (int u = 0; u < image->cols; ++u)
-      raw(u, v) = image->depth() == CV_16U ? image->at<std::uint16_t>(v, u) : image->at<std::uint8_t>(v, u);
-  return raw;
+  return named(decode_raw(bytes), name);
 }
 
 Result<Image<float>> read_depth(const std::filesystem::path& file, double metres_per_unit) {
@@ -108,18 +131,18 @@ Result<Image<float>> read_depth(const std::filesystem::path& file, double metres
 }
 
 Result<Image<std::uint8_t>> read_mask(const std::filesystem::path& file) {
-  const auto image = read(file, cv::IMREAD_UNCHANGED, kMaxViewPixels);
+  const auto bytes = io::read_file(file);
+  if (!bytes) return bytes.error();
+  const auto image = named(decode_stored(*bytes, kMaxViewPixels), file.string());
   if (!image) return image.error();
-  Image<std::uint8_t> mask(image->cols, image->rows, 0);
-  const std::size_t pixel_bytes = image->elemSize();
-  const bool has_alpha = image->channels() == 2 || image->channels() == 4;
-  const std::size_t color_bytes = pixel_bytes - (has_alpha ? image->elemSize1() : 0);
-  for (int v = 0; v < image->rows; ++v)
-    for (int u = 0; u < image->cols; ++u) {
-      const unsigned char* pixel = image->ptr(v) + static_cast<std::size_t>(u) * pixel_bytes;
-      for (std::size_t i = 0; i < color_bytes; ++i)
-        if (pixel[i] != 0) mask(u, v) = 255;
-    }
+  const auto& [width, height, num_channels, channel_bytes] = image->header;
+  Image<std::uint8_t> mask(width, height, 0);
+  const auto pixel_bytes = static_cast<std::size_t>(num_channels * channel_bytes);
+  const bool has_alpha = num_channels == 2 || num_channels == 4;
+  const std::size_t color_bytes = pixel_bytes - static_cast<std::size_t>(has_alpha ? channel_bytes : 0);
+  const std::uint8_t* pixel = image->bytes.data();
+  for (std::size_t i = 0; i < mask.size(); ++i, pixel += pixel_bytes)
+    if (std::any_of(pixel, pixel + color_bytes, [](std::uint8_t byte) { return byte != 0; })) mask[i] = 255;
   return mask;
 }
 

@@ -12,7 +12,6 @@
 
 #include "resight/core/printable.hpp"
 #include "resight/io/images.hpp"
-#include "resight/io/internal/bgr_image.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
@@ -61,6 +60,18 @@ Result<void> check_size(const ImageMessage& image, std::size_t pixel_bytes, std:
     return Error{fmt::format("{}: an image of {}x{} has only {} bytes (damaged)", what, image.width, image.height,
                              image.data.size())};
   return {};
+}
+
+Image<Rgb8> from_bgr(const cv::Mat& bgr) {
+  Image<Rgb8> color(bgr.cols, bgr.rows);
+  for (int v = 0; v < bgr.rows; ++v) {
+    const auto* source = bgr.ptr<unsigned char>(v);
+    for (Rgb8& c : color.row(v)) {
+      c = {source[2], source[1], source[0]};
+      source += 3;
+    }
+  }
+  return color;
 }
 
 Result<Image<Rgb8>> decode_raw_color(const ImageMessage& image, std::string_view what) {

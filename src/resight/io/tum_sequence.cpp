@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "resight/io/internal/files.hpp"
-#include "resight/io/internal/image_header.hpp"
+#include "resight/io/internal/image_decoder.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
@@ -138,8 +138,11 @@ fs::path find_tum_poses(const fs::path& directory) {
 Result<void> check_image_size(const Calibration& calibration, const fs::path& image, const fs::path& directory) {
   constexpr std::size_t kBytesOfHeader = std::size_t{1} << 16;
   const auto start = read_file_start(image, kBytesOfHeader);
-  const auto header = start.ok() ? parse_image_header(*start) : std::nullopt;
-  if (!header) return {};  // read_view() reports a damaged image.
+  if (!start) return {};  // read_view() reports a damaged image.
+  const auto decoder = make_image_decoder(*start);
+  if (!decoder) return {};
+  const auto header = (*decoder)->read_header();
+  if (!header) return {};
   return check_calibration(calibration, header->width, header->height, directory.string());
 }
 
