@@ -8,6 +8,7 @@
 
 #include "resight/annotation/annotation_json.hpp"
 #include "resight/core/json_text.hpp"
+#include "resight/io/parse_json.hpp"
 
 namespace resight {
 
@@ -249,8 +250,9 @@ std::string format_action(const AnnotationAction& action) {
 }
 
 Result<AnnotationAction> parse_action(std::string_view text) {
-  const json parsed = json::parse(text, nullptr, false);
-  if (parsed.is_discarded()) return Error{"the action is not JSON"};
+  const auto value = parse_json(text);
+  if (!value) return Error{"the action " + value.error().message};
+  const json& parsed = *value;
   if (parsed == "undo") return AnnotationAction(UndoEdit{});
   if (parsed == "redo") return AnnotationAction(RedoEdit{});
   annotation::Reader read(parsed);

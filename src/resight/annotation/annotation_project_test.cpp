@@ -305,7 +305,8 @@ TEST(ParseAction, RefusesWhatIsNoAction) {
        edit(R"({"do":"judge_region","region":{"view":3,"kind":"novel","center":[0,0,0]},"verdict":"open","mask":[1]})"),
        edit(
            R"({"do":"judge_region","region":{"view":3,"kind":"novel","center":[0,0,0]},"verdict":"open","mask":[-1,2]})"),
-       edit(R"({"do":"drop_object","id":1e300})"), edit(R"({"do":"drop_object","id":99999999999999})")})
+       edit(R"({"do":"drop_object","id":1,"id":2})"), edit(R"({"do":"drop_object","id":1e300})"),
+       edit(R"({"do":"drop_object","id":99999999999999})")})
     EXPECT_FALSE(parse_action(text).ok()) << text;
 }
 

@@ -12,6 +12,7 @@
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/io/parse_json.hpp"
 
 namespace resight {
 namespace {
@@ -126,7 +127,9 @@ std::optional<std::vector<ChangeProposal>> read_proposals(const std::filesystem:
                                                           int num_views) {
   const auto text = read_file(file);
   if (!text) return std::nullopt;
-  const json content = json::parse(*text, nullptr, false);
+  const auto parsed = parse_json(*text);
+  if (!parsed) return std::nullopt;
+  const json& content = *parsed;
   if (!content.is_object() || !content.contains("format") || content["format"] != kFormat ||
       !content.contains("digest") || content["digest"] != digest || !content.contains("regions") ||
       !content["regions"].is_array())

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "resight/core/json_text.hpp"
 #include "resight/io/internal/text.hpp"
@@ -23,73 +22,7 @@ bool flatten(const nlohmann::json& json, std::vector<double>& numbers, int depth
          std::ranges::all_of(json, [&](const auto& item) { return flatten(item, numbers, depth + 1); });
 }
 
-/// What is wrong where the parser stopped, behind the first `num_read` bytes.
-std::string describe_syntax_error(std::string_view text, std::size_t num_read) {
-  const std::size_t at = num_read == 0 ? 0 : num_read - 1;
-  const auto line = 1 + std::ranges::count(text.substr(0, at), '\n');
-  const std::string_view rest = text.substr(std::min(at, text.size()));
-  const char* why = "";
-  if (rest.find_first_not_of(" \t\r\n") == rest.npos) why = " (cut off?)";
-  if (rest.starts_with('N') || rest.starts_with('I') || rest.starts_with("nan") || rest.starts_with("inf"))
-    why = " (NaN and infinite numbers are not allowed)";
-  return fmt::format("is not valid JSON: line {}{}", line, why);
-}
-
-/// Checks a text without building a value. A parser would silently take one of two values of the same key, and the
-/// parser with a callback, which sees the keys, looks through a whole list at the end of each object in it.
-class JsonCheck final : public nlohmann::json_sax<nlohmann::json> {
- public:
-  explicit JsonCheck(std::string_view text) : text_(text) {}
-  /// What is wrong; empty if nothing is.
-  [[nodiscard]] const std::string& fault() const { return fault_; }
-
-  bool null() override { return true; }
-  bool boolean(bool /*value*/) override { return true; }
-  bool number_integer(number_integer_t /*value*/) override { return true; }
-  bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
-  bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-  bool string(string_t& /*value*/) override { return true; }
-  bool binary(binary_t& /*value*/) override { return true; }
-  bool start_object(std::size_t /*size*/) override { return start(); }
-  bool end_object() override { return end(); }
-  bool start_array(std::size_t /*size*/) override { return start(); }
-  bool end_array() override { return end(); }
-  bool key(string_t& name) override {
-    return keys_.back().insert(name).second || fail(fmt::format("has the key '{:.40}' twice in one object", name));
-  }
-  bool parse_error(std::size_t position, const std::string& /*token*/,
-                   const nlohmann::detail::exception& error) override {
-    constexpr int kOutOfRange = 406;
-    return fail(error.id == kOutOfRange ? "is not valid JSON: a number is too large"
-                                        : describe_syntax_error(text_, position));
-  }
-
- private:
-  bool start() {
-    constexpr std::size_t kMaxNesting = 64;
-    keys_.emplace_back();
-    return keys_.size() <= kMaxNesting || fail(fmt::format("is nested more than {} deep", kMaxNesting));
-  }
-  bool end() {
-    keys_.pop_back();
-    return true;
-  }
-  bool fail(std::string fault) {
-    fault_ = std::move(fault);
-    return false;
-  }
-  std::string_view text_;
-  std::string fault_;
-  std::vector<std::set<std::string>> keys_;  ///< Of the lists and objects around the current place.
-};
-
 }  // namespace
-
-Result<nlohmann::json> parse_json(std::string_view text) {
-  JsonCheck check(text);
-  if (!nlohmann::json::sax_parse(text, &check)) return Error{check.fault()};
-  return nlohmann::json::parse(text);
-}
 
 Result<nlohmann::json> read_json(const fs::path& file) {
   const auto text = read_file(file);

@@ -153,7 +153,7 @@ Result<void> TraceFile::find_new_views() {
 Result<void> TraceFile::check_header(const Line& line) const {
   const auto text = read_line(line);
   if (!text) return text.error();
-  const auto content = io::parse_json(*text);
+  const auto content = parse_json(*text);
   if (content.ok() && member(*content, "format") == kTraceFormat) return {};
   return file_error(
       file_, "is no trace of 'resight recognize --trace' of this version (remove it to use the results without it)");
@@ -171,7 +171,7 @@ Result<StoredTrace> TraceFile::read(int view, const std::string& name) const {
   const Line& line = lines_[static_cast<std::size_t>(view)];
   const auto text = read_line(line);
   if (!text) return text.error();
-  const auto content = io::parse_json(*text);
+  const auto content = parse_json(*text);
   if (!content) return file_error(file_, fmt::format("line {}: {}", view + 2, content.error().message));
   Faults faults(file_);
   const MemberReader reader(*content, fmt::format("line {}", view + 2), faults);

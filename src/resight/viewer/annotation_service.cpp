@@ -13,6 +13,7 @@
 #include "resight/annotation/refine_over_views.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/geometry/symmetry.hpp"
+#include "resight/io/parse_json.hpp"
 #include "resight/viewer/internal/annotation_state_json.hpp"
 #include "resight/viewer/internal/parse_number.hpp"
 #include "resight/viewer/internal/view_json.hpp"
@@ -87,26 +88,9 @@ Result<LoadedViews> load_views(ViewStore& store, const std::vector<int>& numbers
   return loaded;
 }
 
-/// How deep lists and objects are nested.
-int count_levels(std::string_view text) {
-  int level = 0, deepest = 0;
-  bool in_string = false;
-  bool is_escaped = false;
-  for (const char c : text) {
-    if (c == '"' && !is_escaped) in_string = !in_string;
-    is_escaped = in_string && c == '\\' && !is_escaped;
-    if (in_string) continue;
-    if (c == '[' || c == '{') deepest = std::max(deepest, ++level);
-    if (c == ']' || c == '}') --level;
-  }
-  return deepest;
-}
-
 json parse_body(const HttpRequest& request) {
-  constexpr int kMaxLevels = 64;  // What follows recurses over them.
-  if (count_levels(request.body) > kMaxLevels) return {};
-  json body = json::parse(request.body, nullptr, false);
-  return body.is_object() ? body : json();
+  auto body = parse_json(request.body);
+  return body.ok() && body->is_object() ? *std::move(body) : json();
 }
 
 HttpResponse answer_state(const AnnotationTask& task) {

@@ -7,13 +7,11 @@
 
 #include "resight/geometry/rigid3.hpp"
 #include "resight/io/internal/files.hpp"
+#include "resight/io/parse_json.hpp"
 
 namespace resight::io {
 
-/// Parses without exceptions. Fails for a key that occurs twice in an object, and for lists and objects that are nested
-/// more than 64 deep. The error says what is wrong, but not where the text comes from.
-[[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
-/// The same for a file, which the error names.
+/// parse_json() for a file, which the error names.
 [[nodiscard]] Result<nlohmann::json> read_json(const fs::path& file);
 [[nodiscard]] Result<void> write_json(const fs::path& file, const nlohmann::json& json);
 
