@@ -8,6 +8,7 @@
 #include "resight/core/files.hpp"
 #include "resight/inspection/find_faults.hpp"
 #include "resight/sensor/disparity_error.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -22,7 +23,7 @@ bool is_idle_for_too_long(Clock::time_point begin, const FollowArguments& argume
 
 void tell_first_view(const FollowedView& view, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) print_error_line("note: ", note);
-  for (const Finding& f : find_view_faults(view.frame)) print_warning(f.message + "; remedy: " + f.remedy);
+  warn_about(find_view_faults(view.frame));
 }
 
 OpenCameraOptions to_camera_options(const std::string& name, const OpenSequenceOptions& open) {
@@ -51,7 +52,7 @@ std::optional<FollowedView> FolderViews::next() {
     if (view) {
       if (!has_view_) tell_first_view(*view, follower_.notes());
       has_view_ = true;
-      for (const Finding& f : pose_check_.add(view->frame, 0)) print_warning(f.message + "; remedy: " + f.remedy);
+      warn_about(pose_check_.add(view->frame, view->number));
       return view;
     }
     if (is_idle_for_too_long(begin, arguments_)) break;

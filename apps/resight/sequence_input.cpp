@@ -64,10 +64,13 @@ void print_notes(const Sequence& sequence, const std::string& name) {
   for (const std::string& note : sequence.notes()) print_error_line("note: ", where + note);
 }
 
-void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name) {
+void warn_about(const std::vector<Finding>& findings, const std::string& name) {
   const std::string where = name.empty() ? "" : name + ": ";
-  for (const Finding& f : check_quickly(sequence, uses_poses))
-    print_warning(where + f.message + "; remedy: " + f.remedy);
+  for (const Finding& f : findings) print_warning(where + f.message + "; remedy: " + f.remedy);
+}
+
+void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name) {
+  warn_about(check_quickly(sequence, uses_poses), name);
 }
 
 void add_sequence_options(CLI::App* command, OpenSequenceOptions& options, std::vector<std::string>* given) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "resight/inspection/finding.hpp"
 #include "resight/io/sequence.hpp"
 
 namespace CLI {
@@ -23,8 +24,9 @@ void add_pose_file_option(CLI::App* command, OpenSequenceOptions& options);
 
 /// Prints what was assumed or left out to standard error.
 void print_notes(const Sequence& sequence, const std::string& name = "");
-/// Warns about faults that few views show (check_quickly()), one line each on standard error. `name`: tells several
-/// sequences apart.
+/// Warns about faults, one line each on standard error. `name`: tells several sequences apart.
+void warn_about(const std::vector<Finding>& findings, const std::string& name = "");
+/// The same for faults that few views show (check_quickly()).
 void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::string& name = "");
 /// Opens a sequence and prints its notes to standard error. Throws an InputError.
 [[nodiscard]] std::unique_ptr<Sequence> open_input(const std::filesystem::path& where,

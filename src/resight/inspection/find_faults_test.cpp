@@ -2,10 +2,12 @@
 #include "resight/inspection/find_faults.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <tuple>
 
 #include "resight/core/random.hpp"
 #include "resight/inspection/quick_check.hpp"
@@ -298,6 +300,28 @@ TEST(PoseCheck, SaysOnceThatPosesAreInverted) {
   ASSERT_EQ(findings.size(), 1U) << names_of(findings);
   EXPECT_EQ(findings.front().fault, "pose_convention");
   EXPECT_TRUE(check.is_done());
+}
+
+/// Bytes that are allocated now; always the same with sanitizers, which bring their own heap.
+std::size_t allocated_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST(PoseCheck, KeepsNoViewWhenItIsDone) {
+  constexpr std::size_t kDepthBytes = std::size_t{4} * 640 * 480;
+  RgbdFrame first = render_view(test::look_at_point({0.1, -1.3, 0.8}, {0, 0.1, 0.15}), 0.0015, 1);
+  first.color = Image<Rgb8>(640, 480);
+  first.depth_m = Image<float>(640, 480, 1.0F);
+  RgbdFrame later = first;
+  later.world_from_camera.translation.x() += 0.5;
+  const std::size_t before = allocated_bytes();
+  PoseCheck check;
+  std::ignore = check.add(first, 0);
+  std::ignore = check.add(later, 1);
+  std::ignore = check.add(first, 2);
+  EXPECT_TRUE(check.is_done());
+  EXPECT_LT(allocated_bytes(), before + kDepthBytes);
 }
 
 TEST(CheckQuickly, SaysWhichUnitIsWrong) {

@@ -104,6 +104,7 @@ bool PoseCheck::wants(const Rigid3& world_from_camera) const {
 
 std::vector<Finding> PoseCheck::add(const RgbdFrame& frame, int view) {
   std::vector<Finding> findings;
+  if (is_done_) return findings;
   if (!first_) {
     first_ = frame;
     depth_m_ = measure_depth_values(frame.depth_m).median_m;
@@ -115,6 +116,7 @@ std::vector<Finding> PoseCheck::add(const RgbdFrame& frame, int view) {
   is_done_ = !findings.empty() || has_moved(frame.world_from_camera);
   ++num_near_views_;
   next_move_m_ = 2e3 * move_m(frame.world_from_camera);
+  if (is_done_) first_.reset();
   return findings;
 }
 

@@ -28,9 +28,9 @@ class PoseCheck {
   [[nodiscard]] bool has_moved(const Rigid3& pose) const;
   [[nodiscard]] bool may_have_moved(const Rigid3& pose) const;
 
-  std::optional<RgbdFrame> first_;
-  double depth_m_ = 0;      // Median of the first view.
-  double next_move_m_ = 0;  // Of a view that is compared, if the poses are in metres.
+  std::optional<RgbdFrame> first_;  // Until is_done_.
+  double depth_m_ = 0;              // Median of the first view.
+  double next_move_m_ = 0;          // Of a view that is compared, if the poses are in metres.
   int num_near_views_ = 0;
   bool is_done_ = false;
 };

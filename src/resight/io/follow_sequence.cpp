@@ -11,7 +11,8 @@ namespace resight {
 namespace {
 
 FollowedView make_followed(const Sequence& sequence, int view, RgbdFrame frame) {
-  return {.frame = std::move(frame), .scene_id = sequence.scene_id(), .image_id = sequence.image_id(view)};
+  return {
+      .frame = std::move(frame), .number = view, .scene_id = sequence.scene_id(), .image_id = sequence.image_id(view)};
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct FollowSequenceOptions {
 /// A view that has just been written.
 struct FollowedView {
   RgbdFrame frame;
+  int number = 0;  ///< In the sequence, as it was then: an earlier view may still come.
   int scene_id = 0;
   int image_id = 0;
 };

@@ -78,6 +78,7 @@ TEST(FollowSequence, TakesEachViewOnceItIsComplete) {
   const auto view = follower.poll();
   ASSERT_TRUE(view);
   EXPECT_EQ(view->frame.name, "color_2");
+  EXPECT_EQ(view->number, 1);
   EXPECT_EQ(view->image_id, 1);
   EXPECT_EQ(follower.num_skipped(), 0);
   EXPECT_THAT(follower.take_left_out(), IsEmpty());
