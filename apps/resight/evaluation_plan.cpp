@@ -96,30 +96,64 @@ std::vector<fs::path> list_folders(const fs::path& root) {
   return folders;
 }
 
-// The root itself if it is a sequence, or those directly below it. BOP scenes for training are only evaluated by
-// themselves.
+bool is_sequence(const fs::path& folder) {
+  const auto sequence = find_sequence_folder(folder);
+  return sequence.ok() && *sequence == folder;
+}
+
+// BOP scenes for training are only evaluated by themselves.
+bool is_training_split(const fs::path& folder) {
+  return folder.filename().string().starts_with("train") && !is_sequence(folder);
+}
+
+// The root itself if it is a sequence, or those directly below it.
 std::vector<fs::path> list_sequences(const fs::path& root) {
-  const auto only = find_sequence_folder(root);
-  if (only.ok() && *only == root) return {root};
+  if (is_sequence(root)) return {root};
   std::vector<fs::path> sequences;
   for (const fs::path& folder : list_folders(root)) {
     value_or_throw(check_finished(folder));  // Half a sequence would be passed over.
-    const auto sequence = find_sequence_folder(folder);
-    const bool is_sequence = sequence.ok() && *sequence == folder;
-    if (!is_sequence && folder.filename().string().starts_with("train")) continue;
-    if (value_or_throw(sequence)) sequences.push_back(**sequence);
+    if (is_training_split(folder)) continue;
+    if (const auto sequence = value_or_throw(find_sequence_folder(folder))) sequences.push_back(*sequence);
   }
+  const auto only = find_sequence_folder(root);
   if (sequences.empty() && only.ok() && *only) return {**only};
   return sequences;
 }
 
-// Finds the sequences: the data set itself, or those in its folder test/, or those directly below it. A damaged
-// sequence, and several in one folder, are errors: scores without them would pass for those of the whole data set.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  std::error_code unknown;
+  const fs::path relative = fs::canonical(path, unknown).lexically_relative(fs::canonical(folder, unknown));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+// Sequences beside the folder test/ do not count. Training splits and models are not expected to.
+void warn_about_others(const fs::path& dataset, const fs::path& test) {
+  std::set<fs::path> others;
+  std::error_code error;
+  for (fs::directory_iterator it(dataset, error), end; !error && it != end; it.increment(error)) {
+    std::error_code unreadable;
+    const fs::path& folder = it->path();
+    const std::string name = folder.filename().string();
+    if (!it->is_directory(unreadable) || name.starts_with('.') || name.starts_with("models")) continue;
+    if (is_training_split(folder)) continue;
+    for (const fs::path& sequence : find_sequence_folders(folder))
+      if (!lies_in(sequence, test)) others.insert(sequence);
+  }
+  if (others.empty()) return;
+  const std::string what = others.size() == 1
+                               ? "looks like a sequence, but is"
+                               : fmt::format("and {} more look like sequences, but are", others.size() - 1);
+  print_warning(fmt::format("{} {} not below {}: not evaluated", others.begin()->string(), what, test.string()));
+}
+
+// Finds the sequences: the data set itself, or those in its folder test/, or, without that, those directly below it. A
+// damaged sequence, and several in one folder, are errors: scores without them would pass for those of the whole set.
 std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
   const fs::path dataset = fs::absolute(given / "").parent_path().lexically_normal();
   std::error_code error;
   if (!fs::is_directory(dataset, error)) throw InputError(fmt::format("{}: is not a folder", given.string()));
-  const fs::path root = fs::is_directory(dataset / "test", error) ? dataset / "test" : dataset;
+  const bool has_test = !is_sequence(dataset) && fs::is_directory(dataset / "test", error);
+  const fs::path root = has_test ? dataset / "test" : dataset;
   std::vector<EvaluationSequence> sequences;
   for (const fs::path& folder : list_sequences(root)) {
     if (const auto any = open_sequence(folder); !any) throw InputError(any.error().message);
@@ -129,7 +163,8 @@ std::vector<EvaluationSequence> find_sequences(const fs::path& given) {
     else
       print_warning(opened.error().message);
   }
-  if (sequences.empty()) throw InputError(open_posed_sequence(dataset).error().message);
+  if (sequences.empty()) throw InputError(open_posed_sequence(root).error().message);
+  if (has_test) warn_about_others(dataset, root);
   make_names_unique(root, sequences);
   return sequences;
 }

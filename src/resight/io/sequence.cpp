@@ -48,23 +48,7 @@ const FormatEntry* find_format(const path& directory) {
   return it == kFormats.end() ? nullptr : &*it;
 }
 
-/// Sequences below the root of a data set: its sub-folders, and the scenes of its BOP splits. Test splits precede
-/// training splits; model folders are skipped.
-std::vector<path> find_sequences_below(const path& directory) {
-  std::vector<path> found;
-  std::vector<path> training;
-  for (const std::string& name : io::list_directories(directory)) {
-    if (name.starts_with("models")) continue;
-    const path below = directory / name;
-    if (find_format(below) != nullptr || is_recording(below)) {
-      found.push_back(below);
-      continue;
-    }
-    for (const std::string& scene : io::list_directories(below))
-      if (io::is_bop_scene(below / scene)) (name.starts_with("train") ? training : found).push_back(below / scene);
-  }
-  return found.empty() ? training : found;
-}
+bool is_sequence(const path& directory) { return find_format(directory) != nullptr || is_recording(directory); }
 
 /// The folder, or one in it, whose files cannot be listed, with the reason. Empty if there is none.
 std::string describe_locked_folder(const path& directory) {
@@ -94,15 +78,31 @@ Error no_sequence_error(const path& directory) {
 
 }  // namespace
 
+std::vector<path> find_sequence_folders(const path& directory) {
+  if (is_sequence(directory)) return {directory};
+  std::vector<path> found;
+  std::vector<path> training;
+  for (const std::string& name : io::list_directories(directory)) {
+    if (name.starts_with("models")) continue;
+    const path below = directory / name;
+    if (is_sequence(below)) {
+      found.push_back(below);
+      continue;
+    }
+    for (const std::string& scene : io::list_directories(below))
+      if (io::is_bop_scene(below / scene)) (name.starts_with("train") ? training : found).push_back(below / scene);
+  }
+  return found.empty() ? training : found;
+}
+
 Result<std::optional<path>> find_sequence_folder(const path& directory) {
   if (io::is_file(directory)) return is_recording(directory) ? std::optional(directory) : std::nullopt;
   if (!io::is_folder(directory)) return io::file_error(directory, "no such directory");
-  if (find_format(directory) != nullptr || is_recording(directory)) return std::optional(directory);
-  const std::vector<path> below = find_sequences_below(directory);
-  if (below.size() == 1) return std::optional(below.front());
-  if (below.size() > 1)
-    return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", below.size(),
-                                                 below.front().string()));
+  const std::vector<path> found = find_sequence_folders(directory);
+  if (found.size() == 1) return std::optional(found.front());
+  if (found.size() > 1)
+    return io::file_error(directory, fmt::format("holds {} sequences; name one of them, such as {}", found.size(),
+                                                 found.front().string()));
   if (const std::string locked = describe_locked_folder(directory); !locked.empty()) return Error{locked};
   return std::optional<path>();
 }

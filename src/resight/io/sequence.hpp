@@ -55,6 +55,10 @@ struct OpenSequenceOptions {
   const DepthSensor* sensor = nullptr;
 };
 
+/// The sequences in a data set: `directory` itself if it is one, or those in its sub-folders and in BOP splits below
+/// it. Scenes for training count only if there are no others. Folders of models are skipped.
+[[nodiscard]] std::vector<std::filesystem::path> find_sequence_folders(const std::filesystem::path& directory);
+
 /// The folder that open_sequence() opens: `directory` itself, or the only sequence below it. Empty if there is none.
 /// Fails if there are several, or if this cannot be found out.
 [[nodiscard]] Result<std::optional<std::filesystem::path>> find_sequence_folder(const std::filesystem::path& directory);
