@@ -9,6 +9,7 @@
 
 #include "cli.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/printable.hpp"
 
 namespace resight::cli_test {
 namespace {
@@ -224,6 +225,58 @@ TEST_F(CommandLineResults, NamesThatAreNotUtf8AreNoObstacle) {
       run(folder_, "evaluate --models models.resight --dataset v$(printf '\\377') --presets mvr -k 0 --out out").status,
       0);
   EXPECT_TRUE(fs::exists(folder_ / "out/worst.md"));
+}
+
+TEST_F(CommandLineResults, NamesDoNotControlTheTerminal) {
+  // Colours, a forged line, a deleted character, a cleared screen, and text from right to left.
+  const std::string evil =
+      "evil\x1b[31m\r\nforged\x7F\xC2\x9B"
+      "2J\xE2\x80\xAE";
+  for (const char* name : {"views", "tuw", "tum", "meshes", "empty"})
+    fs::rename(folder_ / name, folder_ / (evil + name));
+  for (const char* view : {"cloud_00.pcd", "cloud_01.pcd", "cloud_02.pcd"})
+    fs::rename(folder_ / (evil + "tuw") / view, folder_ / (evil + "tuw") / (evil + view));
+  fs::create_directory(folder_ / "bad");
+  fs::copy(folder_ / (evil + "meshes") / "cube.ply", folder_ / "bad" / (evil + "cube.ply"));
+  const std::string below = " \"$(printf %s evil*empty)\"/";
+  const std::string recognize = "recognize --models models.resight --out" + below + "recognized --sequence ";
+  const std::string evaluate =
+      "evaluate --models models.resight --presets mvr -k 0 --out" + below + "evaluated --dataset ";
+  const std::pair<std::string, int> commands[] = {
+      {recognize + "evil*tuw", 0},
+      {recognize + "evil*tuw --stream", 0},
+      {recognize + "evil*views --follow --max-views 1", 0},
+      {recognize + "evil*empty", 2},
+      {evaluate + "evil*views", 0},
+      {evaluate + "evil*empty", 2},
+      {"track --sequence evil*tuw --out" + below + "poses.txt", 1},
+      {"track --sequence evil*tum --out evil*views", 2},
+      {"train evil*meshes --out" + below + "new.resight", 0},
+      {"train bad --out new.resight", 2},
+      {"train evil*empty --out new.resight", 2},
+      {"changes --sequence evil*tuw --out" + below + "changes", 0},
+      {"check evil*tuw", 0},
+      {"check evil*tuw --json", 0},
+      {"info evil*tuw", 0},
+      {"info models.resight", 0},
+      {"info evil*meshes", 0},
+      {"convert evil*tuw" + below + "bop --to bop", 0},
+      {"convert evil*meshes" + below + "models --to bop", 0},
+      {"model --sequence evil*tuw --out" + below + "model", 1},
+      {"evil*tuw", 2},
+      {"info models.resight evil*tuw", 2},
+      {"simulate evil*empty --out new", 2},
+  };
+  for (const auto& [command, status] : commands) {
+    EXPECT_EQ(run(folder_, command).status, status) << command;
+    for (const char* stream : {".stdout", ".stderr"}) {
+      std::istringstream lines(read_text(folder_.string() + stream));
+      for (std::string line; std::getline(lines, line);) {
+        EXPECT_EQ(printable(line), line) << command;
+        EXPECT_FALSE(line.starts_with("forged")) << command;
+      }
+    }
+  }
 }
 
 TEST_F(CommandLineResults, SequencesOfTheSameNameAreEvaluatedApart) {
