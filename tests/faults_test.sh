@@ -21,25 +21,33 @@ declare -A arguments=(
   [convert_models]="../meshes out --to bop"
   [convert_rendered]="../meshes out --to tuw"
   [train]="../meshes --out out.resight"
-  [recognize]="--models ../models.resight --sequence ../data/test/000001 --out out"
+  [recognize]="--models ../models.resight --sequence ../data/test/000001 --out out --trace"
+  [recognize_follow]="--models ../models.resight --sequence ../data/test/000001 --out out --follow --keep-late --max-views 3"
   [changes]="--sequence ../data/test/000001 --out out"
   [track]="--sequence ../data/test/000001 --out out.txt --fused out.ply --write-sequence posed"
   [check]="../data/test/000001 --depth-scale 0.005 --out out"
   [annotate]="--models ../models.resight --sequence ../data/test/000001 --out out --no-open"
   [demo]="--out out"
-  [evaluate]="--models ../models.resight --dataset ../data --presets mvr -k 0,1 --out out"
+  [evaluate]="--models ../models.resight --dataset ../data --presets mvr -k 0,1 --out out --bop"
+  [evaluate_shard]="--models ../models.resight --dataset ../two --presets mvr -k 0 --out out --shard 1/2"
+  [evaluate_last_shard]="--models ../models.resight --dataset ../two --presets mvr -k 0 --out out --shard 2/2"
   [model]="--sequence ../side --every 4 --out out"
 )
 arguments[recognize_again]=${arguments[recognize]}
 arguments[changes_again]=${arguments[changes]}
 arguments[check_again]=${arguments[check]}
+# What is called in the folder before.
+declare -A earlier=([recognize_again]=recognize [changes_again]=changes [check_again]=check
+  [evaluate_last_shard]=evaluate_shard)
 declare -A success=([check]=1 [check_again]=1) # the status if there are findings
-commands=(simulate convert convert_models train recognize recognize_again changes changes_again track check check_again
-  annotate evaluate)
+commands=(simulate convert convert_models train recognize recognize_again recognize_follow changes changes_again track
+  check check_again annotate evaluate evaluate_shard evaluate_last_shard)
 slow=(convert_rendered model demo)
 ((rounds >= 5)) && commands+=("${slow[@]}")
 ((${#chosen[@]} > 0)) && commands=("${chosen[@]}")
 faults=(kill interrupt file_limit read_only full_disk)
+# The fault of the first round; of other commands it follows from their place. `evaluate` once left half of its tables.
+declare -A first_fault=([evaluate]=4)
 
 write_scene 3 -110 -90 false >scene.toml
 run simulate scene.toml --out data --format bop --seed 1
@@ -48,6 +56,10 @@ mkdir meshes && cp data/models/obj_000002.ply meshes
 if [[ " ${commands[*]} " == *" model "* ]]; then
   run simulate --preset turntable-recording --out recording
   run convert recording/side_1 side --to bop # of which views can be left out
+fi
+
+if [[ " ${commands[*]} " == *" evaluate_"* ]]; then
+  mkdir -p two/test && cp -r data/models two && cp -r data/test/000001 two/test && cp -r data/test/000001 two/test/000002
 fi
 
 # Runs `annotate` and interrupts it as soon as it tells its address; then it writes its export.
@@ -65,7 +77,7 @@ $can_mount || echo "without the right to mount: no full disk, and no read-only f
 program() { # program COMMAND: with its arguments, "convert_models" being a "convert"
   local starter=""
   [[ $1 == annotate ]] && starter="../until_address "
-  echo "$starter$resight ${1%_*} ${arguments[$1]}"
+  echo "$starter$resight ${1%%_*} ${arguments[$1]}"
 }
 
 run_in() { # run_in FOLDER COMMAND: fails if the command does
@@ -88,6 +100,10 @@ list() { # list FOLDER
       esac
     done
   )
+}
+
+count_kb() { # count_kb FOLDER: of its files
+  find "$1" -type f -printf '%k\n' | awk '{ sum += $1 } END { print sum + 0 }'
 }
 
 random() { # random FROM TO: into `picked`, because a substitution of commands would start its own series
@@ -127,12 +143,14 @@ disturb() { # disturb COMMAND FAULT: in the folder `round`; returns the status o
       ;;
     full_disk)
       $can_mount || return 0
-      random 1 $((total_kb[$1] + 16))
+      random 1 $((total_kb[$1] - 4)) # less than what it writes, as a page has 4 kB
       size=$picked
       what="$2 of $size kB"
-      # What is left on the full disk is copied to one with space.
-      unshare -m bash -c "mount -t tmpfs -o size=${size}k none round && (cd round && $call >../log 2>&1)
-                          status=\$?; mkdir kept && cp -a round/. kept; exit \$status"
+      # What is there before is copied to a disk of which so much is free, and what is left to one with space.
+      size=$((size + $(count_kb round)))
+      unshare -m bash -c "mkdir -p full && mount -t tmpfs -o size=${size}k none full && cp -a round/. full
+                          (cd full && $call >../log 2>&1); status=\$?
+                          mkdir kept && cp -a full/. kept; exit \$status"
       local status=$?
       rm -rf round && mv kept round
       return $status
@@ -151,7 +169,11 @@ check_finished_views() { # check_finished_views COMMAND: views that are kept are
   local kept=round/out/finished_views.jsonl
   [[ $1 == recognize* && -e $kept ]] || return
   num_kept=$((num_kept + 1))
-  cmp -s -n "$(stat -c %s $kept)" $kept finished_views || fail "$1, $what: the finished views are others"
+  cmp -s -n "$(stat -c %s $kept)" $kept "$1.views" || fail "$1, $what: the finished views are others"
+}
+
+stopped() { # stopped COMMAND FAULT: what follows views ends with those so far, and that is no error
+  [[ $1 == *_follow && $2 == interrupt ]] && ! cmp -s round.list "$1.list"
 }
 
 check_after_fault() { # check_after_fault COMMAND FAULT STATUS: of what the first run has left
@@ -165,6 +187,7 @@ check_after_fault() { # check_after_fault COMMAND FAULT STATUS: of what the firs
   left=$(find round -name '*.resight-*')
   [[ -z $left ]] || fail "$1, $what: left $left"
   if [[ $2 == interrupt ]]; then
+    [[ $1 == *_follow ]] && { (($3 == 0)) || grep -q '^resight: no view has come' log; } && return
     (($3 == 128 + 2)) || fail "$1, $what: ended with status $3: $(tail -1 log)"
     return
   fi
@@ -172,23 +195,25 @@ check_after_fault() { # check_after_fault COMMAND FAULT STATUS: of what the firs
   grep -q '^resight: ' log || fail "$1, $what: no line says why: $(tail -1 log)"
 }
 
-# The views as `recognize` keeps them while it works.
-if [[ " ${commands[*]} " == *" recognize"* ]]; then
-  "$resight" recognize --models models.resight --sequence data/test/000001 --out streamed --stream >finished_views 2>log ||
-    { fail "recognize --stream failed: $(tail -1 log)"; exit 1; }
-fi
-
 declare -A duration_ms largest_kb total_kb num_tried num_disturbed
 num_mixtures=0
 num_kept=0
 for command in "${commands[@]}"; do
   mkdir "$command"
+  if [[ -n ${earlier[$command]:-} ]]; then
+    run_in "$command" "${earlier[$command]}" || { fail "${earlier[$command]} failed: $(tail -1 log)"; exit 1; }
+    cp -a "$command" "$command.before"
+  fi
   begin=$(date +%s%N)
   run_in "$command" "$command" || { fail "$command failed: $(tail -1 log)"; exit 1; }
   duration_ms[$command]=$((($(date +%s%N) - begin) / 1000000))
   largest_kb[$command]=$(($(find "$command" -type f -printf '%s\n' | sort -n | tail -1) / 1024 + 1))
-  total_kb[$command]=$(du -sk "$command" | cut -f 1)
+  total_kb[$command]=$(count_kb "$command")
   list "$command" >"$command.list"
+  if [[ $command == recognize* ]]; then # the views as it keeps them while it works
+    mkdir streamed && (cd streamed && $(program "$command") --stream) >"$command.views" 2>log && rm -r streamed ||
+      { fail "$command --stream failed: $(tail -1 log)"; exit 1; }
+  fi
 done
 
 total_tried=0
@@ -210,22 +235,23 @@ for ((i = 0; i < ${#commands[@]}; ++i)); do
   num_rounds=$rounds
   [[ " ${slow[*]} " == *" $command "* ]] && num_rounds=$((rounds < 50 ? 5 : rounds / 10))
   for ((round = 0; round < num_rounds; ++round)); do
-    fault=${faults[(i + round) % ${#faults[@]}]}
+    fault=${faults[(${first_fault[$command]:-i} + round) % ${#faults[@]}]}
     rm -rf round && mkdir round
-    [[ $command == *_again ]] && cp -a "$command/." round
+    [[ -d $command.before ]] && cp -a "$command.before/." round
     what=""
     disturb "$command" "$fault"
     status=$?
     # A run may have ended before it was disturbed, or just then.
     if ((status == 0)) && [[ -z $(ls -A round) ]]; then continue; fi # not tested here
     num_tried[$command]=$((${num_tried[$command]:-0} + 1))
-    if ((status != ${success[$command]:-0})); then
+    list round >round.list
+    if ((status != ${success[$command]:-0})) || stopped "$command" "$fault"; then
       check_after_fault "$command" "$fault" "$status"
       num_disturbed[$command.$fault]=$((${num_disturbed[$command.$fault]:-0} + 1))
-      list round | cmp -s - "$command.list" && continue
+      cmp -s round.list "$command.list" && continue
       run_in round "$command" || { fail "$command, $what: then refused: $(tail -1 log)"; continue; }
+      list round >round.list
     fi
-    list round >round.list
     cmp -s round.list "$command.list" || fail "$command, $what: other results: $(diff round.list "$command.list" | head -5)"
   done
   report "$command"
