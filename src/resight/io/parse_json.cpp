@@ -37,7 +37,7 @@ class JsonCheck final : public nlohmann::json_sax<nlohmann::json> {
   bool number_integer(number_integer_t /*value*/) override { return add(kValueBytes); }
   bool number_unsigned(number_unsigned_t /*value*/) override { return add(kValueBytes); }
   bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return add(kValueBytes); }
-  bool string(string_t& value) override { return add(kValueBytes + kBlockBytes + sizeof value + value.size()); }
+  bool string(string_t& value) override { return add(kValueBytes + kBlockBytes + sizeof(string_t) + value.size()); }
   bool binary(binary_t& /*value*/) override { return add(kValueBytes); }
   bool start_object(std::size_t /*size*/) override { return start(sizeof(nlohmann::json::object_t)); }
   bool end_object() override { return end(); }
