@@ -115,9 +115,9 @@ std::vector<fs::path> list_sequences(const fs::path& root) {
     if (is_training_split(folder)) continue;
     if (const auto sequence = value_or_throw(find_sequence_folder(folder))) sequences.push_back(*sequence);
   }
+  if (!sequences.empty()) return sequences;
   const auto only = find_sequence_folder(root);
-  if (sequences.empty() && only.ok() && *only) return {**only};
-  return sequences;
+  return only.ok() && *only ? std::vector{**only} : sequences;
 }
 
 bool lies_in(const fs::path& path, const fs::path& folder) {
