@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -58,11 +59,15 @@ Result<io::ImageHeader> read_header(std::string_view bytes) {
   return (*decoder)->read_header();
 }
 
+/// Large images are valid, but slow.
+bool is_large(std::int64_t width, std::int64_t height) {
+  return width > 0 && height > 0 && height > kMaxFuzzPixels / width;
+}
+
 void decode(std::string_view bytes) {
   const std::string image = with_checksums(bytes);
   const auto header = read_header(image);
-  // Large images are valid, but slow.
-  if (header && static_cast<std::int64_t>(header->width) * header->height > kMaxFuzzPixels) return;
+  if (header && is_large(header->width, header->height)) return;
   (void)decode_color(image, "fuzz.png", kMaxFuzzPixels);
   (void)decode_depth_raw(image, "fuzz.png");
 }
@@ -87,6 +92,16 @@ void read_npy(std::string_view bytes) {
   const fs::path file = write_scratch("depth.npy", bytes);
   (void)read_depth_npy(file);
   (void)read_depth_npy(file, 0.001);
+}
+
+void read_exr(std::string_view bytes) {
+  constexpr std::string_view kWindow("dataWindow\0box2i\0\x10\0\0\0", 21);
+  std::array<std::int32_t, 4> window{};
+  const std::size_t at = bytes.find(kWindow);
+  if (at != bytes.npos && bytes.size() - at >= kWindow.size() + sizeof(window))
+    std::memcpy(window.data(), bytes.data() + at + kWindow.size(), sizeof(window));
+  if (is_large(std::int64_t{window[2]} - window[0] + 1, std::int64_t{window[3]} - window[1] + 1)) return;
+  (void)io::parse_depth_exr(bytes, "fuzz.exr", std::nullopt);
 }
 
 /// The first byte chooses type and layout of the message.
@@ -141,7 +156,7 @@ std::vector<FuzzReader> image_readers() {
        [] {
          return stored_depth({"single.exr", "half.exr"});
        },
-       [](std::string_view bytes) { (void)io::parse_depth_exr(bytes, "fuzz.exr", std::nullopt); }, 1000},
+       read_exr, 1000},
       {"image_message", make_image_message_seeds, read_image_message},
   };
 }

@@ -14,9 +14,19 @@ namespace {
 namespace fs = std::filesystem;
 using Seeds = std::vector<std::string>;
 
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// With the smallest blocks that bz2 and lz4 know, for which their decoders allocate the least: this is faster.
 Seeds stored_recordings(std::initializer_list<const char*> names) {
   Seeds seeds;
-  for (const char* name : names) seeds.push_back(source_file("tests/data/recordings/" + std::string(name)));
+  for (const char* name : names) {
+    seeds.push_back(source_file("tests/data/recordings/" + std::string(name)));
+    replace_all(seeds.back(), "BZh9", "BZh1");
+    replace_all(seeds.back(), "\x04\x22\x4d\x18\x40\x70\xdf", "\x04\x22\x4d\x18\x40\x40\xc0");
+  }
   return seeds;
 }
 

@@ -106,8 +106,8 @@ struct Assign {
   }
 };
 
-// Levenshtein's distance.
-int edit_distance(std::string_view a, std::string_view b) {
+// Levenshtein's distance, or a number >= `limit` if it is not below that.
+int edit_distance(std::string_view a, std::string_view b, int limit) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -118,6 +118,7 @@ int edit_distance(std::string_view a, std::string_view b) {
       diagonal = row[k + 1];
       row[k + 1] = std::min({changed, row[k] + 1, row[k + 1] + 1});
     }
+    if (*std::ranges::min_element(row) >= limit) return limit;
   }
   return row[b.size()];
 }
@@ -178,15 +179,20 @@ std::vector<std::pair<std::string, std::string>> settings_of(std::span<const Opt
 
 std::string nearest_key(std::span<const Option> options, std::string_view unknown) {
   // The same last part in another section is nearer than any other spelling, and so is one that contains the other.
+  constexpr int kNameWeight = 10;
   const std::string_view name = last_part(unknown);
-  const auto distance = [&](const Option& option) {
+  std::string nearest;
+  int best = std::numeric_limits<int>::max();
+  for (const Option& option : options) {
     const std::string_view known = last_part(option.key);
     const bool contained = known.find(name) != std::string_view::npos || name.find(known) != std::string_view::npos;
-    const int of_names = contained ? (known == name ? 0 : 1) : edit_distance(known, name);
-    return 10 * of_names + edit_distance(option.key, unknown);
-  };
-  const auto nearest = std::ranges::min_element(options, {}, distance);
-  return nearest == options.end() ? std::string() : nearest->key;
+    const int of_names = contained ? (known == name ? 0 : 1) : edit_distance(known, name, best / kNameWeight + 1);
+    const int distance = kNameWeight * of_names + edit_distance(option.key, unknown, best - kNameWeight * of_names);
+    if (distance >= best) continue;
+    best = distance;
+    nearest = option.key;
+  }
+  return nearest;
 }
 
 namespace internal {
