@@ -71,41 +71,28 @@ Camera subsample(const Camera& camera) {
           camera.cx / 2,    camera.cy / 2,     camera.noise};
 }
 
-// Depths are never averaged: a mean across an edge lies on no surface.
-Image<float> subsample(const Image<float>& image) {
-  Image<float> half(image.width() / 2, image.height() / 2);
-  for (int v = 0; v < half.height(); ++v)
-    for (int u = 0; u < half.width(); ++u) half(u, v) = image(2 * u, 2 * v);
-  return half;
-}
-
-AlignmentLevel subsample(const AlignmentLevel& level) {
-  AlignmentLevel half;
-  half.camera = subsample(level.camera);
-  const OrganizedCloud& c = level.cloud;
-  half.cloud = {subsample(c.x), subsample(c.y), subsample(c.z), subsample(c.nx), subsample(c.ny), subsample(c.nz)};
-  half.sigma_m = subsample(level.sigma_m);
-  return half;
-}
-
 Image<float> without_mean(Image<float> grey, double mean_radius) {
   const Image<float> mean = box_mean(grey, std::max(1, static_cast<int>(std::lround(mean_radius * grey.width()))));
   for (std::size_t i = 0; i < grey.size(); ++i) grey[i] -= mean[i];
   return grey;
 }
 
-// Points of the whole image. Points that must not be aligned get no normal.
-AlignmentLevel whole_level(const PreparedView& view, const AlignmentViewOptions& options,
-                           const Image<std::uint8_t>* mask) {
-  AlignmentLevel level;
-  level.camera = view.frame.camera;
-  level.cloud = view.cloud;
-  level.sigma_m = view.noise.axial_m;
+// The points of each `step`-th pixel; `brightness` has the size of the result. Depths are never averaged: a mean across
+// an edge lies on no surface.
+Image<AlignmentPoint> sample_points(const PreparedView& view, int step, const Image<float>& brightness,
+                                    const AlignmentViewOptions& options, const Image<std::uint8_t>* mask) {
   const auto min_edge_distance_px = static_cast<float>(options.min_edge_distance_px);
-  for (std::size_t i = 0; i < level.cloud.nx.size(); ++i)
-    if (view.edge_distance_px[i] < min_edge_distance_px || (mask != nullptr && (*mask)[i] == 0))
-      level.cloud.nx[i] = kNan;
-  return level;
+  Image<AlignmentPoint> points(brightness.width(), brightness.height());
+  for (int v = 0; v < points.height(); ++v)
+    for (int u = 0; u < points.width(); ++u) {
+      const std::size_t i = view.cloud.z.index(step * u, step * v);
+      const bool is_aligned = view.edge_distance_px[i] >= min_edge_distance_px && (mask == nullptr || (*mask)[i] != 0);
+      points(u, v) = {.position = view.cloud.point(i),
+                      .sigma_m = view.noise.axial_m[i],
+                      .normal = is_aligned ? view.cloud.normal(i) : Eigen::Vector3f::Constant(kNan),
+                      .brightness = brightness(u, v)};
+    }
+  return points;
 }
 
 }  // namespace
@@ -123,14 +110,13 @@ AlignmentView make_alignment_view(const PreparedView& view, const AlignmentViewO
           "mask: must have the size of the view");
   require(!view.cloud.nx.empty(), "view: must have normals");
   AlignmentView pyramid;
-  AlignmentLevel finer = whole_level(view, options, mask);
+  Camera camera = view.frame.camera;
   Image<float> grey = to_grey(view.frame.color);
-  for (int l = 0; l < options.num_levels && finer.camera.width / 2 >= kMinWidth; ++l) {
-    AlignmentLevel level = subsample(finer);
+  for (int l = 0; l < options.num_levels && camera.width / 2 >= kMinWidth; ++l) {
+    camera = subsample(camera);
     grey = halve(grey);
-    pyramid.levels.push_back(level);
-    finer = std::move(level);
-    pyramid.levels.back().brightness = without_mean(grey, options.mean_radius);
+    pyramid.levels.push_back(
+        {camera, sample_points(view, 2 << l, without_mean(grey, options.mean_radius), options, mask)});
   }
   return pyramid;
 }

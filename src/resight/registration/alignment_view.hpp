@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "resight/sensor/prepared_view.hpp"
 
 namespace resight {
 
-/// What alignment needs of a view, at one resolution. Camera frame, metres. NaN in z = no measurement. NaN in nx = no
-/// normal, or the point must not be aligned (masked out, or near a depth edge).
+/// What alignment needs of a pixel, in one half of a cache line: pairs lie anywhere in the image. Camera frame, metres.
+struct alignas(32) AlignmentPoint {
+  Eigen::Vector3f position;  ///< NaN = no measurement.
+  float sigma_m = 0;         ///< Axial noise.
+  Eigen::Vector3f normal;    ///< NaN = none, or the point must not be aligned (masked out, or near a depth edge).
+  float brightness = 0;      ///< Grey value (0..255) minus the local mean, which removes the overall brightness.
+
+  [[nodiscard]] bool is_measured() const { return !std::isnan(position.z()); }
+  [[nodiscard]] bool has_normal() const { return !std::isnan(normal.x()); }
+};
+
+/// A view at one resolution.
 struct AlignmentLevel {
   Camera camera;
-  OrganizedCloud cloud;
-  Image<float> sigma_m;  ///< Axial noise of each point.
-  /// Grey values (0..255) minus their local mean, which removes the overall brightness.
-  Image<float> brightness;
+  Image<AlignmentPoint> points;
 };
 
 struct AlignmentViewOptions {
@@ -23,7 +32,7 @@ struct AlignmentViewOptions {
   void check() const;
 };
 
-/// A view as a pyramid, finest level (half resolution) first. About 5 MB for 640x480.
+/// A view as a pyramid, finest level (half resolution) first. About 3 MB for 640x480.
 struct AlignmentView {
   std::vector<AlignmentLevel> levels;
 };

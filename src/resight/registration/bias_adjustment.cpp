@@ -96,14 +96,14 @@ BiasEstimate BiasAdjustment::solve_part(BiasEstimate estimate, ViewPart part) co
 
 std::vector<BiasAdjustment::Sample> BiasAdjustment::draw_samples(const AlignmentLevel& level) {
   std::vector<std::size_t> usable;
-  for (std::size_t i = 0; i < level.cloud.z.size(); ++i)
-    if (level.cloud.has_point(i) && level.cloud.has_normal(i)) usable.push_back(i);
+  for (std::size_t i = 0; i < level.points.size(); ++i)
+    if (level.points[i].is_measured() && level.points[i].has_normal()) usable.push_back(i);
   const std::size_t step = usable.size() / kMaxBiasSamples + 1;
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < usable.size(); k += step) {
-    const std::size_t i = usable[k];
-    const double sigma_m = level.sigma_m[i];
-    samples.push_back({level.cloud.point(i).cast<double>(), level.cloud.normal(i).cast<double>(), sigma_m * sigma_m});
+    const AlignmentPoint& p = level.points[usable[k]];
+    const double sigma_m = p.sigma_m;
+    samples.push_back({p.position.cast<double>(), p.normal.cast<double>(), sigma_m * sigma_m});
   }
   return samples;
 }
@@ -142,14 +142,14 @@ BiasAdjustment::Equations BiasAdjustment::compare(const BiasEstimate& estimate, 
     const Eigen::Vector3d p = world_from_view * without_bias(s.point, estimate.per_m);
     const std::optional<Pixel> pixel = target.camera.pixel_of(target_from_world * p);
     if (!pixel) continue;
-    const std::size_t at = target.cloud.z.index(pixel->u, pixel->v);
-    if (!target.cloud.has_point(at) || !target.cloud.has_normal(at)) continue;
-    const Eigen::Vector3d measured = target.cloud.point(at).cast<double>();
+    const AlignmentPoint& at = target.points(pixel->u, pixel->v);
+    if (!at.is_measured() || !at.has_normal()) continue;
+    const Eigen::Vector3d measured = at.position.cast<double>();
     if (!contains(part, measured)) continue;
     const Eigen::Vector3d q = world_from_target * without_bias(measured, estimate.per_m);
-    const Eigen::Vector3d normal = world_from_target.rotation * target.cloud.normal(at).cast<double>();
+    const Eigen::Vector3d normal = world_from_target.rotation * at.normal.cast<double>();
     if (normal.dot(world_from_view.rotation * s.normal) < kMinNormalCosine) continue;
-    const double sigma_m = target.sigma_m[at];
+    const double sigma_m = at.sigma_m;
     const double variance_m2 = s.variance_m2 + sigma_m * sigma_m;
     const double gate = std::max(gate_m, kGateSigmas * std::sqrt(variance_m2));
     const double distance = normal.dot(p - q);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -17,42 +16,53 @@
 namespace resight {
 namespace {
 
-using Twistf = Eigen::Matrix<float, 6, 1>;
-
-constexpr std::size_t kBlock = 512;      // Samples per partial sum.
-constexpr double kConvergedStep = 1e-5;  // Radians and metres; smaller steps have converged.
+constexpr std::size_t kBlock = 512;  // Samples per partial sum.
+// Radians and metres; smaller steps have converged. Twice as large at each coarser level, as the pixels are.
+constexpr double kConvergedStep = 4e-5;
 // Directions whose information is below this share of the best-known direction count as unconstrained and stay
 // unchanged.
 constexpr double kMinEigenvalueRatio = 3e-4;
-constexpr double kBrightnessGate = 4;  // In units of brightness_sigma.
+constexpr float kBrightnessGate = 4;  // In units of brightness_sigma.
 // Largest point-to-point distance of a pair, in units of its largest point-to-plane distance.
 constexpr float kMaxPairDistance = 3;
 
 // Points of one level that are aligned.
-struct Samples {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<Eigen::Vector3f> normals;
-  std::vector<float> sigma_m;
-  std::vector<float> brightness;
-};
-
-Samples draw_samples(const AlignmentLevel& level, int max_samples) {
-  const OrganizedCloud& cloud = level.cloud;
-  std::size_t num_usable = 0;
-  for (std::size_t i = 0; i < cloud.z.size(); ++i) num_usable += cloud.has_point(i) && cloud.has_normal(i);
-  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(num_usable) / max_samples))));
-  Samples samples;
-  for (int v = 0; v < cloud.height(); v += step)
-    for (int u = 0; u < cloud.width(); u += step) {
-      const std::size_t i = cloud.z.index(u, v);
-      if (!cloud.has_point(i) || !cloud.has_normal(i)) continue;
-      samples.points.push_back(cloud.point(i));
-      samples.normals.push_back(cloud.normal(i));
-      samples.sigma_m.push_back(level.sigma_m[i]);
-      samples.brightness.push_back(level.brightness[i]);
-    }
+std::vector<AlignmentPoint> draw_samples(const AlignmentLevel& level, int max_samples) {
+  const auto is_usable = [](const AlignmentPoint& p) { return p.is_measured() && p.has_normal(); };
+  const auto num_usable = static_cast<double>(std::ranges::count_if(level.points.data(), is_usable));
+  const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(num_usable / max_samples))));
+  std::vector<AlignmentPoint> samples;
+  for (int v = 0; v < level.points.height(); v += step)
+    for (int u = 0; u < level.points.width(); u += step)
+      if (is_usable(level.points(u, v))) samples.push_back(level.points(u, v));
   return samples;
 }
+
+// Products of the rows of pairs, in single precision.
+struct RowProducts {
+  // Derivatives with respect to a twist of the view, the residual, and 0.
+  using Row = Eigen::Matrix<float, 8, 1>;
+  using Products = Eigen::Matrix<float, 8, 6>;
+  Products own = Products::Zero();
+  Products with_other = Products::Zero();
+  Products of_brightness = Products::Zero();
+
+  static Row row(const Eigen::Vector3f& arm, const Eigen::Vector3f& direction, float residual) {
+    Row row;
+    row << arm.cross(direction), direction, residual, 0.0F;
+    return row;
+  }
+  void add_distance(const Row& row, const Row& other, float weight) {
+    const Eigen::Matrix<float, 6, 1> weighted = weight * row.head<6>();
+    for (int c = 0; c < 6; ++c) {
+      own.col(c) += weighted[c] * row;
+      with_other.col(c) += weighted[c] * other;
+    }
+  }
+  void add_brightness(const Row& row, float weight) {
+    for (int c = 0; c < 6; ++c) of_brightness.col(c) += weight * row[c] * row;
+  }
+};
 
 // Normal equations and counts. Partial sums are added in order, so that results do not depend on the number of threads.
 struct Sums {
@@ -70,11 +80,12 @@ struct Sums {
   double cost = 0;
   int num_compared = 0;
 
-  void add(const Twistf& j, const Twistf& other_j, double residual, double weight) {
-    const Twist row = j.cast<double>();
-    const Twist other_row = other_j.cast<double>();
-    equations.add_row(row, residual, weight);
-    for (int c = 0; c < 6; ++c) unbiased.col(c) += weight * row[c] * other_row;
+  void add(const RowProducts& products) {
+    const Eigen::Matrix<double, 8, 6> own = products.own.cast<double>();
+    const Eigen::Matrix<double, 8, 6> of_brightness = products.of_brightness.cast<double>();
+    equations.matrix += (own + of_brightness).topRows<6>();
+    equations.right += (own + of_brightness).row(6).transpose();
+    unbiased += products.with_other.cast<double>().topRows<6>() + of_brightness.topRows<6>();
   }
   void add_brightness(double a, double b) {
     const double terms[5] = {a, b, a * a, b * b, a * b};
@@ -101,19 +112,19 @@ struct Sums {
   }
 };
 
-// Bilinear value and gradient (per pixel) of an image; false at its border.
-bool interpolate(const Image<float>& image, float u, float v, float& value, float& du, float& dv) {
+// Bilinear value and gradient (per pixel) of the brightness; false at the image border.
+bool interpolate(const Image<AlignmentPoint>& image, float u, float v, float& value, float& du, float& dv) {
   const int u0 = static_cast<int>(std::floor(u));
   const int v0 = static_cast<int>(std::floor(v));
   if (u0 < 0 || v0 < 0 || u0 + 1 >= image.width() || v0 + 1 >= image.height()) return false;
   const float a = u - static_cast<float>(u0);
   const float b = v - static_cast<float>(v0);
-  const float* top = &image(u0, v0);
-  const float* bottom = &image(u0, v0 + 1);
-  const float du_top = top[1] - top[0];
-  const float du_bottom = bottom[1] - bottom[0];
-  const float at_top = top[0] + a * du_top;
-  const float at_bottom = bottom[0] + a * du_bottom;
+  const AlignmentPoint* top = &image(u0, v0);
+  const AlignmentPoint* bottom = &image(u0, v0 + 1);
+  const float du_top = top[1].brightness - top[0].brightness;
+  const float du_bottom = bottom[1].brightness - bottom[0].brightness;
+  const float at_top = top[0].brightness + a * du_top;
+  const float at_bottom = bottom[0].brightness + a * du_bottom;
   value = at_top + b * (at_bottom - at_top);
   du = du_top + b * (du_bottom - du_top);
   dv = at_bottom - at_top;
@@ -127,46 +138,52 @@ class LevelTarget {
               double gate_m)
       : level_(level),
         pose_(target_from_view),
-        options_(options),
+        view_from_target_rotation_(pose_.rotation.transpose()),
+        focal_(static_cast<float>(level.camera.fx), static_cast<float>(level.camera.fy)),
+        center_(static_cast<float>(level.camera.cx), static_cast<float>(level.camera.cy)),
+        end_(static_cast<float>(level.camera.width) - 0.5F, static_cast<float>(level.camera.height) - 0.5F),
         gate_m_(static_cast<float>(gate_m)),
-        min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))) {}
+        min_cosine_(static_cast<float>(std::cos(options.max_normal_angle_rad))),
+        max_noise_sigmas_(static_cast<float>(options.max_noise_sigmas)),
+        brightness_sigma_(static_cast<float>(options.brightness_sigma)) {}
 
   enum class Outcome { kNothing, kPair, kOccluded, kSeenThrough };
 
   /// Truncated squared distance of a sample to the target's surface, in [0, 1]; none where it measured nothing.
-  [[nodiscard]] std::optional<float> cost(const Samples& samples, std::size_t s) const {
-    const Eigen::Vector3f q = pose_ * samples.points[s];
+  [[nodiscard]] std::optional<float> cost(const AlignmentPoint& sample) const {
+    const Eigen::Vector3f q = pose_ * sample.position;
     const std::optional<Pixel> pixel = level_.camera.pixel_of(q.cast<double>());
     if (!pixel) return std::nullopt;
-    const std::size_t i = level_.cloud.z.index(pixel->u, pixel->v);
-    if (!level_.cloud.has_point(i)) return std::nullopt;
-    const Eigen::Vector3f normal = pose_.rotation * samples.normals[s];
-    const float distance = normal.dot(q - level_.cloud.point(i));
-    const float sigma_sq = samples.sigma_m[s] * samples.sigma_m[s] + level_.sigma_m[i] * level_.sigma_m[i];
-    const auto limit = static_cast<float>(options_.max_noise_sigmas);
-    return std::min(1.0F, distance * distance / (sigma_sq * limit * limit));
+    const AlignmentPoint& at = level_.points(pixel->u, pixel->v);
+    if (!at.is_measured()) return std::nullopt;
+    const float distance = (pose_.rotation * sample.normal).dot(q - at.position);
+    const float sigma_sq = sample.sigma_m * sample.sigma_m + at.sigma_m * at.sigma_m;
+    return std::min(1.0F, distance * distance / (sigma_sq * max_noise_sigmas_ * max_noise_sigmas_));
   }
 
-  Outcome add(const Samples& samples, std::size_t s, Sums& sums) const {
-    const Eigen::Vector3f p = samples.points[s];
-    const Eigen::Vector3f q = pose_ * p;
+  Outcome add(const AlignmentPoint& sample, RowProducts& products, Sums& sums) const {
+    const Eigen::Vector3f q = pose_ * sample.position;
     if (!(q.z() > 0.05F)) return Outcome::kNothing;
-    const Camera& camera = level_.camera;
-    const auto u = static_cast<float>(camera.fx * q.x() / q.z() + camera.cx);
-    const auto v = static_cast<float>(camera.fy * q.y() / q.z() + camera.cy);
-    if (!(u > -0.5F && v > -0.5F && u < static_cast<float>(camera.width) - 0.5F &&
-          v < static_cast<float>(camera.height) - 0.5F))
+    const Eigen::Vector2f pixel = focal_.cwiseProduct(q.head<2>()) / q.z() + center_;
+    if (!(pixel.x() > -0.5F && pixel.y() > -0.5F && pixel.x() < end_.x() && pixel.y() < end_.y()))
       return Outcome::kNothing;
-    const std::size_t i = level_.cloud.z.index(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
-    if (!level_.cloud.has_point(i)) return Outcome::kNothing;
-    const float sigma_sq = samples.sigma_m[s] * samples.sigma_m[s] + level_.sigma_m[i] * level_.sigma_m[i];
-    const float gate = std::max(gate_m_, static_cast<float>(options_.max_noise_sigmas) * std::sqrt(sigma_sq));
-    const Eigen::Vector3f offset = q - level_.cloud.point(i);
-    if (level_.cloud.has_normal(i) && offset.squaredNorm() < kMaxPairDistance * gate * kMaxPairDistance * gate) {
-      const Eigen::Vector3f normal = level_.cloud.normal(i);
-      const float distance = normal.dot(offset);
-      if (std::abs(distance) < gate && normal.dot(pose_.rotation * samples.normals[s]) > min_cosine_) {
-        add_pair(samples, s, q, {u, v}, normal, distance, gate, sigma_sq, sums);
+    const AlignmentPoint& at = level_.points(static_cast<int>(pixel.x() + 0.5F), static_cast<int>(pixel.y() + 0.5F));
+    if (!at.is_measured()) return Outcome::kNothing;
+    const float sigma_sq = sample.sigma_m * sample.sigma_m + at.sigma_m * at.sigma_m;
+    const float gate = std::max(gate_m_, max_noise_sigmas_ * std::sqrt(sigma_sq));
+    const Eigen::Vector3f offset = q - at.position;
+    if (at.has_normal() && offset.squaredNorm() < kMaxPairDistance * gate * kMaxPairDistance * gate) {
+      const float distance = at.normal.dot(offset);
+      const Eigen::Vector3f normal_in_view = view_from_target_rotation_ * at.normal;
+      if (std::abs(distance) < gate && normal_in_view.dot(sample.normal) > min_cosine_) {
+        const auto weight = static_cast<float>(tukey(distance / gate));
+        // Derivatives of the motion of the point along a direction, in the view's frame, with respect to a twist of the
+        // view.
+        products.add_distance(RowProducts::row(sample.position, normal_in_view, distance),
+                              RowProducts::row(sample.position, sample.normal, 0), weight / sigma_sq);
+        sums.distance_m += std::abs(distance);
+        ++sums.num_pairs;
+        if (brightness_sigma_ > 0) add_brightness(sample, q, pixel, weight, products, sums);
         return Outcome::kPair;
       }
     }
@@ -175,56 +192,50 @@ class LevelTarget {
   }
 
  private:
-  void add_pair(const Samples& samples, std::size_t s, const Eigen::Vector3f& q, const Eigen::Vector2f& pixel,
-                const Eigen::Vector3f& normal, float distance, float gate, float sigma_sq, Sums& sums) const {
-    const Eigen::Vector3f p = samples.points[s];
-    const double weight = tukey(distance / gate);
-    // Derivatives of the motion of the point along a direction, in the view's frame, with respect to a twist of the
-    // view.
-    const Eigen::Vector3f normal_in_view = pose_.rotation.transpose() * normal;
-    sums.add(point_to_plane_row(p, normal_in_view), point_to_plane_row(p, samples.normals[s]), distance,
-             weight / sigma_sq);
-    sums.distance_m += std::abs(distance);
-    ++sums.num_pairs;
-    if (options_.brightness_sigma <= 0) return;
+  void add_brightness(const AlignmentPoint& sample, const Eigen::Vector3f& q, const Eigen::Vector2f& pixel,
+                      float weight, RowProducts& products, Sums& sums) const {
     float value = 0, du = 0, dv = 0;
-    if (!interpolate(level_.brightness, pixel.x(), pixel.y(), value, du, dv)) return;
-    sums.add_brightness(value, samples.brightness[s]);
-    const double residual = value - samples.brightness[s];
-    const double sigma = options_.brightness_sigma;
-    const double brightness_weight = weight * tukey(residual / (kBrightnessGate * sigma));
-    if (brightness_weight == 0) return;
-    const auto gu = static_cast<float>(du * level_.camera.fx) / q.z();
-    const auto gv = static_cast<float>(dv * level_.camera.fy) / q.z();
+    if (!interpolate(level_.points, pixel.x(), pixel.y(), value, du, dv)) return;
+    sums.add_brightness(value, sample.brightness);
+    const float residual = value - sample.brightness;
+    weight *= static_cast<float>(tukey(residual / (kBrightnessGate * brightness_sigma_)));
+    if (weight == 0) return;
+    const float gu = du * focal_.x() / q.z();
+    const float gv = dv * focal_.y() / q.z();
     const Eigen::Vector3f gradient(gu, gv, -(gu * q.x() + gv * q.y()) / q.z());  // Brightness per metre.
-    const Eigen::Vector3f gradient_in_view = pose_.rotation.transpose() * gradient;
-    const Twistf j = point_to_plane_row(p, gradient_in_view);
-    sums.add(j, j, residual, brightness_weight / (sigma * sigma));
+    products.add_brightness(RowProducts::row(sample.position, view_from_target_rotation_ * gradient, residual),
+                            weight / (brightness_sigma_ * brightness_sigma_));
   }
 
   const AlignmentLevel& level_;
   Rigid3f pose_;
-  const AlignViewOptions& options_;
+  Eigen::Matrix3f view_from_target_rotation_;
+  Eigen::Vector2f focal_;
+  Eigen::Vector2f center_;
+  Eigen::Vector2f end_;
   float gate_m_;
   float min_cosine_;
+  float max_noise_sigmas_;
+  float brightness_sigma_;
 };
 
 enum class CostOfPairs : std::uint8_t { kSkipped, kComputed };
 
-Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
+Sums sum_pairs(std::span<const AlignmentPoint> samples, std::span<const AlignmentTarget> targets, std::size_t level,
                const Rigid3& world_from_camera, double gate_m, const AlignViewOptions& options,
                CostOfPairs cost_of_pairs = CostOfPairs::kSkipped) {
   std::vector<LevelTarget> seen;
   for (const AlignmentTarget& target : targets)
     seen.emplace_back(target.view->levels[level], target.world_from_camera.inverse() * world_from_camera, options,
                       gate_m);
-  std::vector<Sums> partial((samples.points.size() + kBlock - 1) / kBlock);
-  parallel_for_blocks(samples.points.size(), kBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
+  std::vector<Sums> partial((samples.size() + kBlock - 1) / kBlock);
+  parallel_for_blocks(samples.size(), kBlock, options.num_threads, [&](std::size_t begin, std::size_t end) {
     Sums& sums = partial[begin / kBlock];
-    for (std::size_t s = begin; s < end; ++s) {
+    RowProducts products;
+    for (const AlignmentPoint& sample : samples.subspan(begin, end - begin)) {
       bool pair = false, hidden = false, in_front = false;
       for (const LevelTarget& target : seen) {
-        const LevelTarget::Outcome outcome = target.add(samples, s, sums);
+        const LevelTarget::Outcome outcome = target.add(sample, products, sums);
         pair |= outcome == LevelTarget::Outcome::kPair;
         hidden |= outcome == LevelTarget::Outcome::kOccluded;
         in_front |= outcome == LevelTarget::Outcome::kSeenThrough;
@@ -234,10 +245,11 @@ Sums sum_pairs(const Samples& samples, std::span<const AlignmentTarget> targets,
       if (cost_of_pairs == CostOfPairs::kSkipped) continue;
       std::optional<float> least;
       for (const LevelTarget& target : seen)
-        if (const std::optional<float> cost = target.cost(samples, s)) least = least ? std::min(*least, *cost) : cost;
+        if (const std::optional<float> cost = target.cost(sample)) least = least ? std::min(*least, *cost) : cost;
       sums.cost += least.value_or(0);
       sums.num_compared += least.has_value();
     }
+    sums.add(products);
   });
   Sums all;
   for (const Sums& sums : partial) all.add(sums);
@@ -278,9 +290,10 @@ Twist prior_information(const AlignViewOptions& options) {
   return information;
 }
 
-Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targets, std::size_t level,
+Rigid3 align_level(std::span<const AlignmentPoint> samples, std::span<const AlignmentTarget> targets, std::size_t level,
                    const Rigid3& given, Rigid3 pose, double gate_m, const AlignViewOptions& options) {
   const Twist prior = prior_information(options);
+  const double converged_step = std::ldexp(kConvergedStep, static_cast<int>(level));
   for (int i = 0; i < options.max_iterations; ++i) {
     const Sums sums = sum_pairs(samples, targets, level, pose, gate_m, options);
     if (sums.num_pairs == 0) break;
@@ -292,7 +305,7 @@ Rigid3 align_level(const Samples& samples, std::span<const AlignmentTarget> targ
         options.information_per_pair * sums.equations.right + prior.cwiseProduct(to_twist(given.inverse() * pose));
     const Twist step = solve_step(h, unbiased, g);
     pose = pose * from_twist(step);
-    if (step.cwiseAbs().maxCoeff() < kConvergedStep) break;
+    if (step.cwiseAbs().maxCoeff() < converged_step) break;
   }
   pose.rotation = nearest_rotation(pose.rotation);
   return pose;
@@ -327,13 +340,13 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
                                const Rigid3& world_from_camera, const AlignViewOptions& options) {
   options.check();
   check_levels(view, targets, 1);
-  const Samples samples = draw_samples(view.levels[0], options.max_samples);
+  const std::vector<AlignmentPoint> samples = draw_samples(view.levels[0], options.max_samples);
   const Sums sums =
       sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, CostOfPairs::kComputed);
   AlignedView aligned;
   aligned.world_from_camera = world_from_camera;
   aligned.information = options.information_per_pair * known_information(sums.unbiased);
-  const double num_samples = std::max<double>(1, static_cast<double>(samples.points.size()));
+  const double num_samples = std::max<double>(1, static_cast<double>(samples.size()));
   aligned.overlap = sums.num_matched / num_samples;
   aligned.seen_through = sums.num_seen_through / num_samples;
   aligned.mean_distance_m = sums.num_pairs > 0 ? sums.distance_m / sums.num_pairs : 0;
@@ -353,7 +366,7 @@ AlignedView align_view(const AlignmentView& view, std::span<const AlignmentTarge
   for (std::size_t l = num_levels; l-- > 0;) {
     const double coarseness = num_levels > 1 ? static_cast<double>(l) / static_cast<double>(num_levels - 1) : 0;
     const double gate_m = min_m * std::pow(options.max_distance_m / min_m, coarseness);
-    const Samples samples = draw_samples(view.levels[l], options.max_samples);
+    const std::vector<AlignmentPoint> samples = draw_samples(view.levels[l], options.max_samples);
     pose = align_level(samples, targets, l, world_from_camera, pose, gate_m, options);
   }
   return evaluate_alignment(view, targets, pose, options);

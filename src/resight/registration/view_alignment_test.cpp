@@ -186,7 +186,7 @@ TEST(AlignmentView, LevelsLieOverEachOther) {
   for (std::size_t l = 1; l < 3; ++l) {
     const AlignmentLevel& level = view.levels[l];
     const double right = level.camera.unproject(30, 20, 1).x(), left = level.camera.unproject(10, 20, 1).x();
-    const double step_per_ray = (level.brightness(30, 20) - level.brightness(10, 20)) / (right - left);
+    const double step_per_ray = (level.points(30, 20).brightness - level.points(10, 20).brightness) / (right - left);
     EXPECT_NEAR(step_per_ray, frame.camera.fx / 2, 2) << "level " << l;
   }
 }
