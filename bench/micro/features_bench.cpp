@@ -5,6 +5,7 @@
 
 #include "bench_data.hpp"
 #include "resight/features/descriptor_index.hpp"
+#include "resight/features/internal/interleaved_rows.hpp"
 #include "resight/features/shot.hpp"
 #include "resight/features/sift.hpp"
 
@@ -71,6 +72,32 @@ void IndexSearchOfOneObject(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(index.search(task.queries, 3));
 }
 BENCHMARK(IndexSearchOfOneObject)->Arg(1024)->Arg(8192)->Unit(benchmark::kMillisecond);
+
+/// Products of queries with the 104 rows of a cell of 128 values, as each probe takes. Argument: queries.
+void ProductsOfCell(benchmark::State& state) {
+  using Matrix = InterleavedRows::Matrix;
+  const InterleavedRows rows(Matrix::Random(104, 128));
+  const Matrix queries = Matrix::Random(state.range(0), 128);
+  Matrix products;
+  for (auto _ : state) {
+    rows.multiply(queries, 0, rows.size(), products);
+    benchmark::DoNotOptimize(products.data());
+  }
+}
+BENCHMARK(ProductsOfCell)->Arg(1)->Arg(5)->Arg(20)->Arg(80);
+
+/// The same with the product of matrices of Eigen.
+void ProductsOfCellByEigen(benchmark::State& state) {
+  using Matrix = InterleavedRows::Matrix;
+  const Matrix rows = Matrix::Random(104, 128);
+  const Matrix queries = Matrix::Random(state.range(0), 128);
+  Matrix products;
+  for (auto _ : state) {
+    products.noalias() = queries * rows.transpose();
+    benchmark::DoNotOptimize(products.data());
+  }
+}
+BENCHMARK(ProductsOfCellByEigen)->Arg(1)->Arg(5)->Arg(20)->Arg(80);
 
 void IndexExactSearch(benchmark::State& state) {
   const int dimension = static_cast<int>(state.range(0));

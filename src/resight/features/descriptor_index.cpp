@@ -11,12 +11,13 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
+#include "resight/features/internal/interleaved_rows.hpp"
 
 namespace resight {
 namespace {
 
-using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Block = Eigen::Ref<const Matrix, 0, Eigen::OuterStride<>>;
+using Matrix = InterleavedRows::Matrix;
+using Block = InterleavedRows::Block;
 using Eigen::Index;
 
 constexpr Index kQueriesPerBlock = 128;  // Queries per product with all centroids.
@@ -172,6 +173,7 @@ Matrix principal_components(const DescriptorRows& all, const Eigen::RowVectorXf&
 struct DescriptorIndex::Impl {
   Impl(DescriptorRows descriptors, const DescriptorIndexOptions& settings);
   void build_cells(const Matrix& data, int num_cells);
+  void set_rows(const Matrix& ordered);
   [[nodiscard]] Matrix project(const Block& descriptors) const;
   [[nodiscard]] Matrix project_all() const;
   void scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
@@ -187,7 +189,7 @@ struct DescriptorIndex::Impl {
 
   DescriptorIndexOptions options;
   Index dimension;
-  Matrix rows;                // searched rows in cell order: descriptors or their components
+  InterleavedRows rows;       // searched rows in cell order: descriptors or their components
   DescriptorRows whole;       // descriptors in the caller's order; empty unless components are searched
   Eigen::RowVectorXf mean;    // mean descriptor
   Matrix basis;               // dimension x components; empty if whole descriptors are compared
@@ -204,7 +206,7 @@ DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOpt
   const int automatic = static_cast<int>(4 * std::sqrt(static_cast<double>(n)));
   const int num_cells = std::min<int>(options.num_cells.value_or(automatic), static_cast<int>(n));
   if (options.search == IndexSearch::kExact || n < options.exact_below || num_cells <= 1) {
-    rows = read_rows(descriptors, 0, n);
+    set_rows(read_rows(descriptors, 0, n));
     original.resize(static_cast<std::size_t>(n));
     std::iota(original.begin(), original.end(), 0);
   } else if (options.num_components && 2 * *options.num_components <= dimension) {
@@ -215,7 +217,11 @@ DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOpt
   } else {
     build_cells(read_rows(descriptors, 0, n), num_cells);
   }
-  norms_sq = rows.rowwise().squaredNorm();
+}
+
+void DescriptorIndex::Impl::set_rows(const Matrix& ordered) {
+  rows = InterleavedRows(ordered);
+  norms_sq = ordered.rowwise().squaredNorm();
 }
 
 Matrix DescriptorIndex::Impl::project(const Block& descriptors) const {
@@ -241,25 +247,28 @@ void DescriptorIndex::Impl::build_cells(const Matrix& data, int num_cells) {
   for (const int c : cell) ++cell_begin[static_cast<std::size_t>(c) + 1];
   std::partial_sum(cell_begin.begin(), cell_begin.end(), cell_begin.begin());
   std::vector<Index> next(cell_begin.begin(), cell_begin.end() - 1);
-  rows.resize(data.rows(), data.cols());
+  Matrix ordered(data.rows(), data.cols());
   original.resize(cell.size());
   for (std::size_t i = 0; i < cell.size(); ++i) {
     const Index row = next[static_cast<std::size_t>(cell[i])]++;
-    rows.row(row) = data.row(static_cast<Index>(i));
+    ordered.row(row) = data.row(static_cast<Index>(i));
     original[static_cast<std::size_t>(row)] = static_cast<int>(i);
   }
+  set_rows(ordered);
 }
 
 // Compares all `queries` with the rows [begin, end). `query_of_row` gives the list that each query fills.
 void DescriptorIndex::Impl::scan(const Block& queries, std::span<const int> query_of_row, Index begin, Index end,
                                  std::vector<BestList>& best) const {
   Scores scores;
+  Matrix products;
   for (Index first = begin; first < end; first += kRowsPerBlock) {
     const Index count = std::min(kRowsPerBlock, end - first);
-    const Matrix products = queries * rows.middleRows(first, count).transpose();
+    rows.multiply(queries, first, first + count, products);
+    const auto of_rows = products.middleCols(first % InterleavedRows::kLanes, count);
     for (Index q = 0; q < queries.rows(); ++q) {
       BestList& list = best[static_cast<std::size_t>(query_of_row[static_cast<std::size_t>(q)])];
-      scores = norms_sq.segment(first, count).array() - 2.0F * products.row(q).transpose().array();
+      scores = norms_sq.segment(first, count).array() - 2.0F * of_rows.row(q).transpose().array();
       if (!list.accepts(scores.minCoeff())) continue;  // the usual case, found by vector code
       for (Index r = 0; r < count; ++r)
         if (list.accepts(scores[r])) list.add(static_cast<int>(first + r), scores[r]);
@@ -301,7 +310,7 @@ void DescriptorIndex::Impl::scan_cells(const Block& queries, std::vector<BestLis
 void DescriptorIndex::Impl::scan_rows(const Block& queries, std::vector<BestList>& best) const {
   std::vector<int> all(static_cast<std::size_t>(queries.rows()));
   std::iota(all.begin(), all.end(), 0);
-  scan(queries, all, 0, rows.rows(), best);
+  scan(queries, all, 0, rows.size(), best);
 }
 
 // Finds the nearest candidates by exact distance and in the caller's order. `compared_norm_sq` is |q|^2 of the compared
