@@ -19,7 +19,7 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// With the smallest blocks that bz2 and lz4 know, for which their decoders allocate the least: this is faster.
+/// They declare the smallest blocks of bz2 and lz4, for which the decoders allocate the least: fuzzing is faster.
 Seeds stored_recordings(std::initializer_list<const char*> names) {
   Seeds seeds;
   for (const char* name : names) {

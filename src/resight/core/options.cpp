@@ -106,7 +106,7 @@ struct Assign {
   }
 };
 
-// Levenshtein's distance, or a number >= `limit` if it is not below that.
+// Levenshtein's distance if it is below `limit`, otherwise `limit` or more.
 int edit_distance(std::string_view a, std::string_view b, int limit) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

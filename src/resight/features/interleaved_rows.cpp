@@ -12,7 +12,7 @@ using Lanes = Eigen::Array<float, InterleavedRows::kLanes, 1>;
 
 constexpr Index kMaxQueries = 8;  // Of one pass: their sums stay in registers.
 
-// Products of `Count` successive queries with one group. A few queries have several partial sums each, because the next
+// Products of `Count` successive queries with one group. Up to three queries have four partial sums each, because an
 // addition to a sum waits for the one before.
 template <Index Count>
 void multiply_group(const float* query, Index query_stride, const float* group, Index dimension, float* product,

@@ -8,11 +8,12 @@
 
 namespace resight {
 
-/// What alignment needs of a pixel, in one half of a cache line: pairs lie anywhere in the image. Camera frame, metres.
+/// What alignment needs of a pixel. Camera frame, metres. It fills half a cache line, so that a pair, which may lie
+/// anywhere in the image, costs one access to memory.
 struct alignas(32) AlignmentPoint {
   Eigen::Vector3f position;  ///< NaN = no measurement.
   float sigma_m = 0;         ///< Axial noise.
-  Eigen::Vector3f normal;    ///< NaN = none, or the point must not be aligned (masked out, or near a depth edge).
+  Eigen::Vector3f normal;    ///< NaN = none or no measurement, or not to be aligned (masked out, near a depth edge).
   float brightness = 0;      ///< Grey value (0..255) minus the local mean, which removes the overall brightness.
 
   [[nodiscard]] bool is_measured() const { return !std::isnan(position.z()); }

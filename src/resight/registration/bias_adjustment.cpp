@@ -97,7 +97,7 @@ BiasEstimate BiasAdjustment::solve_part(BiasEstimate estimate, ViewPart part) co
 std::vector<BiasAdjustment::Sample> BiasAdjustment::draw_samples(const AlignmentLevel& level) {
   std::vector<std::size_t> usable;
   for (std::size_t i = 0; i < level.points.size(); ++i)
-    if (level.points[i].is_measured() && level.points[i].has_normal()) usable.push_back(i);
+    if (level.points[i].has_normal()) usable.push_back(i);
   const std::size_t step = usable.size() / kMaxBiasSamples + 1;
   std::vector<Sample> samples;
   for (std::size_t k = 0; k < usable.size(); k += step) {
@@ -143,7 +143,7 @@ BiasAdjustment::Equations BiasAdjustment::compare(const BiasEstimate& estimate, 
     const std::optional<Pixel> pixel = target.camera.pixel_of(target_from_world * p);
     if (!pixel) continue;
     const AlignmentPoint& at = target.points(pixel->u, pixel->v);
-    if (!at.is_measured() || !at.has_normal()) continue;
+    if (!at.has_normal()) continue;
     const Eigen::Vector3d measured = at.position.cast<double>();
     if (!contains(part, measured)) continue;
     const Eigen::Vector3d q = world_from_target * without_bias(measured, estimate.per_m);

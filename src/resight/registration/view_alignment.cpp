@@ -28,13 +28,12 @@ constexpr float kMaxPairDistance = 3;
 
 // Points of one level that are aligned.
 std::vector<AlignmentPoint> draw_samples(const AlignmentLevel& level, int max_samples) {
-  const auto is_usable = [](const AlignmentPoint& p) { return p.is_measured() && p.has_normal(); };
-  const auto num_usable = static_cast<double>(std::ranges::count_if(level.points.data(), is_usable));
+  const auto num_usable = static_cast<double>(std::ranges::count_if(level.points.data(), &AlignmentPoint::has_normal));
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(num_usable / max_samples))));
   std::vector<AlignmentPoint> samples;
   for (int v = 0; v < level.points.height(); v += step)
     for (int u = 0; u < level.points.width(); u += step)
-      if (is_usable(level.points(u, v))) samples.push_back(level.points(u, v));
+      if (level.points(u, v).has_normal()) samples.push_back(level.points(u, v));
   return samples;
 }
 

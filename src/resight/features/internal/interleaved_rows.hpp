@@ -6,8 +6,8 @@
 namespace resight {
 
 /// Rows of a matrix in groups of eight, value by value, so that one vector instruction advances the products of a query
-/// with eight rows. A product of general matrices copies its factors into such an order first, which takes as long as
-/// the product itself if a few queries meet a hundred rows.
+/// with eight rows. A general product of matrices first copies its factors into such an order, which does not pay for a
+/// few queries.
 class InterleavedRows {
  public:
   using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
