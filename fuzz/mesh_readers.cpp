@@ -79,7 +79,8 @@ std::vector<std::string> make_obj_seeds() {
       "# cube\nmtllib m.mtl\no a\nv 0 0 0\nv .1 0 0 1 0 0\nv 0 0.1 0\nv 0 0 1e-1\nvt 0 0\nvt 1 0 0\nvn 0 0 1\n"
       "usemtl red\ns 1\nf 1/1/1 2/2/1 3/1/1\ng b\nusemtl blue\nf -1 -2 -3\nf 1//1 2//1 4//1 3//1\nl 1 2\np 1\n",
       "newmtl red\nKd 1 0 0\nmap_Kd t.png\nbump b.png\nnewmtl blue\nKd 0 0 1\nd 0.5\nmap_Kd -s 1 1 1 t.png\n"};
-  return {join_files(textured), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"};
+  return {join_files(textured), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+          "mtllib a://\nmtllib \\\\\nv 0 0 0\nmtllib b\\m.mtl"};
 }
 
 constexpr std::string_view kGltf =
@@ -93,8 +94,13 @@ constexpr std::string_view kGltf =
     R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],)"
     R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":6},{"buffer":0,"byteOffset":8,"byteLength":36}],)";
 
+constexpr std::string_view kGltfMissingBuffer = R"("buffers":[{"byteLength":44,"uri":"a://"}]})";
 constexpr std::string_view kGltfBuffer = R"("buffers":[{"byteLength":44,"uri":"data:application/octet-stream;base64,)"
                                          R"(AAABAAIAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA="}]})";
+
+std::vector<std::string> make_gltf_seeds() {
+  return {std::string(kGltf).append(kGltfBuffer), std::string(kGltf).append(kGltfMissingBuffer)};
+}
 
 std::string make_glb() {
   const auto number = [](std::size_t value) {
@@ -136,8 +142,7 @@ std::vector<FuzzReader> mesh_readers() {
       {"obj", make_obj_seeds,
        [](std::string_view bytes) { (void)read_mesh(write_bundle(bytes, kObjFiles) / kObjFiles[0], kAnySize); }, 100,
        true},
-      {"gltf", [] { return std::vector{std::string(kGltf) + std::string(kGltfBuffer)}; }, mesh_file_reader("mesh.gltf"),
-       300, true},
+      {"gltf", make_gltf_seeds, mesh_file_reader("mesh.gltf"), 300, true},
       {"glb", [] { return std::vector{make_glb()}; }, mesh_file_reader("mesh.glb"), 1000, true},
       {"stl", make_stl_seeds, mesh_file_reader("mesh.stl"), 1000, true},
   };

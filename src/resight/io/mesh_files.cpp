@@ -3,6 +3,8 @@
 
 #include <assimp/MemoryIOWrapper.h>
 
+#include <algorithm>
+
 #include "resight/io/internal/gltf_file.hpp"
 #include "resight/io/internal/text.hpp"
 
@@ -124,16 +126,26 @@ MeshFiles::MeshFiles(fs::path mesh, std::string bytes) : mesh_(std::move(mesh)),
   files_[mesh_.filename().string()] = std::make_shared<const std::string>(std::move(bytes));
 }
 
+std::vector<std::string> MeshFiles::places_of(std::string name) const {
+  std::ranges::replace(name, '\\', '/');
+  std::vector<std::string> places = {name, name.substr(name.rfind('/') + 1)};
+  if (is_obj_) places.push_back(mesh_.stem().string() + ".mtl");
+  return places;
+}
+
 MeshFiles::Bytes MeshFiles::read(const std::string& name) const {
-  const auto file = path_below(mesh_.parent_path(), name);
-  auto bytes = file ? read_file(*file, bytes_left_) : Result<std::string>(file.error());
-  if (!bytes) {
-    if (failure_.empty()) failure_ = bytes.error().message;
-    return nullptr;
+  std::string failure;
+  for (const std::string& place : places_of(name)) {
+    const auto file = path_below(mesh_.parent_path(), place);
+    auto bytes = file ? read_file(*file, bytes_left_) : Result<std::string>(file.error());
+    if (bytes) {
+      bytes_left_ -= bytes->size();
+      return std::make_shared<const std::string>(is_obj_ ? normalize_mtl(*bytes) : *std::move(bytes));
+    }
+    if (failure.empty()) failure = bytes.error().message;
   }
-  failure_.clear();
-  bytes_left_ -= bytes->size();
-  return std::make_shared<const std::string>(is_obj_ ? normalize_mtl(*bytes) : *std::move(bytes));
+  if (failure_.empty()) failure_ = failure;
+  return std::make_shared<const std::string>(is_obj_ ? normalize_mtl("") : "");
 }
 
 MeshFiles::Bytes MeshFiles::find(const std::string& name) const {
@@ -142,12 +154,9 @@ MeshFiles::Bytes MeshFiles::find(const std::string& name) const {
   return it->second;
 }
 
-bool MeshFiles::Exists(const char* name) const { return find(name) != nullptr; }
-
 Assimp::IOStream* MeshFiles::Open(const char* name, const char* mode) {
   if (mode == nullptr || mode[0] != 'r') return nullptr;
-  Bytes bytes = find(name);
-  return bytes ? new MeshStream(std::move(bytes)) : nullptr;
+  return new MeshStream(find(name));
 }
 
 void MeshFiles::Close(Assimp::IOStream* stream) { delete stream; }

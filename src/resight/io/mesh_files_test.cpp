@@ -100,6 +100,25 @@ TEST(MeshFiles, MaterialsOfPipesAndDevicesAreNotRead) {
   EXPECT_EQ(num_warnings(directory / "t.obj"), 0U) << "names no other file";
 }
 
+TEST(MeshFiles, MaterialsAreFoundBesideTheModel) {
+  io::TestDirectory directory;
+  write_text(directory / "t.mtl", "newmtl m\nKd 1 0 0\n");
+  write_text(directory / "parts/u.mtl", "newmtl m\nKd 0 1 0\n");
+  const auto color_with = [&](const std::string& library) {
+    write_text(directory / "t.obj", "mtllib " + library + "\n" + kTriangleObj);
+    const auto read = read_mesh(directory / "t.obj");
+    EXPECT_TRUE(read.ok() && read->warnings.empty() && !read->mesh.colors.empty()) << library;
+    return read.ok() && !read->mesh.colors.empty() ? read->mesh.colors[0] : Rgb8{};
+  };
+  const Rgb8 red{255, 0, 0};
+  const Rgb8 green{0, 255, 0};
+  EXPECT_EQ(color_with("t.mtl"), red);
+  EXPECT_EQ(color_with("parts\\u.mtl"), green);
+  EXPECT_EQ(color_with("C:\\scans\\t.mtl"), red) << "made on another machine";
+  EXPECT_EQ(color_with("/scans/t.mtl"), red);
+  EXPECT_EQ(color_with("before_it_was_renamed.mtl"), red);
+}
+
 /// A triangle in a buffer of a file, with one texture.
 std::string make_gltf(const std::string& buffer, const std::string& texture) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
@@ -134,6 +153,21 @@ TEST(MeshFiles, OnlyFilesBelowTheFolderOfTheModelAreRead) {
     EXPECT_FALSE(read_mesh(mesh)->mesh.has_texture()) << outside;
     ASSERT_EQ(num_warnings(mesh), 1U) << outside;
     EXPECT_THAT(read_mesh(mesh)->warnings[0], HasSubstr("outside the folder")) << outside;
+  }
+}
+
+// Found by fuzzing: Assimp read beyond their ends.
+TEST(MeshFiles, AnyNameOfAMissingFileIsHarmless) {
+  io::TestDirectory directory;
+  for (const std::string name : {"a://", "://", "\\\\", "\\\\\\", " ", "\t", "/", ".", "..", "a/", "%20"}) {
+    write_text(directory / "t.obj", kTriangleObj + ("mtllib " + name));
+    EXPECT_TRUE(read_mesh(directory / "t.obj").ok()) << name;
+    std::string quoted;
+    for (const char c : name) quoted += c == '\\' ? "\\\\" : c == '\t' ? "\\t" : std::string(1, c);
+    write_text(directory / "t.gltf", make_gltf(quoted, "t.png"));
+    const auto read = read_mesh(directory / "t.gltf");
+    ASSERT_FALSE(read.ok()) << name;
+    EXPECT_THAT(read.error().message, HasSubstr("t.gltf: cannot be read as a mesh")) << name;
   }
 }
 

@@ -195,6 +195,7 @@ Result<ImportedParts> import_mesh_parts(const fs::path& file) {
   if (scene == nullptr) {
     std::string why = importer.GetErrorString();
     std::ranges::replace(why, '\n', ' ');
+    if (!opened.failure().empty()) why += "; " + opened.failure();
     return file_error(file, "cannot be read as a mesh (" + why + ")");
   }
   ImportedParts imported;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "resight/io/internal/files.hpp"
 
@@ -21,24 +22,29 @@ namespace resight::io {
 /// textures before the first material.
 [[nodiscard]] std::string normalize_mtl(std::string_view text);
 
-/// The files that Assimp may open: the mesh under its bare name, and regular files in its folder that it refers to.
+/// The files that Assimp may open: the mesh under its bare name, and regular files in its folder that it refers to. A
+/// file that cannot be read is empty, because Assimp 5.2 reads beyond the end of some names of files that do not exist:
+/// of "a://", "\\\\" and " " (FileSystemFilter::Cleanup()).
 class MeshFiles final : public Assimp::IOSystem {
  public:
   /// Reads and normalises the mesh file.
   [[nodiscard]] static Result<std::unique_ptr<MeshFiles>> open(const fs::path& mesh);
 
-  bool Exists(const char* name) const override;
+  bool Exists(const char* /*name*/) const override { return true; }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char* mode) override;
   void Close(Assimp::IOStream* stream) override;
-  /// Why the first file that the mesh refers to could not be read. Empty if it could, or if Assimp found another.
+  /// Why the first file that could not be read is empty. Empty if there is none.
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
  private:
   using Bytes = std::shared_ptr<const std::string>;
   MeshFiles(fs::path mesh, std::string bytes);
-  /// Null if the file may not be read. Each file is read once.
+  /// Each file is read once.
   [[nodiscard]] Bytes find(const std::string& name) const;
+  /// Where a file may be that the mesh calls `name`. Models that come from elsewhere name folders which do not exist
+  /// here, and library files that were renamed with the mesh.
+  [[nodiscard]] std::vector<std::string> places_of(std::string name) const;
   [[nodiscard]] Bytes read(const std::string& name) const;
 
   fs::path mesh_;
