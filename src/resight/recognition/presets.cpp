@@ -56,7 +56,7 @@ void set_default(RecognizerConfig& config) {
   config.shape.max_seeds = 600;
   config.changes.detection.test = DepthTestOptions{};
   set_default_verification(config.verify);
-  config.detections.min_reported_share = 0.01;
+  config.detections.min_reported_share = 0.002;
   config.detections.min_score = 0.3;
   config.detections.further_instance_odds = 0.2;
   config.detections.weigh_competing_poses = true;
@@ -72,7 +72,7 @@ void set_default(RecognizerConfig& config) {
                          .silhouette_weight = 1.11,
                          .hue_weight = 20,
                          .uncolored_weight = 26};
-  config.history.min_new_share = 0.01;
+  config.history.min_new_share = 0.002;
   config.history.confirm_score = 0.7;
   config.search.max_new_share = 0.003;  // 30 x 30 pixels.
   config.search.place_interval = 4;
