@@ -67,7 +67,7 @@ std::string views_with(const std::string& object, const std::optional<Rigid3>& p
     for (const Detection& d : detections[static_cast<std::size_t>(v)])
       if (d.object == index &&
           is_within(compare_poses(d.world_from_object, *pose, library.objects[static_cast<std::size_t>(index)]), {}))
-        views += fmt::format(" {}{}", v, d.views.back().confirmed_share() < 0.01 ? "?" : "");
+        views += fmt::format(" {}{}", v, d.views.back().confirmed_share() < 0.002 ? "?" : "");
   return views;
 }
 
