@@ -2,7 +2,6 @@
 #include "resight/registration/bias_adjustment.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "resight/core/parallel.hpp"
 #include "resight/core/statistics.hpp"
 #include "resight/registration/point_to_plane.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {
@@ -34,20 +34,15 @@ Eigen::Vector3d without_bias(const Eigen::Vector3d& measured, double bias_per_m)
   return measured / std::max(0.1, 1 - bias_per_m * measured.z());
 }
 
-Vector6 motion_between(const Rigid3& from, const Rigid3& to) {
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(to.rotation * from.rotation.transpose()));
-  Vector6 motion;
-  motion << turn.angle() * turn.axis(), to.translation - from.translation;
-  return motion;
+// Motions are a rotation about the camera and a shift, both in world axes.
+Twist motion_between(const Rigid3& from, const Rigid3& to) {
+  return to_twist({to.rotation * from.rotation.transpose(), to.translation - from.translation});
 }
 
-// A rotation about the camera, and a shift; both in world axes.
-void move(Rigid3& pose, const Vector6& motion) {
-  const Eigen::Vector3d turn = motion.head<3>();
-  const double angle_rad = turn.norm();
-  if (angle_rad > 0)
-    pose.rotation = nearest_rotation(Eigen::AngleAxisd(angle_rad, turn / angle_rad).toRotationMatrix() * pose.rotation);
-  pose.translation += motion.tail<3>();
+void move(Rigid3& pose, const Twist& twist) {
+  const Rigid3 motion = from_twist(twist);
+  pose.rotation = nearest_rotation(motion.rotation * pose.rotation);
+  pose.translation += motion.translation;
 }
 
 }  // namespace
@@ -173,7 +168,7 @@ BiasAdjustment::Equations BiasAdjustment::compare(const BiasEstimate& estimate, 
 // The errors of neighbouring views differ by as much as given motions are off. The first view stays.
 void BiasAdjustment::add_given_motions(const BiasEstimate& estimate, Eigen::MatrixXd& matrix,
                                        Eigen::VectorXd& right) const {
-  Vector6 information;
+  Twist information;
   information << Eigen::Vector3d::Constant(1 / (kMotionSigma_rad * kMotionSigma_rad)),
       Eigen::Vector3d::Constant(1 / (kMotionSigma_m * kMotionSigma_m));
   const auto error = [&](std::size_t i) {
@@ -181,7 +176,7 @@ void BiasAdjustment::add_given_motions(const BiasEstimate& estimate, Eigen::Matr
   };
   matrix.diagonal().head<6>() += 1e6 * information;
   for (std::size_t i = 1; i < views_.size(); ++i) {
-    const Vector6 weighted = information.cwiseProduct(error(i) - error(i - 1));
+    const Twist weighted = information.cwiseProduct(error(i) - error(i - 1));
     const auto now = static_cast<Eigen::Index>(6 * i);
     const Eigen::Index before = now - 6;
     matrix.block<6, 6>(now, now).diagonal() += information;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/sensor/surface_color.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/statistics.hpp"
+#include "resight/geometry/area_sums.hpp"
 
 namespace resight {
 namespace {
@@ -20,37 +22,18 @@ constexpr double kUsualNoise = 1;  // Grey levels: what cameras leave after thei
 constexpr int kCutOff = 8;         // Grey levels from black and from white.
 constexpr double kGain = 6;        // Root of the sum of the operator's squared weights.
 
-using Sum = std::array<std::uint32_t, 3>;              // Per channel. May wrap: differences do not notice.
+using ColorSum = Eigen::Array<std::uint32_t, 3, 1>;  // Per channel. Enough for the largest images (kMaxViewPixels).
+using ColorSums = AreaSums<ColorSum>;
 using ResponseCounts = std::array<int, 16 * 255 + 1>;  // By absolute response to the operator.
 
-// Sums over all pixels above and to the left (Crow 1984), so that a mean costs the same for any radius.
-Image<Sum> make_sums(const Image<Rgb8>& color) {
-  Image<Sum> sums(color.width() + 1, color.height() + 1);
-  for (int v = 0; v < color.height(); ++v) {
-    Sum row{};
-    for (int u = 0; u < color.width(); ++u) {
-      const Rgb8 c = color(u, v);
-      const std::array<std::uint8_t, 3> channels{c.r, c.g, c.b};
-      for (std::size_t k = 0; k < 3; ++k) {
-        row[k] += channels[k];
-        sums(u + 1, v + 1)[k] = sums(u + 1, v)[k] + row[k];
-      }
-    }
-  }
-  return sums;
-}
-
-Rgb8 mean_around(const Image<Sum>& sums, int u, int v, int radius_px) {
-  const int u0 = std::max(u - radius_px, 0);
-  const int v0 = std::max(v - radius_px, 0);
-  const int u1 = std::min(u + radius_px + 1, sums.width() - 1);
-  const int v1 = std::min(v + radius_px + 1, sums.height() - 1);
-  const auto area = static_cast<std::uint32_t>((u1 - u0) * (v1 - v0));
-  const auto mean = [&](std::size_t k) {
-    const std::uint32_t sum = sums(u1, v1)[k] - sums(u0, v1)[k] - sums(u1, v0)[k] + sums(u0, v0)[k];
-    return static_cast<std::uint8_t>((sum + area / 2) / area);
-  };
-  return {mean(0), mean(1), mean(2)};
+Rgb8 mean_around(const ColorSums& sums, const Image<Rgb8>& color, int u, int v, int radius_px) {
+  const int left = std::max(u - radius_px, 0);
+  const int top = std::max(v - radius_px, 0);
+  const int right = std::min(u + radius_px, color.width() - 1);
+  const int bottom = std::min(v + radius_px, color.height() - 1);
+  const auto area = static_cast<std::uint32_t>((right - left + 1) * (bottom - top + 1));
+  const ColorSum mean = (sums.sum(left, top, right, bottom) + area / 2) / area;
+  return {static_cast<std::uint8_t>(mean[0]), static_cast<std::uint8_t>(mean[1]), static_cast<std::uint8_t>(mean[2])};
 }
 
 // Absolute responses of one channel to Immerkaer's operator, in which edges and slopes cancel. Nearly black and nearly
@@ -90,7 +73,10 @@ Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera,
   if (!(noise > kUsualNoise)) return {};
   // The mean over a square of n x n pixels has an n-th of the noise.
   const int max_radius_px = static_cast<int>(std::ceil((noise / kUsualNoise - 1) / 2));
-  const Image<Sum> sums = make_sums(color);
+  const ColorSums sums(color.width(), color.height(), [&](int u, int v) {
+    const Rgb8 c = color(u, v);
+    return ColorSum(c.r, c.g, c.b);
+  });
   const auto half_width_px_m = static_cast<float>(0.5 * width_m * camera.fx);
   Image<Rgb8> averaged = color;
   parallel_for_blocks(static_cast<std::size_t>(color.height()), kAveragedRowsPerTask, num_threads,
@@ -100,7 +86,7 @@ Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera,
                             const float radius_px = half_width_px_m / z_m(u, v);
                             if (!(radius_px >= 1)) continue;  // NaN: no depth.
                             averaged(u, v) = mean_around(
-                                sums, u, v,
+                                sums, color, u, v,
                                 static_cast<int>(std::min<float>(radius_px, static_cast<float>(max_radius_px))));
                           }
                       });
