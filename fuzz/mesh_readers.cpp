@@ -80,7 +80,8 @@ std::vector<std::string> make_obj_seeds() {
       "usemtl red\ns 1\nf 1/1/1 2/2/1 3/1/1\ng b\nusemtl blue\nf -1 -2 -3\nf 1//1 2//1 4//1 3//1\nl 1 2\np 1\n",
       "newmtl red\nKd 1 0 0\nmap_Kd t.png\nbump b.png\nnewmtl blue\nKd 0 0 1\nd 0.5\nmap_Kd -s 1 1 1 t.png\n"};
   return {join_files(textured), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-          "mtllib a://\nmtllib \\\\\nv 0 0 0\nmtllib b\\m.mtl"};
+          "mtllib a://\nmtllib \\\\\nv 0 0 0\nmtllib b\\m.mtl",
+          "v 0 0 0\r\nv 2 0 0\r\nv 2 1 0\r\nv 1 .1 0\r\nv 0 2 \\\r\n0\r\nt a 9/9/9\r\nf 1/ 2/ 3/ 4/ 5/ # concave"};
 }
 
 constexpr std::string_view kGltf =
@@ -140,8 +141,7 @@ std::vector<FuzzReader> mesh_readers() {
       {"ply", make_ply_seeds, [](std::string_view bytes) { (void)parse_ply(bytes, "fuzz.ply"); }},
       {"pcd", make_pcd_seeds, read_pcd_bytes},
       {"obj", make_obj_seeds,
-       [](std::string_view bytes) { (void)read_mesh(write_bundle(bytes, kObjFiles) / kObjFiles[0], kAnySize); }, 100,
-       true},
+       [](std::string_view bytes) { (void)read_mesh(write_bundle(bytes, kObjFiles) / kObjFiles[0], kAnySize); }, 5000},
       {"gltf", make_gltf_seeds, mesh_file_reader("mesh.gltf"), 300, true},
       {"glb", [] { return std::vector{make_glb()}; }, mesh_file_reader("mesh.glb"), 1000, true},
       {"stl", make_stl_seeds, mesh_file_reader("mesh.stl"), 1000, true},

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/io/internal/mesh_files.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -29,33 +27,44 @@ TEST(MeshFiles, NumbersMayBeginWithAPoint) {
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(read->mesh.vertices.size(), 3U);
   EXPECT_FLOAT_EQ(read->mesh.vertices[1].x() + read->mesh.vertices[2].x(), 0.1F);
-  EXPECT_EQ(io::normalize_obj("  v\t.5 -.5 0.5\no a .b\n"), "  v\t0.5 -.5 0.5\no a .b\n");
+  write_text(directory / "t.obj", "  v\t.5 -.5 0.5\nv 0 -.5 .5\nv .5 .0 +.5\no a .b\nf 1 2 3\n");
+  EXPECT_EQ(read_mesh(directory / "t.obj")->mesh.vertices[0], Eigen::Vector3f(0.5F, -0.5F, 0.5F));
 }
 
 TEST(MeshFiles, LinesMayGoOn) {
-  EXPECT_EQ(io::normalize_obj("v 1 \\\n .2 3\nv 1\\\r\n2 3\n# a\\\nv 4 5 6\n"),
-            "v 1   0.2 3\nv 1 2 3\n# a\\\nv 4 5 6\n");
+  io::TestDirectory directory;
+  write_text(directory / "t.obj", "v 1 \\\n .2 3\nv 1\\\r\n2 3\n# a\\\nv 2 2 3\nf 1 \\\n2 \\\n 3\n");
+  const auto read = read_mesh(directory / "t.obj");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_THAT(read->mesh.vertices,
+              testing::ElementsAre(Eigen::Vector3f(1, 0.2F, 3), Eigen::Vector3f(1, 2, 3), Eigen::Vector3f(2, 2, 3)));
 }
 
-TEST(MeshFiles, ObjFilesThatTakeAssimpTooLongAreRefused) {
+TEST(MeshFiles, ObjFilesThatTakeTooLongAreRefused) {
+  io::TestDirectory directory;
   const auto repeated = [](const std::string& text, int count) {
     std::string all;
     for (int i = 0; i < count; ++i) all += text;
     return all;
   };
-  const auto message_of = [](const std::string& text) {
-    const auto checked = io::check_obj(kTriangleObj + text);
-    return checked ? std::string() : checked.error().message;
+  const auto names = [](const std::string& keyword, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += keyword + " a" + std::to_string(i) + "\n";
+    return all;
   };
-  EXPECT_EQ(message_of("f" + repeated(" 1/1/1", 1024) + "\n" + repeated("f 1 2 3\n", 5000)), "");
+  const auto message_of = [&](const std::string& text) {
+    write_text(directory / "m.obj", kTriangleObj + text);
+    const auto read = read_mesh(directory / "m.obj");
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_EQ(message_of("f" + repeated(" 1/1", 1024) + "\n" + repeated("f 1 2 3\n", 50)), "");
   EXPECT_THAT(message_of("f" + repeated(" 1/1/1", 1025) + "\n"), HasSubstr("1024 corners"));
   EXPECT_THAT(message_of("f" + repeated(" 1 2 \\\n", 700) + "3\n"), HasSubstr("1024 corners")) << "over several lines";
-  EXPECT_EQ(message_of(repeated("usemtl a\nf 1 2 3\n", 1300) + repeated("o a\n", 1300) + repeated("g a\n", 1300)), "");
-  EXPECT_THAT(message_of(repeated("usemtl a\nf 1 2 3\n", 4097)), HasSubstr("4096 groups"));
-  EXPECT_THAT(message_of(repeated(" o a\n", 4097)), HasSubstr("4096 groups"));
-  io::TestDirectory directory;
-  write_text(directory / "m.obj", kTriangleObj + ("f" + repeated(" 1", 400000)));
-  EXPECT_THAT(read_mesh(directory / "m.obj").error().message, HasSubstr("1024 corners"));
+  EXPECT_THAT(message_of("f" + repeated(" 1", 400000)), HasSubstr("1024 corners"));
+  EXPECT_EQ(message_of(repeated("usemtl a\nusemtl b\n", 50000) + repeated("o a\n", 50000) + repeated("g a\n", 50000)),
+            "");
+  EXPECT_THAT(message_of(names("usemtl", 4097)), HasSubstr("4096 materials"));
+  EXPECT_THAT(message_of(names("mtllib", 4097)), HasSubstr("4096 materials or libraries"));
 }
 
 TEST(MeshFiles, TexturesBeforeTheFirstMaterialAreSkipped) {
@@ -66,17 +75,16 @@ TEST(MeshFiles, TexturesBeforeTheFirstMaterialAreSkipped) {
     const auto read = read_mesh(directory / "t.obj");
     EXPECT_TRUE(read.ok()) << first << ": " << read.error().message;
   }
-  EXPECT_EQ(io::normalize_mtl("map_Kd a\n newmtl m\nNs 3\n\tmap_Kd b c.png\nbump d\nKd 1 0 0\n"),
-            "# materials and their textures\nnewmtl m\nmap_Kd b c.png\nKd 1 0 0\n");
+  write_text(directory / "t.mtl", "map_Kd a\n newmtl m\nNs 3\n\tmap_Kd b c.png\nbump d\nKd 1 0 0\n");
+  const auto read = read_mesh(directory / "t.obj");
+  ASSERT_EQ(read->warnings.size(), 1U);
+  EXPECT_THAT(read->warnings[0], HasSubstr("b c.png"));
 }
 
 // Editors of Windows write it; the first statement is the material, or the library of materials.
 TEST(MeshFiles, AByteOrderMarkIsSkipped) {
   io::TestDirectory directory;
   const std::string mark = "\xEF\xBB\xBF";
-  EXPECT_EQ(io::normalize_mtl(mark + "newmtl m\nKd 1 0 0\n"), io::normalize_mtl("newmtl m\nKd 1 0 0\n"));
-  EXPECT_EQ(io::normalize_obj(mark + "v 0 0 .5\n"), "v 0 0 0.5\n");
-  EXPECT_EQ(io::normalize_obj(mark + "v 0 0 0\n"), "v 0 0 0\n");
   write_text(directory / "t.obj", mark + "mtllib t.mtl\n" + kTriangleObj);
   write_text(directory / "t.mtl", mark + "newmtl m\nKd 1 0 0\n");
   const auto read = read_mesh(directory / "t.obj");

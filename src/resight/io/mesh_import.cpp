@@ -1,87 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <assimp/BaseImporter.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
-#include <cmath>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "resight/io/images.hpp"
+#include "resight/io/internal/gltf_file.hpp"
 #include "resight/io/internal/mesh_files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
+#include "resight/io/internal/obj_file.hpp"
+#include "resight/io/internal/textured_parts.hpp"
 
 namespace resight::io {
 namespace {
 
-std::uint8_t to_channel(float value) {
-  return std::isnan(value) ? std::uint8_t{0} : static_cast<std::uint8_t>(std::clamp(value * 255 + 0.5F, 0.0F, 255.0F));
-}
+/// Keeps the bytes alive as long as Assimp reads them.
+class MeshStream final : public Assimp::MemoryIOStream {
+ public:
+  explicit MeshStream(MeshFiles::Bytes bytes)
+      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()), bytes_(std::move(bytes)) {}
 
-Rgb8 to_color(const aiColor4D& c) { return {to_channel(c.r), to_channel(c.g), to_channel(c.b)}; }
+ private:
+  MeshFiles::Bytes bytes_;
+};
+
+/// The files that Assimp may open. None is missing, because Assimp 5.2 reads beyond the end of some names of files that
+/// do not exist: of "a://", "\\\\" and " " (FileSystemFilter::Cleanup()).
+class AssimpFiles final : public Assimp::IOSystem {
+ public:
+  explicit AssimpFiles(MeshFiles& files) : files_(files) {}
+
+  bool Exists(const char* /*name*/) const override { return true; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return mode != nullptr && mode[0] == 'r' ? new MeshStream(files_.find(name)) : nullptr;
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  MeshFiles& files_;
+};
 
 /// The texture of a material as named in the file; empty if none.
 std::string texture_name(const aiMaterial& material) {
   aiString name;
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
     if (material.GetTexture(type, 0, &name) == aiReturn_SUCCESS && name.length > 0) break;
-  std::string text = name.C_Str();
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.pop_back();
-  std::ranges::replace(text, '\\', '/');
-  return text;
+  return name.C_Str();
 }
 
-/// Loads each texture once. A texture that cannot be read gives a warning and an empty image.
-class TextureLoader {
- public:
-  TextureLoader(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings)
-      : scene_(scene), file_(file), warnings_(warnings) {}
+/// Reads a texture from the scene or from a file of its own.
+Result<Image<Rgb8>> read_scene_texture(const aiScene& scene, const fs::path& file, const std::string& name,
+                                       std::int64_t max_pixels) {
+  const aiTexture* embedded = scene.GetEmbeddedTexture(name.c_str());
+  if (embedded == nullptr) return read_texture(file.parent_path(), name, max_pixels);
+  if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
+    return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
+                        file.string() + " (texture)", max_pixels);
+  if (std::int64_t{embedded->mWidth} * embedded->mHeight > max_pixels)
+    return Error{file.string() + " (texture): the image has more than " + std::to_string(max_pixels) + " px"};
+  Image<Rgb8> texture(static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight));
+  for (std::size_t i = 0; i < texture.size(); ++i)
+    texture[i] = {embedded->pcData[i].r, embedded->pcData[i].g, embedded->pcData[i].b};
+  return texture;
+}
 
-  Image<Rgb8>& load(const std::string& name) {
-    const auto [it, is_new] = loaded_.try_emplace(name);
-    if (!is_new) return it->second;
-    auto texture = read(name);
-    if (!texture) {
-      warnings_.push_back(file_.string() + ": its texture is left out: " + texture.error().message);
-      return it->second;
-    }
-    pixels_left_ -= static_cast<std::int64_t>(texture->size());
-    it->second = std::move(*texture);
-    return it->second;
-  }
-
- private:
-  /// Refuses what is larger than the pixels that are left before it is decoded.
-  Result<Image<Rgb8>> read(const std::string& name) const {
-    const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str());
-    if (embedded == nullptr) return read_texture(file_.parent_path(), name, pixels_left_);
-    if (embedded->mHeight == 0)  // a compressed image of mWidth bytes
-      return decode_color({reinterpret_cast<const char*>(embedded->pcData), embedded->mWidth},
-                          file_.string() + " (texture)", pixels_left_);
-    if (std::int64_t{embedded->mWidth} * embedded->mHeight > pixels_left_)
-      return Error{file_.string() + " (texture): the image has more than " + std::to_string(pixels_left_) + " px"};
-    Image<Rgb8> texture(static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight));
-    for (std::size_t i = 0; i < texture.size(); ++i)
-      texture[i] = {embedded->pcData[i].r, embedded->pcData[i].g, embedded->pcData[i].b};
-    return texture;
-  }
-
-  const aiScene& scene_;
-  const fs::path& file_;
-  std::vector<std::string>& warnings_;
-  std::map<std::string, Image<Rgb8>> loaded_;
-  std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
-};
-
-/// A part beside its texture, which other parts may have, too.
-struct TexturedPart {
-  MeshPart part;
-  Image<Rgb8>* texture = nullptr;  ///< Of the loader; null: none.
-};
+Rgb8 convert_color(const aiColor4D& c) { return to_color(c.r, c.g, c.b); }
 
 TriangleMesh convert_geometry(const aiMesh& source) {
   TriangleMesh mesh;
@@ -92,7 +84,7 @@ TriangleMesh convert_geometry(const aiMesh& source) {
     // For all formats, Assimp has its origin at the bottom left.
     if (source.HasTextureCoords(0))
       mesh.uvs.push_back({source.mTextureCoords[0][i].x, 1 - source.mTextureCoords[0][i].y});
-    if (source.HasVertexColors(0)) mesh.colors.push_back(to_color(source.mColors[0][i]));
+    if (source.HasVertexColors(0)) mesh.colors.push_back(convert_color(source.mColors[0][i]));
   }
   for (unsigned i = 0; i < source.mNumFaces; ++i) {
     const aiFace& face = source.mFaces[i];
@@ -105,68 +97,27 @@ TriangleMesh convert_geometry(const aiMesh& source) {
   return mesh;
 }
 
-/// Forgets the uniform colour of a part with a missing texture, because the texture would have covered it.
-void forget_plain_color(MeshPart& part) {
-  part.has_color = false;
-  part.color = MeshPart{}.color;
-  drop_plain_colors(part.mesh.colors);
-}
-
 TexturedPart convert_part(const aiMesh& source, const aiScene& scene, TextureLoader& textures) {
   TexturedPart converted;
-  MeshPart& part = converted.part;
-  part.mesh = convert_geometry(source);
+  converted.part.mesh = convert_geometry(source);
   if (source.mMaterialIndex >= scene.mNumMaterials) return converted;
   const aiMaterial& material = *scene.mMaterials[source.mMaterialIndex];
   aiString material_name;
   material.Get(AI_MATKEY_NAME, material_name);
   aiColor4D color;
   // The default material of Assimp says nothing about the colour in the file.
-  part.has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
-                   (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
-                    material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
-  if (part.has_color) part.color = to_color(color);
-  const std::string name = texture_name(material);
-  if (name.empty()) return converted;
-  if (!part.mesh.uvs.empty())
-    if (Image<Rgb8>& texture = textures.load(name); !texture.empty()) converted.texture = &texture;
-  if (converted.texture != nullptr)
-    part.mesh.colors.clear();
-  else
-    forget_plain_color(part);
+  const bool has_color = std::string(material_name.C_Str()) != AI_DEFAULT_MATERIAL_NAME &&
+                         (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
+                          material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS);
+  set_material(converted, has_color ? std::optional(convert_color(color)) : std::nullopt, texture_name(material),
+               textures);
   return converted;
-}
-
-/// Removes normals and uvs unless all parts have them, because they would be lost or wrong in the joined mesh.
-void unify_attributes(std::vector<TexturedPart>& parts) {
-  if (std::ranges::any_of(parts, [](const TexturedPart& p) { return p.part.mesh.normals.empty(); }))
-    for (TexturedPart& part : parts) part.part.mesh.normals.clear();
-  for (TexturedPart& part : parts)
-    if (part.texture == nullptr) part.part.mesh.uvs.clear();
-}
-
-/// Merges parts with the same texture, so that a shared texture is neither copied nor stacked several times.
-std::vector<MeshPart> merge_parts(std::vector<TexturedPart> parts) {
-  std::vector<MeshPart> merged;
-  std::map<const Image<Rgb8>*, std::size_t> part_of_texture;
-  for (TexturedPart& part : parts) {
-    const auto [it, is_new] = part_of_texture.try_emplace(part.texture, merged.size());
-    if (part.texture != nullptr && !is_new) {
-      merged[it->second].mesh.append(part.part.mesh);
-      continue;
-    }
-    merged.push_back(std::move(part.part));
-    if (part.texture != nullptr) merged.back().mesh.texture = std::move(*part.texture);
-  }
-  return merged;
 }
 
 /// Removes all importers but that of this extension. Assimp would otherwise choose by the content, and parse any of its
 /// fifty formats.
 void keep_importer(Assimp::Importer& importer, std::string_view extension) {
-  const std::string_view name = extension == "obj"   ? "Wavefront Object Importer"
-                                : extension == "stl" ? "Stereolithography (STL) Importer"
-                                                     : "glTF2 Importer";
+  const std::string_view name = extension == "stl" ? "Stereolithography (STL) Importer" : "glTF2 Importer";
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     if (importer.GetImporterInfo(i)->mName == name) continue;
     const std::unique_ptr<Assimp::BaseImporter> removed(importer.GetImporter(i));
@@ -174,43 +125,53 @@ void keep_importer(Assimp::Importer& importer, std::string_view extension) {
   }
 }
 
-}  // namespace
-
-Result<Image<Rgb8>> read_texture(const fs::path& folder, std::string_view name, std::int64_t max_pixels) {
-  const auto file = path_below(folder, name);
-  return file ? read_color(*file, max_pixels) : file.error();
+/// The mesh file as Assimp may read it.
+Result<std::string> read_normalized(const fs::path& file) {
+  auto bytes = read_file(file, kMaxBinaryBytes);
+  if (!bytes) return bytes;
+  const std::string extension = extension_of(file);
+  if (extension == "glb") bytes = normalize_glb(*bytes);
+  if (extension == "gltf") bytes = normalize_gltf(*bytes);
+  return bytes ? std::move(bytes) : file_error(file, bytes.error().message);
 }
 
-Result<ImportedParts> import_mesh_parts(const fs::path& file) {
-  auto files = MeshFiles::open(file);
-  if (!files) return files.error();
+std::string describe_failure(const Assimp::Importer& importer, const MeshFiles& files) {
+  std::string why = importer.GetErrorString();
+  std::ranges::replace(why, '\n', ' ');
+  return files.failure().empty() ? why : why + "; " + files.failure();
+}
+
+Result<ImportedParts> import_with_assimp(const fs::path& file) {
+  auto bytes = read_normalized(file);
+  if (!bytes) return bytes.error();
+  MeshFiles files(file);
+  files.set(file.filename().string(), *std::move(bytes));
   Assimp::Importer importer;
   keep_importer(importer, extension_of(file));
-  const MeshFiles& opened = **files;
-  importer.SetIOHandler(files->release());  // The importer owns it.
+  importer.SetIOHandler(new AssimpFiles(files));  // The importer owns it.
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene =
       importer.ReadFile(file.filename().string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
                                                       aiProcess_SortByPType | aiProcess_PreTransformVertices);
-  if (scene == nullptr) {
-    std::string why = importer.GetErrorString();
-    std::ranges::replace(why, '\n', ' ');
-    if (!opened.failure().empty()) why += "; " + opened.failure();
-    return file_error(file, "cannot be read as a mesh (" + why + ")");
-  }
+  if (scene == nullptr) return file_error(file, "cannot be read as a mesh (" + describe_failure(importer, files) + ")");
   ImportedParts imported;
-  if (!opened.failure().empty())
-    imported.warnings.push_back(file.string() + ": a file that it names is left out: " + opened.failure());
-  TextureLoader textures(*scene, file, imported.warnings);
+  files.add_warning(imported.warnings);
+  const auto read = [&](const std::string& name, std::int64_t max_pixels) {
+    return read_scene_texture(*scene, file, name, max_pixels);
+  };
+  TextureLoader textures(file, read, imported.warnings);
   std::vector<TexturedPart> parts;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-    TexturedPart part = convert_part(*scene->mMeshes[i], *scene, textures);
-    if (!part.part.mesh.empty()) parts.push_back(std::move(part));
-  }
-  if (parts.empty()) return file_error(file, "has no triangles");
-  unify_attributes(parts);
-  imported.parts = merge_parts(std::move(parts));
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) parts.push_back(convert_part(*scene->mMeshes[i], *scene, textures));
+  auto merged = merge_parts(std::move(parts), file);
+  if (!merged) return merged.error();
+  imported.parts = *std::move(merged);
   return imported;
+}
+
+}  // namespace
+
+Result<ImportedParts> import_mesh_parts(const fs::path& file) {
+  return extension_of(file) == "obj" ? import_obj(file) : import_with_assimp(file);
 }
 
 }  // namespace resight::io

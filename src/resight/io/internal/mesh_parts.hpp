@@ -35,7 +35,7 @@ struct ImportedParts {
   std::vector<MeshPart> parts;
   std::vector<std::string> warnings;
 };
-/// Imports OBJ, GLB/glTF and STL through Assimp. Coordinates are in the unit of the file.
+/// Imports OBJ by import_obj(), and GLB/glTF and STL through Assimp. Coordinates are in the unit of the file.
 [[nodiscard]] Result<ImportedParts> import_mesh_parts(const std::filesystem::path& file);
 
 }  // namespace resight::io

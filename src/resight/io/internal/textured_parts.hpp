@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "resight/io/internal/files.hpp"
+#include "resight/io/internal/mesh_parts.hpp"
+
+/// What the importers of mesh formats share.
+namespace resight::io {
+
+/// Loads each texture once. A texture that cannot be read gives a warning and an empty image.
+class TextureLoader {
+ public:
+  /// Reads a texture by its name, and refuses what has more pixels before it is decoded.
+  using Read = std::function<Result<Image<Rgb8>>(const std::string& name, std::int64_t max_pixels)>;
+  TextureLoader(const fs::path& file, Read read, std::vector<std::string>& warnings)
+      : file_(file), read_(std::move(read)), warnings_(warnings) {}
+
+  Image<Rgb8>& load(const std::string& name);
+
+ private:
+  const fs::path& file_;
+  Read read_;
+  std::vector<std::string>& warnings_;
+  std::map<std::string, Image<Rgb8>> loaded_;
+  std::int64_t pixels_left_ = kMaxImagePixels;  ///< Small files can hold large images.
+};
+
+/// A part beside its texture, which other parts may have, too.
+struct TexturedPart {
+  MeshPart part;
+  Image<Rgb8>* texture = nullptr;  ///< Of the loader; null: none.
+};
+
+[[nodiscard]] Rgb8 to_color(float r, float g, float b);
+
+/// The material of a part: its uniform colour, and the name of its texture as the file has it (empty: none).
+void set_material(TexturedPart& part, const std::optional<Rgb8>& color, std::string texture, TextureLoader& textures);
+
+/// Parts with the same texture become one, so that it is neither copied nor stacked several times. Normals are kept if
+/// all parts have them. Fails if no part has a triangle.
+[[nodiscard]] Result<std::vector<MeshPart>> merge_parts(std::vector<TexturedPart> parts, const fs::path& file);
+
+}  // namespace resight::io
