@@ -10,6 +10,7 @@
 #include <assimp/Importer.hpp>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "resight/io/images.hpp"
@@ -25,11 +26,18 @@ namespace {
 /// Keeps the bytes alive as long as Assimp reads them.
 class MeshStream final : public Assimp::MemoryIOStream {
  public:
-  explicit MeshStream(MeshFiles::Bytes bytes)
-      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()), bytes_(std::move(bytes)) {}
+  /// Is in `open` as long as it lives.
+  MeshStream(MeshFiles::Bytes bytes, std::set<MeshStream*>& open)
+      : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()),
+        bytes_(std::move(bytes)),
+        open_(open) {
+    open_.insert(this);
+  }
+  ~MeshStream() override { open_.erase(this); }
 
  private:
   MeshFiles::Bytes bytes_;
+  std::set<MeshStream*>& open_;
 };
 
 /// The files that Assimp may open. None is missing, because Assimp 5.2 reads beyond the end of some names of files that
@@ -37,16 +45,21 @@ class MeshStream final : public Assimp::MemoryIOStream {
 class AssimpFiles final : public Assimp::IOSystem {
  public:
   explicit AssimpFiles(MeshFiles& files) : files_(files) {}
+  /// Assimp forgets a stream that is shorter than a glTF file says.
+  ~AssimpFiles() override {
+    while (!open_.empty()) delete *open_.begin();
+  }
 
   bool Exists(const char* /*name*/) const override { return true; }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return mode != nullptr && mode[0] == 'r' ? new MeshStream(files_.find(name)) : nullptr;
+    return mode != nullptr && mode[0] == 'r' ? new MeshStream(files_.find(name), open_) : nullptr;
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
 
  private:
   MeshFiles& files_;
+  std::set<MeshStream*> open_;
 };
 
 /// The texture of a material as named in the file; empty if none.
