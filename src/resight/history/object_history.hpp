@@ -37,11 +37,11 @@ inline void declare(OptionVisitor& v, ObjectHistoryOptions& o) {
           "An observation within this distance of a track's pose (and 20 deg) is at the same place.");
   v.field("min_new_share", o.min_new_share, between(0, 1),
           "An observation is new only if the view itself confirms this share of the model. 0: it always may be.");
-  v.field(
-      "confirm_score", o.confirm_score, between(0, 1),
-      "A new object that is less likely there, in whatever pose, is tentative: no event is reported for it until it "
-      "is as likely in a view. If it has moved, its old place is reported as if it had not been recognised. 0: every "
-      "object is confirmed at once.");
+  v.field("confirm_score", o.confirm_score, between(0, 1),
+          "A new object with a lower score, in whatever pose, is tentative: no event is reported for it until a view "
+          "scores "
+          "this much. If it has moved, its old place is reported as if it had not been recognised. 0: every object is "
+          "confirmed at once.");
   v.group("presence", o.presence);
   v.group("memory", o.memory);
 }
@@ -92,7 +92,7 @@ class ObjectHistory {
   [[nodiscard]] bool is_pose_confirmed(const ObjectObservation& observed) const {
     return observed.score * observed.pose_score >= options_.confirm_score;
   }
-  /// Whether an observation that overlaps the old place is elsewhere. Unlikely poses differ without a move.
+  /// Whether an observation that overlaps the old place shows a move. Unlikely poses may differ without one.
   [[nodiscard]] bool shows_move(const Track& track, const ObjectObservation& observed) const {
     return is_confirmed_by_view(observed) && track.is_pose_likely && observed.is_pose_likely();
   }

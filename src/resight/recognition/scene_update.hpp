@@ -36,7 +36,7 @@ struct Detection {
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
   double score = 0;       ///< Probability that it is right, in [0, 1]: HypothesisScoreOptions, apply_instance_prior().
-  double pose_score = 1;  ///< Its factor of the score: probability of the pose, given that the object is there.
+  double pose_score = 1;  ///< Factor of the score: probability of the pose, given that the object is there.
   double fit = 0;         ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
