@@ -127,6 +127,20 @@ TEST(MeshFiles, MaterialsAreFoundBesideTheModel) {
   EXPECT_EQ(color_with("before_it_was_renamed.mtl"), red);
 }
 
+TEST(MeshFiles, AFileWithManyNamesIsReadOnce) {
+  io::TestDirectory directory;
+  write_text(directory / "t.mtl", "newmtl m\nKd 1 0 0\n" + std::string(1'000'000, '#'));
+  std::string obj;
+  for (int i = 0; i < 300; ++i)
+    obj += "mtllib missing_" + std::to_string(i) + "\nmtllib " + std::string(i, '/') + "t.mtl\n";
+  write_text(directory / "t.obj", obj + kTriangleObj);
+  const io::MemoryGrowth growth;
+  const auto read = read_mesh(directory / "t.obj");
+  ASSERT_TRUE(read.ok() && !read->mesh.colors.empty());
+  EXPECT_EQ(read->mesh.colors[0], (Rgb8{255, 0, 0}));
+  EXPECT_LT(growth.bytes(), 50'000'000U);
+}
+
 /// A triangle in a buffer of a file, with one texture.
 std::string make_gltf(const std::string& buffer, const std::string& texture) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],

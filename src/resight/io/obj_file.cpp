@@ -148,9 +148,12 @@ class ObjConverter {
   std::vector<Eigen::Vector3f> polygon_;
 };
 
-std::vector<std::string> read_libraries(std::span<const std::string> names, MeshFiles& files) {
-  std::vector<std::string> libraries;
-  for (const std::string& name : names) libraries.push_back(*files.find(name));
+/// Each library once: several names may lead to one file.
+std::vector<MeshFiles::Bytes> read_libraries(std::span<const std::string> names, MeshFiles& files) {
+  std::vector<MeshFiles::Bytes> libraries;
+  for (const std::string& name : names)
+    if (auto library = files.find(name); std::ranges::find(libraries, library) == libraries.end())
+      libraries.push_back(std::move(library));
   return libraries;
 }
 

@@ -40,11 +40,12 @@ std::string_view parse_texture_name(std::string_view value) {
 
 }  // namespace
 
-void define_materials(std::span<const std::string> libraries, std::vector<ObjMaterial>& materials) {
+void define_materials(std::span<const std::shared_ptr<const std::string>> libraries,
+                      std::vector<ObjMaterial>& materials) {
   std::map<std::string_view, ObjMaterial*> used;
   for (ObjMaterial& material : materials) used[material.name] = &material;
-  for (const std::string& library : libraries) {
-    const std::string lines = to_plain_lines(library);
+  for (const auto& library : libraries) {
+    const std::string lines = to_plain_lines(*library);
     ObjStatementReader reader(lines);
     ObjMaterial* material = nullptr;  // null: before the first one, or one that is not used
     for (ObjStatement statement; reader.next(statement);) {

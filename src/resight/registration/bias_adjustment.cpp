@@ -168,9 +168,7 @@ BiasAdjustment::Equations BiasAdjustment::compare(const BiasEstimate& estimate, 
 // The errors of neighbouring views differ by as much as given motions are off. The first view stays.
 void BiasAdjustment::add_given_motions(const BiasEstimate& estimate, Eigen::MatrixXd& matrix,
                                        Eigen::VectorXd& right) const {
-  Twist information;
-  information << Eigen::Vector3d::Constant(1 / (kMotionSigma_rad * kMotionSigma_rad)),
-      Eigen::Vector3d::Constant(1 / (kMotionSigma_m * kMotionSigma_m));
+  const Twist information = twist_information(kMotionSigma_rad, kMotionSigma_m).diagonal();
   const auto error = [&](std::size_t i) {
     return motion_between(views_[i].world_from_camera, estimate.world_from_camera[i]);
   };

@@ -28,12 +28,12 @@ class MeshFiles {
  private:
   /// Where a file may be that the mesh calls `name`. Models that come from elsewhere name folders which do not exist
   /// here, and library files that were renamed with the mesh.
-  [[nodiscard]] std::vector<std::string> places_of(std::string name) const;
-  [[nodiscard]] Bytes read(const std::string& name);
+  [[nodiscard]] std::vector<std::string> places_of(const std::string& name) const;
+  [[nodiscard]] const Result<Bytes>& read_once(const std::string& place);
 
   fs::path mesh_;
   std::uintmax_t bytes_left_ = kMaxBinaryBytes;
-  std::map<std::string, Bytes> files_;
+  std::map<std::string, Result<Bytes>> files_;  ///< By place.
   std::string failure_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +49,7 @@ struct ObjContent {
 [[nodiscard]] Result<ObjContent> parse_obj(std::string text);
 
 /// Fills in what material libraries say. Of several definitions, the last one counts.
-void define_materials(std::span<const std::string> libraries, std::vector<ObjMaterial>& materials);
+void define_materials(std::span<const std::shared_ptr<const std::string>> libraries,
+                      std::vector<ObjMaterial>& materials);
 
 }  // namespace resight::io

@@ -5,8 +5,8 @@
 
 namespace resight::io {
 
-/// Removes the mark that editors of Windows put before UTF-8, which would hide the first statement. Lines then end with
-/// LF, and other control characters are blanks.
+/// Removes the byte order mark, which would hide the first statement. Lines then end with LF, and other control
+/// characters are blanks.
 [[nodiscard]] std::string to_plain_lines(std::string text);
 
 struct ObjStatement {
