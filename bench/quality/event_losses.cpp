@@ -37,7 +37,6 @@ Detection detection_of(const Json& json, const ModelLibrary& library) {
   detection.object = library.find(json.at("object"));
   if (detection.object < 0) exit_with("the library does not hold the objects of the detections");
   detection.score = json.at("score");
-  detection.pose_score = json.at("pose_score");
   detection.visible_share = json.at("visible_share");
   detection.world_from_object = pose_of(json.at("world_from_object"));
   for (const Json& e : json.at("evidence"))

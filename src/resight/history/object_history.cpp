@@ -42,8 +42,8 @@ std::vector<TrackedObject> ObjectHistory::tracked_objects() const {
   std::vector<TrackedObject> tracked;
   for (const Track& track : tracks_)
     if (track.state == TrackState::kPresent)
-      tracked.push_back({track.id, track.object, track.world_from_object, track.last_view, track.seen_view,
-                         track.since_view, track.is_pose_confirmed});
+      tracked.push_back(
+          {track.id, track.object, track.world_from_object, track.last_view, track.seen_view, track.since_view});
   tracked.insert(tracked.end(), tentative_.objects().begin(), tentative_.objects().end());
   return tracked;
 }
@@ -66,11 +66,9 @@ void ObjectHistory::keep_in_place(Track& track, int observation, View& view) con
   track.world_from_object = observed.world_from_object;
   track.last_view = view.view;
   track.state = TrackState::kPresent;
-  track.is_pose_confirmed |= is_pose_confirmed(observed);
-  track.is_pose_likely = observed.is_pose_likely();
   if (!is_confirmed_by_view(observed)) return;
   track.seen_view = view.view;
-  if (track.is_pose_likely) correct_arrival(track, view);
+  correct_arrival(track, view);
 }
 
 // Decides for each present track without an observation at its place whether it has left, is displaced, or is not seen.
@@ -90,8 +88,8 @@ void ObjectHistory::update_unmatched_tracks(View& view) {
     if (displaced != kUnmatched) free.track_of[static_cast<std::size_t>(displaced)] = static_cast<int>(t);
     const bool is_free =
         !view.use_evidence || (presence.is_informative && presence.gone_share >= kMinDisplacedGoneShare);
-    const bool has_moved =
-        displaced != kUnmatched && is_free && shows_move(track, view.observations[static_cast<std::size_t>(displaced)]);
+    const bool has_moved = displaced != kUnmatched && is_free &&
+                           is_confirmed_by_view(view.observations[static_cast<std::size_t>(displaced)]);
     if (presence.is_gone || has_moved) {
       leave(track, view.view, has_moved ? 1.0 : presence.gone_share, false);
       if (!has_moved) left.push_back(t);

@@ -19,8 +19,8 @@ namespace resight {
 
 /// An observation at a track's place is of that track if it is rotated by less than this (20 deg), over the symmetries.
 inline constexpr double kSameTrackRotation_rad = 0.349;
-/// An object recognised within its old place has moved if at least this share of the old place is seen free, and both
-/// poses are likely. Else, only its pose is known better, or worse.
+/// An object recognised within its old place has moved if at least this share of the old place is seen free. With less,
+/// only its pose is known better, or worse.
 inline constexpr double kMinDisplacedGoneShare = 0.2;
 
 struct ObjectHistoryOptions {
@@ -37,11 +37,10 @@ inline void declare(OptionVisitor& v, ObjectHistoryOptions& o) {
           "An observation within this distance of a track's pose (and 20 deg) is at the same place.");
   v.field("min_new_share", o.min_new_share, between(0, 1),
           "An observation is new only if the view itself confirms this share of the model. 0: it always may be.");
-  v.field("confirm_score", o.confirm_score, between(0, 1),
-          "A new object with a lower score, in whatever pose, is tentative: no event is reported for it until a view "
-          "scores "
-          "this much. If it has moved, its old place is reported as if it had not been recognised. 0: every object is "
-          "confirmed at once.");
+  v.field(
+      "confirm_score", o.confirm_score, between(0, 1),
+      "A new object that scores less is tentative: no event is reported for it until a view scores this much. If it "
+      "has moved, its old place is reported as if it had not been recognised. 0: every object is confirmed at once.");
   v.group("presence", o.presence);
   v.group("memory", o.memory);
 }
@@ -69,8 +68,8 @@ class ObjectHistory {
   /// If its score is below confirm_score, it becomes a tentative track.
   /// An object that leaves its place after one of its kind was added elsewhere has moved there. Another object
   /// recognised in its place shows that it has left as well as free space does. An arrival whose pose the next views
-  /// correct by a likely one is reported again. `frame` is the view's frame. Without change detection (`use_evidence`
-  /// false), free space is not used: nothing is added or removed.
+  /// correct is reported again. `frame` is the view's frame. Without change detection (`use_evidence` false), free
+  /// space is not used: nothing is added or removed.
   [[nodiscard]] HistoryUpdate update(int view, std::span<const ObjectObservation> observations, const RgbdFrame& frame,
                                      bool use_evidence);
   /// Reports the removals that still wait for confirmation. Call it after the last view.
@@ -89,13 +88,6 @@ class ObjectHistory {
     return observed.confirmed_share >= options_.min_new_share;
   }
   [[nodiscard]] bool is_confirmed(const ObjectObservation& observed, int view) const;
-  [[nodiscard]] bool is_pose_confirmed(const ObjectObservation& observed) const {
-    return observed.score * observed.pose_score >= options_.confirm_score;
-  }
-  /// Whether an observation that overlaps the old place shows a move. Unlikely poses may differ without one.
-  [[nodiscard]] bool shows_move(const Track& track, const ObjectObservation& observed) const {
-    return is_confirmed_by_view(observed) && track.is_pose_likely && observed.is_pose_likely();
-  }
   void match_in_place(View& view);
   void keep_in_place(Track& track, int observation, View& view) const;
   void correct_arrival(Track& track, View& view) const;

@@ -71,8 +71,6 @@ void ObjectHistory::place_new(std::size_t observation, View& view) {
   track->world_from_object = observed.world_from_object;
   track->last_view = track->seen_view = track->reported_view = view.view;
   track->since_view = since_view;
-  track->is_pose_confirmed = is_pose_confirmed(observed);
-  track->is_pose_likely = observed.is_pose_likely();
   track->arrival = is_change(event.kind) ? std::optional(event) : std::nullopt;
   track->state = TrackState::kPresent;
   std::ranges::replace(view.update.tracks, track->id, -1);  // Only older views show it at its old place.

@@ -299,14 +299,5 @@ TEST_F(ObjectHistoryTest, AStaticWorldHasNoRemoval) {
   EXPECT_TRUE(history_->finish().empty());
 }
 
-TEST_F(ObjectHistoryTest, ABodyThatDoesNotOverlapItsOldPlaceIsElsewhere) {
-  const Rigid3 behind = plate_at(-0.3, 0, 1.06);  // Nearer than half a diameter, but the plates are thin.
-  view({{0, left_}}, see_plates({left_}));
-  const int track = tracks_[0];
-  view({{0, behind}}, see_nothing());
-  EXPECT_NE(tracks_[0], track) << "nobody has seen the old place free";
-  EXPECT_EQ(history_->tracked_objects().size(), 2U);
-}
-
 }  // namespace
 }  // namespace resight

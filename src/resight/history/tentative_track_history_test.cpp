@@ -46,46 +46,6 @@ TEST_F(TentativeTrackHistoryTest, NoEventIsReportedBeforeAViewConfirmsIt) {
       << "once is enough";
 }
 
-TEST_F(TentativeTrackHistoryTest, AnObjectOfUncertainPoseIsReportedAndSearchedFor) {
-  view({}, see_plates({}));
-  const auto see = [&](double pose_score) {
-    return kinds(observe({{0, left_, 0.9, 1, pose_score}}, see_plates({left_})));
-  };
-  EXPECT_EQ(see(0.5), (std::vector{K::kAdded})) << "it is there, whatever its pose";
-  EXPECT_FALSE(history_->tracked_objects()[0].is_confirmed);
-  EXPECT_EQ(see(0.9), (std::vector{K::kStillThere}));
-  EXPECT_TRUE(history_->tracked_objects()[0].is_confirmed);
-  see(0.5);
-  EXPECT_TRUE(history_->tracked_objects()[0].is_confirmed) << "once is enough";
-}
-
-TEST_F(TentativeTrackHistoryTest, AnUnlikelyPoseShowsNoMove) {
-  const Rigid3 shifted = plate_at(-0.24, 0, 1);
-  const auto see = [&](const Rigid3& pose, double pose_score) {
-    return kinds(observe({{0, pose, 0.9, 1, pose_score}}, see_plates({shifted})));
-  };
-  for (const bool is_first_likely : {false, true}) {
-    history_ = std::make_unique<ObjectHistory>(library_, options_);
-    view_ = 0;
-    view({}, see_plates({}));
-    EXPECT_EQ(see(left_, is_first_likely ? 0.6 : 0.4), (std::vector{K::kAdded}));
-    EXPECT_EQ(see(shifted, is_first_likely ? 0.4 : 0.6).front(), K::kStillThere) << is_first_likely;
-  }
-  EXPECT_EQ(see(left_, 0.6), (std::vector{K::kStillThere}));
-  EXPECT_EQ(see(shifted, 0.6), (std::vector{K::kMoved}));
-}
-
-TEST_F(TentativeTrackHistoryTest, AnUnlikelyPoseCorrectsNoArrival) {
-  const Rigid3 shifted = plate_at(-0.24, 0, 1);
-  view({}, see_plates({}));
-  const auto see = [&](const Rigid3& pose, double pose_score) {
-    return kinds(observe({{0, pose, 0.9, 1, pose_score}}, see_nothing()));
-  };
-  view({{0, left_}}, see_plates({left_}));
-  EXPECT_EQ(see(shifted, 0.4), (std::vector{K::kStillThere}));
-  EXPECT_EQ(see(shifted, 0.6), (std::vector{K::kStillThere, K::kAdded}));
-}
-
 TEST_F(TentativeTrackHistoryTest, ATrackNeverConfirmedEndsWithoutAnEvent) {
   tentative_view({{0, left_}}, see_plates({left_}));
   EXPECT_TRUE(view({}, see_nothing()).empty());

@@ -26,8 +26,6 @@ struct Track {
   int since_view = -1;                 ///< First view that recognised it at its place.
   int reported_view = -1;              ///< View whose event first reported it at its place.
   std::optional<ObjectEvent> arrival;  ///< That event, if its kind is kAdded or kMoved.
-  bool is_pose_likely = true;          ///< As it was last observed.
-  bool is_pose_confirmed = false;      ///< A view recognised it at its place and in its pose with enough score.
   int left_view = -1;                  ///< First view that saw its place free, or occupied by another object.
   bool is_replaced = false;            ///< Another object occupies its place.
   double confidence = 0;               ///< Of its departure, in [0, 1].

@@ -8,11 +8,6 @@
 #include "resight/models/pose_distance.hpp"
 
 namespace resight {
-namespace {
-
-constexpr double kMinOverlap = 0.05;  // An upright bottle 10 cm beside its place is elsewhere, not displaced.
-
-}  // namespace
 
 bool TrackAssociation::is_same_place(int object, const Rigid3& a, const Rigid3& b) const {
   const ObjectModel& model = model_of(object);
@@ -49,9 +44,7 @@ int TrackAssociation::find_displaced(const Track& track, const ViewObservations&
     const ObjectObservation& observed = view.observations[i];
     if (view.track_of[i] != kUnmatched || observed.object != track.object) continue;
     const double distance_m = center_distance_m(model, track.world_from_object, observed.world_from_object);
-    if (distance_m >= nearest_m ||
-        share_within(model, observed.world_from_object, model, track.world_from_object) < kMinOverlap)
-      continue;
+    if (distance_m >= nearest_m) continue;
     nearest = static_cast<int>(i);
     nearest_m = distance_m;
   }

@@ -12,7 +12,7 @@ struct TrackedObject {
   int last_view = -1;        ///< Last view in whose window it was recognised.
   int seen_view = -1;        ///< Last view that recognised it and confirmed it itself.
   int since_view = -1;       ///< First view that recognised it at its place.
-  bool is_confirmed = true;  ///< In its pose. False: it may have another pose, or is tentative (TentativeTracks).
+  bool is_confirmed = true;  ///< False: a tentative track (TentativeTracks).
 };
 
 }  // namespace resight

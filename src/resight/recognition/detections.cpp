@@ -37,6 +37,7 @@ void confirm_by_colors(Detection& detection, const RgbdFrame& current, const Mod
 std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const std::deque<DynamicScene::View>& window,
                                        const ModelLibrary& library, const RecognizerConfig& config) {
   std::vector<Detection> detections;
+  std::vector<double> pose_scores;
   for (std::size_t h = 0; h < verified.hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = verified.hypotheses[h];
     const HypothesisEvidence& evidence = verified.evidence[h];
@@ -49,14 +50,14 @@ std::vector<Detection> make_detections(const VerifiedHypotheses& verified, const
     const PlaceScore score =
         config.detections.weigh_competing_poses ? score_place(verified, h, library) : PlaceScore{evidence.score, 1};
     detection.score = score.place;
-    detection.pose_score = score.pose;
+    pose_scores.push_back(score.pose);
     detection.fit = evidence.fit;
     detection.visible_share = evidence.visible_share;
     detection.views = evidence_of_views(verified, h, window);
     confirm_by_colors(detection, window.back().raw, library, config);
   }
   apply_instance_prior(detections, config.detections.further_instance_odds);
-  for (Detection& detection : detections) detection.score *= detection.pose_score;
+  for (std::size_t i = 0; i < detections.size(); ++i) detections[i].score *= pose_scores[i];
   return detections;
 }
 

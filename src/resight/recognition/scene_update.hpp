@@ -35,15 +35,13 @@ struct Detection {
   std::uint64_t hypothesis_id = 0;
   Rigid3 world_from_object;
   PoseUncertainty uncertainty;
-  double score = 0;       ///< Probability that it is right, in [0, 1]: HypothesisScoreOptions, apply_instance_prior().
-  double pose_score = 1;  ///< Factor of the score: probability of the pose, given that the object is there.
-  double fit = 0;         ///< How well its visible points are explained, in [0, 1].
+  double score = 0;  ///< Probability that it is right, in [0, 1]: HypothesisScoreOptions, apply_instance_prior().
+  double fit = 0;    ///< How well its visible points are explained, in [0, 1].
   double visible_share = 0;  ///< Of the model's points, over all views in use.
   std::vector<DetectionViewEvidence> views;
   /// What the object history needs of it.
   [[nodiscard]] ObjectObservation observation() const {
-    return {object, world_from_object, pose_score > 0 ? score / pose_score : 0,
-            views.empty() ? 1 : views.back().confirmed_share(), pose_score};
+    return {object, world_from_object, score, views.empty() ? 1 : views.back().confirmed_share()};
   }
 };
 

@@ -52,7 +52,6 @@ Json detection_json(const ViewRecord& view, std::size_t index, const ModelLibrar
                {"obj_id", model.bop_id},
                {"track", detection.track},
                {"score", detection.score},
-               {"pose_score", detection.pose_score},
                {"fit", detection.fit},
                {"visible_share", detection.visible_share},
                {"camera_from_object", pose_json(view.update.world_from_camera.inverse() * detection.world_from_object)},
