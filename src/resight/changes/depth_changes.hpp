@@ -22,13 +22,12 @@ inline void declare(OptionVisitor& v, DepthTestOptions& o) {
           "A surface has changed if it differs from what another view measured by more than this many standard "
           "deviations, along its normal.",
           "ours; noise by Nguyen et al. 2012");
-  v.field(
-      "recolored_sigmas", o.recolored_sigmas, positive(),
-      "The same for pixels whose colour has changed, relative to its surroundings: thin things. Not more than "
-      "`sigmas`. Where the colour has changed, the mean distance within a few centimetres decides, too, if it exceeds "
-      "`sigmas` standard deviations of such means: flat things. Pixels that look as before count less. off: colours "
-      "do not count.",
-      "ours");
+  v.field("recolored_sigmas", o.recolored_sigmas, positive(),
+          "As sigmas, but for pixels whose colour has changed relative to its surroundings: for thin things. Not more "
+          "than `sigmas`. Such pixels have also changed if their mean distance within a few centimetres exceeds "
+          "`sigmas` standard deviations of such means: for flat things. Pixels that look as before count less. off: "
+          "colours do not count.",
+          "ours");
   v.field(
       "min_region_px", o.min_region_px, at_least(1),
       "Smaller connected regions are noise. A pixel counts in full from twice the standard deviations above on, and "

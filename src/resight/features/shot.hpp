@@ -30,7 +30,8 @@ inline void declare(OptionVisitor& v, ShotOptions& o) {
           "Keypoints on flatter surface are dropped: smallest eigenvalue of the support over the sum of all, without "
           "the variance of the sensor noise. 0: all are kept.");
   v.field("max_keypoint_depth_m", o.max_keypoint_depth_m, positive(),
-          "No keypoints of a view farther away: normals are noise there. off: no limit.", "later V4R: 1.8");
+          "Points of a view beyond this depth are no keypoints: normals are noise there. off: no limit.",
+          "later V4R: 1.8");
   v.field("min_neighbors", o.min_neighbors, between(3, 1e9), "Keypoints with fewer support points are not described.");
   v.num_threads(o.num_threads);
 }

@@ -16,7 +16,7 @@ struct SiftOptions {
 
 inline void declare(OptionVisitor& v, SiftOptions& o) {
   v.field("contrast_threshold", o.contrast_threshold, at_least(0),
-          "Keypoints of less contrast are dropped (convention of OpenCV). 0: none is.", "paper's code");
+          "Keypoints of less contrast are dropped (convention of OpenCV). 0: none is.", "V4R");
   v.field("edge_threshold", o.edge_threshold, positive(),
           "Largest ratio of the principal curvatures of a keypoint. Smaller: fewer keypoints on edges.", "OpenCV");
   v.field("num_octave_layers", o.num_octave_layers, between(1, 20), "Scales per octave.", "Lowe 2004");

@@ -31,7 +31,7 @@ inline void declare(OptionVisitor& v, ClusterHypothesesOptions& o) {
   v.field("max_translation_m", o.max_translation_m, positive(),
           "delta_t: largest distance of two hypotheses of a cluster, at the object's centre.", "paper, Eq. (1)");
   v.field("max_rotation_rad", o.max_rotation_rad, between(1e-9, std::numbers::pi),
-          "delta_r: largest angle between their rotations.", "paper, Eq. (1): 10 deg");
+          "delta_r: largest angle between the rotations of two hypotheses of a cluster.", "paper, Eq. (1): 10 deg");
   v.choice("rotation_test", o.rotation_test,
            {{"geodesic", "one angle"}, {"absolute_euler", "yaw, pitch and roll separately (paper)"}},
            "What the angle between two rotations is.");

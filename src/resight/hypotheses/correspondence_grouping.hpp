@@ -34,7 +34,9 @@ inline void declare(OptionVisitor& v, GroupCorrespondencesOptions& o) {
       "less.",
       "V4R");
   v.field("max_dot_difference", o.max_dot_difference, positive(),
-          "Largest difference of the dot products of their normals.", "V4R");
+          "The dot products of the normals of two consistent correspondences, in the model and in the scene, differ by "
+          "less.",
+          "V4R");
   v.field("min_distance_m", o.min_distance_m, at_least(0),
           "Pairs of points nearer to each other do not constrain a pose.");
   v.field("min_group_size", o.min_group_size, at_least(3), "Smaller groups of consistent correspondences are dropped.",

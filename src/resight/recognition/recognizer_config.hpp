@@ -32,11 +32,10 @@ struct RunOptions {
 };
 
 inline void declare(OptionVisitor& v, RunOptions& o) {
-  v.field("seed", o.seed, "Of all random samples of all stages.");
-  v.field(
-      "deadline_ms", o.deadline_ms, positive(),
-      "Time per view, from its arrival on. Work that cannot be done until then is left out, and the results depend on "
-      "the machine. off: no limit.");
+  v.field("seed", o.seed, "Seed of all random choices of all stages.");
+  v.field("deadline_ms", o.deadline_ms, positive(),
+          "Time limit per view, from its arrival on. Work that cannot be done in time is left out, and the results "
+          "depend on the machine. off: no limit.");
 }
 
 /// Errors of the camera that its views show: of its poses, between its colours and its depth, and of its depth.

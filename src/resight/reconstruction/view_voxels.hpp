@@ -20,7 +20,8 @@ struct IntegrateOptions {
 };
 
 inline void declare(OptionVisitor& v, IntegrateOptions& o) {
-  v.field("voxel_m", o.voxel_m, positive(), "Voxel of the reconstruction: one point each.", "ours; V4R: 0.004");
+  v.field("voxel_m", o.voxel_m, positive(), "Size of a voxel of the reconstruction, which has one point per voxel.",
+          "ours; V4R: 0.004");
   v.field("min_edge_distance_px", o.min_edge_distance_px, at_least(0),
           "Points nearer to a depth edge are not integrated. 0: all are.", "V4R");
   v.field("min_points_per_voxel", o.min_points_per_voxel, at_least(1),

@@ -25,8 +25,9 @@ inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
     v.field("sigma_m", o.sigma_m, positive(), "Standard deviation of given motions between views.");
     v.field("sigma_rad", o.sigma_rad, positive(), "Standard deviation of given rotations between views (1 deg).");
     v.field("min_overlap", o.min_overlap, between(0, 1),
-            "With a smaller share of the view in common with those before, the given pose stays.");
-    v.field("max_distance_m", o.max_distance_m, positive(), "Largest distance of a pair at the coarsest level.");
+            "The given pose stays if the view has a smaller share in common with those before.");
+    v.field("max_distance_m", o.max_distance_m, positive(),
+            "Largest distance of a pair of points at the coarsest level of the alignment.");
   });
   v.num_threads(o.num_threads);
 }

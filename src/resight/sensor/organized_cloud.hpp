@@ -42,7 +42,7 @@ inline void declare(OptionVisitor& v, ComputeNormalsOptions& o) {
           "Normals are fitted to a window of 2 r + 1 pixels. Larger: less noise, rounder edges, slower.");
   v.field("max_depth_change", o.max_depth_change, positive(),
           "Pixels of the window count if their z differs by less than this share of z.");
-  v.field("min_neighbors", o.min_neighbors, between(2, 40400), "With fewer such pixels there is no normal.");
+  v.field("min_neighbors", o.min_neighbors, between(2, 40400), "A point with fewer such pixels has no normal.");
   v.num_threads(o.num_threads);
 }
 

@@ -30,10 +30,9 @@ inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
           "off: never.");
   v.group("normals", o.normals);
   v.group("edges", o.edges);
-  v.field(
-      "min_depth_m", o.min_depth_m, positive(),
-      "Nearer measurements are dropped, like missing ones: no depth camera but one for close range measures there, and "
-      "what is that near is often a part of the robot. off: all are kept.");
+  v.field("min_depth_m", o.min_depth_m, positive(),
+          "Nearer measurements count as missing: only cameras for close range measure there, and surfaces so close are "
+          "often parts of the robot itself. off: all are kept.");
   v.field(
       "max_depth_m", o.max_depth_m, positive(),
       "Farther points are dropped from the point cloud. The depth image stays whole: beyond, it is still evidence of "

@@ -45,7 +45,7 @@ inline void declare(OptionVisitor& v, ShapeSearchOptions& o) {
             "Model pairs tried per object and scene pair, drawn at random if there are more (a quarter of them for "
             "objects round in shape).");
     v.field("max_matches", o.max_matches, at_least(0),
-            "Matches per object, the best, of which pairs also give poses. 0: none do.");
+            "Number of the best matches per object whose pairs also give poses. 0: none do.");
     v.field("max_refined", o.max_refined, at_least(0), "Poses per object that are refined and scored, the best first.");
     v.field("tolerance_m", o.tolerance_m, positive(),
             "Tolerance of the depth when a refined pose is scored, plus three standard deviations of the sensor.");

@@ -30,28 +30,37 @@ struct HypothesisScoreOptions {
 
 inline void declare(OptionVisitor& v, HypothesisScoreOptions& o) {
   v.field("offset", o.offset, between(-100, 100), "Log odds of being right before any evidence.", "fitted");
-  v.field("gain_weight", o.gain_weight, between(0, 100),
-          "Of the unary gain: what it explains of the scene less what it costs, as a share of the former.", "fitted");
-  v.field("correspondence_weight", o.correspondence_weight, between(0, 100), "Of log(1 + correspondences).", "fitted");
-  v.field("fit_weight", o.fit_weight, between(0, 100), "Of how well its visible points are explained.", "fitted");
-  v.field("visible_weight", o.visible_weight, between(0, 100), "Of log(0.01 + visible share of the model).", "fitted");
-  v.field("texture_weight", o.texture_weight, between(0, 100),
-          "Of log(1 + contrast of the texture that model and scene share), in grey levels of L*.", "fitted");
-  v.field("beside_planes_weight", o.beside_planes_weight, between(0, 100),
-          "Of the share of what it explains that is no part of a plane larger than the object: pieces of tables and "
-          "walls look like the faces of boxes.",
+  v.field(
+      "gain_weight", o.gain_weight, between(0, 100),
+      "Weight of the unary gain: what a hypothesis explains of the scene less what it costs, as a share of the former.",
+      "fitted");
+  v.field("correspondence_weight", o.correspondence_weight, between(0, 100), "Weight of log(1 + correspondences).",
           "fitted");
-  v.field("newest_weight", o.newest_weight, between(0, 100),
-          "Of the similarity of its colours to those of the newest view (acceptance.min_newest_similarity).", "fitted");
+  v.field("fit_weight", o.fit_weight, between(0, 100), "Weight of the fit: how well the visible points are explained.",
+          "fitted");
+  v.field("visible_weight", o.visible_weight, between(0, 100), "Weight of log(0.01 + visible share of the model).",
+          "fitted");
+  v.field("texture_weight", o.texture_weight, between(0, 100),
+          "Weight of log(1 + contrast of the texture that model and scene share), in grey levels of L*.", "fitted");
+  v.field("beside_planes_weight", o.beside_planes_weight, between(0, 100),
+          "Weight of the share of what a hypothesis explains that is no part of a plane larger than the object: pieces "
+          "of tables and walls look like the faces of boxes.",
+          "fitted");
+  v.field(
+      "newest_weight", o.newest_weight, between(0, 100),
+      "Weight of the similarity of the model's colours to those of the newest view (acceptance.min_newest_similarity).",
+      "fitted");
   v.field("seen_through_weight", o.seen_through_weight, between(0, 100),
-          "Counts against it: of the share of its visible points that are seen through (visibility.free_space).",
+          "Weight, against the hypothesis, of the share of the visible points that are seen through "
+          "(visibility.free_space).",
           "fitted");
   v.field("silhouette_weight", o.silhouette_weight, between(0, 100),
-          "Counts against it: of log(0.02 + share of the points that lie where the newest view has no depth, and shows "
-          "other colours).",
+          "Weight, against the hypothesis, of log(0.02 + share of the points that lie where the newest view has no "
+          "depth, and shows other colours).",
           "fitted");
   v.field("hue_weight", o.hue_weight, between(0, 100),
-          "Of the hue similarity of model and scene, 1 for an untextured model: look-alikes often have other colours.",
+          "Weight of the hue similarity of model and scene, 1 for an untextured model: look-alikes often have other "
+          "colours.",
           "fitted");
   v.field("uncolored_weight", o.uncolored_weight, between(-100, 100),
           "Takes the place of the weights of texture, newest colours, silhouette and hue where model or scene has no "

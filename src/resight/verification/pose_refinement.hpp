@@ -32,8 +32,9 @@ inline void declare(OptionVisitor& v, RefinePoseOptions& o) {
           "Largest distance of a pair; weights fall to 0 there (Tukey).");
   v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi / 2),
           "Largest angle between the normals of a pair (45 deg).");
-  v.field("correspondence_weight", o.correspondence_weight, at_least(0),
-          "Weight of a pair of keypoints, beside 1 of each surface point (at most 300). 0: keypoints take no part.");
+  v.field(
+      "correspondence_weight", o.correspondence_weight, at_least(0),
+      "Weight of a pair of keypoints, relative to 1 for each surface point (at most 300). 0: keypoints take no part.");
   v.field(
       "symmetry_step_rad", o.symmetry_step_rad, between(1e-3, std::numbers::pi),
       "A refined pose is rotated by the symmetries of its shape (about the axis of a can in such steps; half turns of "
