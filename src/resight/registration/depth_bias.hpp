@@ -17,8 +17,8 @@ struct DepthBiasOptions {
 
 inline void declare(OptionVisitor& v, DepthBiasOptions& o) {
   v.field("correct", o.correct,
-          "A bias of the depth that grows with the square of the distance is measured before the first view, where a "
-          "sequence is recorded, and corrected.",
+          "A bias of the depth that grows with the square of the distance is corrected. It is measured before the "
+          "first view of a recorded sequence.",
           "ours");
   v.num_threads(o.num_threads);
 }

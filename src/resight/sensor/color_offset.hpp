@@ -18,11 +18,10 @@ struct ColorOffsetOptions {
 };
 
 inline void declare(OptionVisitor& v, ColorOffsetOptions& o) {
-  v.field(
-      "correct", o.correct,
-      "Colours that lie beside the depth are moved onto it, by whole pixels, and the principal point of the depth by "
-      "the whole offset. Measured before the first view, where a sequence is recorded.",
-      "ours");
+  v.field("correct", o.correct,
+          "Colours that are offset from the depth are moved onto it, by whole pixels, and the principal point of the "
+          "depth by the whole offset. In a recorded sequence, the offset is measured before the first view.",
+          "ours");
 }
 
 /// How far the colours of a camera lie beside its depth: the depth of pixel p has the colour of pixel p + offset. In
