@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "reader.hpp"
 #include "resight/core/names.hpp"
 #include "resight/core/printable.hpp"

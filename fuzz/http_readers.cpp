@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "reader.hpp"
 #include "resight/viewer/internal/parse_request.hpp"
 #include "resight/viewer/viewer_routes.hpp"

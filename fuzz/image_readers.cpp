@@ -9,6 +9,7 @@
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/image_decoder.hpp"
 #include "resight/io/internal/recording_images.hpp"
+#include "resight/recordings/message.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
 
 namespace resight::fuzz {

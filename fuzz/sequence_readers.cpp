@@ -3,7 +3,6 @@
 
 #include "reader.hpp"
 #include "resight/io/images.hpp"
-#include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/sequence.hpp"
 

@@ -8,6 +8,7 @@
 #include "resight/cameras/joint_adjustment.hpp"
 #include "resight/cameras/track_journal.hpp"
 #include "resight/io/sequence.hpp"
+#include "resight/models/object_model.hpp"
 #include "resight/sensor/posed_sequence.hpp"
 
 namespace resight::app {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include "commands.hpp"
 #include "output_paths.hpp"
 #include "recognition_run.hpp"

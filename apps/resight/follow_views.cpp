@@ -2,6 +2,7 @@
 #include "follow_views.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "interrupts.hpp"

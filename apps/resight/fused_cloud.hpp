@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "resight/io/sequence.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight::app {
 

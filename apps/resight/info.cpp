@@ -15,7 +15,6 @@
 #include "resight/models/library_file.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/training/training.hpp"
-#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "commands.hpp"
 #include "resight/report/stored_view.hpp"
 
 namespace resight::app {

@@ -7,7 +7,6 @@
 
 #include "resight/report/view_record.hpp"
 #include "resight/sensor/sequence.hpp"
-#include "resight/viewer/http_server.hpp"
 #include "resight/viewer/scene_data.hpp"
 #include "viewer_session.hpp"
 

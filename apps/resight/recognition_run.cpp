@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <optional>
-#include <span>
 #include <utility>
 
+#include "commands.hpp"
 #include "progress.hpp"
 #include "resight/core/timing.hpp"
 #include "resight/evaluation/change_truth.hpp"

@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include "commands.hpp"
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/io/follow_sequence.hpp"
 #include "resight/models/object_model.hpp"

@@ -18,7 +18,6 @@
 #include "resight/report/html_report.hpp"
 #include "resight/report/results.hpp"
 #include "resight/training/training.hpp"
-#include "sequence_input.hpp"
 
 namespace resight::app {
 

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <concepts>
-#include <filesystem>
-#include <string>
 #include <string_view>
+#include <utility>
 
 #include "resight/core/printable.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer_input.hpp"
 
-#include <fmt/format.h>
-
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
 #include "resight/core/unfinished_folder.hpp"

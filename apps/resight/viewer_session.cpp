@@ -5,8 +5,10 @@
 
 #include <cstdio>
 
+#include "commands.hpp"
 #include "resight/viewer/access_guard.hpp"
 #include "resight/viewer/viewer_routes.hpp"
+#include "terminal.hpp"
 
 namespace resight::app {
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "browser.hpp"
-#include "commands.hpp"
 #include "resight/viewer/annotation_service.hpp"
 #include "resight/viewer/http_server.hpp"
 #include "resight/viewer/scene_data.hpp"

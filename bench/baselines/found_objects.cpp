@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "resight/evaluation/match_detections.hpp"
+#include "resight/models/pose_distance.hpp"
+
 namespace resight::bench {
 namespace {
 

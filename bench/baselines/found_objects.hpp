@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "resight/evaluation/match_detections.hpp"
 #include "stage_input.hpp"
 
 namespace resight::bench {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <string>
 #include <vector>
 
-#include "resight/hypotheses/generation.hpp"
-#include "resight/io/sequence.hpp"
 #include "resight/recognition/recognizer_config.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight::bench {
 

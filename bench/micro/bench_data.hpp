@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "resight/sensor/prepared_view.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 /// Input of the benchmarks, generated from seeds: the same on every machine.
 namespace resight::bench {

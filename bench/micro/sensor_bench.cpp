@@ -2,6 +2,10 @@
 #include <benchmark/benchmark.h>
 
 #include "bench_data.hpp"
+#include "resight/sensor/depth_edges.hpp"
+#include "resight/sensor/noise_model.hpp"
+#include "resight/sensor/organized_cloud.hpp"
+#include "resight/sensor/prepared_view.hpp"
 
 namespace resight::bench {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "arguments.hpp"
 #include "resight/core/timing.hpp"
-#include "resight/io/sequence.hpp"
 
 int main(int argc, char** argv) {
   using namespace resight;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <numbers>
 
 #include "resight/core/parallel.hpp"

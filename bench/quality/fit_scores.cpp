@@ -15,12 +15,12 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "arguments.hpp"
 #include "resight/evaluation/match_detections.hpp"
 #include "resight/evaluation/reliability.hpp"
-#include "resight/io/sequence.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/recognize_sequence.hpp"
 #include "resight/report/view_record.hpp"

@@ -12,6 +12,7 @@
 #include <Eigen/Cholesky>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>

@@ -5,9 +5,9 @@
 //   bench_paper_switches scene models.resight
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "arguments.hpp"
 #include "resight/evaluation/evaluate_sequence.hpp"

@@ -11,10 +11,10 @@
 #include <string>
 
 #include "arguments.hpp"
-#include "resight/evaluation/match_detections.hpp"
 #include "resight/io/sequence.hpp"
 #include "resight/io/settings_file.hpp"
 #include "resight/models/library_file.hpp"
+#include "resight/models/pose_distance.hpp"
 #include "resight/recognition/view_hypothesis_generator.hpp"
 
 namespace {

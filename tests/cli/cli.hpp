@@ -3,7 +3,6 @@
 // which the row damages something, and defines the exit status, the single line on standard error, and that no files
 // are left.
 #pragma once
-#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <filesystem>

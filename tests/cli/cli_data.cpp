@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
 #include <fstream>
+#include <iterator>
 
 #include "cli.hpp"
 #include "resight/core/random.hpp"

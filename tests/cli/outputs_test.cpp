@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where results may be written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "cli.hpp"
 
 namespace resight::cli_test {

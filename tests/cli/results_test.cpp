@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run writes, and what is left of one that fails or is interrupted.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <csignal>

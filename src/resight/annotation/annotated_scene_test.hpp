@@ -4,8 +4,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <optional>
 #include <vector>
 
 #include "resight/annotation/annotation_document.hpp"

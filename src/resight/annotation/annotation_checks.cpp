@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/matched_regions.hpp"

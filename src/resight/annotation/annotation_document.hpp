@@ -6,7 +6,6 @@
 #include <set>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "resight/annotation/pixel_runs.hpp"
 #include "resight/annotation/region_key.hpp"

@@ -5,8 +5,8 @@
 
 #include "resight/annotation/pixel_runs.hpp"
 #include "resight/annotation/region_key.hpp"
-#include "resight/annotation/view_store.hpp"
 #include "resight/reconstruction/dynamic_scene.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

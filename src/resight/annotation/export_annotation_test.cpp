@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/annotation/export_annotation.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/annotated_scene_test.hpp"
 #include "resight/annotation/annotation_checks.hpp"
 #include "resight/annotation/object_masks.hpp"
@@ -14,6 +13,7 @@
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/io/change_files.hpp"
 #include "resight/io/images.hpp"
+#include "resight/io/sequence.hpp"
 
 namespace resight {
 namespace {

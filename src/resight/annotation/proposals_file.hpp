@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "resight/annotation/change_proposals.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/annotation/refine_over_views.hpp"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <numbers>
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <utility>
 
+#include "resight/cameras/object_places.hpp"
 #include "resight/core/check.hpp"
 #include "resight/registration/pose_estimation.hpp"
 

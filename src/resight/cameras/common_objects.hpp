@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
-#include <vector>
 
-#include "resight/cameras/object_places.hpp"
+#include "resight/cameras/view_tracker.hpp"
+#include "resight/models/object_model.hpp"
+#include "resight/models/observed_object.hpp"
+#include "resight/models/pose_distance.hpp"
+#include "resight/registration/alignment_view.hpp"
+#include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 

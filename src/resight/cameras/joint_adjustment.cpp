@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "resight/cameras/object_places.hpp"
 #include "resight/core/check.hpp"
 
 namespace resight {

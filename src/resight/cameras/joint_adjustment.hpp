@@ -3,7 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "resight/cameras/object_places.hpp"
+#include "resight/cameras/pose_graph.hpp"
+#include "resight/cameras/view_tracker.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/models/object_model.hpp"
+#include "resight/models/observed_object.hpp"
+#include "resight/models/pose_distance.hpp"
 
 namespace resight {
 

@@ -7,10 +7,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/disjoint_sets.hpp"
+#include "resight/registration/twist.hpp"
 
 namespace resight {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 
-#include "resight/registration/twist.hpp"
+#include "resight/geometry/rigid3.hpp"
 
 namespace resight {
 

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "resight/cameras/trajectory_error.hpp"
 #include "resight/core/random.hpp"
 

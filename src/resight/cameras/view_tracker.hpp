@@ -8,6 +8,7 @@
 #include "resight/cameras/plausibility.hpp"
 #include "resight/cameras/pose_graph.hpp"
 #include "resight/features/sift.hpp"
+#include "resight/registration/twist.hpp"
 #include "resight/registration/view_alignment.hpp"
 
 namespace resight {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/changes/removal_support.hpp"
 
-#include <cmath>
 #include <numbers>
 
 #include "resight/core/check.hpp"

@@ -2,7 +2,6 @@
 #include "resight/core/allocator.hpp"
 
 #include <climits>
-#include <cstdlib>
 
 #ifdef __GLIBC__
 #include <malloc.h>

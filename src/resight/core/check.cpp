@@ -2,6 +2,8 @@
 #include "resight/core/check.hpp"
 
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 namespace resight {
 namespace {

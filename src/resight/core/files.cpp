@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "resight/core/check.hpp"
 #include "resight/core/internal/file_transfer.hpp"
 #include "resight/core/internal/pending_place.hpp"
 #include "resight/core/internal/write_all.hpp"

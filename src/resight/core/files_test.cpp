@@ -5,9 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <iterator>
+#include <vector>
 
 #include "resight/core/output_file.hpp"
 

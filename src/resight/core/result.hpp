@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
-
-#include "resight/core/check.hpp"
 
 namespace resight {
 

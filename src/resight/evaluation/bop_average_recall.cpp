@@ -2,6 +2,7 @@
 #include "resight/evaluation/bop_average_recall.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "resight/geometry/symmetry.hpp"
+#include "resight/io/model_source.hpp"
 
 namespace resight {
 namespace {

@@ -11,8 +11,7 @@
 #include "resight/core/result.hpp"
 #include "resight/evaluation/bop_average_recall.hpp"
 #include "resight/evaluation/evaluated_run.hpp"
-#include "resight/io/model_source.hpp"
-#include "resight/io/sequence.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/evidence/surface_evidence.hpp"
+#include "resight/geometry/kd_tree.hpp"
 
 namespace resight {
 namespace {

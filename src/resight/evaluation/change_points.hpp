@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "resight/evaluation/change_truth.hpp"
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight {

@@ -2,9 +2,7 @@
 #include "resight/evaluation/change_truth.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <set>
 
 #include "resight/evaluation/locate_changes.hpp"
 #include "resight/evaluation/placement_changes.hpp"

@@ -9,9 +9,9 @@
 #include "resight/core/result.hpp"
 #include "resight/evaluation/ghosts.hpp"
 #include "resight/geometry/point_cloud.hpp"
+#include "resight/history/object_event.hpp"
 #include "resight/io/change_files.hpp"
-#include "resight/io/sequence.hpp"
-#include "resight/recognition/scene_update.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -2,7 +2,6 @@
 #include "resight/evaluation/change_visibility.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "resight/core/check.hpp"

@@ -2,13 +2,13 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "resight/core/result.hpp"
 #include "resight/evaluation/change_truth.hpp"
 #include "resight/evaluation/evaluated_run.hpp"
-#include "resight/io/sequence.hpp"
-#include "resight/recognition/scene_recognizer.hpp"
+#include "resight/recognition/recognizer_config.hpp"
+#include "resight/recognition/view_hypotheses.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "resight/evaluation/change_truth.hpp"
-
 namespace resight {
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include "resight/evaluation/match_detections.hpp"
 #include "resight/recognition/recognition_trace.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
 
 namespace resight {
 

@@ -6,7 +6,6 @@
 
 #include "resight/core/check.hpp"
 #include "resight/evaluation/assignment.hpp"
-#include "resight/geometry/symmetry.hpp"
 
 namespace resight {
 namespace {

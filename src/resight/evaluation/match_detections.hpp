@@ -6,9 +6,9 @@
 
 #include "resight/evaluation/recognition_score.hpp"
 #include "resight/geometry/rigid3.hpp"
-#include "resight/io/sequence.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/models/pose_distance.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "resight/evaluation/change_visibility.hpp"
+#include "resight/history/object_event.hpp"
 
 namespace resight {
 

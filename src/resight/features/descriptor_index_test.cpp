@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "resight/core/random.hpp"
 #include "resight/features/coded_features.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "resight/core/image.hpp"
 #include "resight/core/random.hpp"
-#include "resight/sensor/prepared_view.hpp"
+#include "resight/geometry/camera.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 /// Analytic views for tests of features.
 namespace resight::test {

@@ -5,10 +5,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
-#include "resight/features/feature_test_scenes.hpp"
+#include "resight/core/random.hpp"
 #include "resight/features/shot_frame.hpp"
 #include "resight/features/support_grid.hpp"
 

@@ -2,6 +2,7 @@
 #include "resight/geometry/kd_tree.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <nanoflann.hpp>
 
 namespace resight {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <stdexcept>
 
 namespace resight {
 namespace {

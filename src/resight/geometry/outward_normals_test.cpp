@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
+#include <stdexcept>
 
 #include "resight/core/random.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/geometry/point_cloud.hpp"
 
-#include <array>
-
 #include "resight/core/check.hpp"
 #include "resight/geometry/voxel_map.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
 
 #include "resight/core/random.hpp"
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "resight/core/random.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/history/depth_history.hpp"
 
-#include <utility>
-
 #include "resight/core/check.hpp"
 
 namespace resight {

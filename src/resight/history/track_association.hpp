@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "resight/evidence/object_presence.hpp"
 #include "resight/history/object_observation.hpp"
 #include "resight/history/track.hpp"
 #include "resight/models/object_model.hpp"

@@ -5,11 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
-#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/symmetry.hpp"
 

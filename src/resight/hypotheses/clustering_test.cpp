@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "resight/core/random.hpp"
 #include "resight/hypotheses/testing/synthetic_correspondences.hpp"

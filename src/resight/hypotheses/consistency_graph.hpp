@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/registration/correspondence.hpp"
 
 namespace resight {
 

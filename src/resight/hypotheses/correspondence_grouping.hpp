@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "resight/core/options.hpp"
-#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/registration/pose_estimation.hpp"
 
 namespace resight {

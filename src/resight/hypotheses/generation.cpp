@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/hypotheses/generation.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "resight/core/check.hpp"

@@ -8,6 +8,7 @@
 #include "resight/core/options.hpp"
 #include "resight/features/descriptor_index.hpp"
 #include "resight/hypotheses/correspondence_grouping.hpp"
+#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
 
 namespace resight {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "resight/hypotheses/testing/synthetic_correspondences.hpp"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "resight/features/sift.hpp"
 #include "resight/sensor/testing/ball_scene.hpp"

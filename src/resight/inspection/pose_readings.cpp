@@ -2,7 +2,6 @@
 #include "resight/inspection/pose_readings.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace resight {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resight/io/bop_models.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/io/mesh.hpp"
 #include "resight/io/ply.hpp"
 
 namespace resight::io {

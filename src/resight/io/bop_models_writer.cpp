@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "resight/core/check.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/internal/bop_dataset.hpp"
 #include "resight/io/internal/bop_scene_writer.hpp"

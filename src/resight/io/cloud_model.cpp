@@ -7,6 +7,7 @@
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/model_files.hpp"
+#include "resight/io/mesh.hpp"
 #include "resight/io/organized_pcd.hpp"
 #include "resight/io/ply.hpp"
 

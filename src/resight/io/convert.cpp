@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "resight/core/check.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/tuw_changes.hpp"

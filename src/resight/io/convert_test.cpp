@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "resight/io/bop_models.hpp"
+#include <cmath>
+
 #include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/tuw_models.hpp"

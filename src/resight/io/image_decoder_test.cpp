@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <png.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
 #include "resight/core/random.hpp"

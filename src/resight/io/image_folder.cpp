@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "resight/core/check.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/depth_check.hpp"
 #include "resight/io/internal/files.hpp"

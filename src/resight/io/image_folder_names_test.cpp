@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+
 #include "resight/io/image_folder_test_util.hpp"
 #include "resight/io/internal/image_series.hpp"
 

@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "resight/core/check.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_decoder.hpp"
 #include "resight/sensor/rgbd_frame.hpp"

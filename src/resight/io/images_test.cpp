@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "resight/core/crc32.hpp"
 #include "resight/io/internal/test_data.hpp"
 

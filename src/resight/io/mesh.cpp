@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "resight/core/check.hpp"
 #include "resight/geometry/limits.hpp"
-#include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/mesh_parts.hpp"
 #include "resight/io/ply.hpp"

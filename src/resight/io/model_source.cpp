@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 
+#include "resight/core/check.hpp"
 #include "resight/core/names.hpp"
 #include "resight/core/unfinished_folder.hpp"
 #include "resight/io/internal/files.hpp"

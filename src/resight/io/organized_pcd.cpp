@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "resight/core/check.hpp"
 #include "resight/io/images.hpp"
 
 namespace resight {

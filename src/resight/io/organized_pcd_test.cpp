@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "resight/io/internal/test_data.hpp"
 
 namespace resight {

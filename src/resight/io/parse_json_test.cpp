@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/parse_json.hpp"
 
-#include <gmock/gmock.h>
-
 #include <string>
 #include <tuple>
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/pcd_header.hpp"

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <bit>
-#include <cstring>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
 
 #include "resight/io/internal/test_data.hpp"
 

@@ -4,8 +4,10 @@
 
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
+#include "resight/core/check.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/pcd.hpp"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/ply_header.hpp"

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "resight/io/images.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/mesh.hpp"
 

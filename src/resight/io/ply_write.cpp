@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstring>
 
+#include "resight/core/check.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/ply.hpp"

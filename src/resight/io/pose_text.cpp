@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "resight/geometry/limits.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/internal/text.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/recognition_results.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "resight/core/unfinished_folder.hpp"

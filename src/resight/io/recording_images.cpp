@@ -13,6 +13,7 @@
 #include "resight/core/printable.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/recordings/message.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
 
 namespace resight::io {

@@ -7,6 +7,7 @@
 #include "resight/io/images.hpp"
 #include "resight/io/internal/recording_images.hpp"
 #include "resight/io/internal/test_data.hpp"
+#include "resight/recordings/message.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
 
 namespace resight {

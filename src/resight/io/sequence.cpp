@@ -12,7 +12,6 @@
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
-#include "resight/io/internal/text.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/sensor/disparity_error.hpp"
 

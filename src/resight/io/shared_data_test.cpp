@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cctype>
+#include <cmath>
 #include <map>
 
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/model_source.hpp"
-#include "resight/io/pcd.hpp"
 #include "resight/io/sequence.hpp"
 
 /// Tests with real data from independent sources, if available.

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "resight/core/check.hpp"
 #include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <tuple>
 
+#include "resight/core/check.hpp"
 #include "resight/core/names.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "resight/io/sequence.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

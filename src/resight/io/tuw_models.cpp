@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "resight/core/check.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/json.hpp"
 #include "resight/io/internal/model_files.hpp"
 #include "resight/io/internal/model_info.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/io/mesh.hpp"
 #include "resight/io/organized_pcd.hpp"
 #include "resight/io/pose_text.hpp"
 

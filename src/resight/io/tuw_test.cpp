@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "resight/io/internal/test_data.hpp"
 #include "resight/io/organized_pcd.hpp"
-#include "resight/io/pose_text.hpp"
 #include "resight/io/tuw_changes.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/surface_sampling.hpp"
 

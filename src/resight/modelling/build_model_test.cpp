@@ -10,9 +10,9 @@
 
 #include "resight/io/mesh.hpp"
 #include "resight/io/model_source.hpp"
-#include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/modelling/write_model.hpp"
 #include "resight/rendering/turntable.hpp"
+#include "resight/simulation/procedural_objects.hpp"
 #include "resight/training/train_library.hpp"
 
 namespace resight {

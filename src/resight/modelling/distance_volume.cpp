@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/modelling/internal/distance_volume.hpp"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "resight/core/parallel.hpp"

@@ -5,7 +5,6 @@
 #include <tuple>
 #include <vector>
 
-#include "resight/sensor/training_view.hpp"
 #include "resight/simulation/recording.hpp"
 
 /// Recordings for tests, in the frame of the generated object.

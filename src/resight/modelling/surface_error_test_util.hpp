@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/rendering/view_renderer.hpp"
 #include "resight/sensor/training_view.hpp"
 #include "resight/simulation/recording.hpp"
 #include "resight/simulation/surface_sampling.hpp"

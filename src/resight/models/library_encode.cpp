@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <model_library_generated.h>
 
-#include <algorithm>
-
 #include "resight/models/internal/library_payload.hpp"
 
 namespace resight::internal {

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iterator>
+#include <limits>
 
 #include "resight/core/hash.hpp"
 #include "resight/core/random.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/recognition/detections.hpp"
 
-#include <utility>
-
 #include "resight/recognition/competing_poses.hpp"
 #include "resight/recognition/instance_prior.hpp"
 #include "resight/verification/appearance_check.hpp"

@@ -10,7 +10,7 @@
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
 #include "resight/models/object_model.hpp"
-#include "resight/verification/verify_options.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
 
 namespace resight {
 

@@ -6,7 +6,7 @@
 
 #include "resight/features/feature_set.hpp"
 #include "resight/hypotheses/hypothesis.hpp"
-#include "resight/verification/verify_options.hpp"
+#include "resight/verification/hypothesis_evidence.hpp"
 
 namespace resight {
 

@@ -15,7 +15,7 @@
 #include "resight/hypotheses/clustering.hpp"
 #include "resight/hypotheses/generation.hpp"
 #include "resight/recognition/search_planner_options.hpp"
-#include "resight/reconstruction/integration.hpp"
+#include "resight/reconstruction/view_voxels.hpp"
 #include "resight/registration/camera_corrector.hpp"
 #include "resight/registration/depth_bias.hpp"
 #include "resight/sensor/color_offset.hpp"

@@ -12,7 +12,6 @@
 #include "resight/registration/camera_corrector.hpp"
 #include "resight/registration/camera_errors.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
-#include "resight/sensor/color_offset.hpp"
 
 namespace resight {
 

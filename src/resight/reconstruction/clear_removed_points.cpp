@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdint>
 #include <limits>
-#include <utility>
 
 #include "resight/changes/view_difference.hpp"
 #include "resight/core/check.hpp"

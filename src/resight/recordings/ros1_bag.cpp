@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "resight/core/files.hpp"
-#include "resight/core/printable.hpp"
 #include "resight/recordings/internal/byte_reader.hpp"
 #include "resight/recordings/internal/chunk_cache.hpp"
 #include "resight/recordings/internal/containers.hpp"

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "resight/registration/depth_bias.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/registration/alignment_view.hpp"
+#include "resight/registration/view_alignment.hpp"
 
 namespace resight {
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"

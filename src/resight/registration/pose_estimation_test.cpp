@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
 
 #include "resight/hypotheses/testing/synthetic_correspondences.hpp"
 

@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numeric>
 
 #include "resight/core/random.hpp"
 #include "resight/verification/pose_refinement.hpp"

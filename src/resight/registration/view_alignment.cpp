@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/registration/view_alignment.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>

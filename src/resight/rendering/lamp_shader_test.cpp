@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "resight/rendering/color_camera.hpp"
 #include "resight/rendering/view_renderer.hpp"

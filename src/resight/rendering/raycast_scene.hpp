@@ -3,9 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "resight/core/image.hpp"
 #include "resight/geometry/rigid3.hpp"
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/rendering/surface_material.hpp"

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "resight/core/random.hpp"
-#include "resight/simulation/mesh_parts.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 
 namespace resight {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "resight/core/image.hpp"
-#include "resight/io/sequence.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <iterator>
 
 #include "resight/report/html_report.hpp"
 #include "resight/report/report_test_scene.hpp"

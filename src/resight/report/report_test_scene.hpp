@@ -2,7 +2,6 @@
 #pragma once
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "resight/report/view_record.hpp"

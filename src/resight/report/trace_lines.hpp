@@ -7,6 +7,7 @@
 #include "resight/recognition/recognition_trace.hpp"
 #include "resight/recognition/scene_update.hpp"
 #include "resight/sensor/sequence.hpp"
+#include "resight/verification/acceptance.hpp"
 
 namespace resight {
 

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <string_view>
+#include <iterator>
 
 #include "resight/report/internal/markdown.hpp"
+#include "resight/report/overlay.hpp"
 
 namespace resight {
 namespace {

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "resight/evaluation/evaluated_run.hpp"
-#include "resight/io/sequence.hpp"
-#include "resight/report/overlay.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight {
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "resight/core/statistics.hpp"
 #include "resight/sensor/occluding_contour.hpp"
 
 namespace resight {

@@ -3,7 +3,6 @@
 #include <span>
 #include <vector>
 
-#include "resight/hypotheses/hypothesis.hpp"
 #include "resight/shape_search/pose_candidate.hpp"
 #include "resight/shape_search/shape_search.hpp"
 

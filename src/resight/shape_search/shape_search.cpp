@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/core/random.hpp"
-#include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/hypotheses/white_balance_weights.hpp"
 #include "resight/models/pose_distance.hpp"

@@ -9,7 +9,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "resight/geometry/camera.hpp"
 #include "resight/simulation/internal/footprint.hpp"
 #include "resight/simulation/internal/scene_state.hpp"
 #include "resight/simulation/seeded_objects.hpp"

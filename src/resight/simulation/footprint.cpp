@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/simulation/internal/footprint.hpp"
 
-#include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "resight/geometry/rigid3.hpp"

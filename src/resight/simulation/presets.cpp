@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/simulation/presets.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

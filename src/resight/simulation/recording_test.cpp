@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "resight/core/files.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/io/mesh.hpp"
 #include "resight/simulation/surface_sampling.hpp"

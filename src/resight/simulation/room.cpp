@@ -2,7 +2,6 @@
 #include "resight/simulation/room.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"

@@ -2,6 +2,7 @@
 #include "resight/simulation/internal/scene_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 

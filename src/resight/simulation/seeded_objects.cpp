@@ -5,6 +5,7 @@
 #include <cctype>
 #include <functional>
 
+#include "resight/simulation/internal/object_shapes.hpp"
 #include "resight/simulation/internal/seeded_shapes.hpp"
 
 namespace resight {

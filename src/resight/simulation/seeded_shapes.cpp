@@ -7,6 +7,9 @@
 #include <numbers>
 #include <vector>
 
+#include "resight/simulation/internal/object_shapes.hpp"
+#include "resight/simulation/mesh_parts.hpp"
+
 namespace resight {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "resight/io/sequence.hpp"
+#include "resight/sensor/sequence.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/scene_script.hpp"
 

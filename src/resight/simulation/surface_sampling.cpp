@@ -2,7 +2,6 @@
 #include "resight/simulation/surface_sampling.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "resight/core/check.hpp"

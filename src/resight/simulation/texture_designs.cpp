@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
-#include <vector>
 
 namespace resight {
 namespace {

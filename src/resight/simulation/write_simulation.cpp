@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "resight/core/check.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/core/random.hpp"

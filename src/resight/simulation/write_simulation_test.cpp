@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "resight/io/model_source.hpp"
-#include "resight/simulation/presets.hpp"
 
 namespace resight {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/training/internal/rotation_group.hpp"
 
+#include <algorithm>
+
 #include "resight/geometry/rigid3.hpp"
 
 namespace resight::internal {

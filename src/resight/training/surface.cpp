@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/training/surface.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "resight/core/check.hpp"

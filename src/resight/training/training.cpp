@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
-#include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/geometry/outward_normals.hpp"

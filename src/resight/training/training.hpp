@@ -9,7 +9,6 @@
 #include "resight/geometry/triangle_mesh.hpp"
 #include "resight/models/object_model.hpp"
 #include "resight/rendering/turntable.hpp"
-#include "resight/sensor/rgbd_frame.hpp"
 #include "resight/training/feature_reduction.hpp"
 #include "resight/training/symmetry_detection.hpp"
 

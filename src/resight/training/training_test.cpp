@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "resight/core/random.hpp"
-#include "resight/geometry/kd_tree.hpp"
 
 namespace resight {
 namespace {

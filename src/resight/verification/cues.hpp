@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "resight/registration/correspondence.hpp"
 #include "resight/verification/scene_preparation.hpp"
 #include "resight/verification/visibility.hpp"
 

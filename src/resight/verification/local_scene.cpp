@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/verification/local_scene.hpp"
 
+#include <algorithm>
+
 namespace resight {
 namespace {
 

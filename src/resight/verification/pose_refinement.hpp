@@ -6,7 +6,7 @@
 
 #include "resight/core/options.hpp"
 #include "resight/geometry/rigid3.hpp"
-#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/registration/correspondence.hpp"
 #include "resight/registration/pose_uncertainty.hpp"
 
 namespace resight {

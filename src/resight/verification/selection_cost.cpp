@@ -2,7 +2,6 @@
 #include "resight/verification/selection_cost.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 

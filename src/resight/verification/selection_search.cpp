@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "resight/core/check.hpp"
 #include "resight/core/disjoint_sets.hpp"
 #include "resight/core/random.hpp"
 

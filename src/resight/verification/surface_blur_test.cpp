@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "resight/appearance/appearance_match.hpp"
+#include <stdexcept>
+
 #include "resight/appearance/pattern_similarity.hpp"
 #include "resight/core/random.hpp"
 #include "resight/verification/square_test_util.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <span>
-#include <vector>
 
 #include "resight/appearance/lab_color.hpp"
 #include "resight/geometry/rigid3.hpp"

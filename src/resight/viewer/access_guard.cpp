@@ -2,6 +2,7 @@
 #include "resight/viewer/access_guard.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
 
 namespace resight {

@@ -8,8 +8,8 @@
 
 #include "resight/annotation/annotation_project.hpp"
 #include "resight/annotation/change_proposals.hpp"
-#include "resight/annotation/view_store.hpp"
 #include "resight/models/object_model.hpp"
+#include "resight/sensor/sequence.hpp"
 #include "resight/viewer/http_message.hpp"
 
 namespace resight {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "resight/core/check.hpp"
 #include "resight/geometry/mesh_sampling.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/viewer/viewer_routes.hpp"
 
-#include <fmt/format.h>
-
 #include <optional>
 #include <string_view>
 #include <vector>

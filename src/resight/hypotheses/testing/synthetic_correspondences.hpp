@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "resight/core/random.hpp"
-#include "resight/hypotheses/hypothesis.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/registration/correspondence.hpp"
 
 namespace resight::testing {
 

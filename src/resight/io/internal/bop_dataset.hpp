@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "resight/core/result.hpp"
 #include "resight/geometry/symmetry.hpp"

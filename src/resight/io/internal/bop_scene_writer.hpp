@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "resight/io/internal/files.hpp"
-#include "resight/io/sequence.hpp"
+#include "resight/sensor/sequence.hpp"
 
 namespace resight::io {
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <map>
 #include <vector>
 
-#include "resight/io/internal/bop_dataset.hpp"
-#include "resight/io/mesh.hpp"
 #include "resight/io/model_source.hpp"
 
 namespace resight::io {

@@ -5,7 +5,7 @@
 
 #include "resight/core/image.hpp"
 #include "resight/core/result.hpp"
-#include "resight/recordings/message.hpp"
+#include "resight/recordings/recording.hpp"
 
 namespace resight::io {
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "resight/io/internal/recording_scan.hpp"
 #include "resight/recordings/transform_buffer.hpp"

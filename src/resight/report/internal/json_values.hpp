@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "resight/evaluation/recognition_score.hpp"
 #include "resight/geometry/rigid3.hpp"

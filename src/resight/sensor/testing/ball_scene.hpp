@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <vector>
 
+#include "resight/core/image.hpp"
 #include "resight/core/random.hpp"
-#include "resight/sensor/prepared_view.hpp"
+#include "resight/geometry/camera.hpp"
+#include "resight/geometry/rigid3.hpp"
+#include "resight/sensor/rgbd_frame.hpp"
 
 /// Analytic views for tests of cameras: a textured floor with a ball and a box wall, rendered from any pose.
 namespace resight::test {

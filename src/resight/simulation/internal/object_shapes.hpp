@@ -2,7 +2,6 @@
 #pragma once
 #include <string>
 
-#include "resight/simulation/mesh_parts.hpp"
 #include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/texture_designs.hpp"
 

@@ -2,8 +2,10 @@
 #pragma once
 #include <string>
 
+#include "resight/core/image.hpp"
 #include "resight/core/random.hpp"
-#include "resight/simulation/internal/object_shapes.hpp"
+#include "resight/simulation/procedural_objects.hpp"
+#include "resight/simulation/texture_designs.hpp"
 
 namespace resight {
 
