@@ -86,7 +86,7 @@ cv::Ptr<cv::DescriptorMatcher> make_flann(int num_leaves) {
 void add_pcl(MatchingContest& contest) {
   add(contest, "PCL KdTreeFLANN, exact", [&contest](std::vector<int>& found) {
     auto result = pcl_peers::nearest_shot(contest.indexed, contest.queries);
-    found = std::move(result.value.indices);
+    found = std::move(result.value);
     return result.cpu_s;
   });
 }

@@ -55,12 +55,8 @@ RESIGHT_PCL_PEER Timed<std::vector<float>> normals_by_integral_image(OrganizedPo
 /// pcl::SHOTEstimationOMP: 352 values per keypoint, all NaN if it has no descriptor.
 RESIGHT_PCL_PEER Timed<std::vector<float>> describe_shot(Points keypoints, OrientedPoints support, float radius_m);
 
-struct NearestShot {
-  std::vector<int> indices;  ///< One per query.
-  double build_cpu_s = 0;
-};
-/// pcl::KdTreeFLANN over SHOT descriptors; the time includes the search only.
-RESIGHT_PCL_PEER Timed<NearestShot> nearest_shot(std::span<const float> indexed, std::span<const float> queries);
+/// pcl::KdTreeFLANN over SHOT descriptors: the index of the nearest one per query. The time includes the search only.
+RESIGHT_PCL_PEER Timed<std::vector<int>> nearest_shot(std::span<const float> indexed, std::span<const float> queries);
 
 /// pcl::GeometricConsistencyGrouping of the correspondences of one object, model_xyz[i] with scene_xyz[i]. Returns
 /// poses scene_from_object.

@@ -42,21 +42,19 @@ Timed<std::vector<float>> describe_shot(Points keypoints, OrientedPoints support
   return {std::move(result), cpu_s};
 }
 
-Timed<NearestShot> nearest_shot(std::span<const float> indexed, std::span<const float> queries) {
+Timed<std::vector<int>> nearest_shot(std::span<const float> indexed, std::span<const float> queries) {
   const ShotCloud::Ptr set = make_shot_cloud(indexed);
   const ShotCloud::Ptr wanted = make_shot_cloud(queries);
-  const CpuClock build_clock;
   pcl::KdTreeFLANN<pcl::SHOT352> tree;
   tree.setInputCloud(set);
-  NearestShot result;
-  result.build_cpu_s = build_clock.elapsed_s();
+  std::vector<int> nearest;
   pcl::Indices index(1);
   std::vector<float> distance_sq(1);
   const CpuClock clock;
   for (const pcl::SHOT352& query : *wanted)
-    result.indices.push_back(tree.nearestKSearch(query, 1, index, distance_sq) == 1 ? index.front() : -1);
+    nearest.push_back(tree.nearestKSearch(query, 1, index, distance_sq) == 1 ? index.front() : -1);
   const double cpu_s = clock.elapsed_s();
-  return {std::move(result), cpu_s};
+  return {std::move(nearest), cpu_s};
 }
 
 }  // namespace resight::bench::pcl_peers

@@ -81,7 +81,6 @@ std::optional<ColorDepthShift> ShiftScores::peak() const {
     best.peak_sigmas = sigmas;
     best.mean_contrast = static_cast<double>(*at) / num_pixels_;
   }
-  best.num_contour_pixels = num_pixels_;
   return best;
 }
 

@@ -21,7 +21,6 @@ struct ColorDepthShift {
   double scale = 1;
   double peak_sigmas = 0;    ///< Height of the peak above the scores of all shifts, in their standard deviations.
   double mean_contrast = 0;  ///< At the peak, grey levels per pixel of the contours.
-  int num_contour_pixels = 0;
 };
 
 /// Contrast of the colours across the occluding contours of the depth, for each shift and scale of the colours. The

@@ -9,6 +9,8 @@
 #include "resight/modelling/mesh_quality.hpp"
 #include "resight/modelling/surface_error_test_util.hpp"
 #include "resight/rendering/turntable.hpp"
+#include "resight/rendering/view_renderer.hpp"
+#include "resight/simulation/procedural_objects.hpp"
 
 namespace resight {
 namespace {

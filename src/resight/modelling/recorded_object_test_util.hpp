@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "resight/simulation/procedural_objects.hpp"
 #include "resight/simulation/recording.hpp"
 
 /// Recordings for tests, in the frame of the generated object.

@@ -2,12 +2,11 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "resight/geometry/kd_tree.hpp"
-#include "resight/sensor/training_view.hpp"
-#include "resight/simulation/recording.hpp"
+#include "resight/geometry/point_cloud.hpp"
+#include "resight/geometry/triangle_mesh.hpp"
 #include "resight/simulation/surface_sampling.hpp"
 
 /// Deviation of a model from the object it was made of.
@@ -39,13 +38,6 @@ inline SurfaceError measure_surface_error(const TriangleMesh& mesh, const Triang
   for (const Eigen::Vector3f& p : surface.points) found += vertices.nearest(p).distance_sq < 0.003F * 0.003F;
   return {errors[errors.size() / 2], errors[errors.size() * 95 / 100],
           static_cast<double>(found) / static_cast<double>(surface.size())};
-}
-
-/// The recorded view with its true pose and mask.
-inline TrainingView to_training_view(RecordedView view) {
-  TrainingView result{std::move(view.frame), std::move(view.mask)};
-  result.frame.world_from_camera = view.camera_from_object.inverse();
-  return result;
 }
 
 }  // namespace resight::test
