@@ -135,8 +135,8 @@ class GltfParts {
     const std::int64_t stride = count(view, "byteStride", element_bytes);
     const std::int64_t num = count(accessor, "count", 0);
     constexpr std::int64_t kMaxStride = 252;
-    if (stride < element_bytes || stride > std::max(kMaxStride, element_bytes)) fail("a stride is out of range");
-    // The numbers are at most 1e12, and the stride 252.
+    if (stride < element_bytes || stride > std::max(kMaxStride, element_bytes)) return fail("a stride is out of range");
+    // The numbers are at most 1e12 and the stride 252, so that nothing overflows.
     const std::int64_t end = count(accessor, "byteOffset", 0) + (num - 1) * stride + element_bytes;
     if (num > 0 && end > count(view, "byteLength", 0)) fail("an accessor ends beyond its part of the buffer");
   }

@@ -83,6 +83,11 @@ TEST(GltfFile, WhatAssimpWouldFollowOutOfTheFileIsRefused) {
       {[](json& g) { g["accessors"][0]["count"] = -1; }, "'count'"},
       {[](json& g) { g["accessors"][1].erase("bufferView"); }, "has no data"},
       {[](json& g) { g["bufferViews"][1]["byteStride"] = 4000000000; }, "stride"},
+      {[](json& g) {
+         g["bufferViews"][1]["byteStride"] = 1000000000000;
+         g["accessors"][1]["count"] = 1000000000000;
+       },
+       "stride"},
       {[](json& g) { g["bufferViews"][1]["byteLength"] = 37; }, "beyond the buffer"},
       {[](json& g) { g["buffers"] = json::array(); }, "lies in no buffer"},
       {[](json& g) { g["asset"]["version"] = "1.0"; }, "is not glTF 2.0"},

@@ -96,6 +96,9 @@ TEST(ImageFolder, OptionsReplaceWhatTheFolderSays) {
   options.views.max_views = 0;
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--max-views must be at least 1"));
   options.views.max_views.reset();
+  options.views.every = 0;
+  EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("--every must be at least 1"));
+  options.views.every = 2;
   options.depth_scale_m = 1;
   EXPECT_THAT(open_sequence(directory.path(), options).error().message, HasSubstr("the unit is wrong"));
 }

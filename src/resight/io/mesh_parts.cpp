@@ -17,10 +17,11 @@ bool has_plain_uvs(const TriangleMesh& mesh) {
       mesh.uvs, [](const Eigen::Vector2f& uv) { return uv.minCoeff() >= -kSlack && uv.maxCoeff() <= 1 + kSlack; });
 }
 
-/// Nearest texel; uvs repeat.
+/// Nearest texel; uvs repeat. Those that are not finite count as 0.
 Rgb8 sample(const Image<Rgb8>& texture, const Eigen::Vector2f& uv) {
   const auto texel = [](float x, int size) {
-    return std::clamp(static_cast<int>((x - std::floor(x)) * static_cast<float>(size)), 0, size - 1);
+    const float fraction = x - std::floor(x);
+    return fraction > 0 ? std::min(static_cast<int>(fraction * static_cast<float>(size)), size - 1) : 0;
   };
   return texture(texel(uv.x(), texture.width()), texel(uv.y(), texture.height()));
 }

@@ -41,6 +41,9 @@ Result<void> choose_moved_views(SequenceTable& table, double min_motion_m) {
 }
 
 Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
+  if (choice.every < 1) return Error{"--every must be at least 1"};
+  if (!(choice.min_motion_m >= 0)) return Error{"--min-motion must not be negative"};
+  if (choice.max_views && *choice.max_views < 1) return Error{"--max-views must be at least 1"};
   std::vector<ListedView> kept;
   const double begin_s = table.views.front().time_s;
   int number = 0;
@@ -54,10 +57,8 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   }
   if (kept.empty()) return Error{"no view lies between --from and --until"};
   table.views = std::move(kept);
-  if (!(choice.min_motion_m >= 0)) return Error{"--min-motion must not be negative"};
   if (choice.min_motion_m > 0)
     if (const auto done = choose_moved_views(table, choice.min_motion_m); !done) return done;
-  if (choice.max_views && *choice.max_views < 1) return Error{"--max-views must be at least 1"};
   const auto max_views = static_cast<std::size_t>(choice.max_views.value_or(std::numeric_limits<int>::max()));
   if (table.views.size() > max_views) table.views.resize(max_views);
   return {};
