@@ -4,15 +4,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
+
+#include "resight/core/deadline.hpp"
 
 namespace resight {
 namespace {
-
-double wall_now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double cpu_now_s() {
   timespec time{};
@@ -40,9 +37,9 @@ double StageTimes::total_wall_s() const {
 }
 
 ScopedTimer::ScopedTimer(StageTimes& times, std::string_view stage)
-    : times_(times), stage_(stage), start_wall_s_(wall_now_s()), start_cpu_s_(cpu_now_s()) {}
+    : times_(times), stage_(stage), start_wall_s_(steady_clock_s()), start_cpu_s_(cpu_now_s()) {}
 
-ScopedTimer::~ScopedTimer() { times_.add(stage_, wall_now_s() - start_wall_s_, cpu_now_s() - start_cpu_s_); }
+ScopedTimer::~ScopedTimer() { times_.add(stage_, steady_clock_s() - start_wall_s_, cpu_now_s() - start_cpu_s_); }
 
 std::size_t peak_memory_bytes() {
   rusage usage{};

@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "resight/core/statistics.hpp"
 
 namespace resight::io {
 namespace {
@@ -29,15 +30,14 @@ Result<void> check_depth_unit(const RgbdFrame& frame) {
   for (const float z : frame.depth_m.data())
     if (!std::isnan(z)) depths.push_back(z);
   if (depths.empty()) return {};
-  const auto middle = depths.begin() + std::ssize(depths) / 2;
-  std::ranges::nth_element(depths, middle);
-  if (*middle >= kMinMedian_m && *middle <= kMaxMedian_m) return {};
+  const float median_m = upper_median(std::move(depths));
+  if (median_m >= kMinMedian_m && median_m <= kMaxMedian_m) return {};
   std::string error = fmt::format(
       "the median depth of view '{}' would be {:.3g} m: the unit is wrong; give --depth-scale METRES per stored unit "
       "(0.001: millimetres)",
-      frame.name, *middle);
-  if (const auto factor = find_likely_factor(*middle))
-    error += fmt::format("; {:g} times the unit in use gives {:.3g} m", *factor, *factor * *middle);
+      frame.name, median_m);
+  if (const auto factor = find_likely_factor(median_m))
+    error += fmt::format("; {:g} times the unit in use gives {:.3g} m", *factor, *factor * median_m);
   return Error{error};
 }
 

@@ -20,10 +20,7 @@ Result<std::optional<Rigid3>> parse_event_pose(const json& event, const char* ke
   if (value.is_null()) return std::optional<Rigid3>();
   const auto numbers = io::as_numbers(value);
   if (!numbers || numbers->size() != 16) return Error{fmt::format("{}: expected 16 finite numbers or null", key)};
-  Eigen::Matrix4d matrix;
-  for (int row = 0; row < 4; ++row)
-    for (int col = 0; col < 4; ++col) matrix(row, col) = (*numbers)[static_cast<std::size_t>(4 * row + col)];
-  const auto pose = rigid_from_matrix(matrix, key);
+  const auto pose = rigid_from_numbers(*numbers, key);
   if (!pose) return pose.error();
   return std::optional(*pose);
 }

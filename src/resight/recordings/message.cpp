@@ -21,13 +21,17 @@ std::int64_t read_stamp(MessageReader& reader) {
   return seconds * 1000000000 + reader.value<std::uint32_t>();
 }
 
+/// tf2 has no leading slash; old drivers write one.
+std::string without_slash(std::string frame) {
+  if (frame.starts_with('/')) frame.erase(0, 1);
+  return frame;
+}
+
 MessageHeader read_header(MessageReader& reader) {
   MessageHeader header;
   if (!reader.is_cdr()) reader.value<std::uint32_t>();  // sequence number
   header.stamp_ns = read_stamp(reader);
-  header.frame = reader.text();
-  // tf2 has no leading slash; old drivers write one.
-  if (header.frame.starts_with('/')) header.frame.erase(0, 1);
+  header.frame = without_slash(reader.text());
   return header;
 }
 
@@ -60,11 +64,6 @@ ImageMessage read_image(MessageReader& reader) {
   image.row_bytes = reader.value<std::uint32_t>();
   image.data = reader.blob();
   return image;
-}
-
-std::string without_slash(std::string frame) {
-  if (frame.starts_with('/')) frame.erase(0, 1);
-  return frame;
 }
 
 }  // namespace

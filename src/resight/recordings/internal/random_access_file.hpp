@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 
+#include "resight/core/input_file.hpp"
 #include "resight/core/result.hpp"
 
 namespace resight::recordings {
@@ -12,21 +14,16 @@ namespace resight::recordings {
 class RandomAccessFile {
  public:
   [[nodiscard]] static Result<RandomAccessFile> open(const std::filesystem::path& file);
-  RandomAccessFile(RandomAccessFile&& other) noexcept;
-  RandomAccessFile& operator=(RandomAccessFile&& other) = delete;
-  ~RandomAccessFile();
 
-  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] std::uint64_t size() const { return input_.size(); }
   [[nodiscard]] const std::filesystem::path& path() const { return file_; }
   /// Reads `count` bytes. Fails if the file has fewer there, before memory is allocated.
   [[nodiscard]] Result<std::string> read(std::uint64_t offset, std::uint64_t count) const;
 
  private:
-  RandomAccessFile(std::filesystem::path file, int descriptor, std::uint64_t size)
-      : file_(std::move(file)), descriptor_(descriptor), size_(size) {}
+  RandomAccessFile(std::filesystem::path file, InputFile input) : file_(std::move(file)), input_(std::move(input)) {}
   std::filesystem::path file_;
-  int descriptor_;  ///< -1 after a move.
-  std::uint64_t size_;
+  InputFile input_;
 };
 
 }  // namespace resight::recordings
