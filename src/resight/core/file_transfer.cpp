@@ -27,7 +27,7 @@ constexpr std::string_view kPartialEnd = ".resight-partial";
 
 std::string reason_of_transfer(const std::error_code& error) { return "cannot be written (" + error.message() + ")"; }
 
-/// What a copy of a folder, or an archive of a stranger, does not have in common with it.
+/// Tells a folder from its copies, and from a folder unpacked from the archive of a stranger.
 std::string identity_of(const fs::path& folder) {
   struct stat status {};
   if (::stat(folder.c_str(), &status) != 0) return "";

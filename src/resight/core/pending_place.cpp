@@ -77,7 +77,7 @@ struct OpenedPlace {
   fs::path first_made;
 };
 
-/// Does not wait. `is_in_use` tells whether it is worth to try again.
+/// Does not wait. `is_in_use` tells whether another try may succeed.
 Result<OpenedPlace> open_place(const fs::path& path, PendingPlace::Kind kind, bool& is_in_use) {
   is_in_use = false;
   OpenedPlace opened;
@@ -214,7 +214,7 @@ Result<void> PendingPlace::finish(const std::function<Result<void>()>& move) {
 }
 
 void PendingPlace::remove_all() noexcept {
-  registry().mutex.lock();  // for ever
+  registry().mutex.lock();  // forever
   for (PendingPlace* place : registry().places)
     if (!place->is_finished_) place->remove();
 }

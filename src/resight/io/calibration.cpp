@@ -31,13 +31,13 @@ bool has_text_extension(const fs::path& file) {
          extension == "csv" || extension == "ini" || extension == "cfg" || extension == "conf" || extension == "intr";
 }
 
-/// A name that says so. Other names are read, too, but need not hold a calibration.
+/// Whether the name says that the file holds a calibration. Others are read, too, but need not hold one.
 bool is_named_for_calibration(std::string_view lower_name) {
   return lower_name.find("intrinsic") != lower_name.npos || lower_name.starts_with("camera") ||
          lower_name.starts_with("cam_k") || lower_name.find("calib") != lower_name.npos;
 }
 
-/// A name that may say so. Of others, only the content counts.
+/// Whether the name hints at a calibration. For other files, only the content counts.
 bool hints_at_calibration(std::string_view lower_name) {
   constexpr std::array<std::string_view, 7> kHints = {"cam", "meta", "info", "config", "kinect", "k.txt", "transforms"};
   return is_named_for_calibration(lower_name) ||
@@ -52,7 +52,7 @@ bool may_hold_calibration(std::string_view lower_name) {
                               [&](std::string_view other) { return lower_name.find(other) != lower_name.npos; });
 }
 
-/// What other numbers hardly look like: square pixels, and a centre in the middle of what such a camera sees.
+/// Whether the numbers are likely to be those of a camera: square pixels, and a centre near the middle of the image.
 bool is_plausible(const Calibration& calibration) {
   const Intrinsics& k = calibration.intrinsics;
   const auto is_between = [](double value, double low, double high) { return value > low && value < high; };

@@ -106,7 +106,7 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
   for (const auto& [stem, file] : list_model_files(directory)) found.push_back({stem, 0, file, format_of(file)});
   for (const std::string& name : io::list_directories(directory)) {
     const path folder = directory / name;
-    // Half a model would be passed over.
+    // Otherwise, half a model would be skipped without a word.
     if (const auto finished = check_finished(folder); !finished) return finished.error();
     if (is_tuw_model(folder)) {
       auto location = locate_tuw_model(folder);
@@ -127,8 +127,7 @@ Result<void> collect(const path& directory, int levels_below, Locations& found) 
 
 constexpr std::string_view kExpectedModels =
     "expected a TUW model (views/cloud_*.pcd) or a folder of those, a BOP models folder or data set, a folder of "
-    "meshes "
-    "(ply, obj, glb, stl), a mesh file, or a cloud (ply, pcd)";
+    "meshes (ply, obj, glb, stl), a mesh file, or a cloud (ply, pcd)";
 
 Result<Locations> find_under(const path& where) {
   Locations found;

@@ -63,8 +63,8 @@ std::string describe_locked_folder(const path& directory) {
 
 constexpr std::string_view kExpectedSequences =
     "expected a BOP scene (scene_camera.json), a TUM recording (rgb, depth, associations.txt or rgb.txt and "
-    "depth.txt), "
-    "organised *.pcd views (TUW), or colour and depth images with their camera as described in docs/formats.md";
+    "depth.txt), organised *.pcd views (TUW), or colour and depth images with their camera as described in "
+    "docs/formats.md";
 
 /// What is missing where no sequence was found.
 Error no_sequence_error(const path& directory) {

@@ -25,7 +25,8 @@ void forget_plain_color(MeshPart& part) {
   drop_plain_colors(part.mesh.colors);
 }
 
-/// Removes normals and uvs unless all parts have them, because they would be lost or wrong in the joined mesh.
+/// Removes the normals unless all parts have them, and the uvs of parts without a texture: in the joined mesh, they
+/// would be lost or wrong.
 void unify_attributes(std::vector<TexturedPart>& parts) {
   if (std::ranges::any_of(parts, [](const TexturedPart& p) { return p.part.mesh.normals.empty(); }))
     for (TexturedPart& part : parts) part.part.mesh.normals.clear();

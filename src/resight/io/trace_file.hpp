@@ -108,8 +108,8 @@ class TraceFile {
   [[nodiscard]] Result<void> check_header(const Line& line) const;
   std::filesystem::path file_;
   int max_views_ = std::numeric_limits<int>::max();  ///< Of the results; not known while they are written.
-  std::shared_ptr<InputFile>
-      content_;                   ///< Stays open: the file may be renamed once it is complete. Null: not found yet.
+  /// Stays open: the file may be renamed once it is complete. Null: not found yet.
+  std::shared_ptr<InputFile> content_;
   std::vector<Line> lines_;       ///< One per view.
   std::uint64_t end_offset_ = 0;  ///< Of the last whole line, its line break included; 0: the header is not read yet.
 };

@@ -269,7 +269,7 @@ class HttpServer::Impl {
     acceptor_.async_accept([this](ErrorCode error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
       if (!error) serve(std::move(socket));
-      if (error) return accept_later();  // no file descriptor is free, as a rule
+      if (error) return accept_later();  // usually, no file descriptor is free
       accept();
     });
   }

@@ -9,7 +9,7 @@
 
 namespace resight::io {
 
-/// The same sequence. `adjust` is applied to each frame after it was read, and `note` is told beside other notes.
+/// The same sequence. `adjust` is applied to each frame after it is read, and `note` is added to the notes.
 [[nodiscard]] std::unique_ptr<Sequence> with_adjusted_frames(std::unique_ptr<Sequence> sequence,
                                                              std::function<void(RgbdFrame&)> adjust, std::string note);
 /// The same sequence, whose views have the noise of a kind of depth camera. `reason`: for the note.
