@@ -24,6 +24,8 @@ double best_angle_rad(const Rigid3& pose, const Rigid3& reference, const Eigen::
   return 2.0 * std::atan2(q.vec().dot(axis.normalized()), q.w());
 }
 
+int count_steps(double max_step_rad) { return static_cast<int>(std::ceil(2 * std::numbers::pi / max_step_rad - 1e-9)); }
+
 // Two continuous axes that are not parallel generate all rotations: the object is a ball.
 bool is_ball(const ObjectSymmetries& symmetries) {
   for (const auto& c : symmetries.continuous)
@@ -60,7 +62,7 @@ std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, dou
   check_positive("max_step_rad", max_step_rad);
   std::vector<Rigid3> result{Rigid3::identity()};
   for (const auto& c : symmetries.continuous) {
-    const int steps = static_cast<int>(std::ceil(2 * std::numbers::pi / max_step_rad - 1e-9));
+    const int steps = count_steps(max_step_rad);
     const std::vector<Rigid3> base = result;
     for (int i = 1; i < steps; ++i)
       for (const Rigid3& b : base) result.push_back(b * rotation_about(c, 2 * std::numbers::pi * i / steps));
@@ -69,6 +71,13 @@ std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, dou
   for (const Rigid3& d : symmetries.discrete)
     for (const Rigid3& b : base) result.push_back(d * b);
   return result;
+}
+
+bool has_few_motions(const ObjectSymmetries& symmetries) {
+  double num_motions = 1 + static_cast<double>(symmetries.discrete.size());
+  for (std::size_t i = 0; i < symmetries.continuous.size() && num_motions <= kMaxSymmetryMotions; ++i)
+    num_motions *= count_steps(kSymmetryStep_rad);
+  return num_motions <= kMaxSymmetryMotions;
 }
 
 Rigid3 nearest_symmetric_pose(const Rigid3& pose, const Rigid3& reference, const ObjectSymmetries& symmetries) {

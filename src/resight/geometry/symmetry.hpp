@@ -23,10 +23,19 @@ struct ObjectSymmetries {
 [[nodiscard]] bool is_possible_symmetry(const Rigid3& motion);
 [[nodiscard]] bool is_possible_symmetry(const ObjectSymmetries::Continuous& symmetry);
 
+/// 5 deg.
+inline constexpr double kSymmetryStep_rad = 0.0872665;
+
 /// All symmetry motions, starting with the identity. Continuous symmetries are sampled in steps of at most
 /// `max_step_rad`.
 [[nodiscard]] std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries,
-                                                       double max_step_rad = 0.0872665);
+                                                       double max_step_rad = kSymmetryStep_rad);
+
+/// Limit for the symmetry motions that a file declares. A ball with two axes has 5,184; each further axis multiplies
+/// them by 72.
+inline constexpr int kMaxSymmetryMotions = 20000;
+/// Whether enumerate_symmetries() gives at most kMaxSymmetryMotions motions in steps of kSymmetryStep_rad.
+[[nodiscard]] bool has_few_motions(const ObjectSymmetries& symmetries);
 
 /// The pose equivalent to `pose` (a_from_object) under the symmetries that is nearest in rotation to `reference`.
 /// Solves in closed form for the angle about a continuous axis, and for all rotations of a ball (two axes that are not

@@ -55,6 +55,25 @@ ObjectSymmetries make_cylinder() {  // continuous about z, and a half turn about
   return s;
 }
 
+TEST(HasFewMotions, CountsWhatEnumerateSymmetriesGives) {
+  ObjectSymmetries ball;
+  ball.continuous.resize(2);
+  ball.continuous[1].axis = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(enumerate_symmetries(ball).size(), 72U * 72U);
+  for (const ObjectSymmetries& symmetries : {make_none(), make_square_prism(), make_bottle(), make_cylinder(), ball})
+    EXPECT_TRUE(has_few_motions(symmetries));
+  ObjectSymmetries many = ball;
+  many.discrete.resize(3);
+  EXPECT_FALSE(has_few_motions(many));
+  many.discrete.resize(kMaxSymmetryMotions - 1);
+  many.continuous.clear();
+  EXPECT_TRUE(has_few_motions(many));
+  many.discrete.emplace_back();
+  EXPECT_FALSE(has_few_motions(many));
+  many.continuous.resize(1000);
+  EXPECT_FALSE(has_few_motions(many));
+}
+
 TEST(EnumerateSymmetries, AreAGroupOfRigidMotions) {
   for (const ObjectSymmetries& symmetries : {make_none(), make_square_prism(), make_bottle(), make_cylinder()}) {
     const std::vector<Rigid3> motions = enumerate_symmetries(symmetries, kPi / 6);

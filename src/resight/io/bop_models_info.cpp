@@ -60,6 +60,9 @@ Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::strin
     if (!symmetry) return symmetry.error();
     symmetries.continuous.push_back(*symmetry);
   }
+  if (!has_few_motions(symmetries))
+    return Error{
+        fmt::format("{}: the symmetries are more than {} motions in steps of 5 deg", what, kMaxSymmetryMotions)};
   return symmetries;
 }
 

@@ -211,6 +211,15 @@ TEST(ModelSource, RefusesSymmetriesThatNoLibraryMayHave) {
   EXPECT_FALSE(read_axis("[0, 0, 1]", "[0, 1e300, 0]").ok());
   const auto moved = read_with(R"("symmetries_discrete": [[1,0,0,900000, 0,1,0,0, 0,0,1,0, 0,0,0,1]])");
   EXPECT_THAT(moved.error().message, HasSubstr("symmetries_discrete: a translation is 900 m long (at most 200 m"));
+
+  // Motions of several axes are multiplied: those of six would fill the memory.
+  const auto read_axes = [&](int count) {
+    std::string axes = R"({"axis": [0, 0, 1], "offset": [0, 0, 0]})";
+    for (int i = 1; i < count; ++i) axes += R"(, {"axis": [0, 1, 0], "offset": [0, 0, 0]})";
+    return read_with(R"("symmetries_continuous": [)" + axes + "]");
+  };
+  EXPECT_TRUE(read_axes(2).ok());
+  EXPECT_THAT(read_axes(6).error().message, HasSubstr("the symmetries are more than 20000 motions"));
 }
 
 // All sides of a ball, around the origin or in front of the camera. In a single view, no point hides another.

@@ -132,10 +132,12 @@ std::string read(const schema::Object& stored, ObjectModel& object) {
   if (!read(stored.shot(), FeatureType::kShot, 352, object.shot)) return "SHOT features";
   if (!read_all(stored.discrete_symmetries(), object.symmetries.discrete)) return "symmetries";
   if (!read_all(stored.continuous_symmetries(), object.symmetries.continuous)) return "symmetries";
+  if (!has_few_motions(object.symmetries)) return "symmetries";
   const auto* discrete = stored.discrete_shape_symmetries();
   const auto* continuous = stored.continuous_shape_symmetries();
   if (discrete != nullptr && !read_all(discrete, object.shape_symmetries.discrete)) return "shape symmetries";
   if (continuous != nullptr && !read_all(continuous, object.shape_symmetries.continuous)) return "shape symmetries";
+  if (!has_few_motions(object.shape_symmetries)) return "shape symmetries";
   if (stored.center() == nullptr) return "centre";
   object.center = {stored.center()->x(), stored.center()->y(), stored.center()->z()};
   object.diameter_m = stored.diameter_m();

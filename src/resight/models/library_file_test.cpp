@@ -293,6 +293,9 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].axis.setZero(); }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].shape_symmetries.discrete[0].rotation *= 1000; }, "shape symmetries"},
       {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous[0].axis.setZero(); }, "shape symmetries"},
+      // More motions than fit into the memory.
+      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous.resize(6); }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous.resize(6); }, "shape symmetries"},
       {[&](ModelLibrary& l) { l.objects[0].center.x() = nan; }, "centre"},
       {[&](ModelLibrary& l) { l.objects[0].diameter_m = nan; }, "diameter"},
       // Finite numbers that do not fit into the integers of pixels and voxels.
