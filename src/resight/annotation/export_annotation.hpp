@@ -23,8 +23,8 @@ struct ExportSummary {
 /// Writes an annotation as ground truth to `folder`, which replaces an earlier export there as a whole:
 /// bop/<scene>/ (a BOP scene with its views, masks and events.json) and tuw/<scene>/ with tuw/<scene>.changes (poses of
 /// TUW in both styles, for the views as they are named in the sequence), and regions/ (the accepted ones of `proposals`
-/// with their masks). Listed are the objects of which at least one
-/// pixel is in the image. Fails if a view cannot be read, or the folder holds anything else.
+/// with their masks). Listed are the objects of which at least one pixel is in the image. Fails if a view cannot be
+/// read, or the folder holds anything else.
 [[nodiscard]] Result<ExportSummary> export_annotation(const AnnotationDocument& document, const ModelLibrary& library,
                                                       std::span<const ChangeProposal> proposals, ViewStore& views,
                                                       const std::string& scene, const std::filesystem::path& folder);

@@ -35,8 +35,8 @@ class CellGrid {
 
  private:
   [[nodiscard]] int cell_of(float x) const {
-    constexpr double kFarthest =
-        1 << 30;  // cells; a cast of more would be undefined. Distances are tested all the same.
+    // Cells. A cast of more would be undefined; distances are tested all the same.
+    constexpr double kFarthest = 1 << 30;
     return static_cast<int>(std::clamp(std::floor(static_cast<double>(x) * inverse_cell_), -kFarthest, kFarthest));
   }
 

@@ -13,7 +13,6 @@ class SphericalBins {
   /// equal.
   explicit SphericalBins(double bin_size_rad = 0.0349066);
   [[nodiscard]] int num_bins() const { return num_theta_ * num_phi_; }
-  /// Number of rows (polar angle) and of columns (azimuth).
   /// Bin of the direction of a point, in row-major order (rows are theta); -1 for the origin and for NaN.
   [[nodiscard]] int bin(const Eigen::Vector3f& p_in_camera) const;
 

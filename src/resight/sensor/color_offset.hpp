@@ -49,8 +49,7 @@ struct ContourContrast {
 
 /// Measures the offset in one view: the shift that puts the occluding contours of the depth onto the strongest edges of
 /// the colours. Depth may end before a contour or reach beyond it, by the same distance on all sides; this distance is
-/// estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is
-/// larger than 4 px.
+/// estimated, too. Nothing if the view has few contours, its halves disagree, or the offset is larger than 4 px.
 [[nodiscard]] std::optional<Eigen::Vector2d> measure_color_offset(const PreparedView& view);
 
 /// Moves the colours of a frame onto its depth (at the border, they repeat), and the principal point by the offset:

@@ -40,8 +40,8 @@ inline void declare(OptionVisitor& v, PrepareViewOptions& o) {
   v.field(
       "color_width_m", o.color_width_m, positive(),
       "In a noisy image, colours that are compared with those of a model are averaged: over as many pixels as bring "
-      "the "
-      "noise down to one grey level, but over no more than this width on the surface. off: single pixels, as in V4R.",
+      "the noise down to one grey level, but over no more than this width on the surface. off: single pixels, as in "
+      "V4R.",
       "ours; noise by Immerkaer 1996");
   v.num_threads(o.num_threads);
 }
@@ -65,8 +65,7 @@ struct PreparedView {
 [[nodiscard]] int find_reduction(const Camera& camera, const PrepareViewOptions& options);
 
 /// Computes cloud, normals, depth edges and noise of a frame (reduced if it is large: reduce_frame()), without what is
-/// too near to be measured. Throws
-/// std::invalid_argument if check_frame() fails.
+/// too near to be measured. Throws std::invalid_argument if check_frame() fails.
 [[nodiscard]] PreparedView prepare_view(RgbdFrame frame, const PrepareViewOptions& options = {});
 
 }  // namespace resight
