@@ -55,21 +55,21 @@ class ColorScorer {
   std::vector<const RgbdFrame*> frames_;
 };
 
-Rigid3 turn_about(const ObjectSymmetries::Continuous& axis, double angle_rad) {
+Rigid3 rotation_about(const ObjectSymmetries::Continuous& axis, double angle_rad) {
   return Rigid3::from_translation(axis.offset) * Rigid3::from_axis_angle(axis.axis, angle_rad) *
          Rigid3::from_translation(-axis.offset);
 }
 
 /// Halves the step until it is small.
-Rigid3 search_turn(const ColorScorer& scorer, const ObjectSymmetries::Continuous& axis, Rigid3 pose) {
+Rigid3 search_angle(const ColorScorer& scorer, const ObjectSymmetries::Continuous& axis, Rigid3 pose) {
   double best = scorer.difference(pose);
   for (double step_rad = 0.5 * kCoarseStep_rad; step_rad > 0.1 * kDegree; step_rad /= 2) {
     for (const double angle_rad : {-step_rad, step_rad}) {
-      const Rigid3 turned = pose * turn_about(axis, angle_rad);
-      const double difference = scorer.difference(turned);
+      const Rigid3 rotated = pose * rotation_about(axis, angle_rad);
+      const double difference = scorer.difference(rotated);
       if (!(difference < best)) continue;
       best = difference;
-      pose = turned;
+      pose = rotated;
       break;
     }
   }
@@ -101,12 +101,12 @@ std::optional<double> color_difference(const SampledSurface& surface, const Surf
   return difference / (3 * 128.0 * static_cast<double>(pairs.size()));
 }
 
-Rigid3 turn_by_color(const ObjectModel& model, double surface_voxel_m, const Rigid3& world_from_object,
-                     std::span<const NumberedView> views, TurnSearch search) {
+Rigid3 resolve_symmetry_by_color(const ObjectModel& model, double surface_voxel_m, const Rigid3& world_from_object,
+                                 std::span<const NumberedView> views, SymmetrySearch search) {
   if (model.shape_symmetries.none() || !model.surface.has_colors() || views.empty()) return world_from_object;
   const ColorScorer scorer(model, surface_voxel_m, views);
   Rigid3 best_pose = world_from_object;
-  if (search == TurnSearch::kAll) {
+  if (search == SymmetrySearch::kAll) {
     double best = scorer.difference(world_from_object);
     for (const Rigid3& motion : shape_symmetry_motions(model, kCoarseStep_rad)) {
       const double difference = scorer.difference(world_from_object * motion);
@@ -116,7 +116,7 @@ Rigid3 turn_by_color(const ObjectModel& model, double surface_voxel_m, const Rig
     }
   }
   for (const ObjectSymmetries::Continuous& axis : model.shape_symmetries.continuous)
-    best_pose = search_turn(scorer, axis, best_pose);
+    best_pose = search_angle(scorer, axis, best_pose);
   return best_pose;
 }
 

@@ -128,8 +128,9 @@ HttpResponse answer_refine(const AnnotationTask& task, ViewStore& store, const j
   const auto voxel_m = static_cast<double>(task.library->surface_voxel_m);
   RefinedPlacement refined = refine_over_views(*posed->model, voxel_m, posed->world_from_object, loaded->views);
   const bool all_turns = body.contains("all_turns") && body["all_turns"] == true;
-  refined.world_from_object = turn_by_color(*posed->model, voxel_m, refined.world_from_object, loaded->views,
-                                            all_turns ? TurnSearch::kAll : TurnSearch::kNear);
+  refined.world_from_object =
+      resolve_symmetry_by_color(*posed->model, voxel_m, refined.world_from_object, loaded->views,
+                                all_turns ? SymmetrySearch::kAll : SymmetrySearch::kNear);
   nlohmann::ordered_json answer = {{"pose", viewer::matrix_json(refined.world_from_object)},
                                    {"num_pairs", refined.num_pairs},
                                    {"views", viewer::residuals_json(refined.views)}};
