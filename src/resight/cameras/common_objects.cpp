@@ -15,7 +15,7 @@ namespace resight {
 namespace {
 
 // Two candidates are equal if they differ by less at the objects of the components.
-constexpr double kSameWayM = 0.01;
+constexpr double kSameCandidate_m = 0.01;
 
 // A possible relative pose of two components.
 struct Candidate {
@@ -82,8 +82,9 @@ class PartJoiner {
   [[nodiscard]] bool are_one(const Candidate& x, const Candidate& y) const {
     return std::ranges::all_of(y.agreed, [&](const auto& pair) {
       const std::array<Eigen::Vector3d, 4> points = axes_of(*pair.second);
-      return std::ranges::all_of(
-          points, [&](const Eigen::Vector3d& p) { return (x.a_from_b * p - y.a_from_b * p).norm() < kSameWayM; });
+      return std::ranges::all_of(points, [&](const Eigen::Vector3d& p) {
+        return (x.a_from_b * p - y.a_from_b * p).norm() < kSameCandidate_m;
+      });
     });
   }
 

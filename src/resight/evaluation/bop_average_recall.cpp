@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinVisibleShare = 0.1;
 constexpr int kNumThresholds = 10;
-constexpr double kReferenceWidthPx = 640;
+constexpr double kReferenceWidth_px = 640;
 
 double threshold(int i) { return 0.05 * (i + 1); }
 
@@ -95,7 +95,7 @@ void BopRecallCounter::add_object(const RgbdFrame& frame, const BopObject& objec
   for (int i = 0; i < kNumThresholds; ++i) {
     const auto slot = static_cast<std::size_t>(i);
     mssd_hits_[slot] += count_hits(mssd, targets.size(), threshold(i));
-    mspd_hits_[slot] += count_hits(mspd, targets.size(), 100 * threshold(i) * frame.camera.width / kReferenceWidthPx);
+    mspd_hits_[slot] += count_hits(mspd, targets.size(), 100 * threshold(i) * frame.camera.width / kReferenceWidth_px);
     for (std::size_t tau = 0; tau < num_taus; ++tau)
       vsd_hits_[tau * kNumThresholds + slot] += count_hits(vsd[tau], targets.size(), threshold(i));
   }

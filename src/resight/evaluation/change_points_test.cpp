@@ -19,19 +19,19 @@ PointCloud square_plate() {
   return cloud;
 }
 
-constexpr double kPlateDepthM = 1.0;
-constexpr double kWallDepthM = 1.5;
-Rigid3 place() { return Rigid3::from_translation({0, 0, kPlateDepthM}); }
+constexpr double kPlateDepth_m = 1.0;
+constexpr double kWallDepth_m = 1.5;
+Rigid3 place() { return Rigid3::from_translation({0, 0, kPlateDepth_m}); }
 
 // View of a camera at the origin: a wall, with or without the plate in front of it.
 RgbdFrame frame(bool with_plate) {
   RgbdFrame f;
   f.camera = {160, 120, 130, 130, 79.5, 59.5};
-  f.depth_m = Image<float>(160, 120, static_cast<float>(kWallDepthM));
+  f.depth_m = Image<float>(160, 120, static_cast<float>(kWallDepth_m));
   for (int v = 0; with_plate && v < 120; ++v)
     for (int u = 0; u < 160; ++u) {
-      const Eigen::Vector3d p = f.camera.unproject(u, v, kPlateDepthM);
-      if (std::abs(p.x()) <= 0.1 && std::abs(p.y()) <= 0.1) f.depth_m(u, v) = static_cast<float>(kPlateDepthM);
+      const Eigen::Vector3d p = f.camera.unproject(u, v, kPlateDepth_m);
+      if (std::abs(p.x()) <= 0.1 && std::abs(p.y()) <= 0.1) f.depth_m(u, v) = static_cast<float>(kPlateDepth_m);
     }
   return f;
 }

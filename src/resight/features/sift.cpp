@@ -17,7 +17,7 @@ namespace {
 constexpr int kDimension = 128;
 // OpenCV halves the coordinates found in the doubled image, whose pixel centres lie at (u - 0.5) / 2 of the image. Its
 // keypoints are therefore a quarter pixel too far right and down (measured on blobs at known places, OpenCV 4.6).
-constexpr double kDoublingShiftPx = 0.25;
+constexpr double kDoublingShift_px = 0.25;
 
 cv::Mat grey_image(const Image<Rgb8>& color) {
   static_assert(sizeof(Rgb8) == 3);
@@ -85,8 +85,8 @@ FeatureSet extract_sift(const PreparedView& view, const SiftOptions& options, co
   cv::SIFT::create(0, options.num_octave_layers, options.contrast_threshold, options.edge_threshold)
       ->detectAndCompute(grey_image(color), usable_pixels(cloud, mask), keypoints, descriptors);
   for (const int row : reading_order(keypoints)) {
-    const double u = keypoints[row].pt.x - kDoublingShiftPx;
-    const double v = keypoints[row].pt.y - kDoublingShiftPx;
+    const double u = keypoints[row].pt.x - kDoublingShift_px;
+    const double v = keypoints[row].pt.y - kDoublingShift_px;
     const std::optional<Pixel> nearest = view.frame.camera.pixel_at({u, v});
     if (!nearest) continue;
     const std::size_t pixel = cloud.z.index(nearest->u, nearest->v);

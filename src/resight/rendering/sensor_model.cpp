@@ -19,7 +19,7 @@ namespace resight {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kIncidenceRampDeg = 10.0;
+constexpr double kIncidenceRamp_deg = 10.0;
 constexpr double kSelfShadowGapM = 2e-3;
 constexpr std::uint64_t kColorStream = 0xC0104ULL;  // Separates the random numbers of colour from those of depth.
 
@@ -110,8 +110,8 @@ class DepthSensor {
     if (options_.max_incidence_deg >= 90) return true;
     if (errors_ && options_.depth_errors->grazing_start_deg < 90) return true;  // is_lost() decides
     const double margin_deg = options_.max_incidence_deg - angle_rad * 180 / std::numbers::pi;
-    if (margin_deg >= kIncidenceRampDeg) return true;
-    return margin_deg > 0 && rng.uniform() < margin_deg / kIncidenceRampDeg;
+    if (margin_deg >= kIncidenceRamp_deg) return true;
+    return margin_deg > 0 && rng.uniform() < margin_deg / kIncidenceRamp_deg;
   }
 
   bool is_lit(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, const Eigen::Vector3f& view_direction) const {

@@ -12,7 +12,7 @@
 namespace resight {
 namespace {
 
-constexpr double kMaxAngleRad = 85.0 / 180.0 * std::numbers::pi;
+constexpr double kMaxAngle_rad = 85.0 / 180.0 * std::numbers::pi;
 constexpr int kRowsPerTask = 32;
 
 /// DepthNoise, as a template for the double of noise_sigma() and the float of whole images.
@@ -53,7 +53,7 @@ inline float arc_cosine(float c) {
 /// theta / (pi/2 - theta) of the clipped angle with cosine `c`.
 inline float angle_ratio(float c) {
   constexpr auto kHalfPi = std::numbers::pi_v<float> / 2;
-  constexpr auto kMaxAngle = static_cast<float>(kMaxAngleRad);
+  constexpr auto kMaxAngle = static_cast<float>(kMaxAngle_rad);
   const float angle = arc_cosine(c > 1.0F ? 1.0F : c);
   const float clipped = angle < kMaxAngle ? angle : kMaxAngle;  // NaN (no normal) becomes the largest angle
   return clipped / (kHalfPi - clipped);
@@ -85,7 +85,7 @@ NoiseSigma noise_sigma(const DepthNoise& noise, double z_m, double angle_rad, do
   check_positive("noise_sigma: z_m", z_m);
   check_not_negative("noise_sigma: angle_rad", angle_rad);
   check_positive("noise_sigma: focal_px", focal_px);
-  const double angle = std::min(angle_rad, kMaxAngleRad);
+  const double angle = std::min(angle_rad, kMaxAngle_rad);
   const double ratio = angle / (std::numbers::pi / 2 - angle);
   const NoiseModel<double> sigma(noise);
   return {sigma.lateral_sigma_m(z_m, ratio, focal_px), sigma.axial_sigma_m(z_m, ratio)};

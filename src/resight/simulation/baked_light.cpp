@@ -13,8 +13,8 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kHighlight = 160;   // grey levels per specular 1: scanners expose for the matte parts
-constexpr float kMarginPx = 0.75F;  // texels beside a face belong to it, because look-ups interpolate
+constexpr float kHighlight = 160;    // grey levels per specular 1: scanners expose for the matte parts
+constexpr float kMargin_px = 0.75F;  // texels beside a face belong to it, because look-ups interpolate
 
 class Scanner {
  public:
@@ -108,7 +108,7 @@ class Scanner {
       const Vector2f& b = px[(i + 2) % 3];
       weights[i] = cross(b - a, at - a) / area;
       const float distance_px = weights[i] * std::abs(area) / std::max(1e-6F, (b - a).norm());
-      if (distance_px < -kMarginPx) return Vector3f::Constant(-1);
+      if (distance_px < -kMargin_px) return Vector3f::Constant(-1);
     }
     weights = weights.cwiseMax(0.0F);
     return weights / weights.sum();

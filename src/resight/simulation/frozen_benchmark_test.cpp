@@ -16,7 +16,7 @@
 namespace resight {
 namespace {
 
-constexpr int kBlockPx = 80;
+constexpr int kBlock_px = 80;
 constexpr double kTolerance = 0.5;  // a few pixels per block
 
 // A text of a script whose numbers are rounded, so that the last digit of a processor's sine does not matter.
@@ -103,11 +103,11 @@ std::uint64_t view_checksum(const RgbdFrame& frame) {
 // Means over blocks of colour (grey levels), depth (mm) and share of pixels with depth (%).
 std::vector<double> block_means(const RgbdFrame& frame) {
   std::vector<double> means;
-  for (int v0 = 0; v0 < frame.color.height(); v0 += kBlockPx)
-    for (int u0 = 0; u0 < frame.color.width(); u0 += kBlockPx) {
+  for (int v0 = 0; v0 < frame.color.height(); v0 += kBlock_px)
+    for (int u0 = 0; u0 < frame.color.width(); u0 += kBlock_px) {
       double grey = 0, depth_m = 0, count = 0;
-      for (int v = v0; v < v0 + kBlockPx; ++v)
-        for (int u = u0; u < u0 + kBlockPx; ++u) {
+      for (int v = v0; v < v0 + kBlock_px; ++v)
+        for (int u = u0; u < u0 + kBlock_px; ++u) {
           const Rgb8 c = frame.color(u, v);
           grey += (c.r + c.g + c.b) / 3.0;
           const float z = frame.depth_m(u, v);
@@ -115,9 +115,9 @@ std::vector<double> block_means(const RgbdFrame& frame) {
           depth_m += z;
           ++count;
         }
-      means.push_back(grey / (kBlockPx * kBlockPx));
+      means.push_back(grey / (kBlock_px * kBlock_px));
       means.push_back(1000 * depth_m / std::max(1.0, count));
-      means.push_back(100 * count / (kBlockPx * kBlockPx));
+      means.push_back(100 * count / (kBlock_px * kBlock_px));
     }
   return means;
 }

@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kGutterPx = 8;
-constexpr int kMaxAtlasHeightPx = 4096;
-constexpr int kSolidPx = 8;
+constexpr int kGutter_px = 8;
+constexpr int kMaxAtlasHeight_px = 4096;
+constexpr int kSolid_px = 8;
 
 struct SurfacePoint {
   Vector3d position;
@@ -68,27 +68,27 @@ std::vector<BoxFace> box_faces(const BoxRegions& r) {
 }  // namespace
 
 TextureAtlas::TextureAtlas(int width_px, double px_per_mm)
-    : px_per_mm_(px_per_mm), image_(width_px, kMaxAtlasHeightPx) {}
+    : px_per_mm_(px_per_mm), image_(width_px, kMaxAtlasHeight_px) {}
 
 PixelRect TextureAtlas::allocate(double width_mm, double height_mm) {
   const int w = std::max(1, static_cast<int>(std::lround(width_mm * px_per_mm_)));
   const int h = std::max(1, static_cast<int>(std::lround(height_mm * px_per_mm_)));
-  if (x_ + w + 2 * kGutterPx > image_.width()) {
+  if (x_ + w + 2 * kGutter_px > image_.width()) {
     x_ = 0;
     y_ += row_height_;
     row_height_ = 0;
   }
-  require(x_ + w + 2 * kGutterPx <= image_.width() && y_ + h + 2 * kGutterPx <= image_.height(),
+  require(x_ + w + 2 * kGutter_px <= image_.width() && y_ + h + 2 * kGutter_px <= image_.height(),
           "TextureAtlas::allocate: the region is larger than the atlas");
-  const PixelRect region{x_ + kGutterPx, y_ + kGutterPx, w, h};
-  x_ += w + 2 * kGutterPx;
-  row_height_ = std::max(row_height_, h + 2 * kGutterPx);
+  const PixelRect region{x_ + kGutter_px, y_ + kGutter_px, w, h};
+  x_ += w + 2 * kGutter_px;
+  row_height_ = std::max(row_height_, h + 2 * kGutter_px);
   regions_.push_back(region);
   return region;
 }
 
 PixelRect TextureAtlas::solid(Rgb8 color) {
-  const PixelRect region = allocate(kSolidPx / px_per_mm_, kSolidPx / px_per_mm_);
+  const PixelRect region = allocate(kSolid_px / px_per_mm_, kSolid_px / px_per_mm_);
   canvas(region).fill(color);
   return region;
 }
@@ -98,8 +98,8 @@ void TextureAtlas::finish(TriangleMesh& mesh) {
   Image<Rgb8> texture(image_.width(), height);
   for (int v = 0; v < height; ++v) std::ranges::copy(image_.row(v), texture.row(v).begin());
   for (const PixelRect& r : regions_)
-    for (int v = r.y - kGutterPx; v < r.y + r.height + kGutterPx; ++v)
-      for (int u = r.x - kGutterPx; u < r.x + r.width + kGutterPx; ++u)
+    for (int v = r.y - kGutter_px; v < r.y + r.height + kGutter_px; ++v)
+      for (int u = r.x - kGutter_px; u < r.x + r.width + kGutter_px; ++u)
         texture(u, v) = image_(std::clamp(u, r.x, r.x + r.width - 1), std::clamp(v, r.y, r.y + r.height - 1));
   const Eigen::Array2f size(static_cast<float>(image_.width()), static_cast<float>(height));
   for (Eigen::Vector2f& uv : mesh.uvs) uv = uv.array() / size;

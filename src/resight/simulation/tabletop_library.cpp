@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kScanStream = 3000;
 constexpr std::uint64_t kRecordingStream = 4000;
-constexpr double kRecordingStepDeg = 12;
+constexpr double kRecordingStep_deg = 12;
 // Positions in SeededObjectNames::known: one twin of each pair, boxes, a flat package, a carton, cans, a bottle, a cup,
 // a figure and the toys. Books are not: they lie too flat on a turntable for `resight model` (39 % of one was
 // complete).
@@ -77,7 +77,7 @@ Result<void> write_tabletop_meshes(std::uint64_t seed, const std::filesystem::pa
 RecordingOptions tabletop_recording_options(std::uint64_t seed, const TabletopModel& model) {
   Rng rng = Rng::stream(seed, kRecordingStream);
   RecordingOptions options;
-  options.step_deg = kRecordingStepDeg;
+  options.step_deg = kRecordingStep_deg;
   options.sensor = draw_sensor(rng);
   options.sensor.min_depth_m = 0.4;
   options.lighting = draw_lighting(rng);
