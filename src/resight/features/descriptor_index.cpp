@@ -209,7 +209,7 @@ DescriptorIndex::Impl::Impl(DescriptorRows descriptors, const DescriptorIndexOpt
     set_rows(read_rows(descriptors, 0, n));
     original.resize(static_cast<std::size_t>(n));
     std::iota(original.begin(), original.end(), 0);
-  } else if (options.num_components && 2 * *options.num_components <= dimension) {
+  } else if (options.num_components && *options.num_components <= dimension / 2) {
     whole = std::move(descriptors);
     mean = mean_of(whole);
     basis = principal_components(whole, mean, *options.num_components);

@@ -98,6 +98,18 @@ TEST(DescriptorIndex, FewComponentsFindWhatFewTellApart) {
   EXPECT_LT(sum_found, 1.05 * sum_truth);
 }
 
+// Then whole descriptors are compared.
+TEST(DescriptorIndex, MoreComponentsThanHalfTheDimensionAreIgnored) {
+  const auto data = make_clustered(400, kDimension, 10, 0.3, 3);
+  const auto queries = make_clustered(50, kDimension, 10, 0.3, 4);
+  const auto expected = DescriptorIndex(data, kDimension, {.exact_below = 0}).search(queries, 2);
+  for (const int components : {kDimension / 2 + 1, std::numeric_limits<int>::max()}) {
+    const DescriptorIndex index(data, kDimension, {.exact_below = 0, .num_components = components});
+    const auto found = index.search(queries, 2);
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(found[i].index, expected[i].index);
+  }
+}
+
 // As many descriptors as a single object has, with the options that the recogniser uses for SHOT.
 TEST(DescriptorIndex, ASingleObjectsDescriptorsAreFoundWithoutComparingAll) {
   constexpr std::size_t kLong = 352;
