@@ -67,7 +67,7 @@ LabelledView read_labelled_view(const Sequence& sequence, int view, const std::f
   labelled.classes = value_or_exit(read_classes(file));
   if (labelled.classes.width() != labelled.frame.camera.width ||
       labelled.classes.height() != labelled.frame.camera.height)
-    exit_with(fmt::format("{}: has not the size of the view", file.string()));
+    exit_with(fmt::format("{}: does not have the size of the view", file.string()));
   return labelled;
 }
 

@@ -14,7 +14,7 @@
 namespace resight {
 namespace {
 
-// Two candidates are equal if they differ by less at the objects of the components.
+// Candidates are the same if they differ by less at the objects on which they agree.
 constexpr double kSameCandidate_m = 0.01;
 
 // A possible relative pose of two components.
@@ -70,16 +70,16 @@ class PartJoiner {
         }
       }
     std::ranges::stable_sort(all, std::greater<>(), [](const Candidate& c) { return c.agreed.size(); });
-    std::vector<Candidate> ways;
+    std::vector<Candidate> distinct;
     for (Candidate& candidate : all) {
-      if (static_cast<int>(ways.size()) == options_.max_candidates) break;
-      const bool known = std::ranges::any_of(ways, [&](const Candidate& w) { return are_one(w, candidate); });
-      if (!known) ways.push_back(std::move(candidate));
+      if (static_cast<int>(distinct.size()) == options_.max_candidates) break;
+      const bool known = std::ranges::any_of(distinct, [&](const Candidate& d) { return are_same(d, candidate); });
+      if (!known) distinct.push_back(std::move(candidate));
     }
-    return ways;
+    return distinct;
   }
 
-  [[nodiscard]] bool are_one(const Candidate& x, const Candidate& y) const {
+  [[nodiscard]] bool are_same(const Candidate& x, const Candidate& y) const {
     return std::ranges::all_of(y.agreed, [&](const auto& pair) {
       const std::array<Eigen::Vector3d, 4> points = axes_of(*pair.second);
       return std::ranges::all_of(points, [&](const Eigen::Vector3d& p) {

@@ -63,7 +63,7 @@ std::string to_line(const TrackerStep& step) {
 // Reads one step. Edges may lead from earlier views only. None if the line is damaged.
 std::optional<TrackerStep> read_line(const std::string& line, int view) {
   try {
-    const auto values = nlohmann::json::parse(line);  // The keys may be of any number.
+    const auto values = nlohmann::json::parse(line);  // Not ordered: it finds a key fast among any number of them.
     TrackerStep step;
     step.view.name = values.at("name").get<std::string>();
     step.view.world_from_camera = read_pose(values.at("world_from_camera"));

@@ -124,10 +124,10 @@ void check_views(const PreparedView& view, std::span<const PreparedView* const> 
     };
     return camera.is_valid() && has_size(v.frame.depth_m) && has_size(v.frame.color) && has_size(v.cloud.z);
   };
-  require(is_consistent(view), "detect_changes: the view's images have not its camera's size");
+  require(is_consistent(view), "detect_changes: the images of the view do not have the size of its camera");
   for (const PreparedView* earlier : earlier_views)
     require(earlier != nullptr && is_consistent(*earlier),
-            "detect_changes: an earlier view is null or its images have not its camera's size");
+            "detect_changes: an earlier view is null, or its images do not have the size of its camera");
 }
 
 }  // namespace

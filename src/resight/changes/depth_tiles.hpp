@@ -8,8 +8,8 @@
 
 namespace resight {
 
-/// Which points cannot be near to any of a set, told without an index: the image is cut into tiles, and each knows the
-/// depths at which a point of the set may lie within the radius of a point that projects there. Points outside the
+/// Tells without an index which points cannot be near to any point of a set. The image is cut into tiles; each knows
+/// the depths at which a point of the set may lie within the radius of a point that projects there. Points outside the
 /// image count for the tile at the border that is nearest. A few nanoseconds a point; camera frame, metres.
 class DepthTiles {
  public:

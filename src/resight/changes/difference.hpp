@@ -32,7 +32,7 @@ class ProximityGrid {
 [[nodiscard]] std::vector<int> subtract_clouds(std::span<const Eigen::Vector3f> a, std::span<const Eigen::Vector3f> b,
                                                double tolerance_m, int num_threads = 1);
 
-/// The same against a grid that stands already, with its radius as the tolerance.
+/// The same against a grid that was built before, with its radius as the tolerance.
 [[nodiscard]] std::vector<int> subtract_clouds(std::span<const Eigen::Vector3f> a, const ProximityGrid& b,
                                                int num_threads = 1);
 

@@ -41,8 +41,9 @@ inline void declare(OptionVisitor& v, RemovalSupportOptions& o) {
 [[nodiscard]] int count_removal_support(const PointCloud& surface_in_world, const PointCloud& removed_in_world,
                                         const RemovalSupportOptions& options = {});
 
-/// The same for clusters that stand already (cluster_points() with the options' distance and size) and for the surface
-/// of the object in its own frame, on a grid of model_distance_m: for many poses against one set of removed points.
+/// The same for clusters that are known already (cluster_points() with the options' distance and size) and for the
+/// surface of the object in its own frame, on a grid of model_distance_m: for many poses against one set of removed
+/// points.
 [[nodiscard]] int count_removal_support(const ProximityGrid& surface_in_object, const Rigid3& object_from_world,
                                         const PointCloud& removed_in_world, std::span<const std::vector<int>> clusters,
                                         const RemovalSupportOptions& options = {});

@@ -200,7 +200,7 @@ std::vector<std::uint8_t> find_explained_points(std::span<const Eigen::Vector3f>
                                                 Image<std::uint8_t>* explained_pixels) {
   check_input(view_in_camera, camera, tolerance_m);
   require(explained_pixels == nullptr || explained_pixels->size() == view_in_camera.z.size(),
-          "find_explained_points: explained_pixels has not the size of the view");
+          "find_explained_points: explained_pixels does not have the size of the view");
   const DepthTiles tiles = tiles_of_view(view_in_camera, camera, tolerance_m);
   const PixelSearch search(view_in_camera, camera, tolerance_m);
   return test_all(points_in_camera.size(), num_threads,
@@ -212,7 +212,7 @@ std::vector<int> find_unexplained_pixels(std::span<const Eigen::Vector3f> points
                                          int num_threads, const Image<std::uint8_t>& explained_pixels) {
   check_input(view_in_camera, camera, tolerance_m);
   require(explained_pixels.empty() || explained_pixels.size() == view_in_camera.z.size(),
-          "find_unexplained_pixels: explained_pixels has not the size of the view");
+          "find_unexplained_pixels: explained_pixels does not have the size of the view");
   std::vector<int> open;
   Points queries;
   for (std::size_t i = 0; i < view_in_camera.z.size(); ++i) {

@@ -32,9 +32,8 @@ namespace resight {
 
 struct VsdOptions {
   double visibility_tolerance_m = 0.015;  ///< delta of BOP.
-  std::vector<double> misalignment_shares{
-      0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.35, 0.40, 0.45, 0.50};  ///< tau, of
-                                                                    ///< the diameter.
+  /// tau, of the diameter.
+  std::vector<double> misalignment_shares{0.05, 0.10, 0.15, 0.20, 0.25, 0.30, 0.35, 0.40, 0.45, 0.50};
   void check() const;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "resight/geometry/symmetry.hpp"
@@ -15,11 +16,12 @@ namespace {
 
 // Quadratic, but over extreme vertices in sampled directions only; accurate to about 1 %.
 double diameter_of(const TriangleMesh& mesh) {
+  constexpr double kStep_rad = std::numbers::pi / 32;
   std::vector<Eigen::Vector3f> extremes;
   for (int i = 0; i < 64; ++i)
     for (int k = 0; k < 32; ++k) {
-      const double azimuth = i * 0.09817477042468103;
-      const double elevation = (k + 0.5) * 0.09817477042468103 - 1.5707963267948966;
+      const double azimuth = i * kStep_rad;
+      const double elevation = (k + 0.5) * kStep_rad - std::numbers::pi / 2;
       const Eigen::Vector3f direction = Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
                                                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation))
                                             .cast<float>();

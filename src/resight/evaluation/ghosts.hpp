@@ -28,8 +28,8 @@ struct TruthView {
 };
 
 struct FindFormerPlacesOptions {
-  double max_center_distance_m =
-      0.01;                            ///< Nearer annotations of one object are the same placement: annotations jitter.
+  /// Nearer annotations of one object are the same placement: annotations jitter.
+  double max_center_distance_m = 0.01;
   double max_rotation_rad = 0.174533;  ///< 10 deg.
   void check() const;
 };

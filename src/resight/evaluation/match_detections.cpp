@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 
 #include "resight/core/check.hpp"
 #include "resight/evaluation/assignment.hpp"
@@ -10,7 +11,7 @@
 namespace resight {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
+constexpr double kDegree = std::numbers::pi / 180;
 
 /// Library index of each name; -1 = not found.
 template <typename Object>

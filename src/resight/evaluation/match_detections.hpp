@@ -24,8 +24,8 @@ struct DetectedObject {
 struct MatchDetectionsOptions {
   double max_center_distance_m = 0.05;  ///< Between the objects' centres (ObjectModel::center), not their origins.
   double max_rotation_rad = 0.523599;   ///< Geodesic, over the object's symmetries; 30 deg.
-  double min_visible_share =
-      0.05;            ///< Ground truth seen less than this is neither hit nor miss. Unknown (NaN) counts as seen.
+  /// Ground truth seen less than this is neither hit nor miss. Unknown (NaN) counts as seen.
+  double min_visible_share = 0.05;
   void check() const;  ///< Throws std::invalid_argument: field, value, rule.
 };
 
@@ -52,9 +52,8 @@ struct MatchDetectionsResult {
   std::vector<int> false_negatives;  ///< Ascending indices of the ground truth.
   /// Ascending indices of ground truth with a visible share below min_visible_share.
   std::vector<int> ignored_truth;
-  std::vector<int>
-      /// Ground truth of objects that are not in the library. They cannot be found and do not count.
-      unknown_truth;
+  /// Ground truth of objects that are not in the library. They cannot be found and do not count.
+  std::vector<int> unknown_truth;
 };
 
 /// Scores the detections of one view against its ground truth (both in the camera frame).

@@ -51,7 +51,7 @@ void link_copies(std::vector<SeenPlacement>& placements) {
       const bool fits = can_be_one_move(*copy, came);
       const bool is_proven = fits && copy->gone_view != kNever && came.last_free_view >= 0;
       if (num_unseen > 0 && !is_proven) continue;
-      // The one that was seen gone first has had to turn up for the longest time.
+      // Best is a copy whose move explains both; of several, the one that was seen gone first.
       const auto rank = [&](const SeenPlacement& p) { return std::pair(!can_be_one_move(p, came), p.gone_view); };
       if (best == nullptr || rank(*copy) < rank(**best)) best = &copy;
     }

@@ -9,10 +9,11 @@
 
 namespace resight {
 
-/// Scores the detections of view number `view` with both pairs of limits and identifies ghosts among the false
+/// Scores the detections of view `view_number` with both pairs of limits and identifies ghosts among the false
 /// positives. Sets all fields except counts, points, times and lost_at. If there are no detections, every visible
 /// object is missed. Ground truth of objects that are not in the library is ignored.
-[[nodiscard]] EvaluatedView score_view(int view, const TruthView& truth, std::span<const DetectedObject> detections,
+[[nodiscard]] EvaluatedView score_view(int view_number, const TruthView& truth,
+                                       std::span<const DetectedObject> detections,
                                        std::span<const FormerPlace> former_places, const Camera& camera,
                                        const ModelLibrary& library, const MatchDetectionsOptions& options = {});
 

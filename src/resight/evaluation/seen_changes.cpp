@@ -28,7 +28,7 @@ void insert_by_view(SeenChange change, std::vector<SeenChange>& truths) {
 }
 
 // Replaces two changes by the move that joins their sides, and by the remaining sides.
-void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChange>& truths) {
+void rewrite_as_move(std::size_t left_index, std::size_t came_index, std::vector<SeenChange>& truths) {
   const SeenChange left = truths[left_index];
   const SeenChange came = truths[came_index];
   truths.erase(truths.begin() + static_cast<std::ptrdiff_t>(std::max(left_index, came_index)));
@@ -43,8 +43,8 @@ void retell(std::size_t left_index, std::size_t came_index, std::vector<SeenChan
   if (came.kind == ObjectEventKind::kMoved) insert_by_view(came.departure(), truths);
 }
 
-bool retell_one(const ReportedChange& report, const std::vector<char>& used, const ChangeMatcher& matcher,
-                std::vector<SeenChange>& truths) {
+bool rewrite_one(const ReportedChange& report, const std::vector<char>& used, const ChangeMatcher& matcher,
+                 std::vector<SeenChange>& truths) {
   const auto is_candidate = [&](std::size_t t) {
     return used[t] == 0 && truths[t].object == report.object && truths[t].view <= report.view;
   };
@@ -56,7 +56,7 @@ bool retell_one(const ReportedChange& report, const std::vector<char>& used, con
       if (c == l || !is_candidate(c) || !truths[c].shows_arrival() || !may_be_one_move(truths[l], truths[c]) ||
           !matcher.same_place(report.object, truths[c].world_from_object_after, report.world_from_object_after))
         continue;
-      retell(l, c, truths);
+      rewrite_as_move(l, c, truths);
       return true;
     }
   }
@@ -124,7 +124,7 @@ std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
       if (t >= 0) used[static_cast<std::size_t>(t)] = 1;
     for (std::size_t r = 0; r < reports.size() && !changed; ++r)
       changed = truth_of[r] < 0 && reports[r].kind == ObjectEventKind::kMoved &&
-                retell_one(reports[r], used, matcher, truths);
+                rewrite_one(reports[r], used, matcher, truths);
   }
   return truths;
 }

@@ -19,7 +19,7 @@ struct ProjectedPoint {
 class SelfOcclusion {
  public:
   static constexpr float kMinDepth_m = 1e-3F;  ///< Nearer points neither hide nor are hidden.
-  /// `points` must outlive it; `spacing_m`: between neighbours.
+  /// `spacing_m`: between neighbours.
   SelfOcclusion(std::span<const ProjectedPoint> points, float focal_px, float spacing_m);
   /// Of one of the points, before the camera.
   [[nodiscard]] bool hides(const ProjectedPoint& p) const;

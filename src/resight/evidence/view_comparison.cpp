@@ -44,7 +44,7 @@ void check_view(const PreparedView& view) {
   };
   require(view.frame.camera.is_valid() && has_size(view.frame.depth_m) && has_size(view.cloud.z) &&
               has_size(view.cloud.nx) && has_size(view.edge_distance_px) && has_size(view.noise.normal_m),
-          "compare_views: a view is not prepared (its images have not its camera's size)");
+          "compare_views: a view is not prepared (its images do not have the size of its camera)");
 }
 
 /// What follows from depth alone, and the distances between surfaces and measurements.

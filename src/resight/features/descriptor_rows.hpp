@@ -30,7 +30,7 @@ class DescriptorRows {
   std::size_t num_rows_of_values_ = 0;
   std::vector<float> values_;
   std::vector<const std::uint8_t*> codes_;
-  std::vector<float> scales_;  // scales of the codes
+  std::vector<float> scales_;  // one per code
 };
 
 }  // namespace resight

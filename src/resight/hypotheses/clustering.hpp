@@ -42,9 +42,8 @@ inline void declare(OptionVisitor& v, ClusterHypothesesOptions& o) {
 struct ClusterResult {
   /// One per cluster, with the id of its seed and its newest origin view; correspondences pooled without duplicates.
   std::vector<Hypothesis> hypotheses;
-  std::vector<std::vector<int>>
-      /// Indices of the input per cluster: the seed, then the others in seed order.
-      members;
+  /// Indices of the input per cluster: the seed, then the others in seed order.
+  std::vector<std::vector<int>> members;
 };
 
 /// Merges neighbouring hypotheses of one object (paper, Eq. 1). World frame. Seeds are taken in a defined order (most

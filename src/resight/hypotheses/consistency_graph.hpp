@@ -49,7 +49,8 @@ struct ConsistencyOptions {
 
 /// Degeneracy order and core numbers of a graph.
 struct Degeneracy {
-  /// Vertices in the order of removal: smallest remaining degree first (ties: smallest index).
+  /// Vertices in the order of removal: smallest remaining degree first. Of several, the one that came to this degree
+  /// last; at the beginning, the one with the smallest index.
   std::vector<int> order;
   /// Core number of each vertex; a clique that contains it has at most core + 1 vertices.
   std::vector<int> core;

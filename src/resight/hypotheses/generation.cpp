@@ -53,8 +53,7 @@ void TypeIndex::match(const ModelLibrary& library, const FeatureSet& scene,
                       std::vector<std::vector<Correspondence>>& correspondences) const {
   if (!index || scene.size() == 0) return;
   require(scene.dimension == dimension,
-          "ModelFeatureIndex::match: descriptors of the scene and of the models differ in "
-          "dimension");
+          "ModelFeatureIndex::match: descriptors of the scene and of the models differ in dimension");
   require(scene.normals.size() == scene.size(), "ModelFeatureIndex::match: points and normals differ in number");
   const std::vector<DescriptorMatch> matches = index->search(scene.descriptors, neighbors);
   const auto k = static_cast<std::size_t>(neighbors);

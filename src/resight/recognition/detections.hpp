@@ -19,7 +19,7 @@ struct VerifiedHypotheses {
 };
 
 /// The accepted hypotheses as detections, with their scores and, per view of the window, what the view says about them;
-/// without tracks. Where the current view confirms less than RecognizerConfig::min_reported_share by its depth, its
+/// without tracks. Where the current view confirms less than detections.min_reported_share by its depth, its
 /// colours may confirm the object (color_confirmed_share()).
 [[nodiscard]] std::vector<Detection> make_detections(const VerifiedHypotheses& verified,
                                                      const std::deque<DynamicScene::View>& window,

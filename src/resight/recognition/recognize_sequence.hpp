@@ -14,10 +14,10 @@ namespace resight {
 /// may be moved from.
 using OnView = std::function<void(const RgbdFrame& frame, SceneUpdate& update)>;
 
-/// Measures the bias of the depth (DepthBiasOptions), recognises all views in order and finishes the history; the last
-/// update includes the final events. Returns the events per reporting view, without superseded ones: what is known at
-/// the end of the sequence. Fails with the error of the first view that cannot be read. `recognizer` must not have seen
-/// a view yet. `trace`: unless null, cleared and filled for each view before `on_view` is called.
+/// Measures the errors of the camera (measure_camera_errors()), recognises all views in order and finishes the history;
+/// the last update includes the final events. Returns the events per reporting view, without superseded ones: what is
+/// known at the end of the sequence. Fails with the error of the first view that cannot be read. `recognizer` must not
+/// have seen a view yet. `trace`: unless null, cleared and filled for each view before `on_view` is called.
 [[nodiscard]] Result<std::vector<std::vector<ObjectEvent>>> recognize_sequence(SceneRecognizer& recognizer,
                                                                                const Sequence& sequence,
                                                                                const OnView& on_view = {},

@@ -24,7 +24,7 @@ class SceneRecognizer {
  public:
   /// The library must outlive the recogniser. Throws std::invalid_argument for a config that fails check(). `store`:
   /// shared with other recognisers of the same sequence (see ViewHypothesisStore); null = on its own. `clock`: for
-  /// RecognizerConfig::deadline_ms.
+  /// run.deadline_ms.
   SceneRecognizer(const ModelLibrary& library, RecognizerConfig config,
                   std::shared_ptr<ViewHypothesisStore> store = nullptr, Clock clock = steady_clock_s);
   ~SceneRecognizer();

@@ -64,7 +64,7 @@ struct SceneUpdate {
   std::vector<ObjectEvent> events;
   ChangeResult changes;  ///< Empty under preset mvr.
   bool searched = true;  ///< False: the view shows nothing new; only tracked objects were verified (SearchPlanner).
-  std::vector<std::string> left_out;  ///< Skipped to meet RecognizerConfig::deadline_ms; for display.
+  std::vector<std::string> left_out;  ///< Skipped to meet run.deadline_ms; for display.
   HypothesisCounts counts;
   std::size_t reconstruction_points = 0;
   StageTimes times;

@@ -17,8 +17,8 @@ struct SensorOptions {
   double disparity_step_px = 0.125;  ///< Kinect: 1/8 px. 0 = depth is not quantised.
   double baseline_m = 0.075;         ///< Camera to projector, along the camera's +x (Kinect: 7.5 cm).
   bool projector_shadow = true;      ///< No return where the projector does not see the surface.
-  double max_incidence_deg =
-      82.0;  ///< No return from surfaces slanted more; returns thin out over the 10 deg before. 90 = off.
+  /// No return from surfaces slanted more; returns thin out over the 10 deg before. 90 = off.
+  double max_incidence_deg = 82.0;
   double edge_dropout = 0.4;                     ///< Probability of no return beside a depth discontinuity. 0 = off.
   double min_depth_m = 0.5;                      ///< Nearer: no return.
   double max_depth_m = 4.0;                      ///< Farther: no return.

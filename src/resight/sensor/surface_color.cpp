@@ -68,7 +68,7 @@ Image<Rgb8> average_over_surface(const Image<Rgb8>& color, const Camera& camera,
   check_positive("average_over_surface: width_m", width_m);
   require(color.width() == camera.width && color.height() == camera.height && z_m.width() == camera.width &&
               z_m.height() == camera.height,
-          "average_over_surface: the images have not the camera's size");
+          "average_over_surface: the images do not have the size of the camera");
   const double noise = estimate_image_noise(color);
   if (!(noise > kUsualNoise)) return {};
   // The mean over a square of n x n pixels has an n-th of the noise.
