@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <tuple>
 
 #include "resight/core/random.hpp"
@@ -63,6 +64,11 @@ TEST(FindFaults, AGoodSequenceHasNone) {
   EXPECT_TRUE(list_facts(measured).empty());
   EXPECT_TRUE(list_unmeasured(measured).empty());
   EXPECT_EQ(names_of(check_quickly(good_sequence(), true)), "");
+}
+
+TEST(FindFaults, LessThanThreeInspectedViewsAreRefused) {
+  EXPECT_THROW(std::ignore = measure_sequence(good_sequence(), {.max_views = 2, .num_threads = 1}),
+               std::invalid_argument);
 }
 
 TEST(FindFaults, ResultsDoNotDependOnThreads) {

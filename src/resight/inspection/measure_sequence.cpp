@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "resight/core/check.hpp"
 #include "resight/core/statistics.hpp"
 #include "resight/inspection/pose_readings.hpp"
 #include "resight/sensor/color_offset.hpp"
@@ -145,6 +146,7 @@ bool is_usable(const SequenceMeasurements& all) {
 }  // namespace
 
 Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const MeasureSequenceOptions& options) {
+  require(options.max_views >= 3, "max_views: must be at least 3");
   SequenceMeasurements all;
   all.num_views = sequence.num_views();
   all.has_poses = sequence.has_poses();

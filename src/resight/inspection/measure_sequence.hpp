@@ -72,12 +72,12 @@ struct SequenceMeasurements {
 };
 
 struct MeasureSequenceOptions {
-  int max_views = 24;  ///< Inspected ones, spread over the sequence.
+  int max_views = 24;  ///< Inspected ones, spread over the sequence; at least 3.
   int num_threads = 1;
 };
 
 /// Reads up to max_views views, and measures them and the motion between them. Fails with the error of the first view
-/// that cannot be read.
+/// that cannot be read. Throws std::invalid_argument if max_views is less than 3.
 [[nodiscard]] Result<SequenceMeasurements> measure_sequence(const Sequence& sequence,
                                                             const MeasureSequenceOptions& options = {});
 

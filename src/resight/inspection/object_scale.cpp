@@ -68,7 +68,7 @@ std::vector<double> vote_for_scales(const std::vector<Correspondence>& matches, 
     for (std::size_t j = 0; j < i; ++j) {
       const float in_model = (matches[i].model_point - matches[j].model_point).norm();
       const float in_scene = (matches[i].scene_point - matches[j].scene_point).norm();
-      if (in_model < 0.15F * diameter_m || in_scene <= 0) continue;
+      if (in_model <= 0 || in_model < 0.15F * diameter_m || in_scene <= 0) continue;
       const auto bin = static_cast<int>(std::floor(std::log(in_scene / in_model) / kVoteWidth)) + kNumVotes / 2;
       if (bin >= 0 && bin < kNumVotes) ++votes[static_cast<std::size_t>(bin)];
     }

@@ -100,6 +100,10 @@ TEST(ObjectScale, UntexturedModelsTellNothing) {
   EXPECT_EQ(describe_scales(scales), "the sizes of the known objects (0 of 0 textured ones found in 5 views)");
 }
 
+TEST(ObjectScale, ModelsWithoutExtentTellNothing) {
+  EXPECT_TRUE(measure(ball_sequence(), make_parts(0, 0)).found.empty());
+}
+
 TEST(ObjectScale, ResultsDoNotDependOnThreads) {
   const ModelLibrary library = make_parts(1.2F, 1.2F);
   const ObjectScales one = measure(ball_sequence(), library);
