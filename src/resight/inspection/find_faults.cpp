@@ -170,8 +170,8 @@ std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured, b
         "a unit of the depth that is off by less than ten (it needs --models, or the poses of a camera that moves)");
   if (measured.pairs.size() < inspection::kMinComparedPairs)
     unmeasured.push_back(
-        fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be "
-                    "matched, at least {} are needed)",
+        fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be matched, at least {} "
+                    "are needed)",
                     measured.has_poses ? "poses " : "", measured.pairs.size(), measured.num_tried_pairs,
                     inspection::kMinComparedPairs));
   if (!all_shifts(measured).peak())

@@ -219,7 +219,8 @@ TEST(FindFaults, DepthOfAnotherTimeIsFoundWithItsSign) {
   EXPECT_EQ(names_of(check(sequence_with_late_depth(0))), "");
 }
 
-// Neighbours at video rate hardly differ, but that does not mean that the camera stands, or that its poses are right.
+// Neighbours at video rate hardly differ, but that does not mean that the camera stands still, or that its poses are
+// right.
 TEST(FindFaults, ASlowCameraIsCheckedByViewsFarApart) {
   std::vector<RgbdFrame> frames;
   for (int v = 0; v < 60; ++v) {

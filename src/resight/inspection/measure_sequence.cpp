@@ -114,9 +114,9 @@ double median_over(const std::vector<ViewPair>& pairs, const ValueOf& value_of) 
 
 using DepthOfViews = std::map<int, Image<float>>;
 
-double measure_standing_share(const SequenceMeasurements& all, const DepthOfViews& depths_m) {
+double measure_still_share(const SequenceMeasurements& all, const DepthOfViews& depths_m) {
   constexpr double kMinSameShare = 0.4;  // Of the measured pixels: most of the scene stays.
-  const auto stands = [&](const ViewPair& pair) {
+  const auto stands_still = [&](const ViewPair& pair) {
     const Image<float>& first = depths_m.at(pair.a);
     const Image<float>& second = depths_m.at(pair.b);
     const Rigid3 moved{pair.b_from_a.rotation, all.depth_unit_m * pair.b_from_a.translation};
@@ -124,7 +124,7 @@ double measure_standing_share(const SequenceMeasurements& all, const DepthOfView
     return num_same > kMinSameShare * count_same_depth(first, first, all.camera, Rigid3()) &&
            num_same >= count_same_depth(first, second, all.camera, moved);
   };
-  return static_cast<double>(std::ranges::count_if(all.pairs, stands)) / static_cast<double>(all.pairs.size());
+  return static_cast<double>(std::ranges::count_if(all.pairs, stands_still)) / static_cast<double>(all.pairs.size());
 }
 
 /// Whether the camera moves so slowly that only views far apart tell of intrinsics and poses, as at video rate.
@@ -178,7 +178,7 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   all.depth_time = measure_depth_time(views.contours, all.pairs, all.camera, all.depth_unit_m);
   all.far_pairs = match_pairs(choose_far_pairs(inspected, all.num_views), features, all.camera);
   if (is_slow(all)) all.pairs = std::exchange(all.far_pairs, {});
-  all.standing_share = measure_standing_share(all, depths_m);
+  all.still_share = measure_still_share(all, depths_m);
   const auto error_of = [](const ViewPair& pair) { return pair.error_px; };
   all.pair_error_px = median_over(all.pairs, error_of);
   all.far_pair_error_px = median_over(all.far_pairs, error_of);

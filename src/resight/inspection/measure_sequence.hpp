@@ -61,9 +61,9 @@ struct SequenceMeasurements {
   bool has_poses = false;
   double pair_error_px = 0;  ///< Median over the pairs of their own errors.
   double pair_shift_px = 0;  ///< Median over the pairs of the distance between matched pixels.
-  /// Share of the pairs whose depths mostly agree if the camera stands, and better than if it moves as the matches
-  /// tell. Where the background has no texture, the matches are on what moved before it.
-  double standing_share = 0;
+  /// Share of the pairs whose depths mostly agree if the camera stands still, and better than if it moves as the
+  /// matches tell. Where the background has no texture, the matches are on what moved before it.
+  double still_share = 0;
   std::vector<ViewPair> far_pairs;  ///< Views far apart in the sequence that could be matched, if they are not `pairs`.
   double far_pair_error_px = 0;     ///< Median over the far pairs of their own errors.
   std::optional<DepthTime> depth_time;

@@ -255,8 +255,7 @@ std::string describe_scales(const ObjectScales& scales) {
                        scales.num_objects, scales.num_views);
   const ScaleEstimate e = estimate_scale(log_scales);
   return fmt::format(
-      "known objects are {:.3f} times as large as in the library (+- {:.1f} %, found {} times in {} "
-      "views)",
+      "known objects are {:.3f} times as large as in the library (+- {:.1f} %, found {} times in {} views)",
       std::exp(e.log_scale), 100 * e.standard_error, log_scales.size(), scales.num_views);
 }
 

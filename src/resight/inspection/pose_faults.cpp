@@ -12,10 +12,10 @@ namespace {
 
 // Beyond this, contours of other surfaces agree by chance (estimate_misregistration_px()).
 constexpr double kMaxPoseError_px = 8;
-constexpr double kMaxStandingShift = 8.0 / 640;  // Of the image's width.
-constexpr double kMinMotion_px = 5;              // Between views; less says nothing about poses and intrinsics.
-constexpr double kMinGain = 3;                   // How much better another convention must explain the views.
-constexpr double kMinTimeGain = 2;               // The same for another time: the poses between views are interpolated.
+constexpr double kMaxStillShift = 8.0 / 640;  // Of the image's width.
+constexpr double kMinMotion_px = 5;           // Between views; less says nothing about poses and intrinsics.
+constexpr double kMinGain = 3;                // How much better another convention must explain the views.
+constexpr double kMinTimeGain = 2;            // The same for another time: the poses between views are interpolated.
 // Factory calibrations of depth differ by up to 4 % (TUM RGB-D: 3.5 %), those of focal lengths by 5 %.
 constexpr double kMaxLogScale = 0.06;
 constexpr double kMaxLogFocal = 0.08;
@@ -53,10 +53,10 @@ struct PoseContext {
 
 bool add_fixed(const PoseContext& c) {
   if (!c.poses.all_equal) return false;
-  const double max_shift_px = kMaxStandingShift * c.all.camera.width;
-  if (c.all.standing_share < 0.5 && c.all.pair_shift_px > max_shift_px)
+  const double max_shift_px = kMaxStillShift * c.all.camera.width;
+  if (c.all.still_share < 0.5 && c.all.pair_shift_px > max_shift_px)
     c.add("fixed_poses",
-          fmt::format("the poses say that the camera stands, but views differ by {:.0f} px", c.all.pair_shift_px),
+          fmt::format("the poses say that the camera stands still, but views differ by {:.0f} px", c.all.pair_shift_px),
           "--poses auto, or resight track", c.all.pair_shift_px, "px", max_shift_px,
           c.all.pair_shift_px / max_shift_px);
   return true;

@@ -29,7 +29,7 @@ std::optional<FollowedView> SequenceFollower::poll() {
   }
   // A single view needs no pose elsewhere, but here others may come, and its pose may be on its way.
   if (!(*sequence)->has_poses()) {
-    why_none_ = file_error(folder_, "holds no camera pose (give --poses fixed if the camera stands)").message;
+    why_none_ = file_error(folder_, "holds no camera pose (give --poses fixed if the camera stands still)").message;
     return std::nullopt;
   }
   notes_ = (*sequence)->notes();

@@ -102,7 +102,7 @@ std::vector<Eigen::Matrix3d> choose_rotations(const AlignShapesOptions& options)
   return rotations;
 }
 
-bool are_one(const ShapeFit& a, const ShapeFit& b, const Shape& moving) {
+bool are_same(const ShapeFit& a, const ShapeFit& b, const Shape& moving) {
   return std::ranges::all_of(moving.samples, [&](std::size_t s) {
     const Vector3d p = moving.points[s].cast<double>();
     return (a.fixed_from_moving * p - b.fixed_from_moving * p).norm() < kSameFit_m;
@@ -126,7 +126,7 @@ std::vector<ShapeFit> align_shapes(const TriangleMesh& fixed, const TriangleMesh
   std::vector<ShapeFit> fits;
   for (const ShapeFit& fit : all) {
     if (static_cast<int>(fits.size()) == options.max_fits) break;
-    if (std::ranges::none_of(fits, [&](const ShapeFit& f) { return are_one(f, fit, from); })) fits.push_back(fit);
+    if (std::ranges::none_of(fits, [&](const ShapeFit& f) { return are_same(f, fit, from); })) fits.push_back(fit);
   }
   return fits;
 }

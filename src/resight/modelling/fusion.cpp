@@ -75,23 +75,23 @@ class VertexPainter {
     Vector3d color = Vector3d::Zero();
   };
 
-  // `looks` is overwritten; it is passed in to reuse its memory.
+  // `observations` is overwritten; it is passed in to reuse its memory.
   [[nodiscard]] Rgb8 color(const Vector3f& p, const Vector3f& normal, std::vector<Observation>& observations) const {
     observations.clear();
     double total = 0;
     for (std::size_t k = 0; k < views_.size(); ++k)
-      if (const Observation l = observe(k, p, normal); l.weight > 0) {
-        observations.push_back(l);
-        total += l.weight;
+      if (const Observation o = observe(k, p, normal); o.weight > 0) {
+        observations.push_back(o);
+        total += o.weight;
       }
     if (observations.empty()) return {128, 128, 128};
-    std::ranges::stable_sort(observations, {}, [](const Observation& l) { return l.color.sum(); });
+    std::ranges::stable_sort(observations, {}, [](const Observation& o) { return o.color.sum(); });
     Vector3d sum = Vector3d::Zero();
     double before = 0;
-    for (const Observation& l : observations) {
-      const double after = before + l.weight;
+    for (const Observation& o : observations) {
+      const double after = before + o.weight;
       const double used = std::min(after, to_ * total) - std::max(before, from_ * total);
-      if (used > 0) sum += used / ((to_ - from_) * total) * l.color;
+      if (used > 0) sum += used / ((to_ - from_) * total) * o.color;
       before = after;
     }
     const auto round = [](double x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5, 0.0, 255.0)); };

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // Two motions of the second recording's object frame into the first's count as one below these differences.
 constexpr double kSameShift_m = 0.02;
 constexpr double kSameRotation_rad = 0.2;
-constexpr int kMaxWays = 4;           // Candidates that are tried on the model.
+constexpr int kMaxCandidates = 4;     // Tried on the model.
 constexpr int kMaxMatchedViews = 18;  // Per recording.
 constexpr int kRefineRounds = 3;      // Each aligns the views and takes the medoid of the motions.
 // Below this number of keypoints, shape alone decides.
@@ -30,7 +30,8 @@ constexpr std::size_t kVertexStep = 13;    // Every 13th vertex is tested, for s
 // A point contradicts a view if it lies this far in front of the observed surface.
 constexpr double kFree_m = 0.008;
 
-struct Way {
+// How the recordings may be joined.
+struct Candidate {
   Rigid3 first_from_second;
   int num_matches = 0;
   double shape_score = 0;
@@ -64,10 +65,10 @@ class TrackJoiner {
 
   // Joins by features, or by shape if features give no result.
   Result<Rigid3> find() {
-    const std::vector<Way> matched = find_ways();
+    const std::vector<Candidate> matched = find_by_features();
     if (const std::optional<Rigid3> best = choose(matched, options_.plausible.min_correlation)) return *best;
     const bool has_texture = num_keypoints_ >= kFewKeypoints;
-    const std::vector<Way> shaped = find_ways_by_shape();
+    const std::vector<Candidate> shaped = find_by_shape();
     if (const std::optional<Rigid3> best = choose(shaped, has_texture ? options_.plausible.min_correlation : -1))
       return *best;
     return Error{fmt::format(
@@ -77,32 +78,32 @@ class TrackJoiner {
 
  private:
   // Refines the candidates and returns the one that best explains the views of the second recording.
-  std::optional<Rigid3> choose(const std::vector<Way>& ways, double min_likeness) {
+  std::optional<Rigid3> choose(const std::vector<Candidate>& candidates, double min_likeness) {
     std::optional<Rigid3> best;
     double best_score = 0;
     if (!model_) return best;
-    for (const Way& way : ways) {
-      const auto [pose, overlap, score, likeness] = refine(way.first_from_second);
+    for (const Candidate& candidate : candidates) {
+      const auto [pose, overlap, score, likeness] = refine(candidate.first_from_second);
       if (likeness < min_likeness || overlap < options_.join.min_overlap) continue;
-      if (best && score + way.shape_score <= best_score) continue;
+      if (best && score + candidate.shape_score <= best_score) continue;
       best = pose;
-      best_score = score + way.shape_score;
+      best_score = score + candidate.shape_score;
     }
     return best;
   }
 
   // Alignments in which neither surface occupies free space of the other recording's views.
-  std::vector<Way> find_ways_by_shape() {
-    std::vector<Way> ways;
+  std::vector<Candidate> find_by_shape() {
+    std::vector<Candidate> candidates;
     for (const ShapeFit& fit : align_shapes(first_mesh_, second_mesh_, {.num_threads = options_.num_threads})) {
       const double contradicted = std::max(contradicted_share(second_mesh_, fit.fixed_from_moving, first_),
                                            contradicted_share(first_mesh_, fit.fixed_from_moving.inverse(), second_));
       if (fit.agreement >= kMinAgreement && contradicted <= kMaxContradicted)
-        ways.push_back({fit.fixed_from_moving, 0, fit.agreement - 2 * contradicted});
+        candidates.push_back({fit.fixed_from_moving, 0, fit.agreement - 2 * contradicted});
     }
-    std::ranges::stable_sort(ways, std::greater{}, &Way::shape_score);
-    if (ways.size() > kMaxWays) ways.resize(kMaxWays);
-    return ways;
+    std::ranges::stable_sort(candidates, std::greater{}, &Candidate::shape_score);
+    if (candidates.size() > kMaxCandidates) candidates.resize(kMaxCandidates);
+    return candidates;
   }
 
   // Share of the surface's points in front of what the views observe there, over some of the views.
@@ -124,21 +125,21 @@ class TrackJoiner {
   }
 
   // Matches features between views of both recordings. Matches with similar motions are added up.
-  std::vector<Way> find_ways() {
+  std::vector<Candidate> find_by_features() {
     const std::vector<int> of_first = choose_evenly(first_.size(), kMaxMatchedViews);
     const std::vector<int> of_second = choose_evenly(second_.size(), kMaxMatchedViews);
     const std::vector<TrackView> a = make_track_views(first_, of_first, options_);
     const std::vector<TrackView> b = make_track_views(second_, of_second, options_);
     num_keypoints_ = std::min(median_keypoints(a), median_keypoints(b));
-    std::vector<std::optional<Way>> found(a.size() * b.size());
+    std::vector<std::optional<Candidate>> found(a.size() * b.size());
     parallel_for(found.size(), options_.num_threads, [&](std::size_t k) {
       const std::size_t i = k / b.size();
       const std::size_t j = k % b.size();
       const std::optional<ViewMatch> match = match_views(a[i].features, b[j].features, options_.features.match);
       if (!match) return;
-      found[k] = Way{first_[of_first[i]].frame.world_from_camera * match->a_from_b *
-                         second_[of_second[j]].frame.world_from_camera.inverse(),
-                     match->num_inliers};
+      found[k] = Candidate{first_[of_first[i]].frame.world_from_camera * match->a_from_b *
+                               second_[of_second[j]].frame.world_from_camera.inverse(),
+                           match->num_inliers};
     });
     return add_up(found);
   }
@@ -151,24 +152,25 @@ class TrackJoiner {
   }
 
   // Sorted by support, without duplicates.
-  [[nodiscard]] std::vector<Way> add_up(const std::vector<std::optional<Way>>& found) const {
-    std::vector<Way> sums;
-    for (const auto& way : found) {
-      if (!way) continue;
-      Way sum{way->first_from_second, 0};
+  [[nodiscard]] std::vector<Candidate> add_up(const std::vector<std::optional<Candidate>>& found) const {
+    std::vector<Candidate> sums;
+    for (const auto& candidate : found) {
+      if (!candidate) continue;
+      Candidate sum{candidate->first_from_second, 0};
       for (const auto& other : found)
-        if (other && are_same_motion(way->first_from_second, other->first_from_second, middle_))
+        if (other && are_same_motion(candidate->first_from_second, other->first_from_second, middle_))
           sum.num_matches += other->num_matches;
       sums.push_back(sum);
     }
-    std::ranges::stable_sort(sums, std::greater{}, &Way::num_matches);
-    std::vector<Way> ways;
-    for (const Way& way : sums) {
-      const bool is_known = std::ranges::any_of(
-          ways, [&](const Way& w) { return are_same_motion(w.first_from_second, way.first_from_second, middle_); });
-      if (!is_known && static_cast<int>(ways.size()) < kMaxWays) ways.push_back(way);
+    std::ranges::stable_sort(sums, std::greater{}, &Candidate::num_matches);
+    std::vector<Candidate> candidates;
+    for (const Candidate& candidate : sums) {
+      const bool is_known = std::ranges::any_of(candidates, [&](const Candidate& other) {
+        return are_same_motion(other.first_from_second, candidate.first_from_second, middle_);
+      });
+      if (!is_known && static_cast<int>(candidates.size()) < kMaxCandidates) candidates.push_back(candidate);
     }
-    return ways;
+    return candidates;
   }
 
   struct Refined {
@@ -179,14 +181,15 @@ class TrackJoiner {
   };
 
   // Aligns some views of the second recording to the model and takes the medoid of the resulting motions; repeated.
-  Refined refine(Rigid3 way) {
+  Refined refine(Rigid3 first_from_second) {
     Refined refined;
     for (int round = 0; round < kRefineRounds; ++round) {
       const std::vector<int> chosen = choose_evenly(second_.size(), options_.join.num_views);
       std::vector<AlignedView> aligned(chosen.size());
-      parallel_for(chosen.size(), options_.num_threads, [&](std::size_t k) { aligned[k] = align(chosen[k], way); });
-      refined = {way, 0, 0, 0};
-      std::vector<Way> ways;
+      parallel_for(chosen.size(), options_.num_threads,
+                   [&](std::size_t k) { aligned[k] = align(chosen[k], first_from_second); });
+      refined = {first_from_second, 0, 0, 0};
+      std::vector<Candidate> candidates;
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         const AlignedView& a = aligned[k];
         const double likeness = std::isnan(a.brightness_correlation) ? 0 : a.brightness_correlation;
@@ -197,33 +200,34 @@ class TrackJoiner {
             (std::min(a.overlap, 0.3) - 2 * a.seen_through + 2 * likeness) / static_cast<double>(chosen.size());
         refined.likeness += likeness / static_cast<double>(chosen.size());
         if (a.overlap >= options_.join.min_overlap)
-          ways.push_back({a.world_from_camera * second_[chosen[k]].frame.world_from_camera.inverse(), a.num_pairs});
+          candidates.push_back(
+              {a.world_from_camera * second_[chosen[k]].frame.world_from_camera.inverse(), a.num_pairs});
       }
-      if (ways.empty()) break;
-      way = find_medoid(ways);
+      if (candidates.empty()) break;
+      first_from_second = find_medoid(candidates);
     }
-    refined.pose = way;
+    refined.pose = first_from_second;
     return refined;
   }
 
-  [[nodiscard]] AlignedView align(int view, const Rigid3& way) const {
+  [[nodiscard]] AlignedView align(int view, const Rigid3& first_from_second) const {
     TrainingView part = crop_for_tracking(second_[view]);
-    const Rigid3 start = way * part.frame.world_from_camera;
+    const Rigid3 start = first_from_second * part.frame.world_from_camera;
     const Camera camera = part.frame.camera;
     const PreparedView prepared = prepare_view(std::move(part.frame));
     return model_->align(make_alignment_view(prepared, options_.view, &part.mask), camera, start, false);
   }
 
-  [[nodiscard]] Rigid3 find_medoid(const std::vector<Way>& ways) const {
-    const Way* best = nullptr;
+  [[nodiscard]] Rigid3 find_medoid(const std::vector<Candidate>& candidates) const {
+    const Candidate* best = nullptr;
     double least = 0;
-    for (const Way& way : ways) {
+    for (const Candidate& candidate : candidates) {
       double sum = 0;
-      for (const Way& other : ways)
-        sum += (way.first_from_second * middle_ - other.first_from_second * middle_).norm() +
-               0.05 * rotation_angle_rad(way.first_from_second.rotation, other.first_from_second.rotation);
+      for (const Candidate& other : candidates)
+        sum += (candidate.first_from_second * middle_ - other.first_from_second * middle_).norm() +
+               0.05 * rotation_angle_rad(candidate.first_from_second.rotation, other.first_from_second.rotation);
       if (best != nullptr && sum >= least) continue;
-      best = &way;
+      best = &candidate;
       least = sum;
     }
     return best->first_from_second;

@@ -18,7 +18,7 @@ struct CameraErrors {
 
 /// Measures the errors in up to kMaxCalibrationViews views of a sequence, those that their options correct; views that
 /// cannot be read do not count. The bias is measured in views without the offset. If all given poses are equal, there
-/// is no bias: a camera that stands shows nothing.
+/// is no bias: a camera that stands still shows nothing.
 [[nodiscard]] CameraErrors measure_camera_errors(const Sequence& sequence, const PrepareViewOptions& prepare,
                                                  const ColorOffsetOptions& color_offset,
                                                  const DepthBiasOptions& depth_bias);

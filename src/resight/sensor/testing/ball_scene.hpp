@@ -91,7 +91,7 @@ inline RgbdFrame render_biased_view(const BallScene& scene, const Rigid3& world_
   return frame;
 }
 
-/// Eight of them, by steps on a circle, whose poses are off by some millimetres. 0: the camera stands.
+/// Eight of them, by steps on a circle, whose poses are off by some millimetres. 0: the camera stands still.
 inline std::vector<RgbdFrame> render_biased_views(double bias_per_m, const BallScene& scene = {},
                                                   double step_rad = 0.22) {
   std::vector<RgbdFrame> frames;
