@@ -47,7 +47,8 @@ Eigen::Vector3f LampShader::shade(const SurfacePoint& point, const Eigen::Vector
     to_lamp /= distance;
     const float cosine = point.normal.dot(to_lamp);
     if (cosine <= 0) continue;
-    if (lighting_.shadows && scene_.is_blocked({point.position, to_lamp}, kLampShadowGapM, distance - kLampShadowGapM))
+    if (lighting_.shadows &&
+        scene_.is_blocked({point.position, to_lamp}, kLampShadowGap_m, distance - kLampShadowGap_m))
       continue;
     diffuse += cosine * lamp.intensity.cast<float>();
     if (material.specular <= 0) continue;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 constexpr double kIncidenceRamp_deg = 10.0;
-constexpr double kSelfShadowGapM = 2e-3;
+constexpr double kSelfShadowGap_m = 2e-3;
 constexpr std::uint64_t kColorStream = 0xC0104ULL;  // Separates the random numbers of colour from those of depth.
 
 double incidence_rad(const Eigen::Vector3f& normal, const Eigen::Vector3f& direction) {
@@ -117,7 +117,7 @@ class DepthSensor {
   bool is_lit(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, const Eigen::Vector3f& view_direction) const {
     const Eigen::Vector3f to_projector = projector_ - p;
     if (normal.dot(to_projector) * normal.dot(-view_direction) <= 0) return false;  // lit only from behind
-    return !scene_.is_blocked({p, to_projector}, static_cast<float>(kSelfShadowGapM) / to_projector.norm(), 1.0F);
+    return !scene_.is_blocked({p, to_projector}, static_cast<float>(kSelfShadowGap_m) / to_projector.norm(), 1.0F);
   }
 
   const RaycastScene& scene_;

@@ -16,7 +16,7 @@
 namespace resight {
 namespace {
 
-constexpr double kMinDistanceM = 0.5;
+constexpr double kMinDistance_m = 0.5;
 constexpr Rgb8 kBackdrop{128, 128, 128};
 
 struct Bounds {
@@ -84,7 +84,7 @@ std::vector<TrainingView> render_turntable(const TriangleMesh& mesh, const Turnt
   const Bounds bounds = bounds_of(mesh);
   const Camera camera = make_kinect_camera();
   const double half_image = camera.fy * bounds.diameter_m / (0.5 * camera.height);
-  const double distance_m = options.distance_m > 0 ? options.distance_m : std::max(kMinDistanceM, half_image);
+  const double distance_m = options.distance_m > 0 ? options.distance_m : std::max(kMinDistance_m, half_image);
   const double elevation_rad = options.elevation_deg * std::numbers::pi / 180;
   std::vector<Rigid3> poses = ring_of_poses(bounds.center, distance_m, elevation_rad, options.step_deg, false);
   if (options.both_sides)

@@ -116,7 +116,7 @@ class RowRenderer {
     const float distance = to_lamp.norm();
     float lamp_share = std::max(0.0F, normal.dot(to_lamp) / distance);
     if (light.shadows && lamp_share > 0 &&
-        scene_.is_blocked({p, to_lamp / distance}, kLampShadowGapM, distance - kLampShadowGapM)) {
+        scene_.is_blocked({p, to_lamp / distance}, kLampShadowGap_m, distance - kLampShadowGap_m)) {
       lamp_share = 0;
     }
     return static_cast<float>(light.ambient) * (0.85F + 0.15F * normal.z()) +

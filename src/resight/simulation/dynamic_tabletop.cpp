@@ -29,8 +29,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kAttempts = 400;
-constexpr double kMinMoveM = 0.10;
-constexpr double kNearMoveM = 0.30;
+constexpr double kLeastMove_m = 0.10;
+constexpr double kNearMove_m = 0.30;
 constexpr std::uint64_t kRealismStream = 1000;  // of what version 3 adds to the layout
 // Unknown objects that resemble known ones.
 constexpr std::array kLookAlikes{"cereal_blue", "plain_mug", "puzzle_box"};
@@ -216,7 +216,7 @@ class SequenceBuilder {
   struct SpotWish {
     std::optional<Spot> near;  ///< Within max_offset_m of this spot.
     double max_offset_m = 0;
-    std::optional<Spot> away_from;  ///< At least kMinMoveM from this spot.
+    std::optional<Spot> away_from;  ///< At least kLeastMove_m from this spot.
   };
 
   std::optional<Spot> find_spot(const Thing& thing, const SpotWish& wish) {
@@ -226,7 +226,7 @@ class SequenceBuilder {
       if (!near && rng_.uniform() < options_.crowding) near = draw_neighbor(thing, max_offset_m);
       const Spot spot = draw_spot(thing, near, max_offset_m);
       if (wish.away_from && wish.away_from->surface == spot.surface &&
-          (wish.away_from->covered.center - spot.covered.center).norm() < kMinMoveM)
+          (wish.away_from->covered.center - spot.covered.center).norm() < kLeastMove_m)
         continue;
       if (is_free(thing, spot)) return spot;
     }
@@ -305,7 +305,7 @@ class SequenceBuilder {
     if (thing == nullptr) return;
     const Spot old = *thing->spot;
     const bool nearby = rng_.uniform() < 0.5;
-    const auto spot = find_spot(*thing, {nearby ? std::optional(old) : std::nullopt, kNearMoveM, old});
+    const auto spot = find_spot(*thing, {nearby ? std::optional(old) : std::nullopt, kNearMove_m, old});
     if (!spot) return;
     put(view, ChangeKind::kMoved, *thing, *spot);
     maybe_replace(view, old);

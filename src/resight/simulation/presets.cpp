@@ -30,7 +30,7 @@ constexpr std::array<DemoPlace, 10> kDemoKnown{{{"cereal_red", -0.42, 0.16, 25},
                                                 {"brick", -0.22, -0.31, 5}}};
 constexpr std::array<DemoPlace, 3> kDemoUnknown{
     {{"plant", -0.60, -0.02, 0}, {"speaker", 0.46, 0.24, -20}, {"thermos", -0.08, 0.17, 40}}};
-constexpr double kShiftM = 0.012;
+constexpr double kShift_m = 0.012;
 constexpr double kTurn_deg = 8;
 
 Placement on_desk(double x_m, double y_m, double yaw_deg) {
@@ -98,8 +98,8 @@ SceneScript make_sparse_views(std::uint64_t seed) {
 SceneScript make_demo_scene(std::uint64_t seed) {
   Rng rng(seed);
   const auto shifted = [&rng](const DemoPlace& spot) {
-    const double x = spot.x_m + rng.uniform(-kShiftM, kShiftM);
-    const double y = spot.y_m + rng.uniform(-kShiftM, kShiftM);
+    const double x = spot.x_m + rng.uniform(-kShift_m, kShift_m);
+    const double y = spot.y_m + rng.uniform(-kShift_m, kShift_m);
     return on_desk(x, y, spot.yaw_deg + rng.uniform(-kTurn_deg, kTurn_deg));
   };
   SceneScript script = make_office();

@@ -22,10 +22,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTableHeightM = 0.74;
+constexpr double kTableHeight_m = 0.74;
 constexpr double kMinCameraDistance_m = 0.6;
-constexpr double kDiscMarginM = 0.035;  // margin of the turntable around the object
-constexpr double kMinDiscRadiusM = 0.10;
+constexpr double kDiscMargin_m = 0.035;  // margin of the turntable around the object
+constexpr double kMinDiscRadius_m = 0.10;
 
 // The placed object: it stands on z = 0 with its bounding box `off_axis_m` from the z axis.
 struct PutDown {
@@ -73,7 +73,7 @@ void add(RaycastScene& scene, TriangleMesh mesh, const Rigid3& world_from_mesh) 
 }
 
 Rigid3 on_table(double x_m, double y_m, double yaw_deg) {
-  return Rigid3::from_translation({x_m, y_m, kTableHeightM}) *
+  return Rigid3::from_translation({x_m, y_m, kTableHeight_m}) *
          Rigid3::from_axis_angle(Vector3d::UnitZ(), radians(yaw_deg));
 }
 
@@ -81,7 +81,7 @@ Rigid3 on_table(double x_m, double y_m, double yaw_deg) {
 void furnish(RaycastScene& scene, const RecordingOptions& options, double disc_radius_m) {
   const std::uint64_t seed = Rng::stream(options.seed, 100).next();
   add(scene, make_room({5.0, 5.0, 2.6}, seed), Rigid3::identity());
-  add(scene, make_furniture("table", {1.4, 0.9, kTableHeightM}, seed + 1)->mesh, Rigid3::identity());
+  add(scene, make_furniture("table", {1.4, 0.9, kTableHeight_m}, seed + 1)->mesh, Rigid3::identity());
   const double side = disc_radius_m + 0.17;
   add(scene, make_furniture("papers", {0.21, 0.297, 0.001}, seed + 2)->mesh, on_table(-side, 0.0, 20));
   add(scene, make_furniture("papers", {0.21, 0.297, 0.001}, seed + 3)->mesh, on_table(side, -0.05, -35));
@@ -96,7 +96,7 @@ struct Stage {
   int disc = -1;  // instance; -1 if there is none
   int object = -1;
   PutDown put;
-  double ground_m = kTableHeightM;  // height of the ground below the object
+  double ground_m = kTableHeight_m;  // height of the ground below the object
   double distance_m = 0;
 };
 
@@ -106,7 +106,7 @@ Stage build_stage(const TriangleMesh& mesh, const RecordingOptions& options) {
   stage.put = put_down(mesh, options, rng);
   const double half_image = make_kinect_camera().fy * static_cast<double>(diameter(mesh.vertices)) / 240;
   stage.distance_m = options.distance_m > 0 ? options.distance_m : std::max(kMinCameraDistance_m, half_image);
-  const double disc_radius_m = std::max(kMinDiscRadiusM, stage.put.radius_m + kDiscMarginM);
+  const double disc_radius_m = std::max(kMinDiscRadius_m, stage.put.radius_m + kDiscMargin_m);
   furnish(stage.scene, options, disc_radius_m);
   if (options.kind == RecordingKind::kTurntable) {
     stage.ground_m += options.disc_height_m;
@@ -140,7 +140,7 @@ RecordedView record_view(Stage& stage, const RecordingOptions& options, int inde
   const Rigid3 world_from_object =
       Rigid3::from_translation({0, 0, stage.ground_m}) * turn * stage.put.stand_from_object;
   stage.scene.set_pose(stage.object, world_from_object);
-  if (stage.disc >= 0) stage.scene.set_pose(stage.disc, Rigid3::from_translation({0, 0, kTableHeightM}) * turn);
+  if (stage.disc >= 0) stage.scene.set_pose(stage.disc, Rigid3::from_translation({0, 0, kTableHeight_m}) * turn);
   stage.scene.commit();
 
   RecordedView view;

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBoardM = 0.025;
+constexpr double kBoard_m = 0.025;
 
 BoxRegions all_sides(const PixelRect& r) { return {r, r, r, r, r, r}; }
 
@@ -45,11 +45,11 @@ Furniture make_table(const Vector3d& size, std::uint64_t seed) {
   BoxRegions top = all_sides(wood_region(atlas, size.x(), 0.04, Rng::stream(seed, 1), tones, 40));
   top.top = wood_region(atlas, size.x(), size.y(), Rng::stream(seed, 2), tones, 130);
   const BoxRegions leg = all_sides(wood_region(atlas, 0.1, size.z(), Rng::stream(seed, 3), tones, 60));
-  Furniture table{box_at({size.x(), size.y(), kBoardM}, top, {0, 0, size.z() - kBoardM}), {size.z()}};
+  Furniture table{box_at({size.x(), size.y(), kBoard_m}, top, {0, 0, size.z() - kBoard_m}), {size.z()}};
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       table.mesh.append(
-          box_at({0.05, 0.05, size.z() - kBoardM}, leg, {x * (size.x() - 0.08), y * (size.y() - 0.08), 0}));
+          box_at({0.05, 0.05, size.z() - kBoard_m}, leg, {x * (size.x() - 0.08), y * (size.y() - 0.08), 0}));
   atlas.finish(table.mesh);
   return table;
 }
@@ -64,11 +64,11 @@ Furniture make_shelf(const Vector3d& size, std::uint64_t seed) {
   const BoxRegions back = all_sides(wood_region(atlas, size.x(), size.z(), Rng::stream(seed, 3), tones, 120));
   Furniture shelf;
   for (const double x : {-0.5, 0.5})
-    shelf.mesh.append(box_at({kBoardM, size.y(), size.z()}, side, {x * (size.x() - kBoardM), 0, 0}));
-  shelf.mesh.append(box_at({size.x() - 2 * kBoardM, 0.01, size.z()}, back, {0, 0.5 * size.y() - 0.005, 0}));
+    shelf.mesh.append(box_at({kBoard_m, size.y(), size.z()}, side, {x * (size.x() - kBoard_m), 0, 0}));
+  shelf.mesh.append(box_at({size.x() - 2 * kBoard_m, 0.01, size.z()}, back, {0, 0.5 * size.y() - 0.005, 0}));
   for (int i = 0; i < kBoards; ++i) {
-    const double top = kBoardM + (size.z() - kBoardM) * i / (kBoards - 1);
-    shelf.mesh.append(box_at({size.x() - 2 * kBoardM, size.y() - 0.01, kBoardM}, board, {0, -0.005, top - kBoardM}));
+    const double top = kBoard_m + (size.z() - kBoard_m) * i / (kBoards - 1);
+    shelf.mesh.append(box_at({size.x() - 2 * kBoard_m, size.y() - 0.01, kBoard_m}, board, {0, -0.005, top - kBoard_m}));
     shelf.level_heights_m.push_back(top);
   }
   atlas.finish(shelf.mesh);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kOverlapM = 0.002;  // between the parts of a composite object
+constexpr double kOverlap_m = 0.002;  // between the parts of a composite object
 
 std::vector<Vector2d> random_profile(Rng& rng, double radius_m, double height_m) {
   std::array<double, 3> amplitude{};
@@ -147,7 +147,7 @@ ProceduralObject make_composite_object(const std::string& name, Rng rng) {
         moved(make_piece(atlas, rng, style, size, 100 * static_cast<std::uint64_t>(i)), Rigid3::from_translation(at)));
     const double shift_x = rng.uniform(-0.25, 0.25) * size.x();
     const double shift_y = rng.uniform(-0.15, 0.15) * size.y();
-    at += Vector3d(shift_x, shift_y, size.z() - kOverlapM);
+    at += Vector3d(shift_x, shift_y, size.z() - kOverlap_m);
     const double narrower = rng.uniform(0.55, 0.8);
     const double lower = rng.uniform(0.6, 1.1);
     size = size.cwiseProduct(Vector3d(narrower, narrower, lower)).cwiseMax(0.02);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDirections = 64;
 constexpr double kSamplesPerCell = 4.0;
-constexpr float kGapM = 5e-4F;
+constexpr float kGap_m = 5e-4F;
 
 std::vector<Eigen::Vector3f> sphere_directions() {
   std::vector<Eigen::Vector3f> directions;
@@ -25,7 +25,7 @@ std::vector<Eigen::Vector3f> sphere_directions() {
 bool sees_outside(const RaycastScene& scene, const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
                   const std::vector<Eigen::Vector3f>& directions) {
   return std::ranges::any_of(directions, [&](const Eigen::Vector3f& d) {
-    return d.dot(normal) > 0.2F && !scene.is_blocked({p + kGapM * normal, d}, 0.0F, 1e3F);
+    return d.dot(normal) > 0.2F && !scene.is_blocked({p + kGap_m * normal, d}, 0.0F, 1e3F);
   });
 }
 

@@ -7,7 +7,7 @@
 
 namespace resight {
 
-inline constexpr float kLampShadowGapM = 1e-3F;  ///< Closer surfaces cast no shadow, which prevents self-shadowing.
+inline constexpr float kLampShadowGap_m = 1e-3F;  ///< Closer surfaces cast no shadow, which prevents self-shadowing.
 
 /// A point of a surface in the world frame. Both directions are unit vectors.
 struct SurfacePoint {
