@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "resight/core/check.hpp"
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
 #include "resight/sensor/crop_view.hpp"
@@ -85,8 +87,7 @@ double count_keypoints(std::span<const TrainingView> views, std::span<const int>
     if (part.mask.empty()) return;
     counts[k] = static_cast<double>(extract_sift(prepare_view(std::move(part.frame)), options.sift, &part.mask).size());
   });
-  std::ranges::sort(counts);
-  return counts[counts.size() / 2];
+  return upper_median(std::move(counts));
 }
 
 std::string describe_symmetries(const ObjectSymmetries& symmetries) {

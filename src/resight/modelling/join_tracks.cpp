@@ -5,8 +5,10 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/evidence/surface_evidence.hpp"
 #include "resight/modelling/internal/align_shapes.hpp"
 #include "resight/modelling/internal/object_edges.hpp"
@@ -147,8 +149,7 @@ class TrackJoiner {
   [[nodiscard]] static std::size_t median_keypoints(const std::vector<TrackView>& views) {
     std::vector<std::size_t> numbers;
     for (const TrackView& view : views) numbers.push_back(view.features.features().size());
-    std::ranges::sort(numbers);
-    return numbers.empty() ? 0 : numbers[numbers.size() / 2];
+    return numbers.empty() ? 0 : upper_median(std::move(numbers));
   }
 
   // Sorted by support, without duplicates.

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "resight/core/parallel.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/registration/twist.hpp"
 
 namespace resight {
@@ -112,9 +114,7 @@ double median_error_m(std::span<const TrainingView> views, std::span<const PoseE
   for (const PoseEdge& e : edges)
     errors.push_back(surface_shift_m(views[e.b], pose_of(views[e.a]) * e.a_from_b * pose_of(views[e.b]).inverse()));
   std::erase_if(errors, [](double error_m) { return std::isnan(error_m); });
-  if (errors.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::ranges::sort(errors);
-  return errors[errors.size() / 2];
+  return upper_median(std::move(errors));
 }
 
 double measure_closure(std::span<const TrainingView> views, std::span<const std::pair<int, int>> loops, StartKind kind,

@@ -9,8 +9,10 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/modelling/internal/object_edges.hpp"
 #include "resight/registration/twist.hpp"
 
@@ -49,8 +51,7 @@ bool is_camera_static(const Image<float>& first_depth_m, std::span<const RgbdFra
   std::vector<double> shares;
   for (std::size_t k = 0; k < kCompared; ++k)
     shares.push_back(still_share(first_depth_m, others[k * (others.size() - 1) / (kCompared - 1)].depth_m, object));
-  std::ranges::nth_element(shares, shares.begin() + kCompared / 2);
-  return shares[kCompared / 2] >= min_share;
+  return upper_median(std::move(shares)) >= min_share;
 }
 
 // z points up from the support; the origin is the foot of the region.

@@ -12,7 +12,7 @@
 namespace resight {
 namespace {
 
-// Squared Mahalanobis distance between given and aligned pose below which the given one stands: chi-squared with 6
+// Squared Mahalanobis distance between given and aligned pose below which the given one is kept: chi-squared with 6
 // degrees of freedom, one in 1,000 by chance.
 constexpr double kMinMahalanobis_sq = 22.5;
 // A given motion is not off by more standard deviations: then it is the alignment that is wrong.

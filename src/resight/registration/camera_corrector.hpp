@@ -35,7 +35,7 @@ inline void declare(OptionVisitor& v, CorrectCameraOptions& o) {
 /// By how much the given pose of a camera is off.
 struct PoseCorrection {
   bool is_measured = false;  ///< The views before show where the camera is.
-  double moved_m = 0;        ///< Between given and corrected pose; 0 if the given one stands.
+  double moved_m = 0;        ///< Between given and corrected pose; 0 if the given one is kept.
   double moved_rad = 0;
   double sigma_m = 0;  ///< Standard error of the measured pose, root mean square over the three axes.
   double sigma_rad = 0;

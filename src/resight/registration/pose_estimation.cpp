@@ -316,10 +316,10 @@ std::optional<PoseEstimate> refine_pose(std::span<const Correspondence> correspo
     estimate.scene_from_model = *fit;
     residuals = inlier_residuals_sq(correspondences, *fit, options);
     std::vector<int> inliers = inlier_indices(residuals);
-    const bool stands = inliers == estimate.inliers;
+    const bool changed = inliers != estimate.inliers;
     estimate.inliers = std::move(inliers);
     // The weights change with the pose even if the set of inliers does not.
-    if (stands && !moved) break;
+    if (!changed && !moved) break;
   }
   if (static_cast<int>(estimate.inliers.size()) < options.min_inliers) return std::nullopt;
   estimate.rms_m = rms_of(estimate.inliers, residuals);

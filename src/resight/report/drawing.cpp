@@ -38,7 +38,7 @@ int splat_radius_px(const Camera& camera, const Rigid3f& camera_from_cloud, cons
     ++count;
   }
   if (count == 0) return 0;
-  return std::min(kMaxSplat_px, static_cast<int>(std::ceil(0.5 * camera.fx * size_m * count / depth_sum_m)));
+  return static_cast<int>(std::min<double>(kMaxSplat_px, std::ceil(0.5 * camera.fx * size_m * count / depth_sum_m)));
 }
 
 /// Marks a square at the projection of each point.

@@ -32,9 +32,8 @@ std::string prf(const RecognitionScore& s) {
 std::string recognition_table(Configurations configurations) {
   std::string text =
       "## Recognition over K\n\n"
-      "| preset | K | precision | recall | F | strict precision | strict recall | strict F | centre median | centre 95 "
-      "% | "
-      "rotation median | rotation 95 % | ghosts | per former place | by the published rule |\n"
+      "| preset | K | precision | recall | F | strict precision | strict recall | strict F | centre median | "
+      "centre 95 % | rotation median | rotation 95 % | ghosts | per former place | by the published rule |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const ConfigurationSummary& c : configurations)
     text += fmt::format("| {} | {} | {} | {} | {} mm | {} mm | {} deg | {} deg | {} | {} | {} |\n",
@@ -54,8 +53,7 @@ std::string difference(const PairedDifference& d, int digits) {
 std::string comparison_table(std::span<const PresetComparison> comparisons) {
   if (comparisons.empty()) return {};
   std::string text =
-      "\n## Differences between presets\n\nMean difference over the sequences, and its standard "
-      "error.\n\n"
+      "\n## Differences between presets\n\nMean difference over the sequences, and its standard error.\n\n"
       "| presets | K | sequences | precision | recall | F | strict F | ghosts per former place |\n"
       "|---|---|---|---|---|---|---|---|\n";
   for (const PresetComparison& c : comparisons)

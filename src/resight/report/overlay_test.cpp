@@ -8,6 +8,7 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+#include <tuple>
 
 #include "resight/report/internal/drawing.hpp"
 #include "resight/report/report_test_scene.hpp"
@@ -79,6 +80,15 @@ TEST(ProjectOutline, LiesOnTheBorderOfTheObject) {
     EXPECT_GT(outline[0].size(), 30U);
     EXPECT_NEAR(sum_px / static_cast<double>(outline[0].size()), circle_px, 0.8) << "depth " << depth_m;
   }
+}
+
+// Intrinsics come from files.
+TEST(ProjectOutline, AFocalLengthBeyondAllPixelsHasAnOutline) {
+  Camera camera = make_frame().camera;
+  camera.fx = camera.fy = 1e12;
+  const ModelLibrary library = make_library();
+  EXPECT_NO_THROW(std::ignore = report::project_outline(camera, at(0, 0, 0.8), library.objects[2].surface,
+                                                        library.surface_voxel_m));
 }
 
 TEST(DrawOverlay, NothingDetectedLeavesThePictureAlone) { EXPECT_EQ(overlay_of({}), make_frame().color); }

@@ -9,6 +9,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/random.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/segmentation/internal/fit_plane.hpp"
 
 namespace resight {
@@ -21,8 +22,7 @@ constexpr std::uint32_t kScored = 1000;  // Points that the triples are drawn fr
 constexpr float kScoringSigmas = 6;      // Within this, in modelled sigmas, a point supports a triple: the scale is not
                                          // known yet.
 constexpr int kNoisyRefits = 4;
-constexpr float kMaxNoiseScale = 3;  // Of the residuals to the model: more is no noise.
-constexpr float kMedianToSigma = 1.4826F;
+constexpr float kMaxNoiseScale = 3;     // Of the residuals to the model: more is no noise.
 constexpr float kSurroundings = 3;      // Points within so many tolerances of a plane are around it.
 constexpr float kMinCleanShare = 0.9F;  // Of the points around a plane, on it.
 
@@ -107,9 +107,7 @@ class NoisyPlaneFinder {
     std::vector<float> residuals;
     residuals.reserve(on.size());
     for (const int i : on) residuals.push_back(std::abs(plane.signed_distance(points_[i])) / noise_m_[i]);
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return kMedianToSigma * *middle;
+    return static_cast<float>(kNormalizedMad) * upper_median(std::move(residuals));
   }
 
   [[nodiscard]] bool is_clean(const ScenePlane& plane, std::size_t num_on) const {
