@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -109,7 +110,7 @@ TEST(DynamicTabletop, HasTheErrorsOfRealDevices) {
 Footprint covered_in_world(const TriangleMesh& mesh, const Rigid3& world_from_mesh) {
   const bool lying = std::abs(world_from_mesh.rotation(2, 2)) < 0.5;
   const double yaw = std::atan2(world_from_mesh.rotation(1, 0), world_from_mesh.rotation(0, 0));
-  Footprint f = footprint_of(mesh, lying ? 1.5707963267948966 : 0.0);
+  Footprint f = footprint_of(mesh, lying ? std::numbers::pi / 2 : 0.0);
   f.center = world_from_mesh.translation.head<2>() + Eigen::Rotation2Dd(yaw) * f.center;
   f.yaw_rad = yaw;
   return f;

@@ -2,6 +2,7 @@
 #include "resight/simulation/internal/footprint.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "resight/geometry/rigid3.hpp"
 
@@ -32,7 +33,7 @@ Footprint footprint_of(const TriangleMesh& mesh, double roll_rad) {
 bool overlaps(const Footprint& a, const Footprint& b, double gap_m) {
   for (const Footprint* f : {&a, &b})
     for (const double quarter : {0.0, 1.0}) {
-      const double angle = f->yaw_rad + quarter * 1.5707963267948966;
+      const double angle = f->yaw_rad + quarter * std::numbers::pi / 2;
       const Eigen::Vector2d axis(std::cos(angle), std::sin(angle));
       const double distance = std::abs(axis.dot(a.center - b.center));
       if (distance >= half_extent(a, axis) + half_extent(b, axis) + gap_m) return false;

@@ -73,8 +73,6 @@ ProceduralObject make_can(const std::string& name, double radius_m, double heigh
   return object;
 }
 
-namespace {}  // namespace
-
 ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8 glass, const TextureStyle& style) {
   constexpr double kFoot = 0.012;
   const double around_mm = 2 * std::numbers::pi * s.radius_m * kMmPerM;
@@ -107,8 +105,6 @@ ProceduralObject make_bottle(const std::string& name, const BottleShape& s, Rgb8
   atlas.finish(mesh);
   return object;
 }
-
-namespace {}  // namespace
 
 // Outside, rim, inside and bottom of a cup or bowl. `outside` is wrapped around it.
 TriangleMesh make_cup_part(const CupShape& s, const PixelRect& outside, const PixelRect& inside) {

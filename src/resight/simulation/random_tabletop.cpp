@@ -77,7 +77,7 @@ class TabletopBuilder {
   }
 
   // Every third change is an addition: index 2, 5, ...
-  [[nodiscard]] int count_additions() const { return (options_.num_changes + 0) / 3; }
+  [[nodiscard]] int count_additions() const { return options_.num_changes / 3; }
 
   void choose_things(std::vector<std::string> names, int count, bool known) {
     rng_.shuffle(names);
