@@ -20,7 +20,7 @@ namespace {
 constexpr double kMinDiameter_m = 0.005;
 constexpr double kMaxDiameter_m = 5.0;
 constexpr int kCropMargin_px = 48;            // surroundings that keypoints near the silhouette use
-constexpr double kSamplesPerVoxelFace = 6.0;  // per voxel_size^2: misses a face that fills its voxel once in 400
+constexpr double kSamplesPerVoxelFace = 6.0;  // per surface_voxel_m^2: misses a face that fills its voxel once in 400
 
 constexpr double kMinCloudSpacing_m = 0.001;  // size of a pixel of a training view; denser points only take longer
 constexpr double kMaxCloudSpacings = 400.0;   // largest diameter in spacings; denser points only take longer

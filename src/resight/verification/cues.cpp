@@ -25,8 +25,8 @@ constexpr double kPlaneWeight = 0.8;    // How well a plane explains its points 
 constexpr float kMinWeight = 0.05F;     // Smaller weights are dropped, for speed.
 constexpr float kWellExplained = 0.5F;  // Weight from which a scene point is a start of a continuing surface.
 
-// Angle between unit vectors by Abramowitz and Stegun 4.4.45: within 7e-5 rad, several times faster than acos. dot >=
-// 0.
+// Angle between unit vectors whose dot product is not negative, by Abramowitz and Stegun 4.4.45: within 7e-5 rad, and
+// several times faster than acos.
 float angle_of(float dot) {
   const float x = std::min(dot, 1.0F);
   return std::sqrt(1 - x) * (1.5707288F + x * (-0.2121144F + x * (0.0742610F - 0.0187293F * x)));
@@ -62,8 +62,8 @@ struct CueComputer::Impl {
                                 correspondences, scene_, options_.refine);
   }
 
-  // Applies the symmetry motion of the shape under which the textures agree best. A pose without support gets none by
-  // it.
+  // Applies the symmetry motion of the shape under which the textures agree best. A pose without support stays: no such
+  // motion would give it any.
   void rotate_by_symmetry(std::span<const DepthView> views, std::span<const std::uint8_t> allowed) {
     if (model_.symmetry_motions.size() < 2 || !association_.local || !use_color_) return;
     if (association_.supported_share() < options_.acceptance.min_explained_share) return;
@@ -247,7 +247,7 @@ struct CueComputer::Impl {
            (!use_color_ || continues_color(scene_.lab[p], scene_.lab[q]));
   }
 
-  // The same for whatever lies around, but only where the surface goes on.
+  // Cost of leaving q unexplained where the surface of well explained points continues to it.
   float continuation_weight(const LocalScene& local, const LocalScene& well_explained, std::size_t q,
                             const ContinuationClutter& rule) const {
     if (beside_model_[q] == 0) return 0;  // Of another colour: the model's points there are outliers already.
@@ -277,8 +277,8 @@ struct CueComputer::Impl {
         weight = static_cast<float>(options_.clutter.weight);
         return false;  // Nothing else can be said of it.
       }
-      if (segment <
-          0) {  // A segment that is not explained at all is another surface, such as what the object stands on.
+      // A segment that is not explained at all is another surface, such as what the object stands on.
+      if (segment < 0) {
         const float dot = std::max(0.0F, scene_.normals[scene_p].dot(scene_.normals[scene_q]));
         weight = std::max(weight, near_weight * dot * (1 - distance_sq / (radius * radius)));
       }

@@ -20,8 +20,8 @@ namespace {
 // Refined hypotheses of one object nearer than this (at its centre; over its symmetries, 10 deg) are one.
 constexpr double kMergeDistance_m = 0.01;
 constexpr double kMergeRotation_rad = 0.174533;
-constexpr float kMinSurroundings_m =
-    0.25F;  // A small object, too, stands on something that should be recognised as a plane.
+// A small object, too, stands on something that should be recognised as a plane.
+constexpr float kMinSurroundings_m = 0.25F;
 
 void check_input(std::span<const Hypothesis> hypotheses, const ModelLibrary& library,
                  std::span<const VerificationView> views, std::span<const std::uint8_t> present) {

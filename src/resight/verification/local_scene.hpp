@@ -10,8 +10,8 @@
 
 namespace resight {
 
-/// The scene points around one hypothesis on a dense grid: neighbours by a few contiguous runs
-/// instead of hash look-ups.
+/// The scene points around one hypothesis on a dense grid: neighbours by a few contiguous runs instead of hash
+/// look-ups.
 class LocalScene {
  public:
   /// The points in the box around `around` widened by `margin_m`. Queries must lie in that box.

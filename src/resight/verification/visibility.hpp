@@ -16,7 +16,7 @@ struct DepthView {
   Camera camera;
   Rigid3 world_from_camera;
   const Image<Rgb8>* color = nullptr;  ///< Of the view, which must outlive this; null if it has none.
-  /// Of the view's cloud; small holes filled (fill_small_holes()), NaN near depth edges.
+  /// Depth of the view; small holes are filled (fill_small_holes()), NaN near depth edges.
   Image<float> depth_m;
 };
 
