@@ -15,10 +15,7 @@
 namespace resight::app {
 namespace {
 
-bool has_desktop() {
-  return std::getenv("DISPLAY") != nullptr ||
-         std::getenv("WAYLAND_DISPLAY") != nullptr;  // NOLINT(concurrency-mt-unsafe)
-}
+bool has_desktop() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
 
 /// Empty if the file cannot be written.
 std::filesystem::path write_redirect(const std::string& address) {

@@ -60,6 +60,7 @@ std::string describe_job(const Sequence& sequence, const std::filesystem::path& 
 int restore(ViewTracker& tracker, const Sequence& sequence, const TrackJournal& journal, Progress& progress) {
   int view = 0;
   for (const TrackerStep& step : journal.steps()) {
+    if (view == sequence.num_views()) break;  // Only a journal that was edited has more.
     std::optional<PreparedView> prepared;
     if (step.view.is_keyframe) prepared = read_prepared(sequence, view, 1);
     tracker.restore_view(step, prepared ? &*prepared : nullptr);

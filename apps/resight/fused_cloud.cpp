@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "commands.hpp"
+#include "resight/core/statistics.hpp"
 #include "resight/geometry/splat_mesh.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
@@ -42,10 +44,7 @@ double median_depth_m(const Image<float>& depth_m) {
   std::vector<float> depths;
   for (const float z : depth_m.data())
     if (!std::isnan(z)) depths.push_back(z);
-  if (depths.empty()) return 1;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
-  return *middle;
+  return depths.empty() ? 1.0 : upper_median(std::move(depths));
 }
 
 Fused fuse(const Sequence& posed, int num_threads) {

@@ -196,9 +196,8 @@ Described describe(const InfoArguments& arguments) {
   if (start.ok() && *start == kLibrarySignature)
     return {"model library", describe_library(value_or_throw(load_library(path, TrainOptions{}.hash())))};
   if (is_recording(path)) return describe_recorded(arguments);
-  for (const char* name : {"summary.json", "results.json"})
+  for (const char* name : {"summary.json", "results.json", "changes.json"})
     if (std::filesystem::exists(path / name)) return {"results", describe_results(path / name)};
-  if (std::filesystem::exists(path / "changes.json")) return {"results", describe_results(path / "changes.json")};
   const auto sequence = open_sequence(path, arguments.input);
   if (sequence.ok()) return {"sequence", describe_sequence(**sequence)};
   // Models beside a damaged sequence, or beside several, do not stand for them.

@@ -26,8 +26,8 @@ class OpenniCamera {
   OpenniCamera(const OpenniCamera&) = delete;
   OpenniCamera& operator=(const OpenniCamera&) = delete;
 
-  /// The next pair of colour and depth; none after `timeout_s` without one. Throws std::runtime_error if the camera
-  /// is gone.
+  /// The next pair of colour and depth; none after `timeout_s` without one. Throws an InputError if the camera is
+  /// gone.
   [[nodiscard]] std::optional<FollowedView> take(double timeout_s);
   [[nodiscard]] bool has_ended() const;   ///< A recording has been played to its last frame.
   [[nodiscard]] int num_skipped() const;  ///< Frames of the camera that nobody took.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <numbers>
 
 #include "camera_run.hpp"
 #include "commands.hpp"
@@ -21,7 +22,7 @@
 namespace resight::app {
 namespace {
 
-constexpr double kDegPerRad = 57.29577951308232;
+constexpr double kDegPerRad = 180 / std::numbers::pi;
 // How the files begin that this command writes, and may therefore replace.
 constexpr const char* kPosesComment = "# world_from_camera of ";
 constexpr const char* kPngSignature = "\x89PNG";
