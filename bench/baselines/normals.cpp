@@ -24,7 +24,7 @@ struct NormalsContest {
   const StageInput& input;
   std::vector<Eigen::Vector3f> pixels;
   std::vector<std::string> names;
-  std::vector<std::function<double(Normals&)>> ways;
+  std::vector<std::function<double(Normals&)>> methods;
   std::vector<Normals> results;
 
   [[nodiscard]] pcl_peers::OrganizedPoints view() const {
@@ -34,7 +34,7 @@ struct NormalsContest {
 
 void add_ours(NormalsContest& contest, int radius_px) {
   contest.names.push_back(fmt::format("resight, {0} x {0} px", 2 * radius_px + 1));
-  contest.ways.emplace_back([&contest, radius_px](Normals& normals) {
+  contest.methods.emplace_back([&contest, radius_px](Normals& normals) {
     OrganizedCloud cloud = contest.input.view.cloud;
     const double cpu_s = cpu_time_s([&] { compute_normals(cloud, {.window_radius_px = radius_px}); });
     normals.clear();
@@ -45,7 +45,7 @@ void add_ours(NormalsContest& contest, int radius_px) {
 
 void add_radius(NormalsContest& contest, const std::string& name, NeighborSearch search) {
   contest.names.push_back(name);
-  contest.ways.emplace_back([&contest, search](Normals& normals) {
+  contest.methods.emplace_back([&contest, search](Normals& normals) {
     const auto result = pcl_peers::normals_by_radius(contest.view(), kRadius_m, search);
     normals = from_plain(result.value);
     return result.cpu_s;
@@ -54,7 +54,7 @@ void add_radius(NormalsContest& contest, const std::string& name, NeighborSearch
 
 void add_integral_image(NormalsContest& contest, const std::string& name, IntegralImageMethod method) {
   contest.names.push_back(name);
-  contest.ways.emplace_back([&contest, method](Normals& normals) {
+  contest.methods.emplace_back([&contest, method](Normals& normals) {
     const auto result = pcl_peers::normals_by_integral_image(contest.view(), method, kMaxDepthChange, kWindow_px);
     normals = from_plain(result.value);
     return result.cpu_s;
@@ -73,16 +73,16 @@ std::string quantiles(std::vector<double> errors_deg) {
   return fmt::format("{:.1f} / {:.1f}", errors_deg[errors_deg.size() / 2], errors_deg[errors_deg.size() * 9 / 10]);
 }
 
-std::string rate(const NormalsContest& contest, std::size_t way, const Normals& reference) {
+std::string rate(const NormalsContest& contest, std::size_t method, const Normals& reference) {
   std::vector<double> all_deg, things_deg;
   std::size_t num_points = 0, num_normals = 0;
   for (std::size_t i = 0; i < contest.pixels.size(); ++i) {
     if (!contest.input.view.cloud.has_point(i)) continue;
     ++num_points;
-    num_normals += contest.results[way][i].allFinite() ? 1 : 0;
+    num_normals += contest.results[method][i].allFinite() ? 1 : 0;
     const bool all_have = std::ranges::all_of(contest.results, [i](const Normals& n) { return n[i].allFinite(); });
     if (!all_have || !reference[i].allFinite()) continue;
-    const double cosine = std::clamp(static_cast<double>(contest.results[way][i].dot(reference[i])), -1.0, 1.0);
+    const double cosine = std::clamp(static_cast<double>(contest.results[method][i].dot(reference[i])), -1.0, 1.0);
     all_deg.push_back(std::acos(cosine) * 180 / std::numbers::pi);
     if (!contest.input.truth.is_thing.empty() && contest.input.truth.is_thing[i] != 0)
       things_deg.push_back(all_deg.back());
@@ -96,20 +96,20 @@ std::string rate(const NormalsContest& contest, std::size_t way, const Normals& 
 
 void compare_normals(const StageInput& input) {
   NormalsContest contest{
-      .input = input, .pixels = points_of_pixels(input.view.cloud), .names = {}, .ways = {}, .results = {}};
+      .input = input, .pixels = points_of_pixels(input.view.cloud), .names = {}, .methods = {}, .results = {}};
   add_ours(contest, input.config.prepare.normals.window_radius_px);
   add_ours(contest, 4);
   add_ours(contest, 8);
-  const std::size_t reference = contest.ways.size();
+  const std::size_t reference = contest.methods.size();
   add_radius(contest, "PCL NormalEstimationOMP, 2 cm, k-d tree", NeighborSearch::kKdTree);
   add_radius(contest, "PCL NormalEstimationOMP, 2 cm, in the image", NeighborSearch::kOrganized);
   add_integral_image(contest, "PCL IntegralImage, covariance", IntegralImageMethod::kCovariance);
   add_integral_image(contest, "PCL IntegralImage, average gradient", IntegralImageMethod::kAverageGradient);
-  contest.results.resize(contest.ways.size());
+  contest.results.resize(contest.methods.size());
   std::vector<Contestant> contestants;
-  for (std::size_t w = 0; w < contest.ways.size(); ++w)
+  for (std::size_t w = 0; w < contest.methods.size(); ++w)
     contestants.push_back(
-        {contest.names[w], [&contest, w] { return contest.ways[w](contest.results[w]); },
+        {contest.names[w], [&contest, w] { return contest.methods[w](contest.results[w]); },
          [&contest, w, reference] { return rate(contest, w, reference_normals(contest, reference)); }});
   compare("normals", contestants);
 }

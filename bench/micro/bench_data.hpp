@@ -26,7 +26,7 @@ struct MatchingTask {
 };
 [[nodiscard]] const MatchingTask& matching_task(int dimension);
 
-/// Share of queries whose first match (of `k` each) is the true nearest neighbour.
+/// Share of queries whose first match is the true nearest neighbour. index_of(matches, q): that of query q.
 template <typename Matches, typename IndexOf>
 double recall(const MatchingTask& task, const Matches& matches, IndexOf&& index_of) {
   int hits = 0;

@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   RecognizerConfig config = preset_or_exit(argc > 2 ? argv[2] : "default");
   if (argc > 3) config.num_previous_views = std::atoi(argv[3]);
   config.set_num_threads(argc > 4 ? std::atoi(argv[4]) : 2);
-  const int num_passes = argc > 5 ? std::atoi(argv[5]) : 1;
+  const int num_passes = argc > 5 ? std::max(1, std::atoi(argv[5])) : 1;
   const std::vector<PreparedView> views = prepare_all(argv[1], config.prepare);
 
   std::vector<double> wall_s;

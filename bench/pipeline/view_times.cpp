@@ -102,7 +102,8 @@ int main(int argc, char** argv) {
   if (argc > 4 && std::string(argv[4]) != "-") config = value_or_exit(read_settings(argv[4], config));
   if (argc > 5) config.num_previous_views = std::atoi(argv[5]);
   config.set_num_threads(argc > 6 ? std::atoi(argv[6]) : 2);
-  const int num_views = std::min(sequence->num_views(), argc > 7 ? std::atoi(argv[7]) : sequence->num_views());
+  const int num_views =
+      std::min(sequence->num_views(), argc > 7 ? std::max(1, std::atoi(argv[7])) : sequence->num_views());
 
   const auto start_building = std::chrono::steady_clock::now();
   SceneRecognizer recognizer(library, config);

@@ -82,6 +82,7 @@ int main(int argc, char** argv) {
     past.push_back(std::move(now));
     if (past.size() > num_previous) past.pop_front();
   }
+  if (errors_mm.empty()) exit_with("the sequence has no second view");
   fmt::print("median {:.2f} mm, {:.3f} deg; largest {:.2f} mm, {:.3f} deg; pyramid {:.1f} ms, alignment {:.1f} ms\n",
              upper_median(errors_mm), upper_median(errors_deg), *std::ranges::max_element(errors_mm),
              *std::ranges::max_element(errors_deg), upper_median(pyramid_ms), upper_median(align_ms));

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Costs and benefits of training views and of merging repeated features: `bench_feature_merging [MODELS]` (a path as
 // for `resight train`; default: procedural objects). Features of held-out views (between the training views, at another
 // elevation and several distances, with sensor noise) are matched exactly against all objects together. A match is
@@ -9,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 
 #include "resight/core/parallel.hpp"
@@ -150,9 +150,10 @@ double measure_recall(const LabelledFeatures& model, const LabelledFeatures& que
     for (std::size_t q = begin; q < end; ++q) {
       const auto row = similarity.row(static_cast<Eigen::Index>(q - begin));
       for (std::size_t j = 0; j < order.size(); ++j) order[j] = static_cast<int>(j);
-      std::partial_sort(order.begin(), order.begin() + k, order.end(), [&](int a, int b) { return row(a) > row(b); });
-      for (int n = 0; n < k; ++n) {
-        const auto j = static_cast<std::size_t>(order[n]);
+      const auto nearest = order.begin() + std::min<std::ptrdiff_t>(k, std::ssize(order));
+      std::partial_sort(order.begin(), nearest, order.end(), [&](int a, int b) { return row(a) > row(b); });
+      for (auto n = order.begin(); n != nearest; ++n) {
+        const auto j = static_cast<std::size_t>(*n);
         const float distance = (model.features.points[j] - queries.features.points[q]).norm();
         if (model.objects[j] == queries.objects[q] && distance < kRightWithin_m) right[q] = 1;
       }

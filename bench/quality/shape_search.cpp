@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <map>
@@ -39,7 +40,7 @@ int main(int argc, char** argv) {
   const ModelLibrary library = value_or_exit(load_library(argv[2]));
   RecognizerConfig config = preset_or_exit("default");
   if (argc > 3 && std::string(argv[3]) != "-") config = value_or_exit(read_settings(argv[3], config));
-  const int every = argc > 4 ? std::atoi(argv[4]) : 1;
+  const int every = argc > 4 ? std::max(1, std::atoi(argv[4])) : 1;
   config.set_num_threads(2);
   const auto start = std::chrono::steady_clock::now();
   const ShapeSearch search(library, config.shape, match_criteria(config.verify));

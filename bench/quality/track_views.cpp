@@ -5,7 +5,9 @@
 //   bench_track_views SEQUENCE [every n-th view] [LIBRARY]
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
 #include "arguments.hpp"
@@ -105,7 +107,7 @@ void print_wrong_edges(const CameraTrack& track, std::span<const Rigid3> truth) 
 int main(int argc, char** argv) {
   if (argc < 2) exit_with("usage: bench_track_views SEQUENCE [every n-th view] [LIBRARY]");
   const auto sequence = value_or_exit(open_sequence(argv[1]));
-  const int step = argc > 2 ? std::atoi(argv[2]) : 1;
+  const int step = argc > 2 ? std::max(1, std::atoi(argv[2])) : 1;
   TrackViewsOptions options;
   options.num_threads = 2;
   ViewTracker tracker(options);
