@@ -62,12 +62,21 @@ bool begins_with(const fs::path& file, std::string_view signature) {
   return start.ok() && signature.starts_with(*start);
 }
 
-/// Runs that `evaluate` has stored before its tables: nothing else is in the folder `runs`.
-bool holds_only_runs(const fs::path& runs) {
+bool is_hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+
+/// Runs that `evaluate` has stored before its tables: nothing else is in the folder `runs`. Before the first one,
+/// `runs` is all that it has written.
+bool holds_only_runs(const fs::path& folder) {
   std::error_code error;
-  fs::directory_iterator it(runs, error);
-  return !error && std::ranges::all_of(it, [](const fs::directory_entry& entry) {
-    return entry.path().filename().string().starts_with('.') || begins_with(entry.path(), kRunSignature);
+  int num_runs = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "runs", error)) {
+    if (is_hidden(entry)) continue;
+    if (!begins_with(entry, kRunSignature)) return false;
+    ++num_runs;
+  }
+  if (error || num_runs > 0) return !error;
+  return std::ranges::all_of(fs::directory_iterator(folder, error), [](const fs::directory_entry& entry) {
+    return is_hidden(entry) || entry.path().filename() == "runs";
   });
 }
 
@@ -75,7 +84,7 @@ bool holds_only_runs(const fs::path& runs) {
 std::string_view find_writer(const fs::path& folder) {
   for (const ResultsMark& mark : kResultsMarks)
     if (begins_with(folder / mark.file, mark.signature)) return mark.command;
-  return holds_only_runs(folder / "runs") ? "evaluate" : std::string_view();
+  return holds_only_runs(folder) ? "evaluate" : std::string_view();
 }
 
 /// A folder with the name of a file, such as report.html, would keep the file from its place after all the work. Our

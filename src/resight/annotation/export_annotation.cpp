@@ -89,7 +89,7 @@ class TruthWriter {
 Result<void> move_masks(const fs::path& from, const fs::path& to) {
   std::error_code error;
   for (const char* name : {"mask", "mask_visib"}) {
-    if (!fs::exists(from / name)) continue;  // No object is in any view.
+    if (!fs::exists(from / name, error)) continue;  // No object is in any view.
     fs::rename(from / name, to / name, error);
     if (error) return file_error(to / name, "cannot be written (" + error.message() + ")");
   }
@@ -109,7 +109,7 @@ Result<void> replace_export(const fs::path& pending, const fs::path& folder) {
   // The hidden folder lies inside the existing one, so it is moved out before that one is.
   fs::rename(pending, ready, error);
   if (error) return file_error(ready, "cannot be written (" + error.message() + ")");
-  if (fs::exists(folder)) fs::rename(folder, old, error);
+  if (fs::exists(folder, error)) fs::rename(folder, old, error);
   if (error) return file_error(folder, "cannot be replaced (" + error.message() + ")");
   fs::rename(ready, folder, error);
   if (error) {

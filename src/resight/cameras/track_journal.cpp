@@ -40,6 +40,7 @@ Rigid3 read_pose(const ordered_json& values) {
   Rigid3 pose;
   read_matrix(values.at("rotation"), pose.rotation);
   read_matrix(values.at("translation"), pose.translation);
+  if (!pose.is_rigid()) throw std::out_of_range("no rigid motion");
   return pose;
 }
 

@@ -92,6 +92,7 @@ TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
   for (const auto& spoil : std::vector<std::function<void(std::string&)>>{
            [](std::string& text) { text.resize(text.size() - 1); },  // The end of the line is missing.
            [](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; },
+           [](std::string& text) { text.insert(text.rfind("\"rotation\":[") + 12, "1"); },
            [](std::string& text) { text[text.rfind("\"component\":0") + 12] = '9'; }}) {
     std::string text = good;
     spoil(text);

@@ -24,7 +24,8 @@ ObjectEventKind kind_from(const std::string& text) {
 
 Result<std::map<std::string, PointCloud>> read_unknown_surfaces(const fs::path& folder) {
   std::map<std::string, PointCloud> surfaces;
-  if (!fs::exists(folder)) return surfaces;
+  std::error_code error;
+  if (!fs::exists(folder, error)) return surfaces;
   const auto locations = find_models({folder});
   if (!locations) return locations.error();
   for (const ModelLocation& location : *locations) {

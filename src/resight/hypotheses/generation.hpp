@@ -22,9 +22,9 @@ struct MatchFeaturesOptions {
 };
 
 inline void declare(OptionVisitor& v, MatchFeaturesOptions& o) {
-  v.field("sift_neighbors", o.sift_neighbors, at_least(1),
+  v.field("sift_neighbors", o.sift_neighbors, between(1, 1000),
           "Nearest SIFT descriptors of the models matched per keypoint.", "V4R");
-  v.field("shot_neighbors", o.shot_neighbors, at_least(1),
+  v.field("shot_neighbors", o.shot_neighbors, between(1, 1000),
           "Nearest SHOT descriptors of the models matched per keypoint.", "V4R");
   v.group("sift_index", o.sift_index);
   v.group("shot_index", o.shot_index);

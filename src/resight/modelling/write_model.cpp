@@ -50,8 +50,8 @@ Result<void> write_views(const fs::path& folder, std::span<const TrainingView> v
   if (auto done = write_tuw_model(folder, "model", views, &cloud, declared.symmetries, declared.bop_id); !done)
     return done;
   for (const char* part : {"views", "3D_model.pcd", "model_info.json"}) {
-    if (!fs::exists(folder / "model" / part)) continue;
     std::error_code failure;
+    if (!fs::exists(folder / "model" / part, failure)) continue;
     fs::rename(folder / "model" / part, folder / part, failure);
     if (failure) return file_error(folder / part, failure.message());
   }

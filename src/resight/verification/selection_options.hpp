@@ -25,7 +25,7 @@ struct SelectionOptions {
 };
 
 inline void declare(OptionVisitor& v, SelectionOptions& o) {
-  v.field("outlier_weight", o.outlier_weight, at_least(0), "Cost of a visible model point that nothing explains.");
+  v.field("outlier_weight", o.outlier_weight, between(0, 1000), "Cost of a visible model point that nothing explains.");
   v.field("duplicity_weight", o.duplicity_weight, between(0, 1000),
           "Cost of a scene point that several hypotheses explain.");
   v.choice("duplicity_rule", o.duplicity_rule,
