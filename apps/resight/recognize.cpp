@@ -185,7 +185,7 @@ void run_recognize(const RecognizeArguments& arguments) {
                                 object.name));
   if (!arguments.camera.empty()) {
     if (arguments.poses != "given" && arguments.poses != "fixed")
-      throw InputError("a camera of --camera does not move: --poses must be fixed");
+      throw InputError("the camera of --camera must not move: give --poses fixed or none");
     CameraViews views(arguments.camera, arguments.input, arguments.follow);
     return recognize_live(views, arguments, library, config);
   }

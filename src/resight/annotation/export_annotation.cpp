@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "resight/annotation/internal/region_files.hpp"
@@ -89,8 +90,8 @@ class TruthWriter {
 Result<void> move_masks(const fs::path& from, const fs::path& to) {
   std::error_code error;
   for (const char* name : {"mask", "mask_visib"}) {
-    if (!fs::exists(from / name, error)) continue;  // No object is in any view.
     fs::rename(from / name, to / name, error);
+    if (error == std::errc::no_such_file_or_directory) continue;  // No object is in any view.
     if (error) return file_error(to / name, "cannot be written (" + error.message() + ")");
   }
   fs::remove(from, error);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <system_error>
 
+#include "resight/core/files.hpp"
 #include "resight/evaluation/locate_changes.hpp"
 #include "resight/evaluation/placement_changes.hpp"
 #include "resight/geometry/mesh_sampling.hpp"
@@ -25,7 +27,9 @@ ObjectEventKind kind_from(const std::string& text) {
 Result<std::map<std::string, PointCloud>> read_unknown_surfaces(const fs::path& folder) {
   std::map<std::string, PointCloud> surfaces;
   std::error_code error;
-  if (!fs::exists(folder, error)) return surfaces;
+  const bool is_there = fs::exists(folder, error);
+  if (error) return file_error(folder, error.message());
+  if (!is_there) return surfaces;
   const auto locations = find_models({folder});
   if (!locations) return locations.error();
   for (const ModelLocation& location : *locations) {

@@ -66,7 +66,7 @@ TEST(FindFaults, AGoodSequenceHasNone) {
   EXPECT_EQ(names_of(check_quickly(good_sequence(), true)), "");
 }
 
-TEST(FindFaults, LessThanThreeInspectedViewsAreRefused) {
+TEST(FindFaults, FewerThanThreeInspectedViewsAreRefused) {
   EXPECT_THROW(std::ignore = measure_sequence(good_sequence(), {.max_views = 2, .num_threads = 1}),
                std::invalid_argument);
 }

@@ -62,7 +62,7 @@ Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::strin
   }
   if (!has_few_motions(symmetries))
     return Error{
-        fmt::format("{}: the symmetries are more than {} motions in steps of 5 deg", what, kMaxSymmetryMotions)};
+        fmt::format("{}: more than {} symmetry motions, in steps of 5 deg", what, kMaxSymmetryMotions)};
   return symmetries;
 }
 

@@ -219,7 +219,7 @@ TEST(ModelSource, RefusesSymmetriesThatNoLibraryMayHave) {
     return read_with(R"("symmetries_continuous": [)" + axes + "]");
   };
   EXPECT_TRUE(read_axes(2).ok());
-  EXPECT_THAT(read_axes(6).error().message, HasSubstr("the symmetries are more than 20000 motions"));
+  EXPECT_THAT(read_axes(6).error().message, HasSubstr("more than 20000 symmetry motions"));
 }
 
 // All sides of a ball, around the origin or in front of the camera. In a single view, no point hides another.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "resight/core/files.hpp"
 #include "resight/io/ply.hpp"
@@ -51,8 +52,8 @@ Result<void> write_views(const fs::path& folder, std::span<const TrainingView> v
     return done;
   for (const char* part : {"views", "3D_model.pcd", "model_info.json"}) {
     std::error_code failure;
-    if (!fs::exists(folder / "model" / part, failure)) continue;
     fs::rename(folder / "model" / part, folder / part, failure);
+    if (failure == std::errc::no_such_file_or_directory) continue;
     if (failure) return file_error(folder / part, failure.message());
   }
   std::error_code ignored;
