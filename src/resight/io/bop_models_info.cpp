@@ -61,8 +61,7 @@ Result<ObjectSymmetries> parse_symmetries(const nlohmann::json& json, std::strin
     symmetries.continuous.push_back(*symmetry);
   }
   if (!has_few_motions(symmetries))
-    return Error{
-        fmt::format("{}: more than {} symmetry motions, in steps of 5 deg", what, kMaxSymmetryMotions)};
+    return Error{fmt::format("{}: more than {} symmetry motions, in steps of 5 deg", what, kMaxSymmetryMotions)};
   return symmetries;
 }
 
