@@ -62,7 +62,7 @@ ModelLibrary make_library() {
   object.surface.colors.assign(3, {10, 20, 30});
   object.sift = make_features(FeatureType::kSift, 128);
   object.shot = make_features(FeatureType::kShot, 352);
-  object.symmetries.continuous.push_back({.axis = {0, 0, 1}, .offset = {0, 0, 0}});
+  object.symmetries.continuous.push_back({.direction = {0, 0, 1}, .point = {0, 0, 0}});
   object.symmetries.discrete.push_back(Rigid3::from_axis_angle({0, 0, 1}, 3.14159));
   object.diameter_m = 0.07F;
   return {.objects = {object}, .options_hash = 7, .surface_voxel_m = 0.003F};

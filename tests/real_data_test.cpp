@@ -113,7 +113,7 @@ TEST(RealData, SymmetriesOfScannedObjects) {
   const ObjectSymmetries bowl = find("024_bowl");
   EXPECT_TRUE(bowl.discrete.empty());
   ASSERT_EQ(bowl.continuous.size(), 1U);
-  EXPECT_LT(bowl.continuous[0].axis.cross(Eigen::Vector3d::UnitZ()).norm(), 0.05);
+  EXPECT_LT(bowl.continuous[0].direction.cross(Eigen::Vector3d::UnitZ()).norm(), 0.05);
   for (const char* name : {"003_cracker_box", "005_tomato_soup_can", "006_mustard_bottle", "025_mug"})
     EXPECT_TRUE(find(name).none()) << name;
 }

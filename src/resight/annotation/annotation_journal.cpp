@@ -31,14 +31,6 @@ bool write_all(int descriptor, std::string_view bytes, std::size_t offset) {
   return true;
 }
 
-/// A new file survives a power failure only if the entry of its folder is on the disk, too.
-void sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 /// Splits at line breaks. `num_bytes` receives the length of the whole lines.
 std::vector<std::string> split_lines(std::string_view text, std::size_t& num_bytes) {
   std::vector<std::string> lines;

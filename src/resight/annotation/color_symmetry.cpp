@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "resight/annotation/internal/color_difference.hpp"
+#include "resight/geometry/symmetry.hpp"
 #include "resight/models/shape_symmetry_motions.hpp"
 
 namespace resight {
@@ -55,13 +56,8 @@ class ColorScorer {
   std::vector<const RgbdFrame*> frames_;
 };
 
-Rigid3 rotation_about(const ObjectSymmetries::Continuous& axis, double angle_rad) {
-  return Rigid3::from_translation(axis.offset) * Rigid3::from_axis_angle(axis.axis, angle_rad) *
-         Rigid3::from_translation(-axis.offset);
-}
-
 /// Halves the step until it is small.
-Rigid3 search_angle(const ColorScorer& scorer, const ObjectSymmetries::Continuous& axis, Rigid3 pose) {
+Rigid3 search_angle(const ColorScorer& scorer, const RotationAxis& axis, Rigid3 pose) {
   double best = scorer.difference(pose);
   for (double step_rad = 0.5 * kCoarseStep_rad; step_rad > 0.1 * kDegree; step_rad /= 2) {
     for (const double angle_rad : {-step_rad, step_rad}) {
@@ -115,8 +111,7 @@ Rigid3 resolve_symmetry_by_color(const ObjectModel& model, double surface_voxel_
       best_pose = world_from_object * motion;
     }
   }
-  for (const ObjectSymmetries::Continuous& axis : model.shape_symmetries.continuous)
-    best_pose = search_angle(scorer, axis, best_pose);
+  for (const RotationAxis& axis : model.shape_symmetries.continuous) best_pose = search_angle(scorer, axis, best_pose);
   return best_pose;
 }
 

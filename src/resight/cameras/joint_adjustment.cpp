@@ -19,9 +19,9 @@ TwistMatrix observation_information(const ObjectModel& model, const AdjustJointl
   TwistMatrix at_center = TwistMatrix::Identity();
   at_center.bottomLeftCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
   TwistMatrix information = at_center.transpose() * twist_information(options.sigma_rad, options.sigma_m) * at_center;
-  for (const ObjectSymmetries::Continuous& s : model.symmetries.continuous) {
+  for (const RotationAxis& axis : model.symmetries.continuous) {
     Twist free;
-    free << s.axis.normalized(), s.offset.cross(s.axis.normalized());
+    free << axis.direction.normalized(), axis.point.cross(axis.direction.normalized());
     const Twist known = information * free;
     information -= (1 - kFreeShare) / free.dot(known) * known * known.transpose();
   }

@@ -34,13 +34,6 @@ std::string identity_of(const fs::path& folder) {
   return std::to_string(status.st_dev) + " " + std::to_string(status.st_ino);
 }
 
-void sync_entries(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 /// Splits at zero bytes, which no name holds.
 std::vector<std::string> split_fields(std::string_view text) {
   std::vector<std::string> fields;
@@ -174,7 +167,7 @@ Result<void> FileTransfer::write_journal() const {
   if (code == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) code = errno;
   if (descriptor >= 0) ::close(descriptor);
   if (code == 0) {
-    sync_entries(to_);
+    sync_folder(to_);
     return {};
   }
   std::error_code ignored;

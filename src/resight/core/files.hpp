@@ -27,6 +27,10 @@ namespace resight {
 /// Writes the parts one after the other.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, std::initializer_list<std::string_view> parts);
 
+/// Writes the entries of a folder to the disk, so that its new files survive a power failure. Ignores errors: some file
+/// systems cannot.
+void sync_folder(const std::filesystem::path& folder);
+
 /// Behaviour of PendingDirectory if the folder exists and is not empty.
 enum class ExistingFolder {
   kRefuse,  ///< Fails, so that no data are overwritten.

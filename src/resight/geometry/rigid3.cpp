@@ -35,6 +35,11 @@ double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return std::atan2(0.5 * skew.norm(), 0.5 * (r.trace() - 1.0));
 }
 
+Rigid3 interpolate(const Rigid3& from, const Rigid3& to, double share) {
+  const Eigen::Quaterniond rotation = Eigen::Quaterniond(from.rotation).slerp(share, Eigen::Quaterniond(to.rotation));
+  return {rotation.normalized().toRotationMatrix(), (1 - share) * from.translation + share * to.translation};
+}
+
 bool is_same_pose(const Rigid3& a, const Rigid3& b) {
   constexpr double kTolerance = 1e-6;
   return (a.rotation - b.rotation).cwiseAbs().maxCoeff() < kTolerance &&

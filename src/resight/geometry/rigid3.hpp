@@ -32,6 +32,7 @@ struct Rigid3 {
 [[nodiscard]] inline Eigen::Vector3d operator*(const Rigid3& a_from_b, const Eigen::Vector3d& p_in_b) {
   return a_from_b.rotation * p_in_b + a_from_b.translation;
 }
+
 /// A rigid motion in single precision, for loops over points: `Rigid3f f(a_from_b); p_in_a = f * p_in_b;`
 struct Rigid3f {
   explicit Rigid3f(const Rigid3& a_from_b)
@@ -45,6 +46,10 @@ struct Rigid3f {
 
 /// Geodesic angle between two rotations, in radians in [0, pi].
 [[nodiscard]] double rotation_angle_rad(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+
+/// The motion at `share` of the way from `from` (0) to `to` (1): linear in the translation, and at constant speed along
+/// the shorter rotation.
+[[nodiscard]] Rigid3 interpolate(const Rigid3& from, const Rigid3& to, double share);
 
 /// Whether two cameras at these poses see the same rays: equal within 1e-6 (m, and entries of the rotation), which is
 /// far below a pixel.

@@ -112,6 +112,22 @@ TEST(RotationAngle, AgreesWithQuaternionsAndIsInvariant) {
   }
 }
 
+TEST(Interpolate, MovesAtConstantSpeedAlongTheShorterRotation) {
+  Rng rng(7);
+  for (int i = 0; i < 100; ++i) {
+    const Rigid3 a = random_motion(rng);
+    const Rigid3 b = random_motion(rng);
+    const double angle_rad = rotation_angle_rad(a.rotation, b.rotation);
+    for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+      const Rigid3 between = interpolate(a, b, share);
+      ASSERT_TRUE(between.is_rigid(1e-12));
+      ASSERT_NEAR(rotation_angle_rad(a.rotation, between.rotation), share * angle_rad, 1e-7);
+      ASSERT_NEAR(rotation_angle_rad(between.rotation, b.rotation), (1 - share) * angle_rad, 1e-7);
+      ASSERT_LT((between.translation - a.translation - share * (b.translation - a.translation)).norm(), 1e-12);
+    }
+  }
+}
+
 TEST(NearestRotation, KeepsRotationsAndRepairsRoundedOnes) {
   Rng rng(5);
   for (int i = 0; i < 100; ++i) {

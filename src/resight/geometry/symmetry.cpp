@@ -11,11 +11,6 @@
 namespace resight {
 namespace {
 
-Rigid3 rotation_about(const ObjectSymmetries::Continuous& symmetry, double angle_rad) {
-  return Rigid3::from_translation(symmetry.offset) * Rigid3::from_axis_angle(symmetry.axis, angle_rad) *
-         Rigid3::from_translation(-symmetry.offset);
-}
-
 // The angle about the axis that rotates `pose` nearest to `reference`. Maximises trace(D Rot(angle)) with D =
 // reference^T pose in closed form (the twist of D^T about the axis).
 double best_angle_rad(const Rigid3& pose, const Rigid3& reference, const Eigen::Vector3d& axis) {
@@ -29,7 +24,7 @@ int count_steps(double max_step_rad) { return static_cast<int>(std::ceil(2 * std
 // Two continuous axes that are not parallel generate all rotations: the object is a ball.
 bool is_ball(const ObjectSymmetries& symmetries) {
   for (const auto& c : symmetries.continuous)
-    if (symmetries.continuous.front().axis.normalized().cross(c.axis.normalized()).norm() > 1e-6) return true;
+    if (symmetries.continuous.front().direction.normalized().cross(c.direction.normalized()).norm() > 1e-6) return true;
   return false;
 }
 
@@ -38,24 +33,29 @@ Eigen::Vector3d ball_center(const ObjectSymmetries& symmetries) {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const auto& c : symmetries.continuous) {
-    const Eigen::Vector3d axis = c.axis.normalized();
+    const Eigen::Vector3d axis = c.direction.normalized();
     const Eigen::Matrix3d off_axis = Eigen::Matrix3d::Identity() - axis * axis.transpose();
     a += off_axis;
-    b += off_axis * c.offset;
+    b += off_axis * c.point;
   }
   return a.inverse() * b;
 }
 
 }  // namespace
 
+Rigid3 rotation_about(const RotationAxis& axis, double angle_rad) {
+  return Rigid3::from_translation(axis.point) * Rigid3::from_axis_angle(axis.direction, angle_rad) *
+         Rigid3::from_translation(-axis.point);
+}
+
 bool is_possible_symmetry(const Rigid3& motion) {
   return motion.is_rigid() && motion.translation.cwiseAbs().maxCoeff() <= 2 * kMaxObjectCoordinate_m;
 }
 
-bool is_possible_symmetry(const ObjectSymmetries::Continuous& symmetry) {
-  const double length = symmetry.axis.norm();
-  return length > 0 && std::isfinite(length) && symmetry.offset.allFinite() &&
-         symmetry.offset.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m;
+bool is_possible_symmetry(const RotationAxis& axis) {
+  const double length = axis.direction.norm();
+  return length > 0 && std::isfinite(length) && axis.point.allFinite() &&
+         axis.point.cwiseAbs().maxCoeff() <= kMaxObjectCoordinate_m;
 }
 
 std::vector<Rigid3> enumerate_symmetries(const ObjectSymmetries& symmetries, double max_step_rad) {
@@ -97,7 +97,7 @@ Rigid3 nearest_symmetric_pose(const Rigid3& pose, const Rigid3& reference, const
   const auto consider_with_continuous = [&](const Rigid3& candidate) {
     consider(candidate);
     for (const auto& c : symmetries.continuous)
-      consider(candidate * rotation_about(c, best_angle_rad(candidate, reference, c.axis)));
+      consider(candidate * rotation_about(c, best_angle_rad(candidate, reference, c.direction)));
   };
   consider_with_continuous(pose);
   for (const Rigid3& d : symmetries.discrete) consider_with_continuous(pose * d);

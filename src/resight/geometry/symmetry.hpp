@@ -7,21 +7,26 @@
 
 namespace resight {
 
+/// A rotation axis in the object frame.
+struct RotationAxis {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< Of any length but 0.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< A point on the axis, metres.
+};
+
+/// Rotation by `angle_rad` about the axis.
+[[nodiscard]] Rigid3 rotation_about(const RotationAxis& axis, double angle_rad);
+
 /// Symmetries of an object as in models_info.json of BOP: motions of the object frame, in metres, that map the object
 /// onto itself.
 struct ObjectSymmetries {
-  struct Continuous {
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< A point on the axis.
-  };
-  std::vector<Rigid3> discrete;  ///< Excludes the identity.
-  std::vector<Continuous> continuous;
+  std::vector<Rigid3> discrete;          ///< Excludes the identity.
+  std::vector<RotationAxis> continuous;  ///< Rotations by any angle.
   [[nodiscard]] bool none() const { return discrete.empty() && continuous.empty(); }
 };
 
 /// Whether this can be a symmetry of an object whose coordinates are at most kMaxObjectCoordinate_m. False for NaN.
 [[nodiscard]] bool is_possible_symmetry(const Rigid3& motion);
-[[nodiscard]] bool is_possible_symmetry(const ObjectSymmetries::Continuous& symmetry);
+[[nodiscard]] bool is_possible_symmetry(const RotationAxis& axis);
 
 /// 5 deg.
 inline constexpr double kSymmetryStep_rad = 0.0872665;

@@ -45,20 +45,28 @@ ObjectSymmetries make_square_prism() {  // four-fold about an axis beside the or
 }
 ObjectSymmetries make_bottle() {
   ObjectSymmetries s;
-  s.continuous.push_back({.axis = {1, 2, -1}, .offset = kOffset});
+  s.continuous.push_back({.direction = {1, 2, -1}, .point = kOffset});
   return s;
 }
 ObjectSymmetries make_cylinder() {  // continuous about z, and a half turn about a line through its centre
   ObjectSymmetries s;
-  s.continuous.push_back({.axis = {0, 0, 1}, .offset = kOffset});
+  s.continuous.push_back({.direction = {0, 0, 1}, .point = kOffset});
   s.discrete.push_back(rotation_about_line(kOffset, {1, 0, 0}, kPi));
   return s;
+}
+
+TEST(RotationAbout, KeepsTheAxisAndTurnsTheRest) {
+  const RotationAxis axis{.direction = {0, 0, -3}, .point = {1, 2, 3}};
+  const Rigid3 quarter = rotation_about(axis, kPi / 2);
+  EXPECT_LT((quarter * axis.point - axis.point).norm(), 1e-12);
+  EXPECT_LT((quarter * Eigen::Vector3d(1, 2, -5) - Eigen::Vector3d(1, 2, -5)).norm(), 1e-12);
+  EXPECT_LT((quarter * Eigen::Vector3d(2, 2, 7) - Eigen::Vector3d(1, 1, 7)).norm(), 1e-12);
 }
 
 TEST(HasFewMotions, CountsWhatEnumerateSymmetriesGives) {
   ObjectSymmetries ball;
   ball.continuous.resize(2);
-  ball.continuous[1].axis = Eigen::Vector3d::UnitX();
+  ball.continuous[1].direction = Eigen::Vector3d::UnitX();
   EXPECT_EQ(enumerate_symmetries(ball).size(), 72U * 72U);
   for (const ObjectSymmetries& symmetries : {make_none(), make_square_prism(), make_bottle(), make_cylinder(), ball})
     EXPECT_TRUE(has_few_motions(symmetries));
@@ -105,7 +113,7 @@ TEST(EnumerateSymmetries, CountsAndStep) {
 
 TEST(EnumerateSymmetries, KeepThePointsOfTheAxis) {
   const ObjectSymmetries bottle = make_bottle();
-  const Eigen::Vector3d on_axis = kOffset + 0.7 * bottle.continuous[0].axis;
+  const Eigen::Vector3d on_axis = kOffset + 0.7 * bottle.continuous[0].direction;
   for (const Rigid3& m : enumerate_symmetries(bottle)) EXPECT_LT((m * on_axis - on_axis).norm(), 1e-9);
 }
 
@@ -169,8 +177,8 @@ TEST(NearestSymmetricPose, WithoutSymmetriesIsThePose) {
 
 TEST(NearestSymmetricPose, OfABallTakesTheReferencesRotationAboutItsCentre) {
   ObjectSymmetries ball;
-  ball.continuous.push_back({.axis = {1, 0, 0}, .offset = {5, 0.2, 0.3}});
-  ball.continuous.push_back({.axis = {0, 0, 2}, .offset = {0.1, 0.2, -4}});
+  ball.continuous.push_back({.direction = {1, 0, 0}, .point = {5, 0.2, 0.3}});
+  ball.continuous.push_back({.direction = {0, 0, 2}, .point = {0.1, 0.2, -4}});
   const Eigen::Vector3d center(0.1, 0.2, 0.3);
   Rng rng(5);
   const Rigid3 pose = random_pose(rng);

@@ -45,7 +45,7 @@ ObjectNeighborhood neighborhood_of(const ObjectModel& model) {
   for (const Rigid3& d : model.symmetries.discrete)
     result.center_shift_m = std::max(result.center_shift_m, (d * result.center - result.center).norm());
   for (const auto& c : model.symmetries.continuous)
-    result.center_shift_m += 2 * c.axis.normalized().cross(result.center - c.offset).norm();
+    result.center_shift_m += 2 * c.direction.normalized().cross(result.center - c.point).norm();
   return result;
 }
 

@@ -13,10 +13,7 @@ std::optional<Rigid3> pose_at(const std::vector<Rigid3>& poses, double view) {
   const auto before = static_cast<std::size_t>(view);
   const double share = view - static_cast<double>(before);
   if (share == 0) return poses[before];
-  const Rigid3& a = poses[before];
-  const Rigid3& b = poses[before + 1];
-  const Eigen::Quaterniond turn = Eigen::Quaterniond(a.rotation).slerp(share, Eigen::Quaterniond(b.rotation));
-  return Rigid3{turn.toRotationMatrix(), (1 - share) * a.translation + share * b.translation};
+  return interpolate(poses[before], poses[before + 1], share);
 }
 
 Rigid3 read_as(const Rigid3& pose, const PoseReading& reading) {

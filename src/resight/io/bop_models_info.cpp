@@ -26,20 +26,20 @@ Result<Rigid3> parse_discrete(const nlohmann::json& json, std::string_view what)
   return motion;
 }
 
-Result<ObjectSymmetries::Continuous> parse_continuous(const nlohmann::json& json, std::string_view what) {
-  const auto axis = as_numbers(member(json, "axis"));
+Result<RotationAxis> parse_continuous(const nlohmann::json& json, std::string_view what) {
+  const auto direction = as_numbers(member(json, "axis"));
   const auto offset = as_numbers(member(json, "offset"));
-  const bool sized = axis && axis->size() == 3 && (!offset || offset->size() == 3);
-  ObjectSymmetries::Continuous symmetry;
-  if (sized) symmetry.axis = {(*axis)[0], (*axis)[1], (*axis)[2]};
-  if (!sized || !(symmetry.axis.stableNorm() > 1e-6))
+  const bool sized = direction && direction->size() == 3 && (!offset || offset->size() == 3);
+  RotationAxis axis;
+  if (sized) axis.direction = {(*direction)[0], (*direction)[1], (*direction)[2]};
+  if (!sized || !(axis.direction.stableNorm() > 1e-6))
     return Error{fmt::format("{}: symmetries_continuous need an axis and an offset of 3 numbers", what)};
-  symmetry.axis.stableNormalize();
-  if (offset) symmetry.offset = Eigen::Vector3d((*offset)[0], (*offset)[1], (*offset)[2]) * 1e-3;
-  if (!is_possible_symmetry(symmetry))
+  axis.direction.stableNormalize();
+  if (offset) axis.point = Eigen::Vector3d((*offset)[0], (*offset)[1], (*offset)[2]) * 1e-3;
+  if (!is_possible_symmetry(axis))
     return Error{fmt::format("{}: symmetries_continuous: an offset is {:.4g} m long (at most {} m along each axis)",
-                             what, symmetry.offset.stableNorm(), kMaxObjectCoordinate_m)};
-  return symmetry;
+                             what, axis.point.stableNorm(), kMaxObjectCoordinate_m)};
+  return axis;
 }
 
 }  // namespace
@@ -73,9 +73,9 @@ void add_symmetries(nlohmann::json& json, const ObjectSymmetries& symmetries) {
     for (int i = 0; i < 16; ++i) numbers.push_back(m(i / 4, i % 4));
     json["symmetries_discrete"].push_back(std::move(numbers));
   }
-  for (const auto& symmetry : symmetries.continuous)
-    json["symmetries_continuous"].push_back({{"axis", {symmetry.axis.x(), symmetry.axis.y(), symmetry.axis.z()}},
-                                             {"offset", translation_to_json_mm(symmetry.offset)}});
+  for (const auto& [direction, point] : symmetries.continuous)
+    json["symmetries_continuous"].push_back(
+        {{"axis", {direction.x(), direction.y(), direction.z()}}, {"offset", translation_to_json_mm(point)}});
 }
 
 std::string bop_object_name(int bop_id) { return fmt::format("obj_{:06}", bop_id); }

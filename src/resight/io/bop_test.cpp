@@ -223,8 +223,8 @@ TEST(BopModels, MeshSymmetriesAndIdsComeBack) {
   ASSERT_EQ(zebra->symmetries.discrete.size(), 1U);
   EXPECT_LT(io::pose_difference(zebra->symmetries.discrete[0], models[0].symmetries.discrete[0]), 1e-12);
   ASSERT_EQ(zebra->symmetries.continuous.size(), 1U);
-  EXPECT_LT((zebra->symmetries.continuous[0].axis - Eigen::Vector3d(0, 0.6, 0.8)).norm(), 1e-12);
-  EXPECT_LT((zebra->symmetries.continuous[0].offset - Eigen::Vector3d(0.01, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((zebra->symmetries.continuous[0].direction - Eigen::Vector3d(0, 0.6, 0.8)).norm(), 1e-12);
+  EXPECT_LT((zebra->symmetries.continuous[0].point - Eigen::Vector3d(0.01, 0, 0)).norm(), 1e-12);
   const auto info = nlohmann::json::parse(io::read_text(directory / "set/models/models_info.json"));
   EXPECT_NEAR(info["2"]["diameter"].get<double>(), 1000 * std::sqrt(0.06), 1e-3);
   EXPECT_NEAR(info["2"]["size_y"].get<double>(), 200, 1e-3);

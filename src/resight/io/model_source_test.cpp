@@ -205,7 +205,7 @@ TEST(ModelSource, RefusesSymmetriesThatNoLibraryMayHave) {
   };
   const auto huge = read_axis("[0, 0, 1e200]", "[0, 0, 99000]");
   ASSERT_TRUE(huge.ok()) << huge.error().message;
-  EXPECT_EQ(huge->symmetries.continuous.at(0).axis, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(huge->symmetries.continuous.at(0).direction, Eigen::Vector3d::UnitZ());
   const std::string expected = "model_info.json: symmetries_continuous: an offset is 900 m long (at most 100 m";
   EXPECT_THAT(read_axis("[0, 0, 1]", "[0, 900000, 0]").error().message, HasSubstr(expected));
   EXPECT_FALSE(read_axis("[0, 0, 1]", "[0, 1e300, 0]").ok());

@@ -126,11 +126,8 @@ std::optional<Rigid3> interpolate_pose(const std::vector<StampedPose>& poses, do
   const bool has_before = after != poses.begin() && time_s - std::prev(after)->time_s <= kMaxPoseGap_s;
   if (has_after && has_before) {
     const StampedPose& a = *std::prev(after);
-    const double t = after->time_s > a.time_s ? (time_s - a.time_s) / (after->time_s - a.time_s) : 0.0;
-    const Eigen::Quaterniond q = Eigen::Quaterniond(a.world_from_camera.rotation)
-                                     .slerp(t, Eigen::Quaterniond(after->world_from_camera.rotation));
-    return Rigid3{q.normalized().toRotationMatrix(),
-                  (1 - t) * a.world_from_camera.translation + t * after->world_from_camera.translation};
+    const double share = after->time_s > a.time_s ? (time_s - a.time_s) / (after->time_s - a.time_s) : 0.0;
+    return interpolate(a.world_from_camera, after->world_from_camera, share);
   }
   // At the ends of the recording, the nearest pose is used if it is close enough.
   if (has_after && after->time_s - time_s <= kMaxImageGap_s) return after->world_from_camera;

@@ -74,12 +74,12 @@ bool read(const schema::Motion& stored, Rigid3& motion) {
   return is_possible_symmetry(motion);
 }
 
-bool read(const schema::Axis& stored, ObjectSymmetries::Continuous& symmetry) {
+bool read(const schema::Axis& stored, RotationAxis& axis) {
   for (int i = 0; i < 3; ++i) {
-    symmetry.axis(i) = stored.direction()->Get(static_cast<std::uint16_t>(i));
-    symmetry.offset(i) = stored.offset()->Get(static_cast<std::uint16_t>(i));
+    axis.direction(i) = stored.direction()->Get(static_cast<std::uint16_t>(i));
+    axis.point(i) = stored.offset()->Get(static_cast<std::uint16_t>(i));
   }
-  return is_possible_symmetry(symmetry);
+  return is_possible_symmetry(axis);
 }
 
 template <typename Stored, typename Value>

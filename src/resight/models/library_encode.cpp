@@ -48,9 +48,9 @@ schema::Motion to_file(const Rigid3& motion) {
           flatbuffers::span<const double, 3>(motion.translation.data(), 3)};
 }
 
-schema::Axis to_file(const ObjectSymmetries::Continuous& symmetry) {
-  return {flatbuffers::span<const double, 3>(symmetry.axis.data(), 3),
-          flatbuffers::span<const double, 3>(symmetry.offset.data(), 3)};
+schema::Axis to_file(const RotationAxis& axis) {
+  return {flatbuffers::span<const double, 3>(axis.direction.data(), 3),
+          flatbuffers::span<const double, 3>(axis.point.data(), 3)};
 }
 
 struct WrittenSymmetries {

@@ -79,9 +79,9 @@ ObjectModel make_object(const std::string& name, int bop_id, Rng& rng) {
   object.sift = make_features(FeatureType::kSift, 6, rng);
   object.shot = make_features(FeatureType::kShot, bop_id == 2 ? 0 : 5, rng);
   object.symmetries.discrete.push_back(Rigid3::from_axis_angle({1, 2, 3}, 0.5) * Rigid3::from_translation({4, 5, 6}));
-  object.symmetries.continuous.push_back({.axis = {0, 1, 2}, .offset = {7, 8, 9}});
+  object.symmetries.continuous.push_back({.direction = {0, 1, 2}, .point = {7, 8, 9}});
   object.shape_symmetries.discrete.push_back(Rigid3::from_axis_angle({3, 1, 2}, 0.7));
-  object.shape_symmetries.continuous.push_back({.axis = {1, 1, 2}, .offset = {1, 8, 9}});
+  object.shape_symmetries.continuous.push_back({.direction = {1, 1, 2}, .point = {1, 8, 9}});
   object.center = random_vector(rng);
   object.diameter_m = 0.25F;
   return object;
@@ -110,8 +110,8 @@ void expect_equal(const ObjectSymmetries& a, const ObjectSymmetries& b) {
   for (std::size_t k = 0; k < a.discrete.size(); ++k) EXPECT_EQ(a.discrete[k].matrix(), b.discrete[k].matrix());
   ASSERT_EQ(a.continuous.size(), b.continuous.size());
   for (std::size_t k = 0; k < a.continuous.size(); ++k) {
-    EXPECT_EQ(a.continuous[k].axis, b.continuous[k].axis);
-    EXPECT_EQ(a.continuous[k].offset, b.continuous[k].offset);
+    EXPECT_EQ(a.continuous[k].direction, b.continuous[k].direction);
+    EXPECT_EQ(a.continuous[k].point, b.continuous[k].point);
   }
 }
 
@@ -290,9 +290,9 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
        "SHOT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].shot.normals.pop_back(); }, "SHOT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.discrete[0].rotation *= 1000; }, "symmetries"},
-      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].axis.setZero(); }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].direction.setZero(); }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].shape_symmetries.discrete[0].rotation *= 1000; }, "shape symmetries"},
-      {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous[0].axis.setZero(); }, "shape symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous[0].direction.setZero(); }, "shape symmetries"},
       // More motions than fit into the memory.
       {[](ModelLibrary& l) { l.objects[0].symmetries.continuous.resize(6); }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].shape_symmetries.continuous.resize(6); }, "shape symmetries"},
@@ -302,7 +302,7 @@ TEST_F(LibraryFile, RefusesContentWithoutMeaning) {
       {[](ModelLibrary& l) { l.objects[0].surface.points[3].y() = 1e12F; }, "surface of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].sift.points[3].x() = -1e12F; }, "SIFT features of object 'mug'"},
       {[](ModelLibrary& l) { l.objects[0].symmetries.discrete[0].translation.x() = 1e12; }, "symmetries"},
-      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].offset.x() = 1e12; }, "symmetries"},
+      {[](ModelLibrary& l) { l.objects[0].symmetries.continuous[0].point.x() = 1e12; }, "symmetries"},
       {[](ModelLibrary& l) { l.objects[0].center.x() = 1e12F; }, "centre"},
       {[](ModelLibrary& l) { l.objects[0].diameter_m = 1e12F; }, "diameter"},
       // Views are cropped to the object: a wrong size would need all memory.

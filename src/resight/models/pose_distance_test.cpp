@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "resight/geometry/symmetry.hpp"
+
 namespace resight {
 namespace {
 
@@ -15,16 +17,14 @@ constexpr double kPi = std::numbers::pi;
 ObjectModel can() {
   ObjectModel model;
   model.center = {0.02F, 0, 0.1F};
-  model.symmetries.continuous.push_back({.axis = Eigen::Vector3d::UnitZ(), .offset = {0.02, 0, 0}});
+  model.symmetries.continuous.push_back({.direction = Eigen::Vector3d::UnitZ(), .point = {0.02, 0, 0}});
   return model;
 }
 
 TEST(ComparePoses, MeasuresCentreAndRotationOverTheSymmetries) {
   const ObjectModel model = can();
   const Rigid3 reference = Rigid3::from_translation({0.3, 0, 1});
-  const auto& axis = model.symmetries.continuous.front();
-  const Rigid3 about_axis = Rigid3::from_translation(axis.offset) * Rigid3::from_axis_angle(axis.axis, 2) *
-                            Rigid3::from_translation(-axis.offset);
+  const Rigid3 about_axis = rotation_about(model.symmetries.continuous.front(), 2);
   const PoseDifference same = compare_poses(reference * about_axis, reference, model);
   EXPECT_NEAR(same.center_distance_m, 0, 1e-9);
   EXPECT_NEAR(same.rotation_rad, 0, 1e-6);

@@ -19,7 +19,9 @@ ObjectModel colored() {
   return model;
 }
 
-ObjectSymmetries round_about(const Eigen::Vector3d& axis) { return {.discrete = {}, .continuous = {{.axis = axis}}}; }
+ObjectSymmetries round_about(const Eigen::Vector3d& axis) {
+  return {.discrete = {}, .continuous = {{.direction = axis}}};
+}
 
 Rigid3 half_turn(const Eigen::Vector3d& axis) { return Rigid3::from_axis_angle(axis, kHalfTurn); }
 
@@ -53,7 +55,7 @@ TEST(ShapeSymmetryMotions, OfABoxAreTheHalfTurnsThatItsTextureDistinguishes) {
 
 TEST(ShapeSymmetryMotions, NoneButTheIdentityForABallOrWithoutColors) {
   ObjectModel model = colored();
-  model.shape_symmetries = {.discrete = {}, .continuous = {{.axis = kZ}, {.axis = kX}}};
+  model.shape_symmetries = {.discrete = {}, .continuous = {{.direction = kZ}, {.direction = kX}}};
   EXPECT_EQ(shape_symmetry_motions(model, 0.1).size(), 1U);
   model.shape_symmetries = round_about(kZ);
   model.surface.colors.clear();

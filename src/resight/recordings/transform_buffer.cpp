@@ -68,11 +68,7 @@ std::optional<Rigid3> TransformBuffer::at(const Edge& edge, std::int64_t time_ns
       if (seconds(before->first, time_ns) <= kSameTime_s) return before->second;
       return std::nullopt;
     }
-    const double t = gap_s > 0 ? seconds(before->first, time_ns) / gap_s : 0;
-    const Eigen::Quaterniond q =
-        Eigen::Quaterniond(before->second.rotation).slerp(t, Eigen::Quaterniond(after->second.rotation));
-    return Rigid3{q.normalized().toRotationMatrix(),
-                  (1 - t) * before->second.translation + t * after->second.translation};
+    return interpolate(before->second, after->second, gap_s > 0 ? seconds(before->first, time_ns) / gap_s : 0);
   }
   const auto nearest = after == list.end() ? std::prev(after) : after;
   if (std::abs(seconds(nearest->first, time_ns)) > 0.5 * max_gap_s) return std::nullopt;

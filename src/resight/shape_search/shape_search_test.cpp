@@ -79,7 +79,7 @@ TEST(ShapeSearch, RotatesATexturedCanToTheBestTexture) {
   };
   const Solid can{Shape::kCylinder, {0.08, 0.08, 0.12}, paint, on_table(0.05, 0, 0.06, 2.2)};
   ModelLibrary library{.objects = {make_model("can", can)}};
-  library.objects[0].shape_symmetries.continuous.push_back({.axis = Eigen::Vector3d::UnitZ()});
+  library.objects[0].shape_symmetries.continuous.push_back({.direction = Eigen::Vector3d::UnitZ()});
   const PreparedView view = prepare_view(render({.solids = {can}}, circle_of_cameras(3)[1]).frame);
   const auto finds = [&](std::optional<double> symmetry_step_rad) {
     ShapeSearchOptions options;
@@ -99,7 +99,7 @@ TEST(ShapeSearch, RotatesATexturedCanToTheBestTexture) {
 TEST(ShapeSearch, TheSameOnAnyNumberOfThreads) {
   PlainThings c;
   c.library.objects[0].shape_symmetries.continuous.push_back(
-      {.axis = Eigen::Vector3d::UnitZ()});  // So that it is rotated.
+      {.direction = Eigen::Vector3d::UnitZ()});  // So that it is rotated.
   ShapeSearchOptions options;
   const MatchCriteria criteria{.symmetry_step_rad = 0.1745};
   options.max_seeds = 300;

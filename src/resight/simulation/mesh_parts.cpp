@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "resight/core/check.hpp"
 
@@ -15,7 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kGutter_px = 8;
-constexpr int kMaxAtlasHeight_px = 4096;
+constexpr int kAtlasStep_px = 4096;  // by which its height grows
 constexpr int kSolid_px = 8;
 
 struct SurfacePoint {
@@ -67,24 +68,31 @@ std::vector<BoxFace> box_faces(const BoxRegions& r) {
 
 }  // namespace
 
-TextureAtlas::TextureAtlas(int width_px, double px_per_mm)
-    : px_per_mm_(px_per_mm), image_(width_px, kMaxAtlasHeight_px) {}
+TextureAtlas::TextureAtlas(int width_px, double px_per_mm) : px_per_mm_(px_per_mm), image_(width_px, kAtlasStep_px) {}
 
 PixelRect TextureAtlas::allocate(double width_mm, double height_mm) {
-  const int w = std::max(1, static_cast<int>(std::lround(width_mm * px_per_mm_)));
-  const int h = std::max(1, static_cast<int>(std::lround(height_mm * px_per_mm_)));
+  const auto to_px = [&](double size_mm, int limit_px) {
+    return std::clamp(static_cast<int>(std::lround(size_mm * px_per_mm_)), 1, limit_px - 2 * kGutter_px);
+  };
+  const int w = to_px(width_mm, image_.width());
+  const int h = to_px(height_mm, kAtlasStep_px);
   if (x_ + w + 2 * kGutter_px > image_.width()) {
     x_ = 0;
     y_ += row_height_;
     row_height_ = 0;
   }
-  require(x_ + w + 2 * kGutter_px <= image_.width() && y_ + h + 2 * kGutter_px <= image_.height(),
-          "TextureAtlas::allocate: the region is larger than the atlas");
+  if (y_ + h + 2 * kGutter_px > image_.height()) grow();
   const PixelRect region{x_ + kGutter_px, y_ + kGutter_px, w, h};
   x_ += w + 2 * kGutter_px;
   row_height_ = std::max(row_height_, h + 2 * kGutter_px);
   regions_.push_back(region);
   return region;
+}
+
+void TextureAtlas::grow() {
+  Image<Rgb8> larger(image_.width(), image_.height() + kAtlasStep_px);
+  for (int v = 0; v < image_.height(); ++v) std::ranges::copy(image_.row(v), larger.row(v).begin());
+  image_ = std::move(larger);
 }
 
 PixelRect TextureAtlas::solid(Rgb8 color) {

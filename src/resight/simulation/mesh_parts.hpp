@@ -17,7 +17,8 @@ inline constexpr double kMmPerM = 1000;
 class TextureAtlas {
  public:
   TextureAtlas(int width_px, double px_per_mm);
-  /// Reserves a region of the given size (mm on the surface). Paint it before finish().
+  /// Reserves a region of the given size (mm on the surface), with fewer pixels if it is larger than the atlas is wide
+  /// or 4,080 pixels high. Paint it before finish().
   [[nodiscard]] PixelRect allocate(double width_mm, double height_mm);
   /// Reserves a small region of one colour.
   [[nodiscard]] PixelRect solid(Rgb8 color);
@@ -26,6 +27,8 @@ class TextureAtlas {
   void finish(TriangleMesh& mesh);
 
  private:
+  void grow();
+
   double px_per_mm_;
   Image<Rgb8> image_;
   int x_ = 0;

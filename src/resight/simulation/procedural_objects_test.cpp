@@ -191,6 +191,7 @@ TEST(ProceduralObjects, UnknownNamesAreErrorsThatListTheKnown) {
   EXPECT_FALSE(make_distractor("cereal_red").ok());
   EXPECT_FALSE(make_furniture("throne", {1, 1, 1}, 1).ok());
   EXPECT_THROW(static_cast<void>(make_furniture("table", {1, 0, 1}, 1)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_furniture("table", {1, 11, 1}, 1)), std::invalid_argument);
 }
 
 TEST(Furniture, HasItsSizeAndLevels) {
@@ -204,6 +205,26 @@ TEST(Furniture, HasItsSizeAndLevels) {
     EXPECT_NEAR(b.low.z(), 0, 1e-6);
     for (const double level : furniture->level_heights_m) EXPECT_LE(level, size.z() + 1e-9);
   }
+}
+
+bool is_textured(const TriangleMesh& mesh) {
+  return !mesh.texture.empty() && std::ranges::all_of(mesh.uvs, [](const Eigen::Vector2f& uv) {
+    return uv.minCoeff() >= 0 && uv.maxCoeff() <= 1;
+  });
+}
+
+TEST(Furniture, OfAnySizeOfAScriptHasATexture) {
+  for (const std::string& kind : furniture_kinds())
+    for (const Eigen::Vector3d& size :
+         {Eigen::Vector3d(3, 0.5, 2.5), Eigen::Vector3d(1, 0.7, 10), Eigen::Vector3d(10, 10, 10),
+          Eigen::Vector3d(0.001, 0.001, 0.001), Eigen::Vector3d(1, 0.01, 0.01)}) {
+      SCOPED_TRACE(kind);
+      const auto furniture = make_furniture(kind, size, 5);
+      ASSERT_TRUE(furniture.ok());
+      EXPECT_TRUE(is_textured(furniture->mesh)) << size.transpose();
+    }
+  for (const Eigen::Vector3d& size : {Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(0.001, 0.001, 1000)})
+    EXPECT_TRUE(is_textured(make_room(size, 5))) << size.transpose();
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ Furniture make_keyboard(const Vector3d& size, std::uint64_t seed) {
   Rng rng(seed);
   const double key = (top.height() - 12) / 5;
   for (int row = 0; row < 5; ++row)
-    for (double x = 6 + 4 * row; x + key < top.width() - 6; x += key) {
+    for (double x = 6 + 4 * row; key > 0 && x + key < top.width() - 6; x += key) {
       top.rounded_rect(x + 1, 6 + row * key + 1, key - 2, key - 2, 2, {205, 205, 200});
       top.text(x + 0.3 * key, 6 + (row + 0.28) * key, 0.4 * key, 0.08 * key,
                std::string(1, static_cast<char>('A' + rng.below(26))), {40, 40, 45});
@@ -173,7 +173,8 @@ const std::vector<std::string>& furniture_kinds() {
 }
 
 Result<Furniture> make_furniture(std::string_view kind, const Vector3d& size_m, std::uint64_t seed) {
-  require(size_m.allFinite() && size_m.minCoeff() > 0, "make_furniture: size_m must be > 0");
+  require(size_m.allFinite() && size_m.minCoeff() > 0 && size_m.maxCoeff() <= kMaxFurnitureSize_m,
+          "make_furniture: size_m must be > 0 and at most kMaxFurnitureSize_m");
   if (kind == "table") return make_table(size_m, seed);
   if (kind == "shelf") return make_shelf(size_m, seed);
   if (kind == "cabinet") return make_cabinet(size_m, seed);

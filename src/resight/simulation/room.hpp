@@ -20,8 +20,11 @@ struct Furniture {
 /// Kinds: table, shelf (four boards), cabinet, monitor, keyboard, papers.
 [[nodiscard]] const std::vector<std::string>& furniture_kinds();
 
+inline constexpr int kMaxFurnitureSize_m = 10;
+
 /// Draws a piece of furniture of the given outer size. `seed` varies colours and textures. The error for an unknown
-/// kind lists the known kinds. Throws std::invalid_argument for a size that is not positive.
+/// kind lists the known kinds. Throws std::invalid_argument for a size that is not positive, or above
+/// kMaxFurnitureSize_m.
 [[nodiscard]] Result<Furniture> make_furniture(std::string_view kind, const Eigen::Vector3d& size_m,
                                                std::uint64_t seed);
 

@@ -120,11 +120,6 @@ RotationAxis move_axis(const RotationAxis& axis, const Vector6& twist, const Vec
 
 }  // namespace
 
-Rigid3 rotation_about(const RotationAxis& axis, double angle_rad) {
-  return Rigid3::from_translation(axis.point) * Rigid3::from_axis_angle(axis.direction, angle_rad) *
-         Rigid3::from_translation(-axis.point);
-}
-
 SelfOverlap::SelfOverlap(const PointCloud& surface, const SymmetryOptions& options)
     : surface_(downsample(surface)), options_(options), tree_(surface_.points) {
   const std::vector<double> areas = find_areas(surface_, tree_, options.num_threads);

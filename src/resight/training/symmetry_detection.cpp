@@ -21,8 +21,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using internal::rotation_about;
-using internal::RotationAxis;
 using internal::SelfOverlap;
 using Axes = std::vector<RotationAxis>;
 
@@ -171,10 +169,6 @@ Vector3d canonical(const Vector3d& direction) {
   return direction(largest) < 0 ? Vector3d(-direction) : direction;
 }
 
-ObjectSymmetries::Continuous to_continuous(const Vector3d& direction, const Vector3d& point) {
-  return {.axis = canonical(direction), .offset = point};
-}
-
 // Tests a second axis perpendicular to the first one. If both are continuous, the object is a ball.
 std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const RotationAxis& axis) {
   const RotationAxis across =
@@ -186,7 +180,7 @@ std::optional<ObjectSymmetries> complete_ball(const SelfOverlap& overlap, const 
   for (const Vector3d& direction : {axis.direction, second, third})
     if (!is_continuous(overlap, {direction, center})) return std::nullopt;
   ObjectSymmetries ball;
-  ball.continuous = {to_continuous(axis.direction, center), to_continuous(second, center)};
+  ball.continuous = {{canonical(axis.direction), center}, {canonical(second), center}};
   return ball;
 }
 
@@ -207,7 +201,7 @@ std::optional<ObjectSymmetries> find_round(const SelfOverlap& overlap, const Dir
   if (axes.empty()) return std::nullopt;
   if (std::optional<ObjectSymmetries> ball = complete_ball(overlap, axes.front())) return ball;
   ObjectSymmetries round;
-  round.continuous.push_back(to_continuous(axes.front().direction, meeting_point({axes.front()}, overlap.center())));
+  round.continuous.push_back({canonical(axes.front().direction), meeting_point({axes.front()}, overlap.center())});
   if (const std::optional<Rigid3> flip = find_flip(overlap, axes.front())) round.discrete.push_back(*flip);
   return round;
 }

@@ -216,12 +216,13 @@ void expect_round(const Shape& shape, const Paint& paint, bool can_be_turned_ove
     const Vector3d axis = placement.object_from_shape.rotation.col(2);
     const Vector3d center = placement.object_from_shape.translation;
     ASSERT_EQ(found.continuous.size(), 1U);
-    EXPECT_LT(found.continuous[0].axis.cross(axis).norm(), 0.02);
-    EXPECT_LT((center - found.continuous[0].offset).cross(found.continuous[0].axis).norm(), 0.001);
+    EXPECT_LT(found.continuous[0].direction.cross(axis).norm(), 0.02);
+    EXPECT_LT((center - found.continuous[0].point).cross(found.continuous[0].direction).norm(), 0.001);
     ASSERT_EQ(found.discrete.size(), can_be_turned_over ? 1U : 0U);
     if (!can_be_turned_over) continue;
     expect_group(found);
-    EXPECT_LT((found.discrete[0].rotation * found.continuous[0].axis + found.continuous[0].axis).norm(), 1e-9);
+    EXPECT_LT((found.discrete[0].rotation * found.continuous[0].direction + found.continuous[0].direction).norm(),
+              1e-9);
     EXPECT_LT((found.discrete[0] * center - center).norm(), 0.002);
   }
 }
@@ -259,9 +260,8 @@ TEST(FindSymmetries, OfABallAreTwoAxes) {
     const ObjectSymmetries found = find_symmetries(measure(make_ball(), paint_grey, placement));
     ASSERT_EQ(found.continuous.size(), 2U);
     EXPECT_TRUE(found.discrete.empty());
-    EXPECT_LT(std::abs(found.continuous[0].axis.dot(found.continuous[1].axis)), 1e-9);
-    for (const auto& c : found.continuous)
-      EXPECT_LT((c.offset - placement.object_from_shape.translation).norm(), 0.001);
+    EXPECT_LT(std::abs(found.continuous[0].direction.dot(found.continuous[1].direction)), 1e-9);
+    for (const auto& c : found.continuous) EXPECT_LT((c.point - placement.object_from_shape.translation).norm(), 0.001);
   }
 }
 
@@ -364,8 +364,8 @@ TEST(FindSymmetries, OnAnyNumberOfThreadsAreTheSame) {
       EXPECT_EQ(parallel.discrete[i].matrix(), serial.discrete[i].matrix());
     ASSERT_EQ(parallel.continuous.size(), serial.continuous.size());
     for (std::size_t i = 0; i < serial.continuous.size(); ++i) {
-      EXPECT_EQ(parallel.continuous[i].axis, serial.continuous[i].axis);
-      EXPECT_EQ(parallel.continuous[i].offset, serial.continuous[i].offset);
+      EXPECT_EQ(parallel.continuous[i].direction, serial.continuous[i].direction);
+      EXPECT_EQ(parallel.continuous[i].point, serial.continuous[i].point);
     }
   }
 }

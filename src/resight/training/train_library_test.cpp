@@ -210,7 +210,7 @@ TEST(TrainSurface, OfProceduralObjectsHasTheSymmetriesTheyWereDrawnWith) {
     ASSERT_EQ(found.discrete.size(), object.symmetries.discrete.size());
     symmetric += found.none() ? 0 : 1;
     for (std::size_t i = 0; i < found.continuous.size(); ++i)
-      EXPECT_LT(found.continuous[i].axis.cross(object.symmetries.continuous[i].axis).norm(), 0.01);
+      EXPECT_LT(found.continuous[i].direction.cross(object.symmetries.continuous[i].direction).norm(), 0.01);
     for (const Rigid3& motion : found.discrete)
       EXPECT_LT(symmetric_rotation_distance_rad(motion, Rigid3::identity(), object.symmetries), 0.02);
   }

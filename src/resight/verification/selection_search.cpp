@@ -19,34 +19,32 @@ struct Move {
   int add = -1;
 };
 
-// Number of points that each two members of the component both explain; members by position.
-std::vector<int> count_shared_points(const SelectionProblem& problem, const std::vector<int>& members) {
-  const std::size_t n = members.size();
-  std::vector<std::vector<int>> users(static_cast<std::size_t>(problem.num_points));
-  for (std::size_t m = 0; m < n; ++m)
+// The members, by position, that explain each point.
+std::vector<std::vector<int>> find_explaining_members(const SelectionProblem& problem,
+                                                      const std::vector<int>& members) {
+  std::vector<std::vector<int>> explaining(static_cast<std::size_t>(problem.num_points));
+  for (std::size_t m = 0; m < members.size(); ++m)
     for (const FixedWeight& w : problem.weights[members[m]])
-      if (w.explained > 0) users[w.point].push_back(static_cast<int>(m));
-  std::vector<int> shared(n * n, 0);
-  for (const auto& point_users : users)
-    for (const int a : point_users)
-      for (const int b : point_users) ++shared[static_cast<std::size_t>(a) * n + b];
-  return shared;
-}
-
-bool in_conflict(const SelectionProblem& problem, int a, int b) {
-  return std::any_of(problem.conflicts[a].begin(), problem.conflicts[a].end(),
-                     [b](const auto& conflict) { return conflict.other == b; });
+      if (w.explained > 0) explaining[w.point].push_back(static_cast<int>(m));
+  return explaining;
 }
 
 std::vector<Move> list_moves(const SelectionProblem& problem, const std::vector<int>& members, int min_shared_points) {
-  const std::vector<int> shared = count_shared_points(problem, members);
+  const std::vector<std::vector<int>> explaining = find_explaining_members(problem, members);
   std::vector<Move> moves;
   for (const int c : members) moves.push_back({-1, c});
-  for (std::size_t a = 0; a < members.size(); ++a)
-    for (std::size_t b = 0; b < members.size(); ++b)
-      if (a != b &&
-          (shared[a * members.size() + b] > min_shared_points || in_conflict(problem, members[a], members[b])))
-        moves.push_back({members[a], members[b]});
+  for (const int a : members) {
+    std::vector<int> num_shared(members.size(), 0);
+    for (const FixedWeight& w : problem.weights[a])
+      if (w.explained > 0)
+        for (const int m : explaining[w.point]) ++num_shared[m];
+    std::vector<std::uint8_t> in_conflict(static_cast<std::size_t>(problem.num_candidates()), 0);
+    for (const SelectionProblem::Conflict& conflict : problem.conflicts[a]) in_conflict[conflict.other] = 1;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const int b = members[m];
+      if (a != b && (num_shared[m] > min_shared_points || in_conflict[b] != 0)) moves.push_back({a, b});
+    }
+  }
   return moves;
 }
 

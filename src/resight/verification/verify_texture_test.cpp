@@ -27,7 +27,7 @@ Solid printed_can() {
 TEST(VerifyTexture, RotatesRoundObjectsToTheBestTexture) {
   const Solid can = printed_can();
   ModelLibrary library{.objects = {make_model("can", can)}};
-  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  library.objects[0].shape_symmetries.continuous.push_back({.direction = kZ});
   const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
   const auto angle_left_deg = [&](double turned_deg, std::optional<double> step_rad) {
     const Rigid3 pose = can.world_from_object * Rigid3::from_axis_angle(kZ, turned_deg / 57.29578);
@@ -58,7 +58,7 @@ TEST(VerifyTexture, NoRotationToAWorseFit) {
   can.world_from_object = on_table(0, 0, 0.06);
   can.paint = painted(1);
   ModelLibrary library{.objects = {make_model("can", can)}};
-  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});
+  library.objects[0].shape_symmetries.continuous.push_back({.direction = kZ});
   can.paint = painted(1.7);
   const Fixture f({.solids = {can}}, {look_at({0.8, 0, 0.4}, {0, 0, 0.05})});
   const VerifyResult result =
@@ -79,7 +79,7 @@ TEST(VerifyTexture, AnUntexturedCanIsNotRotated) {
   can.paint = stained(90);
   ModelLibrary library{.objects = {make_model("can", can)}};
   can.paint = stained(120);
-  library.objects[0].shape_symmetries.continuous.push_back({.axis = kZ});  // As if its own had been overlooked.
+  library.objects[0].shape_symmetries.continuous.push_back({.direction = kZ});  // As if its own had been overlooked.
   const Fixture f({.solids = {can}}, circle_of_cameras(2, 0.8, 0.4, 1.0));
   const VerifyResult result =
       f.verify({make_hypothesis(0, can.world_from_object)}, library, {.refine = {.symmetry_step_rad = 0.1745}});

@@ -7,18 +7,10 @@
 #include "resight/geometry/kd_tree.hpp"
 #include "resight/geometry/point_cloud.hpp"
 #include "resight/geometry/rigid3.hpp"
+#include "resight/geometry/symmetry.hpp"
 #include "resight/training/symmetry_detection.hpp"
 
 namespace resight::internal {
-
-/// A rotation axis in the object frame.
-struct RotationAxis {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< Unit vector.
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< Metres.
-};
-
-/// Rotation by `angle_rad` about the axis.
-[[nodiscard]] Rigid3 rotation_about(const RotationAxis& axis, double angle_rad);
 
 /// Compares a surface with itself after a motion.
 class SelfOverlap {
