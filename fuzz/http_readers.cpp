@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using Seeds = std::vector<std::string>;
 
 constexpr const char* kToken = "0";
-constexpr int kMaxRevision = 200;  // Then the project begins anew.
+constexpr int kMaxRevision = 25;  // Then the project begins anew.
 
 /// Two views of a wall.
 class WallViews : public Sequence {

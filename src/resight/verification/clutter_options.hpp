@@ -46,7 +46,8 @@ struct ClutterOptions {
 };
 
 inline void declare(OptionVisitor& v, ClutterOptions& o) {
-  v.field("radius_m", o.radius_m, positive(), "Clutter is counted within this distance of an explained point.", "V4R");
+  v.field("radius_m", o.radius_m, between(1e-4, 1), "Clutter is counted within this distance of an explained point.",
+          "V4R");
   v.field("weight", o.weight, between(0, 1000), "Cost of a clutter point. 0: clutter costs nothing.");
   v.choice("rule", o.rule,
            {{"segments", "the rest of smooth segments that are explained in part (V4R)"},

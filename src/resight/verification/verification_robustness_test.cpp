@@ -112,6 +112,11 @@ TEST(VerifyHypotheses, RefusesTheCallersMistakes) {
   EXPECT_THROW(f.verify(good, library, {.acceptance = {.min_visible_share = 2}}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.appearance = {.sigma_l = std::numeric_limits<double>::quiet_NaN()}}),
                std::invalid_argument);
+  // Grids of such cells or reaches would not fit into the memory, and such a deviation made scores NaN.
+  EXPECT_THROW(f.verify(good, library, {.resolution_m = 1e-300}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.support = {.max_distance_m = 100}}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.clutter = {.radius_m = 1e300}}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.appearance = {.sigma_ab = 1e300}}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.num_threads = 0}), std::invalid_argument);
   Hypothesis broken = good[0];
   broken.world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();
