@@ -19,13 +19,13 @@ struct Move {
   int add = -1;
 };
 
-// The members, by position, that explain each point.
+// The members that explain each point.
 std::vector<std::vector<int>> find_explaining_members(const SelectionProblem& problem,
                                                       const std::vector<int>& members) {
   std::vector<std::vector<int>> explaining(static_cast<std::size_t>(problem.num_points));
-  for (std::size_t m = 0; m < members.size(); ++m)
-    for (const FixedWeight& w : problem.weights[members[m]])
-      if (w.explained > 0) explaining[w.point].push_back(static_cast<int>(m));
+  for (const int c : members)
+    for (const FixedWeight& w : problem.weights[c])
+      if (w.explained > 0) explaining[w.point].push_back(c);
   return explaining;
 }
 
@@ -33,17 +33,18 @@ std::vector<Move> list_moves(const SelectionProblem& problem, const std::vector<
   const std::vector<std::vector<int>> explaining = find_explaining_members(problem, members);
   std::vector<Move> moves;
   for (const int c : members) moves.push_back({-1, c});
+  const auto n = static_cast<std::size_t>(problem.num_candidates());
+  std::vector<int> num_shared(n);
+  std::vector<std::uint8_t> in_conflict(n);
   for (const int a : members) {
-    std::vector<int> num_shared(members.size(), 0);
+    std::ranges::fill(num_shared, 0);
+    std::ranges::fill(in_conflict, 0);
     for (const FixedWeight& w : problem.weights[a])
       if (w.explained > 0)
-        for (const int m : explaining[w.point]) ++num_shared[m];
-    std::vector<std::uint8_t> in_conflict(static_cast<std::size_t>(problem.num_candidates()), 0);
+        for (const int c : explaining[w.point]) ++num_shared[c];
     for (const SelectionProblem::Conflict& conflict : problem.conflicts[a]) in_conflict[conflict.other] = 1;
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      const int b = members[m];
-      if (a != b && (num_shared[m] > min_shared_points || in_conflict[b] != 0)) moves.push_back({a, b});
-    }
+    for (const int b : members)
+      if (a != b && (num_shared[b] > min_shared_points || in_conflict[b] != 0)) moves.push_back({a, b});
   }
   return moves;
 }
