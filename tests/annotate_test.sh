@@ -24,7 +24,9 @@ RESIGHT=$resight MODELS=$work/models.resight SEQUENCE=$sequence PROJECT=$work/pr
 cd "$work" || exit 1
 restart() {
   rm -f start.txt
-  timeout 60 "$resight" annotate --models models.resight --sequence "$sequence" --out project --no-open >start.txt &
+  # Without --foreground, timeout sends the signal twice, and the second one interrupts the export.
+  timeout --foreground 60 "$resight" annotate --models models.resight --sequence "$sequence" --out project --no-open \
+    >start.txt &
   local pid=$!
   for _ in $(seq 300); do [ -s start.txt ] && break; sleep 0.1; done
   kill -INT $pid

@@ -36,7 +36,7 @@ void LineFile::sync() {
   // std::ofstream hides its descriptor, and fsync() takes any descriptor of the file.
   const int descriptor = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail_to_write(file_, errno);
-  const int code = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  const int code = sync_file(descriptor);
   ::close(descriptor);
   if (code != 0) fail_to_write(file_, code);
 }

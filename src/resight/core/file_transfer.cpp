@@ -164,7 +164,7 @@ Result<void> FileTransfer::write_journal() const {
   const fs::path journal = to_ / kTransferJournal;
   const int descriptor = ::open(journal.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   int code = descriptor < 0 ? errno : write_all(descriptor, text);
-  if (code == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) code = errno;
+  if (code == 0) code = sync_file(descriptor);
   if (descriptor >= 0) ::close(descriptor);
   if (code == 0) {
     sync_folder(to_);

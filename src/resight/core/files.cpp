@@ -58,6 +58,8 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
+int sync_file(int descriptor) { return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno; }
+
 int write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
@@ -149,7 +151,7 @@ Result<void> OutputFile::append(std::string_view bytes) {
 }
 
 Result<void> OutputFile::commit() {
-  if (::fsync(place_->descriptor()) != 0 && errno != EINVAL) return fail_with(errno);
+  if (const int code = sync_file(place_->descriptor()); code != 0) return fail_with(code);
   return place_->finish([&]() -> Result<void> {
     if (std::rename(place_->path().c_str(), clean_path(file_).c_str()) != 0) return fail_with(errno);
     return {};

@@ -30,6 +30,9 @@ namespace resight {
 /// Writes the entries of a folder to the disk, so that its new files survive a power failure. Ignores errors: some file
 /// systems cannot.
 void sync_folder(const std::filesystem::path& folder);
+/// Writes the content of an open file to the disk. Returns 0, also for what cannot be synced, such as a pipe, or the
+/// error number.
+[[nodiscard]] int sync_file(int descriptor);
 
 /// Behaviour of PendingDirectory if the folder exists and is not empty.
 enum class ExistingFolder {

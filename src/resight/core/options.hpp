@@ -30,6 +30,8 @@ struct OptionRange {
 [[nodiscard]] constexpr OptionRange positive() { return {.min = 0, .excludes_min = true}; }
 [[nodiscard]] constexpr OptionRange at_least(double min) { return {.min = min}; }
 [[nodiscard]] constexpr OptionRange between(double min, double max) { return {.min = min, .max = max}; }
+/// Cell sizes and search radii of grids of points: finer or wider ones would take all memory, or minutes.
+[[nodiscard]] constexpr OptionRange grid_length_m() { return between(1e-4, 1); }
 
 /// One value of an option that names its values.
 struct OptionAlternative {

@@ -46,7 +46,7 @@ struct ClutterOptions {
 };
 
 inline void declare(OptionVisitor& v, ClutterOptions& o) {
-  v.field("radius_m", o.radius_m, between(1e-4, 1), "Clutter is counted within this distance of an explained point.",
+  v.field("radius_m", o.radius_m, grid_length_m(), "Clutter is counted within this distance of an explained point.",
           "V4R");
   v.field("weight", o.weight, between(0, 1000), "Cost of a clutter point. 0: clutter costs nothing.");
   v.choice("rule", o.rule,

@@ -28,7 +28,7 @@ inline void declare(OptionVisitor& v, RefinePoseOptions& o) {
       "max_iterations", o.max_iterations, at_least(1),
       "Iterations of point-to-plane ICP on a third of the points; up to six more on all. off: poses stay as they are.",
       "Chen and Medioni 1992");
-  v.field("max_distance_m", o.max_distance_m, between(1e-4, 1),
+  v.field("max_distance_m", o.max_distance_m, grid_length_m(),
           "Largest distance of a pair; weights fall to 0 there (Tukey).");
   v.field("max_normal_angle_rad", o.max_normal_angle_rad, between(0, std::numbers::pi / 2),
           "Largest angle between the normals of a pair (45 deg).");

@@ -117,6 +117,8 @@ TEST(VerifyHypotheses, RefusesTheCallersMistakes) {
   EXPECT_THROW(f.verify(good, library, {.support = {.max_distance_m = 100}}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.clutter = {.radius_m = 1e300}}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.appearance = {.sigma_ab = 1e300}}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.appearance = {.sigma_l = 1e300}}), std::invalid_argument);
+  EXPECT_THROW(f.verify(good, library, {.refine = {.max_distance_m = 1e300}}), std::invalid_argument);
   EXPECT_THROW(f.verify(good, library, {.num_threads = 0}), std::invalid_argument);
   Hypothesis broken = good[0];
   broken.world_from_object.translation.x() = std::numeric_limits<double>::quiet_NaN();

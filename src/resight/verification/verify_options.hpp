@@ -22,7 +22,7 @@ struct SupportOptions {
 };
 
 inline void declare(OptionVisitor& v, SupportOptions& o) {
-  v.field("max_distance_m", o.max_distance_m, between(1e-4, 1),
+  v.field("max_distance_m", o.max_distance_m, grid_length_m(),
           "A scene point explains a model point within this distance.", "V4R");
   v.field("min_weight", o.min_weight, between(0, 1),
           "Product of the weights by distance and by colour from which a visible model point is explained. 0: every "
@@ -63,7 +63,7 @@ struct VerifyOptions {
 };
 
 inline void declare(OptionVisitor& v, VerifyOptions& o) {
-  v.field("resolution_m", o.resolution_m, between(1e-4, 1),
+  v.field("resolution_m", o.resolution_m, grid_length_m(),
           "Models and scene are downsampled to one point per voxel of this size. Smaller: slower, finer.", "V4R");
   v.group("support", o.support);
   v.group("visibility", o.visibility);
