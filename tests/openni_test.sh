@@ -46,6 +46,10 @@ LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight -
   --out no >lines 2>err
 [ $? = 2 ] || fail "a file that is no recording is no bad input: $(cat err)"
 
+LD_LIBRARY_PATH=camera timeout 60 "${recognize[@]}" --out no --every 2 >lines 2>err
+[ $? = 2 ] || fail "--every is no bad input for a camera: $(cat err)"
+grep -q 'resight: --every does not apply' err || fail "the message does not name --every: $(cat err)"
+
 mkfifo pipe.oni
 LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight --camera "openni2:$PWD/pipe.oni" \
   --out no >lines 2>err

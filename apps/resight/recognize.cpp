@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "camera_run.hpp"
 #include "commands.hpp"
@@ -163,6 +165,14 @@ void recognize_recorded(const Sequence& sequence, RunFiles& files, const Recogni
   viewer->finish(run, std::move(trace));
 }
 
+/// `given`: names and values in turn.
+void check_camera_options(const std::vector<std::string>& given) {
+  constexpr std::string_view kApply[] = {"--intrinsics", "--sensor", "--depth-bias", "--max-views"};
+  for (std::size_t i = 0; i < given.size(); i += 2)
+    if (std::ranges::find(kApply, given[i]) == std::end(kApply))
+      throw InputError(given[i] + " does not apply to the views of --camera");
+}
+
 }  // namespace
 
 void run_recognize(const RecognizeArguments& arguments) {
@@ -186,6 +196,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   if (!arguments.camera.empty()) {
     if (arguments.poses != "given" && arguments.poses != "fixed")
       throw InputError("the camera of --camera must not move: give --poses fixed or none");
+    check_camera_options(arguments.given_input);
     CameraViews views(arguments.camera, arguments.input, arguments.follow);
     return recognize_live(views, arguments, library, config);
   }
