@@ -10,6 +10,7 @@
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/io/internal/time_pairs.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
 
 namespace resight::io {
@@ -190,19 +191,18 @@ std::vector<ImagePair> pair_by_key(const FileSeries& color, const FileSeries& de
   return pairs;
 }
 
-std::vector<ImagePair> pair_by_time(const FileSeries& color, const FileSeries& depth) {
-  std::vector<SeriesFile> depths;
-  for (const auto& [key, file] : depth.files)
-    if (!std::isnan(file.time_s)) depths.push_back(file);
-  std::ranges::sort(depths, {}, &SeriesFile::time_s);
+std::vector<double> times_of(const FileSeries& series) {
+  std::vector<double> times_s;
+  for (const auto& [key, file] : series.files) times_s.push_back(file.time_s);
+  return times_s;
+}
+
+std::vector<ImagePair> pair_series_by_time(const FileSeries& color, const FileSeries& depth) {
+  const std::vector<std::pair<std::string, SeriesFile>> colors(color.files.begin(), color.files.end());
+  const std::vector<std::pair<std::string, SeriesFile>> depths(depth.files.begin(), depth.files.end());
   std::vector<ImagePair> pairs;
-  for (const auto& [key, file] : color.files) {
-    if (std::isnan(file.time_s) || depths.empty()) continue;
-    auto it = std::ranges::lower_bound(depths, file.time_s, {}, &SeriesFile::time_s);
-    if (it == depths.end() || (it != depths.begin() && file.time_s - std::prev(it)->time_s < it->time_s - file.time_s))
-      --it;
-    if (std::abs(it->time_s - file.time_s) <= kMaxImageGap_s) pairs.push_back({file, *it, key});
-  }
+  for (const TimePair& pair : pair_by_time(times_of(color), times_of(depth), kMaxImageGap_s))
+    pairs.push_back({colors[pair.color].second, depths[pair.depth].second, colors[pair.color].first});
   return pairs;
 }
 
@@ -221,7 +221,7 @@ bool holds_kind(const std::vector<FileSeries>& all, SeriesKind kind) {
 
 std::vector<ImagePair> find_pairs(const FileSeries& color, const FileSeries& depth) {
   std::vector<ImagePair> pairs = pair_by_key(color, depth);
-  return pairs.empty() ? pair_by_time(color, depth) : pairs;
+  return pairs.empty() ? pair_series_by_time(color, depth) : pairs;
 }
 
 struct RankedSeries {

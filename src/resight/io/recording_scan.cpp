@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/internal/recording_scan.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "resight/io/internal/time_pairs.hpp"
 
 namespace resight::io {
 namespace {
@@ -12,20 +12,18 @@ using StampOf = std::int64_t (*)(const StampedImage&);
 std::int64_t header_stamp(const StampedImage& image) { return image.stamp_ns; }
 std::int64_t recorded_stamp(const StampedImage& image) { return image.entry.time_ns; }
 
-std::vector<RecordedPair> pair_by(StampOf stamp_of, std::vector<StampedImage> colors, std::vector<StampedImage> depths,
-                                  double max_difference_s) {
-  std::ranges::stable_sort(colors, {}, stamp_of);
-  std::ranges::stable_sort(depths, {}, stamp_of);
+std::vector<double> times_of(const std::vector<StampedImage>& images, StampOf stamp_of) {
+  std::vector<double> times_s;
+  for (const StampedImage& image : images) times_s.push_back(static_cast<double>(stamp_of(image)) * 1e-9);
+  return times_s;
+}
+
+std::vector<RecordedPair> pair_by(StampOf stamp_of, const RecordingScan& scan, double max_difference_s) {
   std::vector<RecordedPair> pairs;
-  std::size_t next = 0;
-  for (const StampedImage& color : colors) {
-    const auto distance_s = [&](std::size_t i) {
-      return std::abs(static_cast<double>(stamp_of(depths[i])) - static_cast<double>(stamp_of(color))) * 1e-9;
-    };
-    while (next + 1 < depths.size() && distance_s(next + 1) <= distance_s(next)) ++next;
-    if (next >= depths.size() || distance_s(next) > max_difference_s) continue;
-    pairs.push_back({color.entry, depths[next].entry, depths[next].stamp_ns});
-    ++next;
+  const auto found = pair_by_time(times_of(scan.colors, stamp_of), times_of(scan.depths, stamp_of), max_difference_s);
+  for (const TimePair& pair : found) {
+    const StampedImage& depth = scan.depths[pair.depth];
+    pairs.push_back({scan.colors[pair.color].entry, depth.entry, depth.stamp_ns});
   }
   return pairs;
 }
@@ -60,8 +58,8 @@ RecordingScan scan_recording(const Recording& recording, const ViewTopics& topic
 }
 
 RecordedPairs pair_images(const RecordingScan& scan, double max_difference_s) {
-  auto by_header = pair_by(&header_stamp, scan.colors, scan.depths, max_difference_s);
-  auto by_recording = pair_by(&recorded_stamp, scan.colors, scan.depths, max_difference_s);
+  auto by_header = pair_by(&header_stamp, scan, max_difference_s);
+  auto by_recording = pair_by(&recorded_stamp, scan, max_difference_s);
   const bool clocks_differ = by_header.size() * 4 < by_recording.size();
   return {clocks_differ ? std::move(by_recording) : std::move(by_header), clocks_differ};
 }

@@ -11,6 +11,7 @@
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
+#include "resight/io/internal/time_pairs.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
 
 namespace resight::io {
@@ -46,8 +47,13 @@ Result<std::vector<StampedFile>> read_file_list(const fs::path& list) {
     return true;
   });
   if (!done) return done.error();
-  std::ranges::stable_sort(files, {}, &StampedFile::time_s);
   return files;
+}
+
+std::vector<double> times_of(const std::vector<StampedFile>& files) {
+  std::vector<double> times_s;
+  for (const StampedFile& file : files) times_s.push_back(file.time_s);
+  return times_s;
 }
 
 using ImagePairs = std::vector<std::pair<StampedFile, StampedFile>>;  ///< Colour and depth.
@@ -72,20 +78,14 @@ Result<ImagePairs> read_associations(const fs::path& file) {
   return pairs;
 }
 
-/// Pairs each colour image with the depth image nearest in time. A depth image belongs to the first colour image that
-/// claims it.
 Result<ImagePairs> associate(const fs::path& directory) {
   const auto colors = read_file_list(directory / "rgb.txt");
   if (!colors) return colors.error();
   const auto depths = read_file_list(directory / "depth.txt");
   if (!depths) return depths.error();
   ImagePairs pairs;
-  std::size_t next = 0;
-  for (const StampedFile& color : *colors) {
-    const auto distance = [&](std::size_t i) { return std::abs((*depths)[i].time_s - color.time_s); };
-    while (next + 1 < depths->size() && distance(next + 1) <= distance(next)) ++next;
-    if (next < depths->size() && distance(next) <= kMaxImageGap_s) pairs.emplace_back(color, (*depths)[next++]);
-  }
+  for (const TimePair& pair : pair_by_time(times_of(*colors), times_of(*depths), kMaxImageGap_s))
+    pairs.emplace_back((*colors)[pair.color], (*depths)[pair.depth]);
   return pairs;
 }
 
