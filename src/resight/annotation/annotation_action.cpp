@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "resight/annotation/annotation_json.hpp"
+#include "resight/core/json_integer.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/io/parse_json.hpp"
 
@@ -39,11 +40,9 @@ class Reader {
   int integer(const char* key, std::optional<int> missing = std::nullopt) {
     const json& value = find(key);
     if (value.is_null() && missing) return *missing;
-    if (!value.is_number_integer()) return fail(0);
-    constexpr std::int64_t kLargest = std::numeric_limits<int>::max() / 2;
-    if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{kLargest}) return fail(0);
-    const auto number = value.get<std::int64_t>();
-    return number >= -kLargest && number <= kLargest ? static_cast<int>(number) : fail(0);
+    constexpr int kLargest = std::numeric_limits<int>::max() / 2;
+    const auto number = json_integer(value, -kLargest, kLargest);
+    return number ? *number : fail(0);
   }
   bool boolean(const char* key) {
     const json& value = find(key);
@@ -209,9 +208,7 @@ std::optional<PixelRuns> runs_from_json(const json& numbers) {
   PixelRuns runs;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
     const auto pixel = [&](const json& number) {
-      return number.is_number_unsigned() && number.get<std::uint64_t>() <= std::numeric_limits<int>::max()
-                 ? number.get<int>()
-                 : -1;
+      return json_integer(number, 0, std::numeric_limits<int>::max()).value_or(-1);
     };
     runs.push_back({pixel(numbers[i]), pixel(numbers[i + 1])});
   }

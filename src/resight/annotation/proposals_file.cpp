@@ -12,6 +12,7 @@
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/json_integer.hpp"
 #include "resight/io/parse_json.hpp"
 
 namespace resight {
@@ -76,20 +77,18 @@ std::optional<ChangeProposal> proposal_from_json(const json& object, int num_vie
     const auto found = object.find(key);
     return found == object.end() ? kNone : *found;
   };
-  const json& view = at("view");
-  const json& num_points = at("num_points");
+  const auto view = json_integer(at("view"), 0, num_views - 1);
+  const auto num_points = json_integer(at("num_points"), 0, 1 << 30);
   const auto points = numbers_of(at("points"));
   const auto size_m = numbers_of(at("size_m"));
   const auto pose = annotation::pose_from_json(at("pose"));
   auto pixels = annotation::runs_from_json(at("pixels"));
-  const auto is_count = [](const json& number) { return number.is_number_unsigned() && number <= 1 << 30; };
-  if (!is_count(view) || view >= num_views || !is_count(num_points) || !points || points->size() % 3 != 0 || !size_m ||
-      size_m->size() != 3 || !pose || !pixels)
+  if (!view || !num_points || !points || points->size() % 3 != 0 || !size_m || size_m->size() != 3 || !pose || !pixels)
     return std::nullopt;
   ChangeProposal proposal;
-  proposal.view = view.get<int>();
+  proposal.view = *view;
   proposal.kind = at("kind") == to_string(RegionKind::kRemoved) ? RegionKind::kRemoved : RegionKind::kNovel;
-  proposal.num_points = num_points.get<int>();
+  proposal.num_points = *num_points;
   for (std::size_t i = 0; i < points->size(); i += 3)
     proposal.points_in_world.push_back(Eigen::Vector3d((*points)[i], (*points)[i + 1], (*points)[i + 2]).cast<float>());
   proposal.box = {.world_from_box = *pose, .size_m = Eigen::Vector3d((*size_m)[0], (*size_m)[1], (*size_m)[2])};

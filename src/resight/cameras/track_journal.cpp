@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/cameras/track_journal.hpp"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -9,6 +10,7 @@
 
 #include "resight/core/files.hpp"
 #include "resight/core/input_file.hpp"
+#include "resight/core/json_integer.hpp"
 #include "resight/core/json_text.hpp"
 
 namespace resight {
@@ -27,6 +29,12 @@ ordered_json to_json(const Matrix& m) {
 
 ordered_json pose_json(const Rigid3& pose) {
   return {{"rotation", to_json(pose.rotation)}, {"translation", to_json(pose.translation)}};
+}
+
+int read_integer(const nlohmann::json& value, int least, int largest) {
+  const auto integer = json_integer(value, least, largest);
+  if (!integer) throw std::out_of_range("no whole number of this range");
+  return *integer;
 }
 
 template <typename Matrix>
@@ -68,18 +76,19 @@ std::optional<TrackerStep> read_line(const std::string& line, int view) {
     TrackerStep step;
     step.view.name = values.at("name").get<std::string>();
     step.view.world_from_camera = read_pose(values.at("world_from_camera"));
-    step.view.component = values.at("component").get<int>();
+    step.view.component = read_integer(values.at("component"), 0, view);
     step.view.is_keyframe = values.at("is_keyframe").get<bool>();
-    step.view.num_matches = values.at("num_matches").get<int>();
+    step.view.num_matches = read_integer(values.at("num_matches"), -1, std::numeric_limits<int>::max());
     step.view.overlap = values.at("overlap").get<double>();
     read_matrix(values.at("sigma"), step.view.sigma);
     for (const nlohmann::json& e : values.at("edges")) {
-      PoseEdge edge{e.at("a").get<int>(), e.at("b").get<int>(), read_pose(e.at("a_from_b")), {}};
+      PoseEdge edge{.a = read_integer(e.at("a"), 0, view - 1),
+                    .b = read_integer(e.at("b"), view, view),
+                    .a_from_b = read_pose(e.at("a_from_b")),
+                    .information = {}};
       read_matrix(e.at("information"), edge.information);
-      if (edge.a < 0 || edge.a >= view || edge.b != view) return std::nullopt;
       step.edges.push_back(edge);
     }
-    if (step.view.component < 0 || step.view.component > view) return std::nullopt;
     return step;
   } catch (const ordered_json::exception&) {
     return std::nullopt;

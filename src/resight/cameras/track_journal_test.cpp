@@ -27,6 +27,12 @@ PreparedView make_view(int v) {
       static_cast<std::uint64_t>(v + 1)));
 }
 
+/// Replaces the last number of this name.
+void replace_last(std::string& text, const std::string& key, const std::string& value) {
+  const std::size_t begin = text.rfind("\"" + key + "\":") + key.size() + 3;
+  text.replace(begin, text.find(',', begin) - begin, value);
+}
+
 class TrackJournalTest : public testing::Test {
  protected:
   TrackJournalTest() {
@@ -93,7 +99,10 @@ TEST_F(TrackJournalTest, OnlyWholeStepsOfTheSameJobCount) {
            [](std::string& text) { text.resize(text.size() - 1); },  // The end of the line is missing.
            [](std::string& text) { text[text.rfind("\"overlap\"")] = 'x'; },
            [](std::string& text) { text.insert(text.rfind("\"rotation\":[") + 12, "1"); },
-           [](std::string& text) { text[text.rfind("\"component\":0") + 12] = '9'; }}) {
+           [](std::string& text) { text[text.rfind("\"component\":0") + 12] = '9'; },
+           [](std::string& text) { replace_last(text, "num_matches", "1e32"); },
+           [](std::string& text) { replace_last(text, "num_matches", "0.5"); },
+           [](std::string& text) { replace_last(text, "component", "-1"); }}) {
     std::string text = good;
     spoil(text);
     ASSERT_TRUE(write_file(file_, text).ok());

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "resight/core/check.hpp"
+#include "resight/core/json_integer.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/evaluation/loss.hpp"
 
@@ -42,14 +43,12 @@ double optional_size_from(const StoredJson& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : size_from(value);
 }
 
-// A conversion of other numbers would be undefined.
 std::int64_t integer_from(const StoredJson& value, std::int64_t least, std::int64_t largest) {
-  const bool is_small = value.is_number_integer() &&
-                        !(value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{INT64_MAX});
-  if (!is_small || value.get<std::int64_t>() < least || value.get<std::int64_t>() > largest)
+  const auto integer = json_integer(value, least, largest);
+  if (!integer)
     throw std::runtime_error(value.dump() + " is no integer from " + std::to_string(least) + " to " +
                              std::to_string(largest));
-  return value.get<std::int64_t>();
+  return *integer;
 }
 int count_from(const StoredJson& value, int largest = kMaxCount) {
   return static_cast<int>(integer_from(value, 0, largest));

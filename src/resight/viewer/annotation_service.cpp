@@ -11,6 +11,7 @@
 #include "resight/annotation/matched_regions.hpp"
 #include "resight/annotation/place_by_click.hpp"
 #include "resight/annotation/refine_over_views.hpp"
+#include "resight/core/json_integer.hpp"
 #include "resight/core/json_text.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/io/parse_json.hpp"
@@ -43,9 +44,7 @@ HttpResponse refuse(std::string why) { return make_text_response(400, std::move(
 
 std::optional<int> whole_number(const json& body, const char* key, int count) {
   const auto found = body.find(key);
-  if (found == body.end() || !found->is_number_integer()) return std::nullopt;
-  const auto number = found->get<std::int64_t>();
-  return number >= 0 && number < count ? std::optional(static_cast<int>(number)) : std::nullopt;
+  return found == body.end() ? std::nullopt : json_integer(*found, 0, count - 1);
 }
 
 /// An object at a pose, as requests name it.
@@ -102,9 +101,8 @@ HttpResponse answer_action(AnnotationTask& task, const json& body) {
     return refuse("expected a revision and an action");
   auto action = parse_action(to_json_text(body["action"]));
   if (!action) return refuse(action.error().message);
-  const auto revision = body["revision"].get<std::int64_t>();
-  const bool is_number = revision >= 0 && revision < std::numeric_limits<int>::max();
-  const ActionOutcome outcome = task.project->act(*std::move(action), is_number ? static_cast<int>(revision) : -1);
+  const auto revision = json_integer(body["revision"], 0, std::numeric_limits<int>::max() - 1);
+  const ActionOutcome outcome = task.project->act(*std::move(action), revision.value_or(-1));
   switch (outcome.kind) {
     case ActionOutcome::Kind::kApplied:
       return answer_state(task);
