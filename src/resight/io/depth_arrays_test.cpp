@@ -68,6 +68,25 @@ TEST(DepthArrays, DeclaredSizesAreBounded) {
   EXPECT_THAT(parse_depth_exr(bytes, "d.exr", std::nullopt).error().message, HasSubstr("cut off"));
 }
 
+// OpenEXR reads a number of four bytes, and takes the rest of the value for an attribute of 2 GB.
+TEST(DepthArrays, AttributesHaveTheSizeOfTheirType) {
+  const std::string inner("b\0opaque\0\xf0\xff\xff\x7f", 13);
+  const std::string attributes[] = {
+      std::string("a\0int\0\x11\0\0\0xxxx", 14) + inner,
+      std::string("a\0chlist\0\x0e\0\0\0\0", 14) + inner,
+      std::string("a\0preview\0\x08\0\0\0\0\x40\0\0\0\x40\0\0", 22),
+      std::string("a\0stringvector\0\4\0\0\0\xf0\xff\xff\x7f", 23),
+      std::string("a\0floatvector\0\3\0\0\0xxx", 21),
+  };
+  const std::string good = *read_file(stored("single.exr"));
+  const std::string sound("a\0int\0\4\0\0\0xxxx", 14);
+  EXPECT_THAT(parse_depth_exr(std::string(good).insert(8, sound), "d.exr", std::nullopt).error().message,
+              HasSubstr("cannot be decoded"));  // What follows the header is not where it says.
+  for (const std::string& attribute : attributes)
+    EXPECT_THAT(parse_depth_exr(std::string(good).insert(8, attribute), "d.exr", std::nullopt).error().message,
+                HasSubstr("cut off"));
+}
+
 // A first part without fault, then one with an attribute of 688 MB, which OpenEXR would allocate.
 TEST(DepthArrays, AnOpenexrImageOfSeveralPartsIsRefused) {
   const std::string first("a\0string\0\1\0\0\0x\0", 15);

@@ -11,6 +11,7 @@
 #include <exception>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
@@ -41,6 +42,75 @@ class ByteStream : public Imf::IStream {
   std::uint64_t position_ = 0;
 };
 
+template <typename Number>
+Number read_little_endian(std::string_view bytes, std::size_t at) {
+  Number number = 0;
+  std::memcpy(&number, bytes.data() + at, sizeof(number));
+  return number;
+}
+
+bool is_channel_list(std::string_view value) {
+  constexpr std::size_t kTypeAndSampling = 16;
+  while (!value.empty() && value.front() != '\0') {
+    const std::size_t end_of_name = value.find('\0');
+    if (end_of_name == value.npos || value.size() - end_of_name < 1 + kTypeAndSampling) return false;
+    value.remove_prefix(end_of_name + 1 + kTypeAndSampling);
+  }
+  return value.size() == 1;
+}
+
+bool is_preview(std::string_view value) {
+  constexpr std::size_t kWidthAndHeight = 8;
+  if (value.size() < kWidthAndHeight) return false;
+  const auto width = std::uint64_t{read_little_endian<std::uint32_t>(value, 0)};
+  const auto height = std::uint64_t{read_little_endian<std::uint32_t>(value, 4)};
+  return width * height == (value.size() - kWidthAndHeight) / 4 && value.size() % 4 == 0;
+}
+
+bool is_text_list(std::string_view value) {
+  while (value.size() >= 4) {
+    const auto size = read_little_endian<std::uint32_t>(value, 0);
+    if (size > value.size() - 4) return false;
+    value.remove_prefix(4 + size);
+  }
+  return value.empty();
+}
+
+/// Whether a value is as large as OpenEXR reads it. For most types, it does not look at the size that the file
+/// declares, and would take the rest of the value for further attributes.
+bool has_sound_size(std::string_view type, std::string_view value) {
+  constexpr std::pair<std::string_view, std::size_t> kSizes[] = {{"box2f", 16},
+                                                                 {"box2i", 16},
+                                                                 {"chromaticities", 32},
+                                                                 {"compression", 1},
+                                                                 {"deepImageState", 1},
+                                                                 {"double", 8},
+                                                                 {"envmap", 1},
+                                                                 {"float", 4},
+                                                                 {"int", 4},
+                                                                 {"keycode", 28},
+                                                                 {"lineOrder", 1},
+                                                                 {"m33d", 72},
+                                                                 {"m33f", 36},
+                                                                 {"m44d", 128},
+                                                                 {"m44f", 64},
+                                                                 {"rational", 8},
+                                                                 {"tiledesc", 9},
+                                                                 {"timecode", 8},
+                                                                 {"v2d", 16},
+                                                                 {"v2f", 8},
+                                                                 {"v2i", 8},
+                                                                 {"v3d", 24},
+                                                                 {"v3f", 12},
+                                                                 {"v3i", 12}};
+  for (const auto& [name, size] : kSizes)
+    if (type == name) return value.size() == size;
+  if (type == "chlist") return is_channel_list(value);
+  if (type == "preview") return is_preview(value);
+  if (type == "stringvector") return is_text_list(value);
+  return type != "floatvector" || value.size() % 4 == 0;
+}
+
 /// Whether the attributes of the first header lie within the file. OpenEXR allocates what they declare.
 bool has_sound_header(std::string_view bytes) {
   constexpr std::size_t kMagicAndVersion = 8;
@@ -49,10 +119,11 @@ bool has_sound_header(std::string_view bytes) {
     const std::size_t end_of_name = bytes.find('\0', at);
     const std::size_t end_of_type = end_of_name == bytes.npos ? bytes.npos : bytes.find('\0', end_of_name + 1);
     if (end_of_type == bytes.npos || bytes.size() - end_of_type < 5) return false;
-    std::uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + end_of_type + 1, sizeof(size));
+    const auto size = read_little_endian<std::uint32_t>(bytes, end_of_type + 1);
     at = end_of_type + 5;
     if (size > bytes.size() - at) return false;
+    const std::string_view type = bytes.substr(end_of_name + 1, end_of_type - end_of_name - 1);
+    if (!has_sound_size(type, bytes.substr(at, size))) return false;
     at += size;
   }
   return at < bytes.size();
