@@ -132,7 +132,7 @@ cp -r "$work/data" "$work/renamed" && mkdir "$work/other" && mv "$work/renamed" 
 sed -i 's/"name": "/&my_/' "$work/other/data/models/models_info.json"
 find "$work/other/data" -name '*events.json' -exec sed -i 's/"object": "/&my_/' {} +
 find "$work/other/data" -name '*.changes' -delete
-dataset=$work/other/data evaluate renamed --without-clustering || fail "evaluate failed: $(cat "$work/renamed.log")"
+dataset=$work/other/data evaluate renamed --without-clustering --bop || fail "evaluate failed: $(cat "$work/renamed.log")"
 grep -q 'found by obj_id' "$work/renamed.log" || fail "other names bring no warning: $(cat "$work/renamed.log")"
 cmp -s "$work/whole/results.json" "$work/renamed/results.json" || fail "objects with other names gave other results"
 
@@ -156,6 +156,9 @@ for file in data/test/000002/scene_gt.json data/test/000001/depth/000001.png dat
   expect_stale "$file"
   mv "$work/unaltered" "$work/$file"
 done
+mkdir "$work/models" && echo '{}' >"$work/models/models_info.json" # A reader looks there, too.
+expect_stale "list of names three levels up"
+rm -r "$work/models"
 mv "$work/models.resight" "$work/unaltered"
 cp -r "$work/data/models" "$work/other_models" && sed -i 's/tea_box/box_of_tea/' "$work/other_models/models_info.json"
 "$resight" train "$work/other_models" --out "$work/models.resight" >/dev/null 2>&1 || fail "train failed"
@@ -170,8 +173,9 @@ expect_stale "program"
 resight=$program
 evaluate whole --without-clustering --merge || fail "unaltered data are stale: $(cat "$work/whole.log")"
 
-evaluate whole --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
+evaluate whole --without-clustering --merge --bop || fail "--bop failed: $(cat "$work/whole.log")"
 grep -qE '^[|] `mvr` [|] 0 [|] (0\.[1-9]|1\.0)' "$work/whole/bop.md" || fail "bop.md holds no recall: $(cat "$work/whole/bop.md")"
+cmp -s "$work/whole/bop.md" "$work/renamed/bop.md" || fail "objects with other names gave another BOP recall"
 
 ((failures == 0)) && echo "evaluate: all as expected"
 exit $((failures > 0))

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -33,7 +34,7 @@ class Evaluation {
       : arguments_(arguments),
         library_(value_or_throw(load_library(arguments.models, TrainOptions{}.hash()))),
         plan_(make_evaluation_plan(arguments)) {
-    if (arguments.bop) bop_objects_ = value_or_throw(read_bop_objects(plan_.models));
+    if (arguments.bop) bop_objects_ = value_or_throw(read_bop_objects(plan_.models, library_));
   }
 
   // Computes the missing runs of this shard. Finished runs are not computed again.
@@ -159,8 +160,9 @@ class Evaluation {
     for (const WorstView& worst : find_worst_views(runs, kNumPictures)) {
       const auto sequence = value_or_throw(open_evaluated(worst.run->sequence));
       const RgbdFrame frame = value_or_throw(sequence->read_view(worst.view));
-      const auto truth = value_or_throw(sequence->read_ground_truth(worst.view));
-      const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, truth, worst.evaluated()));
+      const SequenceTruth truth = value_or_throw(read_sequence_truth(*sequence, library_));
+      const auto& objects = truth.views[static_cast<std::size_t>(worst.view)].objects;
+      const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, objects, worst.evaluated()));
       pictures.insert(worst_view_picture(worst));
       value_or_throw(write_file(folder / worst_view_picture(worst),
                                 std::string_view(reinterpret_cast<const char*>(jpeg.data()), jpeg.size())));
@@ -171,7 +173,7 @@ class Evaluation {
   // Returns the text to be printed.
   std::string write_bop(const std::vector<EvaluatedRun>& runs, const std::filesystem::path& folder) const {
     const auto open = [this](const std::string& name) { return open_evaluated(name); };
-    const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, *bop_objects_, open)));
+    const std::string table = format_bop_table(value_or_throw(evaluate_bop(runs, *bop_objects_, library_, open)));
     value_or_throw(write_file(folder / "bop.md", table));
     return "\n" + table;
   }
@@ -193,9 +195,10 @@ class Evaluation {
     print("\n{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10}\n", "preset", "K", "precision", "recall", "F",
           "strict F", "ghosts", "/place", "s/view");
     for (const ConfigurationSummary& c : summarize_runs(runs))
-      print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7.2f} {:>10.2f}{}\n", c.preset, c.num_previous_views,
+      print("{:<10} {:>2} {:>9} {:>7} {:>7} {:>9} {:>7} {:>7} {:>10.2f}{}\n", c.preset, c.num_previous_views,
             format_share(c.score.precision()), format_share(c.score.recall()), format_share(c.score.f_score()),
-            format_share(c.strict_score.f_score()), c.ghosts.num_detections, c.ghosts.per_former_place(),
+            format_share(c.strict_score.f_score()), c.ghosts.num_detections,
+            std::isnan(c.ghosts.per_former_place()) ? "-" : fmt::format("{:.2f}", c.ghosts.per_former_place()),
             c.times.stages.total_wall_s() / c.num_views, c.is_clustered ? "" : "  without clustering");
     print("\ntables: {}\n", (arguments_.out / "tables.md").string());
   }

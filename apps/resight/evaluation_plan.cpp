@@ -190,22 +190,20 @@ std::uint64_t hash_folder(const fs::path& folder, std::uint64_t hash, const fs::
   return hash;
 }
 
-// Names and symmetries of the true objects of a BOP data set.
-std::uint64_t hash_object_names(const fs::path& dataset, std::uint64_t hash) {
-  for (const char* models : {"models", "models_eval", "models_cad", "models_fine"})
-    hash = hash_file(dataset / models / "models_info.json", hash);
+// Names and symmetries of the true objects of a BOP data set, in the folders in which its reader looks for them.
+std::uint64_t hash_object_names(const fs::path& sequence, std::uint64_t hash) {
+  fs::path dataset = sequence;
+  for (int level = 0; level < 3; ++level) {
+    dataset = dataset.parent_path();
+    for (const char* models : {"models", "models_eval", "models_cad", "models_fine"})
+      hash = hash_file(dataset / models / "models_info.json", hash);
+  }
   return hash;
-}
-
-// What all runs depend on: the program, the model library, and the objects of the data set.
-std::uint64_t hash_common(const fs::path& models, const EvaluationSequence& sequence) {
-  const std::uint64_t hash = hash_file(models, hash_file("/proc/self/exe", kHashSeed));
-  const fs::path data = sequence.folder.parent_path();
-  return hash_object_names(data, hash_object_names(data.parent_path(), hash_folder(sequence.unknown_models, hash)));
 }
 
 // The views and the truth of a sequence. Results may lie among them.
 std::uint64_t hash_sequence(const EvaluationSequence& sequence, const fs::path& out, std::uint64_t hash) {
+  hash = hash_object_names(sequence.folder, hash_folder(sequence.unknown_models, hash));
   hash = hash_file(sequence.changes.events, hash_folder(sequence.folder, hash, out));
   if (sequence.annotations != sequence.folder) hash = hash_folder(sequence.annotations, hash);
   return sequence.changes.changes.empty() ? hash : hash_file(sequence.changes.changes, hash);
@@ -275,7 +273,7 @@ EvaluationPlan make_evaluation_plan(const EvaluateArguments& arguments) {
   const std::vector<RecognizerConfig> configs = make_configs(arguments);
   int num_groups = 0;
   const std::vector<EvaluationSequence> sequences = find_sequences(arguments.dataset);
-  const std::uint64_t common_hash = hash_common(arguments.models, sequences.front());
+  const std::uint64_t common_hash = hash_file(arguments.models, hash_file("/proc/self/exe", kHashSeed));
   for (const EvaluationSequence& sequence : sequences) {
     const std::uint64_t hash = hash_sequence(sequence, arguments.out, common_hash);
     std::map<std::string, int> group_of;

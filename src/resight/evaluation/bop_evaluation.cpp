@@ -8,6 +8,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "resight/evaluation/change_truth.hpp"
 #include "resight/geometry/symmetry.hpp"
 #include "resight/io/model_source.hpp"
 
@@ -45,22 +46,29 @@ std::vector<DetectedObject> detections_of(const EvaluatedRun& run, int view) {
 
 }  // namespace
 
-Result<std::map<std::string, BopObject>> read_bop_objects(const std::filesystem::path& path) {
+Result<std::map<std::string, BopObject>> read_bop_objects(const std::filesystem::path& path,
+                                                          const ModelLibrary& library) {
   const auto locations = find_models({path});
   if (!locations) return locations.error();
   std::map<std::string, BopObject> objects;
+  std::map<std::string, BopObject> by_id;
   for (const ModelLocation& location : *locations) {
     auto source = read_model(location);
     if (!source) return source.error();
     if (!source->mesh || source->mesh->vertices.empty()) continue;
     const double diameter_m = diameter_of(*source->mesh);
-    objects[source->name] = {std::move(*source->mesh), enumerate_symmetries(source->symmetries), diameter_m};
+    BopObject object{std::move(*source->mesh), enumerate_symmetries(source->symmetries), diameter_m};
+    const auto known = std::ranges::find(library.objects, source->bop_id, &ObjectModel::bop_id);
+    if (source->bop_id > 0 && known != library.objects.end() && known->name != source->name)
+      by_id[known->name] = object;
+    objects[source->name] = std::move(object);
   }
+  objects.merge(by_id);
   return objects;
 }
 
 Result<std::vector<BopConfiguration>> evaluate_bop(
-    std::span<const EvaluatedRun> runs, const std::map<std::string, BopObject>& objects,
+    std::span<const EvaluatedRun> runs, const std::map<std::string, BopObject>& objects, const ModelLibrary& library,
     const std::function<Result<std::unique_ptr<Sequence>>(const std::string&)>& open) {
   std::vector<BopConfiguration> configurations;
   std::vector<BopRecallCounter> counters;
@@ -81,13 +89,14 @@ Result<std::vector<BopConfiguration>> evaluate_bop(
   for (const auto& [name, of_sequence] : by_sequence) {
     const auto sequence = open(name);
     if (!sequence) return sequence.error();
+    const auto truth = read_sequence_truth(**sequence, library);
+    if (!truth) return truth.error();
     for (int v = 0; v < (*sequence)->num_views(); ++v) {
       const auto frame = (*sequence)->read_view(v);
       if (!frame) return frame.error();
-      const auto truth = (*sequence)->read_ground_truth(v);
-      if (!truth) return truth.error();
       for (const EvaluatedRun* run : of_sequence)
-        counters[slot_of(*run)].add_view(*frame, *truth, detections_of(*run, v));
+        counters[slot_of(*run)].add_view(*frame, truth->views[static_cast<std::size_t>(v)].objects,
+                                         detections_of(*run, v));
     }
   }
   for (std::size_t i = 0; i < counters.size(); ++i) configurations[i].recall = counters[i].average_recall();
@@ -99,10 +108,11 @@ std::string format_bop_table(std::span<const BopConfiguration> configurations) {
       "# BOP average recall\n\nLocalization task: targets are at least 10 % visible; thresholds as in the "
       "benchmark.\n\n"
       "| preset | K | AR | AR VSD | AR MSSD | AR MSPD | targets |\n|---|---|---|---|---|---|---|\n";
+  const auto share = [](double recall) { return std::isnan(recall) ? "-" : fmt::format("{:.3f}", recall); };
   for (const BopConfiguration& c : configurations)
-    text += fmt::format("| `{}`{} | {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {} |\n", c.preset,
-                        c.is_clustered ? "" : " without clustering", c.num_previous_views, c.recall.mean(),
-                        c.recall.vsd, c.recall.mssd, c.recall.mspd, c.recall.num_targets);
+    text += fmt::format("| `{}`{} | {} | {} | {} | {} | {} | {} |\n", c.preset,
+                        c.is_clustered ? "" : " without clustering", c.num_previous_views, share(c.recall.mean()),
+                        share(c.recall.vsd), share(c.recall.mssd), share(c.recall.mspd), c.recall.num_targets);
   return text;
 }
 

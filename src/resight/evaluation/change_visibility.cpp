@@ -25,7 +25,7 @@ ChangeVisibilityFinder::ChangeVisibilityFinder(const ModelLibrary& library, cons
     : library_(library), truth_(truth), options_(options) {
   require(truth.changes.has_value(), "ChangeVisibilityFinder: the truth has no changes");
   visibilities_.resize(truth.changes->size(), {-1, -1, -1, -1});
-  for (const TrueChange& change : *truth.changes) stands_since_.push_back(find_arrival_before(change));
+  for (const TrueChange& change : *truth.changes) limits_.push_back(find_limits(change));
 }
 
 void ChangeVisibilityFinder::add_view(const RgbdFrame& frame) {
@@ -36,33 +36,44 @@ void ChangeVisibilityFinder::add_view(const RgbdFrame& frame) {
     const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
     const std::optional<Rigid3>& before = change.world_from_object_before;
     const std::optional<Rigid3>& after = change.world_from_object_after;
+    const Limits& limits = limits_[i];
     ChangeVisibility& visibility = visibilities_[i];
     if (change.view > view_) {
-      if (before && view_ >= stands_since_[i] && shows(frame, change.object, *before, model))
+      if (before && view_ >= limits.there_since && shows(frame, change.object, *before, model))
         visibility.last_there_view = view_;
-      if (after && looks_at(frame, *after, model) && !shows(frame, change.object, *after, model))
+      if (after && view_ >= limits.free_since && looks_at(frame, *after, model) &&
+          !shows(frame, change.object, *after, model))
         visibility.last_free_view = view_;
       continue;
     }
-    if (before && visibility.before_view < 0 && looks_at(frame, *before, model) &&
+    if (before && visibility.before_view < 0 && view_ < limits.free_until && looks_at(frame, *before, model) &&
         !shows(frame, change.object, *before, model))
       visibility.before_view = view_;
-    if (after && visibility.after_view < 0 && shows(frame, change.object, *after, model)) visibility.after_view = view_;
+    if (after && visibility.after_view < 0 && view_ < limits.there_until && shows(frame, change.object, *after, model))
+      visibility.after_view = view_;
   }
   ++view_;
 }
 
-// View of the last change that brought the object to the place it leaves; 0 if it was there from the first view on.
-int ChangeVisibilityFinder::find_arrival_before(const TrueChange& change) const {
+ChangeVisibilityFinder::Limits ChangeVisibilityFinder::find_limits(const TrueChange& change) const {
+  const int num_views = static_cast<int>(truth_.views.size());
+  Limits limits{.there_since = 0, .free_since = 0, .free_until = num_views, .there_until = num_views};
   const int object = library_.find(change.object);
-  if (object < 0 || !change.world_from_object_before) return 0;
+  if (object < 0) return limits;
   const ObjectModel& model = library_.objects[static_cast<std::size_t>(object)];
-  int since = 0;
-  for (const TrueChange& other : *truth_.changes)
-    if (other.object == change.object && other.view < change.view && other.world_from_object_after &&
-        is_within(compare_poses(*other.world_from_object_after, *change.world_from_object_before, model), options_))
-      since = std::max(since, other.view);
-  return since;
+  const auto is_same_place = [&](const std::optional<Rigid3>& a, const std::optional<Rigid3>& b) {
+    return a && b && is_within(compare_poses(*a, *b, model), options_);
+  };
+  for (const TrueChange& other : *truth_.changes) {
+    if (&other == &change || other.object != change.object) continue;
+    const bool comes_back = is_same_place(other.world_from_object_after, change.world_from_object_before);
+    const bool leaves_new_place = is_same_place(other.world_from_object_before, change.world_from_object_after);
+    if (comes_back && other.view < change.view) limits.there_since = std::max(limits.there_since, other.view);
+    if (comes_back && other.view >= change.view) limits.free_until = std::min(limits.free_until, other.view);
+    if (leaves_new_place && other.view <= change.view) limits.free_since = std::max(limits.free_since, other.view);
+    if (leaves_new_place && other.view > change.view) limits.there_until = std::min(limits.there_until, other.view);
+  }
+  return limits;
 }
 
 bool ChangeVisibilityFinder::shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,

@@ -11,14 +11,14 @@ namespace resight {
 
 /// What the views show of a change, by view number; -1 = never.
 struct ChangeVisibility {
-  /// First view from the change on that observes the former place: its centre is in the image and not occluded, and no
-  /// object of this kind is there.
+  /// First view from the change on, and until such an object comes back, that observes the former place: its centre is
+  /// in the image and not occluded, and no object of this kind is there.
   int before_view = -1;
-  /// First view from the change on with the object visible at its new place.
+  /// First view from the change on, and until it leaves again, with the object visible at its new place.
   int after_view = -1;
   /// Last view before the change, and since the object arrived there, with it visible at the former place.
   int last_there_view = -1;
-  /// Last view before the change that observes the new place without an object of this kind.
+  /// Last view before the change, and since such an object left there, that observes the new place without one.
   int last_free_view = -1;
 };
 
@@ -34,13 +34,20 @@ class ChangeVisibilityFinder {
  private:
   [[nodiscard]] bool shows(const RgbdFrame& frame, const std::string& object, const Rigid3& world_from_object,
                            const ObjectModel& model) const;
-  [[nodiscard]] int find_arrival_before(const TrueChange& change) const;
+  /// The views between the changes before and after it at the same places.
+  struct Limits {
+    int there_since = 0;
+    int free_since = 0;
+    int free_until = 0;   ///< The former place; not included.
+    int there_until = 0;  ///< At the new place; not included.
+  };
+  [[nodiscard]] Limits find_limits(const TrueChange& change) const;
 
   const ModelLibrary& library_;
   const SequenceTruth& truth_;
   MatchDetectionsOptions options_;
   std::vector<ChangeVisibility> visibilities_;
-  std::vector<int> stands_since_;  // Per change: the first view with the object at the place it leaves.
+  std::vector<Limits> limits_;  // Per change.
   int view_ = 0;
 };
 

@@ -81,11 +81,15 @@ class SequenceEvaluator {
   [[nodiscard]] std::vector<ReportedChange> reported_changes(
       const std::vector<std::vector<ObjectEvent>>& events) const {
     std::vector<ReportedChange> changes;
-    for (const std::vector<ObjectEvent>& of_view : events)
-      for (const ObjectEvent& e : of_view)
+    for (std::size_t v = 0; v < events.size(); ++v)
+      for (const ObjectEvent& e : events[v])
         if (is_change(e.kind))
-          changes.push_back({e.view, e.kind, library_.objects[static_cast<std::size_t>(e.object)].name,
-                             e.world_from_object_before, e.world_from_object_after});
+          changes.push_back({.view = e.view,
+                             .kind = e.kind,
+                             .object = library_.objects[static_cast<std::size_t>(e.object)].name,
+                             .world_from_object_before = e.world_from_object_before,
+                             .world_from_object_after = e.world_from_object_after,
+                             .reported_view = static_cast<int>(v)});
     return changes;
   }
 

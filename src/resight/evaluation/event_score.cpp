@@ -23,7 +23,7 @@ RecognitionScore score_matches(const std::vector<Truth>& truths, const std::vect
                                Counts&& counts, Hit&& hit) {
   RecognitionScore score;
   std::vector<char> used(truths.size(), 0);
-  const std::vector<int> truth_of = match_in_order(truths, reports, fits);
+  const std::vector<int> truth_of = match_in_order(truths, reports, fits, counts);
   for (std::size_t r = 0; r < reports.size(); ++r) {
     if (truth_of[r] < 0) {
       ++score.false_positives;
@@ -93,7 +93,7 @@ EventScore score_events(std::span<const TrueChange> changes, std::span<const Cha
       [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); },
       [](const SeenChange& t) { return t.counts(); },
       [&](const SeenChange& t, const ReportedChange& r) {
-        score.delays.push_back(std::max(0, r.view - t.known_since()));
+        score.delays.push_back(std::max(0, std::max(r.view, r.reported_view) - t.known_since()));
       });
   score.departures = score_halves(true_departures, departures, matcher);
   score.arrivals = score_halves(true_arrivals, arrivals, matcher);

@@ -20,11 +20,11 @@ struct EventScore {
 };
 
 /// Scores reported changes against the true changes of library objects. Pairs are chosen one to one, in order of their
-/// views; a report before its change is wrong. If the views show only one side of a move (see ChangeVisibility), a
-/// report of that removal or addition is right too, as is a report that the views cannot distinguish from the truth
-/// (reconcile_with_reports()). Changes that no view shows are neither hits nor misses, and reports of them are ignored.
-/// Throws std::invalid_argument unless `visibilities` has one entry per change and all reported objects are in the
-/// library.
+/// views, those with changes that no view shows last; a report before its change is wrong. If the views show only one
+/// side of a move (see ChangeVisibility), a report of that removal or addition is right too, as is a report that the
+/// views cannot distinguish from the truth (reconcile_with_reports()). Changes that no view shows are neither hits nor
+/// misses, and reports of them are ignored. Throws std::invalid_argument unless `visibilities` has one entry per change
+/// and all reported objects are in the library.
 [[nodiscard]] EventScore score_events(std::span<const TrueChange> changes,
                                       std::span<const ChangeVisibility> visibilities,
                                       std::span<const ReportedChange> reported, const ModelLibrary& library,

@@ -93,6 +93,18 @@ TEST(EventScore, WhatCouldNotBeSeenDoesNotCount) {
   EXPECT_EQ(score({addition}, {first_look}, {}).arrivals, (RecognitionScore{0, 0, 0}));
 }
 
+// A removal that no view shows comes before an equal one that is shown.
+TEST(EventScore, AReportBelongsToTheChangeThatTheViewsShow) {
+  const TrueChange unseen{1, Kind::kRemoved, "mug", true, pose_at(0), std::nullopt};
+  const TrueChange seen{4, Kind::kRemoved, "mug", true, pose_at(0), std::nullopt};
+  const ReportedChange report{4, Kind::kRemoved, "mug", pose_at(0), {}};
+  const EventScore one = score({unseen, seen}, {{-1, -1, -1, -1}, {4, -1, 3, -1}}, {report});
+  EXPECT_EQ(one.events, (RecognitionScore{1, 0, 0}));
+  EXPECT_EQ(one.departures, (RecognitionScore{1, 0, 0}));
+  const EventScore two = score({unseen, seen}, {{-1, -1, -1, -1}, {4, -1, 3, -1}}, {report, report});
+  EXPECT_EQ(two.events, (RecognitionScore{1, 0, 0})) << "the other one is of the removal that no view shows";
+}
+
 TEST(EventScore, OtherKindsAndUnknownObjectsAreNoChanges) {
   TrueChange of_stranger = kRemoval;
   of_stranger.object = "vase";

@@ -61,8 +61,10 @@ EvaluatedView score_view(int view_number, const TruthView& truth, std::span<cons
   for (const DetectionMatch& match : strict.matches) truth_of(match).found_strictly = true;
   for (const int d : loose.ignored_detections)
     view.detections[static_cast<std::size_t>(d)].verdict = DetectionVerdict::kIgnored;
-  for (const Ghost& ghost : find_ghosts(former_places, truth, view_number, detections, camera, library, options))
-    view.detections[static_cast<std::size_t>(ghost.detection)].verdict = DetectionVerdict::kGhost;
+  for (const Ghost& ghost : find_ghosts(former_places, truth, view_number, detections, camera, library, options)) {
+    DetectionVerdict& verdict = view.detections[static_cast<std::size_t>(ghost.detection)].verdict;
+    if (verdict == DetectionVerdict::kFalsePositive) verdict = DetectionVerdict::kGhost;
+  }
   view.num_detected_former_places =
       count_detected_former_places(former_places, truth.world_from_camera, view_number, detections, library, options);
   return view;

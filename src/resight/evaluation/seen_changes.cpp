@@ -114,11 +114,12 @@ bool ChangeMatcher::fits(const SeenChange& truth, const ReportedChange& report) 
 std::vector<SeenChange> reconcile_with_reports(std::vector<SeenChange> truths,
                                                const std::vector<ReportedChange>& reports,
                                                const ChangeMatcher& matcher) {
-  // Terminates: no step takes a truth away from the reports, and a step that adds none matches them to earlier ones.
+  // Terminates: no step takes a truth away from the reports, and a step that adds none matches them to better ones.
   for (bool changed = true; changed;) {
     changed = false;
     const std::vector<int> truth_of = match_in_order(
-        truths, reports, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); });
+        truths, reports, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); },
+        [](const SeenChange& t) { return t.counts(); });
     std::vector<char> used(truths.size(), 0);
     for (const int t : truth_of)
       if (t >= 0) used[static_cast<std::size_t>(t)] = 1;

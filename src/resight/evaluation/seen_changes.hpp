@@ -16,6 +16,7 @@ struct ReportedChange {
   std::string object;
   std::optional<Rigid3> world_from_object_before;
   std::optional<Rigid3> world_from_object_after;
+  int reported_view = 0;  ///< The view with which the report came, at or after `view`, at which the change happened.
 };
 
 /// A true change, and what the views show of it.
@@ -54,18 +55,21 @@ class ChangeMatcher {
 };
 
 /// Index of the truth of each report, or -1. In order, each report takes the first remaining truth that fits and is not
-/// of a later view.
-template <typename Truth, typename Report, typename Fits>
+/// of a later view; one that does not count only if no other fits.
+template <typename Truth, typename Report, typename Fits, typename Counts>
 [[nodiscard]] std::vector<int> match_in_order(const std::vector<Truth>& truths, const std::vector<Report>& reports,
-                                              Fits&& fits) {
+                                              Fits&& fits, Counts&& counts) {
   std::vector<int> truth_of(reports.size(), -1);
   std::vector<char> used(truths.size(), 0);
   for (std::size_t r = 0; r < reports.size(); ++r)
-    for (std::size_t t = 0; t < truths.size() && truth_of[r] < 0; ++t) {
-      if (used[t] || truths[t].view > reports[r].view || !fits(truths[t], reports[r])) continue;
-      used[t] = 1;
-      truth_of[r] = static_cast<int>(t);
-    }
+    for (const bool must_count : {true, false})
+      for (std::size_t t = 0; t < truths.size() && truth_of[r] < 0; ++t) {
+        if (used[t] || truths[t].view > reports[r].view || counts(truths[t]) != must_count ||
+            !fits(truths[t], reports[r]))
+          continue;
+        used[t] = 1;
+        truth_of[r] = static_cast<int>(t);
+      }
   return truth_of;
 }
 

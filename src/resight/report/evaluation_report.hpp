@@ -32,7 +32,7 @@ struct EvaluationHeader {
 /// (Table III), and per stage.
 [[nodiscard]] std::string format_evaluation_times(const EvaluationHeader& header,
                                                   std::span<const ConfigurationSummary> configurations);
-/// Formats the time of verification in every view of every run as CSV, and the number of hypotheses verified in it
+/// Formats the time of verification in every view of every run as CSV, and the number of hypotheses after clustering
 /// (paper, Fig. 7).
 [[nodiscard]] std::string format_verification_times(std::span<const EvaluatedRun> runs);
 

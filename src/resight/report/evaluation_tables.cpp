@@ -50,6 +50,11 @@ std::string difference(const PairedDifference& d, int digits) {
   return fmt::format("{:+.{}f} ± {}", d.mean, digits, format_number(d.standard_error, digits));
 }
 
+/// A sequence in which one preset reports nothing has no precision, but a recall.
+int num_sequences(const PresetComparison& c) {
+  return std::max({c.precision.num_pairs, c.recall.num_pairs, c.f_score.num_pairs, c.ghosts_per_change.num_pairs});
+}
+
 std::string comparison_table(std::span<const PresetComparison> comparisons) {
   if (comparisons.empty()) return {};
   std::string text =
@@ -58,8 +63,8 @@ std::string comparison_table(std::span<const PresetComparison> comparisons) {
       "|---|---|---|---|---|---|---|---|\n";
   for (const PresetComparison& c : comparisons)
     text += fmt::format("| `{}` - `{}` | {} | {} | {} | {} | {} | {} | {} |\n", c.b, c.a, c.num_previous_views,
-                        c.precision.num_pairs, difference(c.precision, 3), difference(c.recall, 3),
-                        difference(c.f_score, 3), difference(c.strict_f_score, 3), difference(c.ghosts_per_change, 2));
+                        num_sequences(c), difference(c.precision, 3), difference(c.recall, 3), difference(c.f_score, 3),
+                        difference(c.strict_f_score, 3), difference(c.ghosts_per_change, 2));
   return text;
 }
 
@@ -73,7 +78,7 @@ std::string clustering_table(Configurations configurations) {
   }
   if (rows.empty()) return {};
   return "\n## Clustering (Tables II and III)\n\n"
-         "| preset | K | precision without | recall without | F without | precision | recall | F | hypotheses verified "
+         "| preset | K | precision without | recall without | F without | precision | recall | F | hypotheses "
          "without | with | kept |\n|---|---|---|---|---|---|---|---|---|---|---|\n" +
          rows;
 }

@@ -57,8 +57,8 @@ Timeline make_timeline(const ReportRun& run, std::span<const int> views) {
   const std::set<int> shown(views.begin(), views.end());
   Timeline timeline;
   for (const ViewRecord& view : run.views)
-    if (shown.contains(view.update.view))
-      for (const ObjectEvent& event : view.update.events) timeline.add(event);
+    for (const ObjectEvent& event : view.update.events)
+      if (shown.contains(event.view)) timeline.add(event);
   return timeline;
 }
 
@@ -124,10 +124,11 @@ std::vector<int> views_in(const ReportRun& run, const ViewRange& range) {
 }
 
 std::vector<int> views_with_news(const ReportRun& run) {
-  std::vector<int> views;
+  std::set<int> views;  // At which it happened. It may have been reported later.
   for (const ViewRecord& view : run.views)
-    if (std::ranges::any_of(view.update.events, is_news, &ObjectEvent::kind)) views.push_back(view.update.view);
-  return views;
+    for (const ObjectEvent& event : view.update.events)
+      if (is_news(event.kind)) views.insert(event.view);
+  return {views.begin(), views.end()};
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ std::string missed_line(const ViewRecord& view) {
 std::string details(const ViewRecord& view) {
   const HypothesisCounts& counts = view.update.counts;
   std::string html = fmt::format(
-      "<details><summary>{} in {} stages; {} hypotheses verified</summary>"
+      "<details><summary>{} in {} stages; {} hypotheses after clustering</summary>"
       "<p>Correspondences {} · hypotheses of this view {} · with those of earlier views {} · after clustering {} · "
       "accepted {}<br>Scene points {} · novel {} · removed {} · changed share of the visible surface {}{}</p>"
       "<table><thead><tr><th>Stage</th><th class=\"n\">Wall</th><th class=\"n\">CPU</th></tr></thead><tbody>\n",

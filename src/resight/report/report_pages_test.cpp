@@ -92,6 +92,21 @@ TEST(ReportPages, APageShowsItsViewsWithTheirHistory) {
   EXPECT_THAT(page_of(num_views, 2), Not(HasSubstr("Next page")));
 }
 
+// A removal is known one view after it happened.
+TEST(ReportPages, AChangeIsShownAtTheViewAtWhichItHappened) {
+  ReportRun run = make_long_run(2 * kViewsPerPage);
+  for (ViewRecord& view : run.views) view.update.events.clear();
+  ObjectEvent& removal = run.views[kViewsPerPage].update.events.emplace_back();
+  removal.kind = ObjectEventKind::kRemoved;
+  removal.object = 0;
+  removal.view = kViewsPerPage - 1;
+  const std::string cell = "title=\"view 99: removed\"";
+  const auto library = test::make_library();
+  EXPECT_THAT(format_report("Long", std::vector{run}, library), HasSubstr(cell));
+  EXPECT_THAT(format_report_page("Long", std::vector{run}, library, 0), HasSubstr(cell));
+  EXPECT_THAT(format_report_page("Long", std::vector{run}, library, 1), Not(HasSubstr(cell)));
+}
+
 TEST_F(ReportFolder, PicturesOfALongRunAreFilesThatItsPagesShow) {
   ReportRun run = make_long_run(2);
   const std::vector<std::uint8_t> jpeg = run.views[1].picture_jpeg;

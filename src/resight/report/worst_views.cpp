@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 
@@ -85,9 +86,9 @@ std::string format_worst_views(std::span<const WorstView> views, int num_picture
     if (w.rank < num_pictures) text += fmt::format("![{}]({})\n\n", escape_markdown(view.name), worst_view_picture(w));
     for (const EvaluatedTruth& t : view.truth)
       if (t.counts && !t.found)
-        text +=
-            fmt::format("- missed {} {} ({:.0f} % visible, at {:.2f} m): {}\n", escape_markdown(t.object), t.instance,
-                        100 * t.visible_share, t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
+        text += fmt::format("- missed {} {} ({}at {:.2f} m): {}\n", escape_markdown(t.object), t.instance,
+                            std::isnan(t.visible_share) ? "" : fmt::format("{:.0f} % visible, ", 100 * t.visible_share),
+                            t.distance_m, t.lost_at.empty() ? "not traced" : t.lost_at);
     for (const EvaluatedDetection& d : view.detections)
       if (d.verdict == DetectionVerdict::kFalsePositive || d.verdict == DetectionVerdict::kGhost)
         text += fmt::format("- {} {} (score {:.2f}, at {:.2f} m)\n", to_string(d.verdict), escape_markdown(d.object),
