@@ -60,10 +60,20 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
   return warnings;
 }
 
-// The files of the true changes of a sequence, or none for a single view.
-ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequence) {
+// The files of the true changes of a sequence, or none for a single view. They count and name all views.
+ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequence, OpenSequenceOptions options) {
   const auto folder = value_or_throw(find_sequence_folder(in));
   if (!folder) return {};
+  options.views = {};
+  const auto whole = value_or_throw(open_sequence(in, options));
+  if (whole->num_views() != sequence.num_views()) {
+    std::vector<std::string> all;
+    for (int i = 0; i < whole->num_views(); ++i) all.push_back(whole->view_name(i));
+    const ChangeFiles left_out = find_change_files(*folder, all);
+    if (!left_out.events.empty() || !left_out.changes.empty())
+      print_warning("the true changes are left out, because not all views are converted");
+    return {};
+  }
   std::vector<std::string> views;
   for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
   ChangeFiles changes = find_change_files(*folder, views);
@@ -86,8 +96,8 @@ void run_convert(const ConvertArguments& arguments) {
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {
     print_notes(**sequence);
-    const ConversionSummary summary =
-        value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence)));
+    const ConversionSummary summary = value_or_throw(
+        convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence, arguments.input)));
     print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
     return;
   }

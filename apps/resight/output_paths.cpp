@@ -36,8 +36,9 @@ void check_not_input(const fs::path& out, const Paths& inputs) {
 /// Links on the way are resolved. A link at the end is not: the output takes its place.
 fs::path place_of(const fs::path& out) {
   std::error_code error;
-  const fs::path clean = fs::absolute(out / "", error).lexically_normal().parent_path();
-  return fs::weakly_canonical(clean.parent_path(), error) / clean.filename();
+  const fs::path absolute = fs::absolute(out / "", error).parent_path();  // without a slash at the end
+  if (absolute.filename() == "." || absolute.filename() == "..") return fs::weakly_canonical(absolute, error);
+  return fs::weakly_canonical(absolute.parent_path(), error) / absolute.filename();
 }
 
 /// Files by which the results of a command are known, and how they begin. `recognize` writes changes.json, too, so it
@@ -113,7 +114,7 @@ void check_output_file(const fs::path& out, std::string_view signature, std::str
   value_or_throw(check_writable(out));
   if (!is_there(out)) return;
   const auto start = read_file_start(out, signature.size());
-  if (start.ok() && start->empty()) return;  // nothing can be lost
+  if (start.ok() && start->empty() && !fs::is_symlink(out, error)) return;  // nothing can be lost
   if (!start.ok() || *start != signature)
     refuse_output(out, fmt::format("exists already and is no {} (choose another name or delete it first)", kind));
 }

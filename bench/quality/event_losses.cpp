@@ -127,7 +127,8 @@ void print_losses(const Replay& replay, const std::vector<TrueChange>& changes,
   const ChangeMatcher matcher(library, options);
   truths = reconcile_with_reports(std::move(truths), replay.reported, matcher);
   const std::vector<int> truth_of = match_in_order(
-      truths, replay.reported, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); });
+      truths, replay.reported, [&](const SeenChange& t, const ReportedChange& r) { return matcher.fits(t, r); },
+      [](const SeenChange& t) { return t.counts(); });
   for (std::size_t t = 0; t < truths.size(); ++t)
     if (truths[t].counts() && std::ranges::find(truth_of, static_cast<int>(t)) == truth_of.end())
       print_missed(truths[t], replay, library);

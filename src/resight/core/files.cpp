@@ -21,13 +21,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the path absolute and removes a trailing slash, which filename() and parent_path() require.
+/// Makes the path absolute and removes a trailing slash, which filename() and parent_path() require. What ".." means is
+/// asked of the file system: behind a link, it is not the folder that the text names. Empty if it means nothing.
 fs::path clean_path(const fs::path& path) {
   std::error_code error;
-  fs::path clean = fs::absolute(path, error).lexically_normal();
-  if (!clean.has_filename()) clean = clean.parent_path();
+  fs::path clean;
+  for (const fs::path& part : fs::absolute(path, error)) {
+    if (part != ".." && part != "." && !part.empty()) clean /= part;
+    if (part == "..") clean = fs::canonical(clean / part, error);
+    if (error) return {};
+  }
   return clean;
 }
+
+constexpr std::string_view kNoSuchFolder = "cannot be written (it leads through a folder that does not exist)";
 
 std::string reason_of(const std::error_code& error) { return "cannot be written (" + error.message() + ")"; }
 
@@ -74,11 +81,15 @@ Error file_error(const fs::path& file, std::string_view what) {
   return Error{file.string() + ": " + std::string(what)};
 }
 
-std::string folder_name(const fs::path& directory) { return clean_path(directory).filename().string(); }
+std::string folder_name(const fs::path& directory) {
+  std::error_code error;
+  return (fs::absolute(directory, error) / "").lexically_normal().parent_path().filename().string();
+}
 
 Result<void> check_writable(const fs::path& path) {
   if (path.empty()) return Error{"the name of the output is empty"};
   const fs::path target = clean_path(path);
+  if (target.empty()) return file_error(path, kNoSuchFolder);
   const fs::path missing = first_missing(target);
   const fs::path folder = missing.empty() ? target : missing.parent_path();  // the innermost existing folder
   std::error_code error;
@@ -131,6 +142,7 @@ Result<void> write_file(const fs::path& file, std::initializer_list<std::string_
 Result<OutputFile> OutputFile::create(const fs::path& file) {
   constexpr double kWait_s = 10;  // Another process that writes the same file is soon done.
   const fs::path target = clean_path(file);
+  if (target.empty()) return file_error(file, kNoSuchFolder);
   auto place =
       PendingPlace::create(target.parent_path(), target.filename().string(), PendingPlace::Kind::kFile, kWait_s);
   if (!place) return file_error(file, "cannot be written (" + place.error().message + ")");

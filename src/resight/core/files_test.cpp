@@ -132,6 +132,25 @@ TEST_F(FilesTest, FolderNamesDoNotHangOnASlash) {
   EXPECT_EQ(folder_name("."), fs::current_path().filename());
 }
 
+TEST_F(FilesTest, TwoDotsBehindALinkLeadWhereTheFileSystemSays) {
+  fs::create_directories(folder_ / "real/inner");
+  fs::create_directory_symlink(folder_ / "real/inner", folder_ / "link");
+  write(folder_ / "mine", "mine");
+  EXPECT_TRUE(write_file(folder_ / "link/../mine", "new").ok());
+  EXPECT_EQ(read(folder_ / "real/mine"), "new");
+  EXPECT_EQ(read(folder_ / "mine"), "mine");
+  auto pending = PendingDirectory::create(folder_ / "link/../out");
+  ASSERT_TRUE(pending.ok());
+  ASSERT_TRUE(pending->commit().ok());
+  EXPECT_TRUE(fs::is_directory(folder_ / "real/out"));
+  for (const fs::path& out : {folder_ / "missing/../mine", folder_ / "missing/.."}) {
+    EXPECT_THAT(check_writable(out).error().message, HasSubstr("a folder that does not exist"));
+    EXPECT_THAT(write_file(out, "new").error().message, HasSubstr("a folder that does not exist"));
+    EXPECT_FALSE(PendingDirectory::create(out).ok());
+  }
+  EXPECT_EQ(read(folder_ / "mine"), "mine");
+}
+
 TEST_F(FilesTest, APendingDirectoryAppearsOnlyWhenComplete) {
   {
     const auto pending = PendingDirectory::create(folder_ / "new/er/out");

@@ -28,6 +28,7 @@ using ErrorCode = boost::system::error_code;
 
 // A client that was refused may still be sending. Its bytes are read for a while, so that it sees the answer.
 constexpr std::size_t kMaxDrainedBytes = 16 << 20;
+constexpr std::size_t kMaxReadBytes = 1 << 16;  // At once.
 constexpr double kDrainTime_s = 2;
 
 std::chrono::steady_clock::duration to_duration(double seconds) {
@@ -67,7 +68,10 @@ std::string format_event(const std::string& data) { return "data: " + data + "\n
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, std::shared_ptr<ServerState> server)
-      : socket_(std::move(socket)), timer_(socket_.get_executor()), server_(std::move(server)) {
+      : socket_(std::move(socket)),
+        timer_(socket_.get_executor()),
+        server_(std::move(server)),
+        buffer_(server_->limits.max_header_bytes + kMaxReadBytes) {
     ++server_->num_connections;
   }
   ~Connection() { --server_->num_connections; }
@@ -110,7 +114,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (!error) return answer(call_handler(), parser_->get().keep_alive());
     if (is_late_ && parser_->got_some()) return refuse(408, "the request took too long");
     if (is_late_ || error == http::error::end_of_stream) return close();
-    if (error == http::error::header_limit) return refuse(431, "the header is too long");
+    // Extensions of chunks and trailers are headers that the parser does not count.
+    if (error == http::error::header_limit || error == http::error::buffer_overflow)
+      return refuse(431, "the header is too long");
     if (error == http::error::body_limit) return refuse(413, "the body is too long");
     if (error.category() == http::make_error_code(http::error::bad_method).category() &&
         error != http::error::partial_message)
@@ -189,7 +195,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
   void drain_some(std::size_t num_drained) {
     buffer_.clear();
-    socket_.async_read_some(buffer_.prepare(1 << 16),
+    socket_.async_read_some(buffer_.prepare(kMaxReadBytes),
                             [self = shared_from_this(), num_drained](ErrorCode error, std::size_t num_read) {
                               if (error || num_drained > kMaxDrainedBytes) return self->close();
                               self->drain_some(num_drained + num_read);
@@ -205,7 +211,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   tcp::socket socket_;
   asio::steady_timer timer_;
   std::shared_ptr<ServerState> server_;
-  beast::flat_buffer buffer_;
+  beast::flat_buffer buffer_;  ///< What has been read and not been parsed yet.
   std::optional<viewer::HttpParser> parser_;
   std::shared_ptr<const std::string> content_;
   http::response<SharedBody> response_;

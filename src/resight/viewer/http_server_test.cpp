@@ -102,6 +102,18 @@ TEST(HttpServer, RefusesLongHeadersAndBodies) {
   EXPECT_EQ(status_of(server.ask(kAsk)), 200);
 }
 
+TEST(HttpServer, RefusesEndlessChunksAndTrailers) {
+  const RunningServer server(echo, small_limits());
+  for (const std::string begin : {"5;", "0\r\n"}) {
+    const RawConnection connection(server.port());
+    connection.send("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n" + begin);
+    const std::string some = begin == "5;" ? std::string(1000, 'x') : "Name: " + std::string(992, 'x') + "\r\n";
+    int num_sent = 0;
+    while (num_sent < 60'000 && connection.send(some)) ++num_sent;
+    EXPECT_LT(num_sent, 60'000) << "the server has taken 60 MB";
+  }
+}
+
 TEST(HttpServer, GivesUpOnSlowClients) {
   const RunningServer server(echo, hasty_limits());
   const RawConnection connection = server.connect();
