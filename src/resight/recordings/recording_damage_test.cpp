@@ -64,6 +64,35 @@ TEST(RecordingDamage, AnUncompressedChunkIsReadUpToTheCut) {
   EXPECT_LT((*recording)->messages().size(), whole.size());
 }
 
+// SQLite itself finds damage only where it looks.
+TEST(RecordingDamage, DatabasesThatAreCutOffAreNamedOrRefused) {
+  TemporaryFile file;
+  for (const char* name : {"ros2.db3", "ros2_zstd.db3"}) {
+    const std::string bytes = read_bytes(recorded(name));
+    EXPECT_EQ((*open_recording(file.write(bytes)))->damage(), "") << name;
+    int num_opened = 0;
+    for (std::size_t lost = 1; lost < bytes.size(); lost += 97) {
+      const auto recording = open_recording(file.write(bytes.substr(0, bytes.size() - lost)));
+      if (!recording) continue;
+      ++num_opened;
+      EXPECT_FALSE((*recording)->damage().empty()) << name << " without its last " << lost << " bytes";
+    }
+    EXPECT_GT(num_opened, 10) << name;
+  }
+}
+
+TEST(RecordingDamage, MessagesOfADatabaseWithoutTopicAreCounted) {
+  TemporaryFile file;
+  std::string bytes = read_bytes(recorded("ros2.db3"));
+  std::fill(bytes.begin() + 22118, bytes.end(), '\0');  // the last page, with the numbers of topics
+  const auto recording = open_recording(file.write(bytes));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_THAT((*recording)->damage(), HasSubstr("4 of its messages belong to no topic"));
+  EXPECT_EQ((*recording)->messages().size(), 11U);
+  std::fill(bytes.begin() + 16384, bytes.begin() + 20480, '\0');  // a page of the tree
+  EXPECT_THAT((*open_recording(file.write(bytes)))->damage(), HasSubstr("malformed"));
+}
+
 TEST(RecordingDamage, MissingPartsAreNamed) {
   const fs::path folder = fs::temp_directory_path() / fmt::format("resight_recordings_{}_MissingParts", ::getpid());
   fs::remove_all(folder);

@@ -61,6 +61,7 @@ class Ros2Sqlite final : public IndexedRecording {
   [[nodiscard]] Result<Statement> prepare(const char* sql) const;
   [[nodiscard]] Result<std::string> read_blob(const MessageEntry& entry, std::size_t max_bytes) const;
   [[nodiscard]] Result<void> read_topics();
+  [[nodiscard]] Result<std::uint64_t> declared_bytes() const;
   [[nodiscard]] Error fail() const {
     return file_error(file_,
                       fmt::format("cannot be read as a ROS 2 bag ({})", printable(sqlite3_errmsg(database_.get()))));
@@ -97,20 +98,49 @@ Result<void> Ros2Sqlite::read_topics() {
   return {};
 }
 
+/// Size of the whole database, by its header.
+Result<std::uint64_t> Ros2Sqlite::declared_bytes() const {
+  std::uint64_t bytes = 1;
+  for (const char* factor : {"PRAGMA page_count", "PRAGMA page_size"}) {
+    const auto statement = prepare(factor);
+    if (!statement) return statement.error();
+    if (sqlite3_step(statement->get()) != SQLITE_ROW) return fail();
+    bytes *= static_cast<std::uint64_t>(sqlite3_column_int64(statement->get(), 0));
+  }
+  return bytes;
+}
+
 Result<void> Ros2Sqlite::build_index() {
   if (const auto done = read_topics(); !done) return done;
   const auto statement = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY id, rowid");
   if (!statement) return statement.error();
   sqlite3_stmt* row = statement->get();
   int code = SQLITE_ROW;
+  std::size_t num_without_topic = 0;
   while ((code = sqlite3_step(row)) == SQLITE_ROW) {
     const auto topic = topic_of_id_.find(sqlite3_column_int64(row, 1));
-    if (topic == topic_of_id_.end()) continue;
+    if (topic == topic_of_id_.end()) {
+      ++num_without_topic;
+      continue;
+    }
     if (index_.messages.size() >= kMaxMessages) return file_error(file_, "holds too many messages");
     index_.messages.push_back(
         {sqlite3_column_int64(row, 2), topic->second, 0, static_cast<std::uint64_t>(sqlite3_column_int64(row, 0))});
   }
-  if (code != SQLITE_DONE) index_.damage = fail().message;
+  if (code != SQLITE_DONE) {
+    index_.damage = fail().message;
+    return {};
+  }
+  const auto whole_bytes = declared_bytes();
+  if (!whole_bytes) return whole_bytes.error();
+  std::error_code ignored;
+  const std::uint64_t file_bytes = std::filesystem::file_size(file_, ignored);
+  // Without a word, SQLite takes what a cut last page lacks as zeros.
+  if (file_bytes < *whole_bytes)
+    index_.damage =
+        file_error(file_, fmt::format("is cut off: it has {} of {} bytes", file_bytes, *whole_bytes)).message;
+  else if (num_without_topic > 0)
+    index_.damage = file_error(file_, fmt::format("{} of its messages belong to no topic", num_without_topic)).message;
   return {};
 }
 
