@@ -121,6 +121,20 @@ TEST_F(RecordingOptions, PosesOfAFileByTime) {
   EXPECT_THAT((*sequence)->notes(), Contains(HasSubstr("1 of 3 views have no pose")));
 }
 
+TEST_F(RecordingOptions, MessagesThatCannotBeDecodedAreCounted) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  EXPECT_THAT((*open())->notes(), Not(Contains(HasSubstr("cannot be decoded"))));
+  recording_.add("/rgb/image_raw", "sensor_msgs/Image", 10.3, "short");
+  recording_.add("/depth/image_raw", "sensor_msgs/Image", 10.3, "");
+  recording_.add("/tf", "tf2_msgs/TFMessage", 10.3, "many");
+  const auto sequence = open();
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->num_views(), 3);
+  EXPECT_THAT((*sequence)->notes(), Contains("2 of 8 images cannot be decoded and are left out"));
+  EXPECT_THAT((*sequence)->notes(), Contains("1 of 1 messages with transforms cannot be decoded and are left out"));
+}
+
 TEST_F(RecordingOptions, OdometryAndPoses) {
   TestRecording odometry;
   TestRecording poses;

@@ -43,15 +43,21 @@ RecordingScan scan_recording(const Recording& recording, const ViewTopics& topic
       scan.damage = bytes.error().message;
       break;
     }
+    ++(is_image ? scan.num_images : scan.num_transform_messages);
     if (is_image) {
       const auto start = decode_image_start(*bytes, topic);
-      if (!start) continue;
+      if (!start) {
+        ++scan.num_bad_images;
+        continue;
+      }
       (entry.topic == topics.color ? scan.colors : scan.depths).push_back({entry, start->header.stamp_ns});
     } else if (scan.transforms.size() > kMaxTransforms) {
       scan.damage = "more transforms than are read";
       break;
     } else if (const auto transforms = decode_transforms(*bytes, topic)) {
       for (const StampedTransform& transform : *transforms) scan.transforms.push_back({entry.topic, transform});
+    } else {
+      ++scan.num_bad_transforms;
     }
   }
   return scan;

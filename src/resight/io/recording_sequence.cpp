@@ -89,6 +89,7 @@ class RecordingSequence final : public Sequence {
                                         const OpenSequenceOptions& options);
   [[nodiscard]] Result<Image<float>> read_registered_depth(const RecordedView& view, const Camera& color) const;
   void describe(const RecordedPoses& poses, const OpenSequenceOptions& options);
+  void note_undecodable(std::size_t num_bad, std::size_t num_all, std::string_view what);
 
   fs::path file_;
   std::unique_ptr<Recording> recording_;
@@ -201,6 +202,11 @@ void RecordingSequence::describe(const RecordedPoses& poses, const OpenSequenceO
   if (options.poses.empty()) notes_.push_back(poses.describe());
 }
 
+void RecordingSequence::note_undecodable(std::size_t num_bad, std::size_t num_all, std::string_view what) {
+  if (num_bad > 0)
+    notes_.push_back(fmt::format("{} of {} {} cannot be decoded and are left out", num_bad, num_all, what));
+}
+
 Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   auto topics = find_view_topics(*recording_, options.topics);
   if (!topics) {
@@ -217,6 +223,8 @@ Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   describe(*poses, options);
   const std::string& damage = recording_->damage().empty() ? scan.damage : recording_->damage();
   if (!damage.empty()) notes_.push_back("damaged, what can be read is used: " + damage);
+  note_undecodable(scan.num_bad_images, scan.num_images, "images");
+  note_undecodable(scan.num_bad_transforms, scan.num_transform_messages, "messages with transforms");
   const RecordedPairs images = pair_images(scan, options.topics.max_time_difference_s);
   if (images.by_recording_times)
     notes_.emplace_back("the times in the headers do not fit together: images are paired by the times of recording");

@@ -24,6 +24,10 @@ struct RecordingScan {
   std::vector<StampedImage> colors;
   std::vector<StampedImage> depths;
   std::vector<ScannedTransform> transforms;
+  std::size_t num_images = 0;      ///< With the bad ones.
+  std::size_t num_bad_images = 0;  ///< They cannot be decoded and are left out.
+  std::size_t num_transform_messages = 0;
+  std::size_t num_bad_transforms = 0;
   std::string damage;  ///< If a message could not be read: the reason. What lies behind it is left out.
 };
 [[nodiscard]] RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics);
