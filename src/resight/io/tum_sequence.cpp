@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/image_decoder.hpp"
@@ -21,15 +22,18 @@ struct StampedFile {
   double time_s = 0;
   fs::path file;
 };
-/// Calls row(words) for each line that is neither empty nor a comment, until it returns false.
+
+/// Calls row(words) for each line that is neither empty nor a comment, until it returns false. A line that occurs again
+/// says nothing new.
 template <typename Row>
 Result<void> for_each_row(const fs::path& file, const Row& row) {
   const auto text = read_file(file);
   if (!text) return text.error();
   std::string_view rest = *text;
+  std::set<std::vector<std::string_view>> known;
   for (int number = 1; !rest.empty(); ++number) {
     const auto words = split_tokens(cut_line(rest));
-    if (words.empty() || words[0].starts_with('#')) continue;
+    if (words.empty() || words[0].starts_with('#') || !known.insert(words).second) continue;
     if (!row(words))
       return file_error(file, fmt::format("line {} cannot be parsed, or leads out of the folder", number));
   }
@@ -56,7 +60,7 @@ std::vector<double> times_of(const std::vector<StampedFile>& files) {
   return times_s;
 }
 
-using ImagePairs = std::vector<std::pair<StampedFile, StampedFile>>;  ///< Colour and depth.
+using ImagePairs = std::vector<std::pair<StampedFile, StampedFile>>;  ///< Colour and depth, by the time of the colour.
 
 Result<ImagePairs> read_associations(const fs::path& file) {
   ImagePairs pairs;
@@ -64,7 +68,7 @@ Result<ImagePairs> read_associations(const fs::path& file) {
     if (words.size() != 4) return false;
     const auto first = parse_number(words[0]);
     const auto second = parse_number(words[2]);
-    if (!first || !second) return false;
+    if (!first || !second || !std::isfinite(*first) || !std::isfinite(*second)) return false;
     const auto first_image = path_below(file.parent_path(), words[1]);
     const auto second_image = path_below(file.parent_path(), words[3]);
     if (!first_image || !second_image) return false;
@@ -75,6 +79,7 @@ Result<ImagePairs> read_associations(const fs::path& file) {
     return true;
   });
   if (!done) return done.error();
+  std::ranges::stable_sort(pairs, {}, [](const auto& pair) { return pair.first.time_s; });
   return pairs;
 }
 
@@ -188,6 +193,9 @@ SequenceResult open_tum_sequence(const fs::path& directory, const OpenSequenceOp
     return file_error(directory, pairs->empty()
                                      ? std::string("its lists name no pair of images")
                                      : "no image has a pose near in time in " + pose_file.filename().string());
+  if (table.views.size() < pairs->size())
+    table.notes.push_back(fmt::format("{} of {} views have no pose near in time and are left out",
+                                      pairs->size() - table.views.size(), pairs->size()));
   if (const auto fits = check_image_size(*calibration, table.views.front().color, directory); !fits)
     return fits.error();
   return make_listed_sequence(std::move(table));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 namespace resight {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 
 /// Without intrinsics.
@@ -57,6 +59,7 @@ TEST(Tum, AssociatesAndInterpolates) {
   const auto sequence = open_sequence(directory.path());
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   ASSERT_EQ((*sequence)->num_views(), 2);
+  EXPECT_THAT((*sequence)->notes(), Contains("1 of 3 views have no pose near in time and are left out"));
   std::filesystem::rename(directory / "groundtruth.txt", directory / "livingRoom0n.gt.freiburg");
   EXPECT_EQ((*open_sequence(directory.path()))->num_views(), 2) << "the name of ICL-NUIM";
   const auto frame = (*sequence)->read_view(0);
@@ -67,6 +70,31 @@ TEST(Tum, AssociatesAndInterpolates) {
   EXPECT_NEAR(rotation_angle_rad(Eigen::Matrix3d::Identity(), frame->world_from_camera.rotation), 0.1, 1e-9);
   EXPECT_EQ((*sequence)->read_view(1)->world_from_camera.translation, Eigen::Vector3d(5, 5, 5))
       << "must use the nearest pose at the end";
+}
+
+TEST(Tum, ListsInAnotherOrderAndWithRepetitions) {
+  io::TestDirectory directory;
+  write_recording(directory.path());
+  io::write_text(directory / "camera.txt", "500 501 2 1\n");
+  const auto names = [&] {
+    const auto sequence = open_sequence(directory.path());
+    std::vector<std::string> all;
+    for (int i = 0; sequence.ok() && i < (*sequence)->num_views(); ++i) all.push_back((*sequence)->view_name(i));
+    return all;
+  };
+  const std::vector<std::string> ascending = {"10.500", "11.500", "13.500"};
+  for (const char* list : {"rgb.txt", "depth.txt"}) {
+    const std::string text = io::read_text(directory / list);
+    io::write_text(directory / list, text + text);
+  }
+  EXPECT_EQ(names(), ascending);
+  std::string pairs;
+  for (const char* second : {"13", "11", "10", "13"})
+    pairs += fmt::format("{0}.500 rgb/{0}.500.png {0}.510 depth/{0}.510.png\n", second);
+  io::write_text(directory / "associations.txt", pairs);
+  EXPECT_EQ(names(), ascending);
+  io::write_text(directory / "associations.txt", "nan rgb/10.500.png 10.510 depth/10.510.png\n");
+  EXPECT_THAT(open_sequence(directory.path()).error().message, HasSubstr("associations.txt: line 1"));
 }
 
 TEST(Tum, Intrinsics) {
