@@ -50,6 +50,9 @@ TEST(RecordingSequence, ChoiceOfViews) {
   EXPECT_EQ((*second)->view_name(1), "000002");
   options.views = {.every = 1, .from_s = 0.15, .to_s = 0.25, .max_views = {}};
   EXPECT_EQ((*open_sequence(recorded("none.mcap"), options))->num_views(), 1);
+  // 0.1 and 0.2 s are no doubles.
+  options.views = {.every = 1, .from_s = 0.1, .to_s = 0.2, .max_views = {}};
+  EXPECT_EQ((*open_sequence(recorded("ros2.db3"), options))->num_views(), 2);
   options.views = {.every = 1, .from_s = 5, .to_s = {}, .max_views = {}};
   EXPECT_THAT(open_sequence(recorded("none.mcap"), options).error().message, HasSubstr("--from"));
 }

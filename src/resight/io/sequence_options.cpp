@@ -15,6 +15,7 @@ namespace resight::io {
 namespace {
 
 constexpr double kMaxBaseline_m = 1;
+constexpr double kTimeRounding_s = 1e-6;  ///< Times have microseconds, and as double little more.
 
 bool gives_something(const OpenSequenceOptions& options) {
   return !options.intrinsics.empty() || !options.depth_intrinsics.empty() || !options.color_from_depth.empty() ||
@@ -51,8 +52,8 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
     const double time_s = view.time_s - begin_s;
     if ((choice.from_s || choice.to_s) && std::isnan(time_s))
       return Error{"the views have no times, which --from and --until need; use --every and --max-views"};
-    if (choice.from_s && time_s < *choice.from_s) continue;
-    if (choice.to_s && time_s > *choice.to_s) continue;
+    if (choice.from_s && time_s < *choice.from_s - kTimeRounding_s) continue;
+    if (choice.to_s && time_s > *choice.to_s + kTimeRounding_s) continue;
     if (number++ % choice.every == 0) kept.push_back(std::move(view));
   }
   if (kept.empty()) return Error{"no view lies between --from and --until"};
