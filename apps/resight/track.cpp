@@ -110,10 +110,10 @@ void write_objects(const TrackArguments& arguments, const CameraTrack& track, st
   text +=
       "# component tx ty tz qx qy qz qw num_views first_view last_view object (world_from_object, frame of the "
       "component)\n";
+  const auto stamp_of = [&](int view) { return to_pose_stamp(track.views[static_cast<std::size_t>(view)].name); };
   for (const StaticObject& object : objects)
     text += fmt::format("{} {} {} {} {} {}\n", object.component, format_tum_pose(object.world_from_object),
-                        object.views.size(), track.views[static_cast<std::size_t>(object.views.front())].name,
-                        track.views[static_cast<std::size_t>(object.views.back())].name,
+                        object.views.size(), stamp_of(object.views.front()), stamp_of(object.views.back()),
                         library.objects[static_cast<std::size_t>(object.object)].name);
   const std::filesystem::path file = file_of_objects(arguments.out);
   value_or_throw(write_file(file, text));

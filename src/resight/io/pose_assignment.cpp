@@ -13,6 +13,7 @@
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/io/internal/trajectory_file.hpp"
+#include "resight/io/trajectory.hpp"
 
 /// Which pose of a file belongs to which view.
 namespace resight::io {
@@ -59,7 +60,7 @@ class StampedPoses {
     std::ranges::stable_sort(by_time_, {}, &StampedPose::time_s);
   }
 
-  [[nodiscard]] bool has_name(const ListedView& view) const { return by_name_.contains(view.name); }
+  [[nodiscard]] bool has_name(const ListedView& view) const { return find_name(view) != by_name_.end(); }
   [[nodiscard]] bool has_numbers() const { return !by_number_.empty(); }
   /// In the order of time, if each has another one; otherwise empty.
   [[nodiscard]] std::vector<StampedPose> by_time() const {
@@ -69,7 +70,7 @@ class StampedPoses {
   }
 
   [[nodiscard]] std::optional<Rigid3> find(const ListedView& view) const {
-    if (const auto it = by_name_.find(view.name); it != by_name_.end()) return it->second;
+    if (const auto it = find_name(view); it != by_name_.end()) return it->second;
     if (!std::isnan(view.time_s)) return interpolate_pose(by_time_, view.time_s);
     const auto number = trailing_number(view.name);
     const auto it = number ? by_number_.find(static_cast<double>(*number)) : by_number_.end();
@@ -77,6 +78,14 @@ class StampedPoses {
   }
 
  private:
+  using PosesByName = std::map<std::string, Rigid3, std::less<>>;
+
+  /// As it is, or as `resight track` writes it.
+  [[nodiscard]] PosesByName::const_iterator find_name(const ListedView& view) const {
+    const auto it = by_name_.find(view.name);
+    return it != by_name_.end() ? it : by_name_.find(to_pose_stamp(view.name));
+  }
+
   /// Numbers of views have a column of their own, are at the end of words ("rgb/frame-000003.png"), or are whole
   /// stamps. If one is not whole, they are times.
   void number_poses() {
@@ -93,7 +102,7 @@ class StampedPoses {
 
   std::size_t num_poses_;
   std::vector<StampedPose> by_time_;
-  std::map<std::string, Rigid3, std::less<>> by_name_;
+  PosesByName by_name_;
   std::map<double, Rigid3> by_number_;
 };
 

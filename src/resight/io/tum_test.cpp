@@ -44,6 +44,28 @@ TEST(Trajectory, IsReadBackDigitByDigit) {
   EXPECT_NEAR((*sequence)->read_view(0)->world_from_camera.translation.y(), -2.0 / 3, 1e-12);
 }
 
+TEST(Trajectory, BelongsToViewsOfAnyName) {
+  for (const char* begin : {"my view ", " ", "a,b", "#", "a\n", "50% ", "50%20", "%"}) {
+    io::TestDirectory directory;
+    std::vector<TrajectoryPose> poses;
+    for (int v = 0; v < 3; ++v) {
+      const std::string name = begin + std::to_string(v);
+      ASSERT_TRUE(write_color(directory / "rgb" / (name + ".png"), Image<Rgb8>(4, 3)).ok());
+      ASSERT_TRUE(write_depth(directory / "depth" / (name + ".png"), Image<float>(4, 3, 1.25F), 0.001).ok());
+      poses.push_back({name, Rigid3::from_translation({1.0 * v, 0, 0})});
+    }
+    std::swap(poses[0], poses[2]);  // They do not belong to the views by their order.
+    io::write_text(directory / "intrinsics.txt", "5 5 2 1\n");
+    ASSERT_TRUE(write_tum_trajectory(directory / "tracked.txt", poses, "").ok());
+    OpenSequenceOptions options;
+    options.poses = (directory / "tracked.txt").string();
+    const auto sequence = open_sequence(directory.path(), options);
+    ASSERT_TRUE(sequence.ok()) << begin << ": " << sequence.error().message;
+    ASSERT_EQ((*sequence)->num_views(), 3) << begin;
+    for (int v = 0; v < 3; ++v) EXPECT_EQ((*sequence)->read_pose(v)->translation.x(), v) << begin;
+  }
+}
+
 TEST(Tum, AssociatesAndInterpolates) {
   io::TestDirectory directory;
   write_recording(directory.path());
