@@ -59,10 +59,16 @@ Result<double> read_visible_share(const path& occlusion_file) {
   return std::clamp(1 - numbers->front(), 0.0, 1.0);
 }
 
+bool is_taken_for_occlusion(const std::string& object) { return (object + "_").starts_with(kOcclusion); }
+
 Result<void> check_objects(const path& directory, const std::vector<GroundTruthObject>& objects) {
   for (const GroundTruthObject& object : objects) {
     if (!io::is_safe_name(object.object))
       return io::file_error(directory, "object name '" + object.object + "' cannot be part of a file name");
+    if (is_taken_for_occlusion(object.object))
+      return io::file_error(directory, "object name '" + object.object +
+                                           "' begins like the files of occlusions of TUW: rename the object, or write "
+                                           "BOP");
     require(object.camera_from_object.is_rigid(), "write_tuw_annotation: camera_from_object is not rigid");
   }
   return {};

@@ -96,6 +96,17 @@ TEST(TuwSequence, NamesThatCannotBeThoseOfObjectsAreRefused) {
   EXPECT_THAT(parse_tuw_anno(std::string(1000, 'a') + " (1): " + kPose, "f").error().message, HasSubstr("1000 bytes"));
 }
 
+TEST(TuwSequence, ObjectsThatWouldBeTakenForOcclusionsAreRefused) {
+  io::TestDirectory directory;
+  for (const char* name : {"occlusion", "occlusion_cup"})
+    EXPECT_THAT(write_tuw_annotation(directory.path(), "view_1", {{name, 0, 0, {}, 0.5}}).error().message,
+                HasSubstr("rename the object"));
+  ASSERT_TRUE(write_tuw_annotation(directory.path(), "view_1", {{"occlusions", 0, 0, {}, 0.5}}).ok());
+  const auto found = find_tuw_annotations(directory.path(), {"view_1"});
+  ASSERT_EQ(found[0].poses.size(), 1U);
+  EXPECT_EQ(found[0].poses[0].object, "occlusions");
+}
+
 TEST(TuwSequence, WriterKeepsViewsAndTruth) {
   io::TestDirectory directory;
   const auto writer = create_sequence(directory / "out", DatasetFormat::kTuw);
