@@ -189,6 +189,7 @@ void run_track(const TrackArguments& arguments) {
   const bool refine = arguments.poses != "auto";
   const auto sequence = open_input(arguments.sequence, with_poses(arguments.input, arguments.poses));
   check_apart(list_outputs(arguments, sequence->num_views()));
+  if (arguments.posed) value_or_throw(check_view_names(*sequence, *arguments.posed, to_format(arguments.format)));
   warn_about_faults(*sequence, refine);
   std::optional<ModelLibrary> library;
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));

@@ -9,6 +9,7 @@
 #include "resight/core/check.hpp"
 #include "resight/io/bop_models.hpp"
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/sequences.hpp"
 #include "resight/io/tuw_changes.hpp"
 #include "resight/io/tuw_models.hpp"
 
@@ -111,12 +112,25 @@ Result<void> write_kept_changes(const KeptChanges& kept, const std::string& name
 
 }  // namespace
 
+Result<void> check_view_names(const Sequence& sequence, const std::filesystem::path& directory, DatasetFormat format) {
+  if (format != DatasetFormat::kTuw) return {};
+  std::string before;
+  for (int i = 0; i < sequence.num_views(); ++i) {
+    const std::string name = sequence.view_name(i);
+    if (const auto done = io::check_tuw_view_name(name, before); !done)
+      return io::file_error(directory, done.error().message);
+    before = name;
+  }
+  return {};
+}
+
 Result<ConversionSummary> convert_sequence(const Sequence& sequence, const std::filesystem::path& directory,
                                            DatasetFormat format, const ChangeFiles& changes) {
   const auto kept = read_kept_changes(sequence, changes);
   if (!kept) return kept.error();
   if (format == DatasetFormat::kTuw && !sequence.has_poses() && sequence.num_views() > 1)
     return Error{"the views have no camera poses, which TUW files hold: give --poses FILE or fixed, or convert to bop"};
+  if (const auto done = check_view_names(sequence, directory, format); !done) return done.error();
   const auto writer = create_sequence(
       directory, format, {.has_poses = sequence.has_poses(), .has_ground_truth = sequence.has_ground_truth()});
   if (!writer) return writer.error();

@@ -16,6 +16,10 @@ struct ConversionSummary {
   std::vector<std::string> warnings;  ///< ModelSource::warnings of all models.
 };
 
+/// Fails if the format cannot hold the names of the views, as convert_sequence() does.
+[[nodiscard]] Result<void> check_view_names(const Sequence& sequence, const std::filesystem::path& directory,
+                                            DatasetFormat format);
+
 /// Writes all views of `sequence` with their ground truth to `directory` in another format. The files of its true
 /// changes go into the same folder: the events as they are, as `events.json`; the chains with the new names of the
 /// views, as `<name of directory>.changes`, unless there is no ground truth that they could refer to. Fails if the

@@ -58,12 +58,8 @@ class TuwSequenceWriter final : public SequenceWriter {
   [[nodiscard]] Result<void> write_view(const RgbdFrame& frame,
                                         const std::vector<GroundTruthObject>& ground_truth) override {
     if (const auto done = check_frame(frame); !done) return done;
-    if (!is_safe_name(frame.name))
-      return file_error(directory_.final_path(), "the view name '" + frame.name + "' cannot be a file name");
-    // Readers sort files by name and assume this to be the order of time.
-    if (!names_.empty() && !natural_less(names_.back(), frame.name))
-      return file_error(directory_.final_path(),
-                        "view '" + frame.name + "' comes after '" + names_.back() + "'; names must ascend in time");
+    if (const auto fits = check_tuw_view_name(frame.name, names_.empty() ? "" : names_.back()); !fits)
+      return file_error(directory_.final_path(), fits.error().message);
     names_.push_back(frame.name);
     const auto done = write_pcd(directory_.path() / (frame.name + ".pcd"), to_pcd_cloud(frame));
     if (!done) return done;
@@ -94,6 +90,14 @@ SequenceResult open_files(std::vector<fs::path> files, const fs::path& directory
 }
 
 }  // namespace
+
+Result<void> check_tuw_view_name(const std::string& name, const std::string& before) {
+  if (!is_safe_name(name)) return Error{"the view name '" + name + "' cannot be a file name"};
+  // Readers sort files by name and assume this to be the order of time.
+  if (!before.empty() && !natural_less(before, name))
+    return Error{"view '" + name + "' comes after '" + before + "'; names must ascend in time"};
+  return {};
+}
 
 // Unorganised clouds alone are models. A damaged file may be a view.
 bool is_tuw_sequence(const fs::path& directory) {

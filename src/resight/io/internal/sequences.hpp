@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "resight/io/sequence.hpp"
 
@@ -46,6 +47,9 @@ using SequenceResult = Result<std::unique_ptr<Sequence>>;
 [[nodiscard]] SequenceResult open_recording_sequence(const std::filesystem::path& where,
                                                      const OpenSequenceOptions& options);
 
+/// Fails if a view of this name cannot follow the one before it (empty: none) in a TUW sequence. The error does not
+/// name the folder.
+[[nodiscard]] Result<void> check_tuw_view_name(const std::string& name, const std::string& before);
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_tuw_sequence(const std::filesystem::path& directory);
 [[nodiscard]] Result<std::unique_ptr<SequenceWriter>> create_bop_scene(const std::filesystem::path& directory,
                                                                        const SequenceContent& content);
