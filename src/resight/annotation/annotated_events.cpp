@@ -39,22 +39,32 @@ void add_track_events(const std::vector<AnnotatedObject>& placements, const Mode
     add(previous->last_view + 1, AnnotatedEventKind::kRemoved, previous, nullptr);
 }
 
+void sort_by_time(std::vector<AnnotatedObject>& placements) {
+  std::ranges::sort(placements, {}, [](const AnnotatedObject& o) { return std::tuple(o.first_view, o.id); });
+}
+
 }  // namespace
 
 std::vector<AnnotatedObject> placements_of_track(const AnnotationDocument& document, int track) {
   std::vector<AnnotatedObject> placements;
   for (const auto& [id, object] : document.objects)
     if (object.track == track) placements.push_back(object);
-  std::ranges::sort(placements, {}, [](const AnnotatedObject& o) { return std::tuple(o.first_view, o.id); });
+  sort_by_time(placements);
   return placements;
+}
+
+std::map<int, std::vector<AnnotatedObject>> placements_by_track(const AnnotationDocument& document) {
+  std::map<int, std::vector<AnnotatedObject>> tracks;
+  for (const auto& [id, object] : document.objects) tracks[object.track].push_back(object);
+  for (auto& [track, placements] : tracks) sort_by_time(placements);
+  return tracks;
 }
 
 std::vector<AnnotatedEvent> derive_events(const AnnotationDocument& document, const ModelLibrary& library,
                                           int num_views) {
-  std::set<int> tracks;
-  for (const auto& [id, object] : document.objects) tracks.insert(object.track);
   std::vector<AnnotatedEvent> events;
-  for (const int track : tracks) add_track_events(placements_of_track(document, track), library, num_views, events);
+  for (const auto& [track, placements] : placements_by_track(document))
+    add_track_events(placements, library, num_views, events);
   for (const auto& [id, e] : document.unknown_events) {
     AnnotatedEvent event;
     event.view = e.view;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct AnnotatedEvent {
 
 /// The placements of a track in the order of time.
 [[nodiscard]] std::vector<AnnotatedObject> placements_of_track(const AnnotationDocument& document, int track);
+
+/// Same of all tracks, by their numbers.
+[[nodiscard]] std::map<int, std::vector<AnnotatedObject>> placements_by_track(const AnnotationDocument& document);
 
 /// All changes, in order of view and track. Those of known objects follow from their placements: a track that begins
 /// after the first view was added, one that ends before the last view was removed, and one that goes on elsewhere in

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <map>
+#include <utility>
 
 #include "resight/annotation/annotated_events.hpp"
 #include "resight/annotation/matched_regions.hpp"
@@ -75,21 +76,27 @@ void check_track(const std::vector<AnnotatedObject>& placements, const ModelLibr
   }
 }
 
+/// Each placement is compared with earlier ones near it until one is at its place, so that many of them, at one place
+/// or at many, take no time.
 void check_same_places(const AnnotationDocument& document, const ModelLibrary& library,
                        std::vector<AnnotationToDo>& to_dos) {
-  for (auto a = document.objects.begin(); a != document.objects.end(); ++a) {
-    for (auto b = std::next(a); b != document.objects.end(); ++b) {
-      const AnnotatedObject& one = a->second;
-      const AnnotatedObject& other = b->second;
-      const int view = std::max(one.first_view, other.first_view);
-      if (one.object != other.object || view > std::min(one.last_view, other.last_view)) continue;
-      const ObjectModel& model = model_of(library, one);
-      if (one.track == other.track ||
-          center_distance_m(model, one.world_from_object, other.world_from_object) > 0.25 * model.diameter_m)
+  std::multimap<std::pair<int, double>, const AnnotatedObject*> earlier;  // By model and x of the centre.
+  for (const auto& [id, object] : document.objects) {
+    const ObjectModel& model = model_of(library, object);
+    const double reach_m = 0.25 * model.diameter_m;
+    const double x_m = (object.world_from_object * model.center.cast<double>()).x();
+    const auto end = earlier.upper_bound({object.object, x_m + reach_m});
+    for (auto it = earlier.lower_bound({object.object, x_m - reach_m}); it != end; ++it) {
+      const AnnotatedObject& other = *it->second;
+      const int view = std::max(object.first_view, other.first_view);
+      if (object.track == other.track || view > std::min(object.last_view, other.last_view) ||
+          center_distance_m(model, object.world_from_object, other.world_from_object) > reach_m)
         continue;
-      to_dos.push_back(make_to_do(ToDoKind::kSamePlace, view, other.track, -1,
+      to_dos.push_back(make_to_do(ToDoKind::kSamePlace, view, object.track, -1,
                                   fmt::format("{} is there twice in view {}", model.name, view + 1)));
+      break;
     }
+    earlier.emplace(std::pair(object.object, x_m), &object);
   }
 }
 
@@ -110,9 +117,7 @@ bool is_region_explained(const AnnotationDocument& document, const ModelLibrary&
 std::vector<AnnotationToDo> find_to_dos(const AnnotationDocument& document, const ModelLibrary& library,
                                         std::span<const ChangeProposal> regions) {
   std::vector<AnnotationToDo> to_dos;
-  std::set<int> tracks;
-  for (const auto& [id, object] : document.objects) tracks.insert(object.track);
-  for (const int track : tracks) check_track(placements_of_track(document, track), library, to_dos);
+  for (const auto& [track, placements] : placements_by_track(document)) check_track(placements, library, to_dos);
   check_same_places(document, library, to_dos);
   std::ranges::stable_sort(to_dos, {}, &AnnotationToDo::view);
   const MatchedRegions matched = match_regions(document, regions);

@@ -162,5 +162,19 @@ TEST_F(ExportAnnotationTest, ChecksNameWhatDoesNotFit) {
   EXPECT_EQ(to_dos[0].kind, ToDo::kTwoPlaces);
 }
 
+TEST_F(ExportAnnotationTest, ChecksOfThousandsOfPlacementsAreShort) {
+  AnnotationDocument document;
+  constexpr int kNumPlacements = 3000;
+  for (int id = 0; id < kNumPlacements; ++id) {
+    AnnotatedObject object = scene_->document.objects.at(0);
+    object.id = object.track = id;
+    document.objects[id] = object;
+  }
+  const auto to_dos = find_to_dos(document, scene_->library, {});
+  ASSERT_EQ(to_dos.size(), kNumPlacements - 1U) << "each is at the place of another, but not of all others";
+  EXPECT_EQ(to_dos[0].kind, AnnotationToDo::Kind::kSamePlace);
+  EXPECT_EQ(to_dos[0].track, 1);
+}
+
 }  // namespace
 }  // namespace resight
