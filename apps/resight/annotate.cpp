@@ -9,12 +9,12 @@
 #include "output_paths.hpp"
 #include "progress.hpp"
 #include "recognition_run.hpp"
+#include "resight/annotation/annotated_inputs.hpp"
 #include "resight/annotation/change_proposals.hpp"
 #include "resight/annotation/detections_to_edit.hpp"
 #include "resight/annotation/export_annotation.hpp"
 #include "resight/annotation/proposals_file.hpp"
 #include "resight/core/files.hpp"
-#include "resight/core/hash.hpp"
 #include "resight/io/recognition_results.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/recognition/stage_options.hpp"
@@ -28,22 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMinRegionPoints = 30;  // Of 5 mm: about 3 cm across.
-
-/// Identifies the views and the models, wherever they are.
-std::string identify(const Sequence& sequence, const ModelLibrary& library) {
-  std::uint64_t views = kHashSeed;
-  for (int v = 0; v < sequence.num_views(); ++v) {
-    const Rigid3 pose = value_or_throw(sequence.read_pose(v));
-    views = hash_text(fmt::format("{} {:.6f} {:.6f} {:.6f}\n", sequence.view_name(v), pose.translation.x(),
-                                  pose.translation.y(), pose.translation.z()),
-                      views);
-  }
-  std::uint64_t models = kHashSeed;
-  for (const ObjectModel& model : library.objects)
-    models = hash_text(fmt::format("{} {} {}\n", model.name, model.bop_id, model.surface.size()), models);
-  return fmt::format("{} views {:016x}, {} models {:016x}", sequence.num_views(), views, library.objects.size(),
-                     models);
-}
 
 /// What the proposals depend on beside the views that are read. The number of threads is not part of it.
 std::string describe_inputs(const fs::path& input, const fs::path& project, const RecognizerConfig& config) {
@@ -102,7 +86,8 @@ void run_annotate(const AnnotateArguments& arguments) {
                       .export_folder = export_folder};
   const AnnotationLimits limits{.num_views = sequence->num_views(),
                                 .num_objects = static_cast<int>(library->objects.size())};
-  task.project = value_or_throw(AnnotationProject::open(arguments.out, limits, identify(*sequence, *library)));
+  const AnnotatedInputs inputs = value_or_throw(identify_inputs(*sequence, *library));
+  task.project = value_or_throw(AnnotationProject::open(arguments.out, limits, inputs.digest, inputs.earlier_digest));
   if (task.project->was_cut_off()) print_warning("the last action was cut off and is dropped");
   if (arguments.detections) add_detections(*arguments.detections, *sequence, *library, *task.project);
   task.regions = find_regions(*sequence, input, arguments);

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -44,7 +45,8 @@ std::vector<std::string> split_lines(std::string_view text, std::size_t& num_byt
 
 }  // namespace
 
-Result<AnnotationJournal::Opened> AnnotationJournal::open(const std::filesystem::path& file, std::string_view header,
+Result<AnnotationJournal::Opened> AnnotationJournal::open(const std::filesystem::path& file,
+                                                          const std::vector<std::string>& headers,
                                                           const std::function<bool(std::string_view)>& is_valid) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor < 0) return system_failure(file, "cannot be opened");
@@ -60,15 +62,17 @@ Result<AnnotationJournal::Opened> AnnotationJournal::open(const std::filesystem:
   std::vector<std::string> lines = split_lines(*text, journal.size_);
   bool was_cut_off = journal.size_ < text->size();
   if (lines.empty()) {
-    if (was_cut_off && !header.starts_with(*text))
+    if (was_cut_off && std::ranges::none_of(headers, [&](const std::string& h) { return h.starts_with(*text); }))
       return file_error(file, "exists already and is no journal of 'resight annotate'");
     if (was_cut_off && ::ftruncate(descriptor, 0) != 0) return system_failure(file, "cannot be repaired");
-    if (const auto done = journal.append(header); !done) return done.error();
+    if (const auto done = journal.append(headers.front()); !done) return done.error();
     sync_folder(file.parent_path());
     return Opened{.journal = std::move(journal), .lines = {}, .was_cut_off = was_cut_off};
   }
-  if (lines.front() != header)
-    return file_error(file, "belongs to another sequence, other models or another version (choose another project)");
+  if (std::ranges::find(headers, lines.front()) == headers.end())
+    return file_error(file,
+                      "belongs to another sequence (names, poses, cameras or pixels of the views differ), other models "
+                      "or another version (choose another project)");
   lines.erase(lines.begin());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (is_valid(lines[i])) continue;

@@ -16,10 +16,10 @@ namespace resight {
 class AnnotationJournal {
  public:
   struct Opened;
-  /// Opens the journal, or starts it with `header` if it does not exist or is empty. A last line that is cut off or
-  /// that `is_valid` refuses is removed: the process died while it wrote it. Fails if another process has it open, the
-  /// header differs, or an earlier line is not valid.
-  [[nodiscard]] static Result<Opened> open(const std::filesystem::path& file, std::string_view header,
+  /// Opens the journal, or starts it with the first of `headers` if it does not exist or is empty. A last line that is
+  /// cut off or that `is_valid` refuses is removed: the process died while it wrote it. Fails if another process has it
+  /// open, its header is none of `headers`, or an earlier line is not valid.
+  [[nodiscard]] static Result<Opened> open(const std::filesystem::path& file, const std::vector<std::string>& headers,
                                            const std::function<bool(std::string_view)>& is_valid);
   AnnotationJournal(AnnotationJournal&& other) noexcept;
   AnnotationJournal& operator=(AnnotationJournal&& other) = delete;

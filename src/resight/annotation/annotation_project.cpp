@@ -22,11 +22,14 @@ std::string make_header(const std::string& inputs) {
 
 Result<std::unique_ptr<AnnotationProject>> AnnotationProject::open(const std::filesystem::path& folder,
                                                                    const AnnotationLimits& limits,
-                                                                   const std::string& inputs) {
+                                                                   const std::string& inputs,
+                                                                   const std::string& earlier_inputs) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return file_error(folder, "cannot be created (" + error.message() + ")");
-  auto opened = AnnotationJournal::open(folder / kJournalName, make_header(inputs),
+  std::vector<std::string> headers{make_header(inputs)};
+  if (!earlier_inputs.empty()) headers.push_back(make_header(earlier_inputs));
+  auto opened = AnnotationJournal::open(folder / kJournalName, headers,
                                         [](std::string_view line) { return parse_action(line).ok(); });
   if (!opened) return opened.error();
   std::unique_ptr<AnnotationProject> project(new AnnotationProject(std::move(opened->journal), limits));

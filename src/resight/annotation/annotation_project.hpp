@@ -27,11 +27,13 @@ struct ActionOutcome {
 /// actions, too, so nothing that was ever done is lost.
 class AnnotationProject {
  public:
-  /// Opens the project in `folder`, which is created if it is missing. `inputs` identifies the views and models. Fails
-  /// if another process has it open, it belongs to other inputs, or it is damaged.
+  /// Opens the project in `folder`, which is created if it is missing. `inputs` identifies the views and models,
+  /// `earlier_inputs` does so in projects of earlier versions (identify_inputs()). Fails if another process has it
+  /// open, it belongs to other inputs, or it is damaged.
   [[nodiscard]] static Result<std::unique_ptr<AnnotationProject>> open(const std::filesystem::path& folder,
                                                                        const AnnotationLimits& limits,
-                                                                       const std::string& inputs);
+                                                                       const std::string& inputs,
+                                                                       const std::string& earlier_inputs = "");
 
   [[nodiscard]] const AnnotationDocument& document() const { return document_; }
   [[nodiscard]] const AnnotationLimits& limits() const { return limits_; }

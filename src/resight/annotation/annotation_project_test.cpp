@@ -249,6 +249,18 @@ TEST_F(AnnotationProjectTest, AProjectBelongsToItsInputs) {
   EXPECT_THAT(other.error().message, testing::HasSubstr("belongs to another sequence"));
 }
 
+TEST_F(AnnotationProjectTest, AProjectOfAnEarlierVersionIsContinued) {
+  open().reset();
+  const std::string header = *read_file(journal());
+  {
+    const auto project = AnnotationProject::open(folder_, kLimits, "with pixels", "inputs");
+    ASSERT_TRUE(project.ok()) << project.error().message;
+    EXPECT_EQ((*project)->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
+  }
+  EXPECT_TRUE(read_file(journal())->starts_with(header));
+  EXPECT_FALSE(AnnotationProject::open(folder_, kLimits, "with pixels", "other inputs").ok());
+}
+
 TEST_F(AnnotationProjectTest, AKilledProcessLosesNoAcknowledgedActionAndItsLock) {
   int acknowledged[2];
   ASSERT_EQ(::pipe(acknowledged), 0);

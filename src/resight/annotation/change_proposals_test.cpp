@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "resight/annotation/annotated_inputs.hpp"
 #include "resight/annotation/annotated_scene_test.hpp"
 #include "resight/annotation/object_masks.hpp"
 #include "resight/annotation/proposals_file.hpp"
@@ -124,6 +125,23 @@ TEST_F(ChangeProposals, TheDigestTellsInputsApart) {
   depth_m = old_m;
   scene_.frames[5].world_from_camera.translation.x() += 1e-6;
   EXPECT_NE(*digest_inputs(scene_, "settings"), digest) << "a pose";
+}
+
+TEST_F(ChangeProposals, AProjectBelongsToRotationsAndPixels) {
+  const auto identify = [&] { return identify_inputs(scene_, scene_.library)->digest; };
+  const std::string digest = identify();
+  const std::string earlier = identify_inputs(scene_, scene_.library)->earlier_digest;
+  scene_.frames[2].depth_m(10, 10) += 1e-6F;
+  scene_.frames[3].world_from_camera.translation.x() += 1e-8;
+  EXPECT_EQ(identify(), digest) << "rounding";
+  RgbdFrame& frame = scene_.frames[2];
+  frame.color(10, 10).r ^= 1;
+  EXPECT_NE(identify(), digest) << "one pixel";
+  frame.color(10, 10).r ^= 1;
+  EXPECT_EQ(identify(), digest);
+  frame.world_from_camera.rotation *= Eigen::AngleAxisd(0.001, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_NE(identify(), digest) << "a rotation";
+  EXPECT_EQ(identify_inputs(scene_, scene_.library)->earlier_digest, earlier) << "neither counted before";
 }
 
 }  // namespace

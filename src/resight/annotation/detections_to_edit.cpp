@@ -11,6 +11,10 @@ namespace {
 
 constexpr SamePlaceOptions kSamePlace{.max_distance_m = 0.03, .max_rotation_rad = 0.35};
 
+// By how much the poses of a view may differ, because the recogniser has corrected them.
+constexpr double kMaxCameraShift_m = 0.1;
+constexpr double kMaxCameraTurn_rad = 0.2;
+
 /// A detection in the world frame of the sequence.
 struct PlacedDetection {
   int view = 0;
@@ -32,6 +36,24 @@ Result<std::vector<int>> number_views(const RecognitionResults& results, const S
     views.push_back(found->second);
   }
   return views;
+}
+
+/// Many sequences have views 000000, 000001, .. They are the same if at least half of the cameras were where they are
+/// said to be. Poses of `--poses auto`, which begin at the identity, have a frame of their own and tell nothing.
+Result<void> check_cameras(const RecognitionResults& results, const std::vector<int>& views, const Sequence& sequence) {
+  if (results.views.empty() || results.views.front().world_from_camera.matrix().isIdentity(1e-6)) return {};
+  std::size_t num_elsewhere = 0;
+  for (std::size_t v = 0; v < results.views.size(); ++v) {
+    const auto given = sequence.read_pose(views[v]);
+    if (!given) return given.error();
+    const Rigid3& found = results.views[v].world_from_camera;
+    if ((found.translation - given->translation).norm() > kMaxCameraShift_m ||
+        rotation_angle_rad(found.rotation, given->rotation) > kMaxCameraTurn_rad)
+      ++num_elsewhere;
+  }
+  if (2 * num_elsewhere <= results.views.size()) return {};
+  return Error{"the detections are of another sequence: its cameras were elsewhere in " +
+               std::to_string(num_elsewhere) + " of " + std::to_string(results.views.size()) + " views"};
 }
 
 Result<DetectionsOfTrack> collect_detections(const RecognitionResults& results, const std::vector<int>& views,
@@ -105,6 +127,7 @@ Result<AnnotationEdit> detections_to_edit(const RecognitionResults& results, con
                                           const ModelLibrary& library) {
   const auto views = number_views(results, sequence);
   if (!views) return views.error();
+  if (const auto same = check_cameras(results, *views, sequence); !same) return same.error();
   const auto tracks = collect_detections(results, *views, sequence, library);
   if (!tracks) return tracks.error();
   AnnotationEdit edit{.title = "Start from detections", .changes = {}};

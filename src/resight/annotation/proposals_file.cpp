@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "resight/annotation/annotated_inputs.hpp"
 #include "resight/annotation/annotation_json.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
@@ -21,7 +21,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "resight proposals 1";
-constexpr int kMaxReadViews = 8;  // A sequence of 1,000 views opens in less than 2 s.
 
 template <typename T>
 std::uint64_t hash_values(std::span<const T> values, std::uint64_t seed) {
@@ -105,9 +104,8 @@ Result<std::string> digest_inputs(const Sequence& sequence, const std::string& s
     if (!world_from_camera) return world_from_camera.error();
     hash = hash_pose(*world_from_camera, hash_text(sequence.view_name(v), hash));
   }
-  const int num_read = std::min(kMaxReadViews, sequence.num_views());
-  for (int i = 0; i < num_read; ++i) {  // From the first view to the last one.
-    const auto frame = sequence.read_view(i * (sequence.num_views() - 1) / std::max(num_read - 1, 1));
+  for (const int v : views_that_identify(sequence.num_views())) {
+    const auto frame = sequence.read_view(v);
     if (!frame) return frame.error();
     hash = hash_frame(*frame, hash);
   }
