@@ -52,16 +52,22 @@ std::vector<ChangeProposal> find_regions(const Sequence& sequence, const fs::pat
   return regions;
 }
 
+Result<AnnotationEdit> read_detections(const fs::path& detections, const Sequence& sequence,
+                                       const ModelLibrary& library) {
+  if (!fs::exists(detections)) return file_error(detections, "no such file or directory");
+  const fs::path folder = fs::is_directory(detections) ? detections : detections.parent_path();
+  const auto results = read_recognition_results(folder.empty() ? "." : folder);
+  if (!results) return results.error();
+  return detections_to_edit(*results, sequence, library);
+}
+
 /// A new project starts with what was recognised. A project that has begun stays as it is.
-void add_detections(const fs::path& detections, const Sequence& sequence, const ModelLibrary& library,
-                    AnnotationProject& project) {
+void add_detections(Result<AnnotationEdit> detected, AnnotationProject& project) {
   if (project.revision() > 0) {
-    print_warning("the project has begun already; the detections are not read again");
+    print_warning("the project has begun already; the detections are not added again");
     return;
   }
-  const fs::path folder = fs::is_directory(detections) ? detections : detections.parent_path();
-  const RecognitionResults results = value_or_throw(read_recognition_results(folder.empty() ? "." : folder));
-  AnnotationEdit edit = value_or_throw(detections_to_edit(results, sequence, library));
+  AnnotationEdit edit = value_or_throw(std::move(detected));
   if (edit.changes.empty()) return;
   const ActionOutcome outcome = project.act(std::move(edit), 0);
   if (outcome.kind != ActionOutcome::Kind::kApplied) throw InputError(outcome.message);
@@ -84,12 +90,19 @@ void run_annotate(const AnnotateArguments& arguments) {
                       .project = nullptr,
                       .scene_name = name,
                       .export_folder = export_folder};
+  // All that may be wrong, before a project is made and the regions are found, which takes minutes.
+  const AnnotatedInputs inputs = value_or_throw(identify_inputs(*sequence, *library));
+  std::optional<Result<AnnotationEdit>> detected;
+  if (arguments.detections) {
+    detected = read_detections(*arguments.detections, *sequence, *library);
+    if (!*detected && !AnnotationProject::is_in(arguments.out)) throw InputError(detected->error().message);
+  }
+  ViewerSession session({.port = arguments.port, .no_open = arguments.no_open});
   const AnnotationLimits limits{.num_views = sequence->num_views(),
                                 .num_objects = static_cast<int>(library->objects.size())};
-  const AnnotatedInputs inputs = value_or_throw(identify_inputs(*sequence, *library));
   task.project = value_or_throw(AnnotationProject::open(arguments.out, limits, inputs.digest, inputs.earlier_digest));
   if (task.project->was_cut_off()) print_warning("the last action was cut off and is dropped");
-  if (arguments.detections) add_detections(*arguments.detections, *sequence, *library, *task.project);
+  if (detected) add_detections(*std::move(detected), *task.project);
   task.regions = find_regions(*sequence, input, arguments);
   AnnotationService service(std::move(task));
 
@@ -99,7 +112,7 @@ void run_annotate(const AnnotateArguments& arguments) {
   shown.library = library;
   shown.is_annotated = true;
   const auto scene = value_or_throw(SceneData::create(std::move(shown)));
-  ViewerSession session(*scene, {.port = arguments.port, .no_open = arguments.no_open}, &service);
+  session.show(*scene, &service);
   session.open_until_interrupted();
   clean_up_when_interrupted();
   value_or_throw(service.save());

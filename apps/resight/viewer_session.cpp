@@ -12,10 +12,16 @@
 
 namespace resight::app {
 
-ViewerSession::ViewerSession(SceneData& scene, const ViewerSessionOptions& options, AnnotationService* annotation)
+ViewerSession::ViewerSession(const ViewerSessionOptions& options)
     : no_open_(options.no_open),
       token_(make_access_token()),
-      server_(value_or_throw(HttpServer::listen(options.port, make_viewer_handler(scene, token_, annotation)))) {}
+      handler_(std::make_shared<HttpHandler>()),
+      server_(value_or_throw(HttpServer::listen(
+          options.port, [handler = handler_](const HttpRequest& request) { return (*handler)(request); }))) {}
+
+void ViewerSession::show(SceneData& scene, AnnotationService* annotation) {
+  *handler_ = make_viewer_handler(scene, token_, annotation);
+}
 
 void ViewerSession::open() {
   const std::string address = fmt::format("http://127.0.0.1:{}/#token={}", server_.port(), token_);

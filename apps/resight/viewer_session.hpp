@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "browser.hpp"
 #include "resight/viewer/annotation_service.hpp"
@@ -18,8 +20,11 @@ struct ViewerSessionOptions {
 /// A server of one scene under a secret address.
 class ViewerSession {
  public:
-  /// Throws an InputError if the port is taken. `scene` and `annotation` must outlive the session.
-  ViewerSession(SceneData& scene, const ViewerSessionOptions& options, AnnotationService* annotation = nullptr);
+  /// Throws an InputError if the port is taken.
+  explicit ViewerSession(const ViewerSessionOptions& options);
+  ViewerSession(SceneData& scene, const ViewerSessionOptions& options) : ViewerSession(options) { show(scene); }
+  /// What the session shows; to be called before open(). Both must be there as long as requests are answered.
+  void show(SceneData& scene, AnnotationService* annotation = nullptr);
   /// Prints the address, and opens it in the browser.
   void open();
   /// Same, and answers requests until the process gets SIGINT or SIGTERM.
@@ -29,6 +34,7 @@ class ViewerSession {
  private:
   bool no_open_;
   std::string token_;
+  std::shared_ptr<HttpHandler> handler_;  ///< The server, which can be moved, has it as well.
   HttpServer server_;
   std::optional<BrowserLaunch> browser_;
 };

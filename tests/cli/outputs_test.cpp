@@ -101,6 +101,8 @@ const Row kOutputRows[] = {
     {"AnnotateOverForeignProposals", write("out/proposals.json", "{}"),
      "annotate --models models.resight --sequence views --out out --no-open", 2,
      "out: holds files that are no results"},
+    {"AnnotateWithoutItsDetections", kNothing,
+     "annotate --models models.resight --sequence views --detections nowhere --out out --no-open", 2, "nowhere"},
     {"ChangesInANewFolderOfTheSequence", kNothing, "changes --sequence views --out views/changes", 0, "",
      "views/changes/changes.json"},
     {"AnnotateAProjectInTheSequence", write("views/annotation/annotation.jsonl", "of others\n"),

@@ -2,7 +2,10 @@
 // What a run writes, and what is left of one that fails or is interrupted.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -50,6 +53,24 @@ TEST_F(CommandLineResults, AnnotateWarnsAboutTheViews) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.errors, testing::ElementsAre(testing::HasSubstr("warning: only 0.0 % of the pixels have depth"),
                                                    testing::HasSubstr("nowhere")));
+}
+
+TEST_F(CommandLineResults, AnnotateBeginsNoProjectIfThePortIsTaken) {
+  const int taken = ::socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(::bind(taken, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(taken, 1), 0);
+  ASSERT_EQ(::getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  const Outcome outcome =
+      run(folder_, "annotate --models models.resight --sequence views --out out --no-open --port " + port);
+  ::close(taken);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.errors, testing::ElementsAre(testing::HasSubstr(port)));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
 TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {

@@ -39,6 +39,11 @@ Result<std::unique_ptr<AnnotationProject>> AnnotationProject::open(const std::fi
   return project;
 }
 
+bool AnnotationProject::is_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::exists(folder / kJournalName, error);
+}
+
 Result<void> AnnotationProject::replay(const std::vector<std::string>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto action = parse_action(lines[i]);

@@ -35,6 +35,9 @@ class AnnotationProject {
                                                                        const std::string& inputs,
                                                                        const std::string& earlier_inputs = "");
 
+  /// Whether the folder holds a project.
+  [[nodiscard]] static bool is_in(const std::filesystem::path& folder);
+
   [[nodiscard]] const AnnotationDocument& document() const { return document_; }
   [[nodiscard]] const AnnotationLimits& limits() const { return limits_; }
   /// Number of actions so far.
