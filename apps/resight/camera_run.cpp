@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "progress.hpp"
 #include "resight/cameras/common_objects.hpp"
+#include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/recognition/observe_objects.hpp"
 #include "sequence_input.hpp"
@@ -116,7 +117,8 @@ TrackJournal open_track_journal(const std::filesystem::path& file, const Sequenc
   return value_or_throw(TrackJournal::open(file, describe_job(sequence, folder)));
 }
 
-JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options) {
+JointAdjustment track_sequence(const Sequence& sequence, const std::filesystem::path& folder,
+                               const TrackSequenceOptions& options) {
   CameraTrack track = track_views(sequence, options);
   std::vector<ObservedObject> observed;
   const bool join = options.library != nullptr && track.num_components > 1;
@@ -127,7 +129,10 @@ JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOpti
   }
   if (track.num_components > 1 && track.num_components == sequence.num_views()) {
     if (options.journal != nullptr) options.journal->remove();
-    throw std::runtime_error("no two views could be joined: the relative poses of their cameras are unknown");
+    throw InputError(file_error(folder,
+                                "no two views could be joined: the relative poses of their cameras are unknown "
+                                "(are depth scale and intrinsics right?)")
+                         .message);
   }
   warn_of_components(track);
   if (!options.adjust_objects) return {std::move(track), {}};
@@ -160,14 +165,14 @@ std::unique_ptr<Sequence> open_recorded_input(const std::filesystem::path& where
   return recorded;
 }
 
-std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::string& poses,
-                                            const ModelLibrary* library, int num_threads) {
+std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::filesystem::path& folder,
+                                            const std::string& poses, const ModelLibrary* library, int num_threads) {
   if (!is_estimated(poses)) return std::nullopt;
   TrackSequenceOptions options;
   options.refine = poses == "refine";
   options.library = library;
   options.num_threads = num_threads;
-  return take_largest_component(recorded, track_sequence(recorded, options).track);
+  return take_largest_component(recorded, track_sequence(recorded, folder, options).track);
 }
 
 }  // namespace resight::app

@@ -29,8 +29,10 @@ struct TrackSequenceOptions {
                                               const std::filesystem::path& folder);
 
 /// Estimates the camera poses of a sequence from its views, with progress. Warns about views that could not be joined.
-/// Throws std::runtime_error if no two views could be joined; then nothing is left to go on from, nor is the journal.
-[[nodiscard]] JointAdjustment track_sequence(const Sequence& sequence, const TrackSequenceOptions& options);
+/// Throws an InputError, which names `folder`, if no two views could be joined; then nothing is left to go on from, nor
+/// is the journal.
+[[nodiscard]] JointAdjustment track_sequence(const Sequence& sequence, const std::filesystem::path& folder,
+                                             const TrackSequenceOptions& options);
 
 /// Views of the largest component, with their poses. `sequence` must outlive the result.
 [[nodiscard]] PosedSequence take_largest_component(const Sequence& sequence, const CameraTrack& track);
@@ -44,7 +46,8 @@ struct TrackSequenceOptions {
                                                             const OpenSequenceOptions& options,
                                                             const std::string& poses);
 /// Views of the largest component with poses that were estimated as --poses asks; nullopt unless is_estimated(poses).
-[[nodiscard]] std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::string& poses,
-                                                          const ModelLibrary* library, int num_threads);
+[[nodiscard]] std::optional<PosedSequence> estimate_poses(const Sequence& recorded, const std::filesystem::path& folder,
+                                                          const std::string& poses, const ModelLibrary* library,
+                                                          int num_threads);
 
 }  // namespace resight::app

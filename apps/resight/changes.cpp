@@ -96,7 +96,7 @@ void run_changes(const ChangesArguments& arguments) {
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
-  const auto tracked = estimate_poses(*given, arguments.poses, nullptr, arguments.num_threads);
+  const auto tracked = estimate_poses(*given, arguments.sequence, arguments.poses, nullptr, arguments.num_threads);
   const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
   const CameraErrors errors =
       measure_camera_errors(sequence, config.prepare, config.camera.color_offset, config.camera.depth_bias);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
-#include <stdexcept>
+#include <string>
 
 #include "commands.hpp"
 #include "output_paths.hpp"
@@ -20,10 +20,10 @@ namespace {
 // All views are kept in memory, and those of similar directions are aligned pair by pair.
 constexpr int kMaxModelViews = 150;
 
-// For recordings that can be read but yield no model: not an error of the command line.
+// Recordings that yield no model are wrong input, too: the line names them.
 template <typename T>
-T value_or_fail(Result<T> result) {
-  if (!result.ok()) throw std::runtime_error(result.error().message);
+T value_of(const std::filesystem::path& recording, Result<T> result) {
+  if (!result.ok()) throw InputError(file_error(recording, result.error().message).message);
   return std::move(result).value();
 }
 
@@ -61,9 +61,9 @@ ObjectTrack follow(const std::filesystem::path& folder, const OpenSequenceOption
     return track_object(std::move(frames), options,
                         [&](int done, const std::string& view) { progress.report(done, view); });
   }();
-  if (!track) throw std::runtime_error(file_error(folder, track.error().message).message);
-  print_track(folder, *track);
-  return std::move(*track);
+  ObjectTrack followed = value_of(folder, std::move(track));
+  print_track(folder, followed);
+  return followed;
 }
 
 // Key views of an existing model.
@@ -96,9 +96,13 @@ void run_model(const ModelArguments& arguments) {
   if (arguments.onto) whole = read_model_views(*arguments.onto);
   for (const std::filesystem::path& folder : arguments.sequences) {
     ObjectTrack track = follow(folder, arguments.input, track_options);
-    whole = whole ? value_or_fail(join_tracks(std::move(*whole), std::move(track), track_options)) : std::move(track);
+    whole =
+        whole ? value_of(folder, join_tracks(std::move(*whole), std::move(track), track_options)) : std::move(track);
   }
-  ObjectModelBuild build = value_or_fail(build_model(whole->views, build_options));
+  std::string recordings;
+  for (const std::filesystem::path& folder : arguments.sequences)
+    recordings += (recordings.empty() ? "" : ", ") + folder.string();
+  ObjectModelBuild build = value_of(recordings, build_model(whole->views, build_options));
   build.report.closure_error_m = whole->closure_error_m;
   value_or_throw(write_object_model(arguments.out, whole->views, build));
   print_text(format_report(build.report));

@@ -210,7 +210,7 @@ void run_recognize(const RecognizeArguments& arguments) {
   }
   const auto recorded = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
   RunFiles files(arguments, library);
-  const auto tracked = estimate_poses(*recorded, arguments.poses, &library, arguments.num_threads);
+  const auto tracked = estimate_poses(*recorded, arguments.sequence, arguments.poses, &library, arguments.num_threads);
   recognize_recorded(tracked ? static_cast<const Sequence&>(*tracked) : *recorded, files, arguments, library, config);
 }
 

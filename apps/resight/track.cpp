@@ -195,11 +195,12 @@ void run_track(const TrackArguments& arguments) {
   if (arguments.models) library = value_or_throw(load_library(*arguments.models, TrainOptions{}.hash()));
   std::optional<TrackJournal> journal;
   if (!refine) journal = open_track_journal(file_of_journal(arguments.out), *sequence, arguments.sequence);
-  const JointAdjustment found = track_sequence(*sequence, {.refine = refine,
-                                                           .library = library ? &*library : nullptr,
-                                                           .journal = journal ? &*journal : nullptr,
-                                                           .adjust_objects = library.has_value(),
-                                                           .num_threads = arguments.num_threads});
+  const JointAdjustment found = track_sequence(*sequence, arguments.sequence,
+                                               {.refine = refine,
+                                                .library = library ? &*library : nullptr,
+                                                .journal = journal ? &*journal : nullptr,
+                                                .adjust_objects = library.has_value(),
+                                                .num_threads = arguments.num_threads});
   write_outputs(arguments, *sequence, found, library);
   if (journal) journal->remove();  // Last: whatever ends the program before, what was tracked is not lost.
 }

@@ -190,7 +190,7 @@ TEST_F(CommandLineResults, ModelTakesSomeOfManyViews) {
     fs::create_hard_link(folder_ / "views/depth/000000.png", folder_ / "many" / ("depth_" + number + ".png"));
   }
   const Outcome outcome = run(folder_, "model --sequence many --intrinsics 60,60,31.5,23.5 --out out");
-  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.output, testing::HasSubstr("many: 301 views, takes one of 3\n"));
 }
 
