@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "resight/core/files.hpp"
 #include "resight/core/statistics.hpp"
 #include "resight/geometry/splat_mesh.hpp"
 #include "resight/io/images.hpp"
@@ -17,6 +18,7 @@ namespace resight::app {
 namespace {
 
 constexpr int kMaxViews = 48;
+constexpr std::size_t kMinPoints = 3;  // Of a mesh to draw.
 const Camera kPictureCamera{960, 720, 820, 820, 479.5, 359.5};
 // Distance of the picture's camera from the target, relative to that of the views' mean position.
 constexpr double kStepBack = 1.35;
@@ -89,6 +91,8 @@ Image<Rgb8> draw(const Fused& fused, int num_threads) {
 
 void write_fused_cloud(const Sequence& posed, const std::filesystem::path& file, int num_threads) {
   const Fused fused = fuse(posed, num_threads);
+  if (fused.cloud.size() < kMinPoints)
+    throw InputError(file_error(file, "is not written: the views have no depth to make a point cloud of").message);
   value_or_throw(write_ply(file, fused.cloud, 1, "all views of resight track"));
   value_or_throw(write_color(picture_of_cloud(file), draw(fused, num_threads)));
 }

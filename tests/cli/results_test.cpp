@@ -73,6 +73,15 @@ TEST_F(CommandLineResults, AnnotateBeginsNoProjectIfThePortIsTaken) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(CommandLineResults, TrackWritesNoCloudWithoutDepth) {
+  no_depth_at_all()(folder_);
+  const Outcome outcome = run(folder_, "track --sequence views --poses refine --out poses.txt --fused cloud.ply");
+  EXPECT_EQ(outcome.status, 2);
+  ASSERT_FALSE(outcome.errors.empty());
+  EXPECT_THAT(outcome.errors.back(), testing::HasSubstr("cloud.ply: is not written: the views have no depth"));
+  EXPECT_FALSE(fs::exists(folder_ / "cloud.ply"));
+}
+
 TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views --out out --stream");
   ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
