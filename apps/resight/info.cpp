@@ -15,6 +15,7 @@
 #include "resight/models/library_file.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/training/training.hpp"
+#include "sequence_input.hpp"
 
 namespace resight::app {
 namespace {
@@ -126,7 +127,7 @@ std::vector<double> rounded_extent_m(const std::vector<Eigen::Vector3f>& points)
   return {rounded(size.x()), rounded(size.y()), rounded(size.z())};
 }
 
-// A model that cannot be read says why: a wrong unit, for example.
+// A model that cannot be read, beside others that can, says why: a wrong unit, for example.
 Json describe_model(const ModelLocation& location) {
   Json json = {{"name", location.name}, {"format", location.format}, {"path", location.path.string()}};
   const auto model = read_model(location);
@@ -152,6 +153,9 @@ Json describe_models(const std::vector<ModelLocation>& models) {
   Json json;
   json["models"] = Json::array();
   for (const ModelLocation& model : models) json["models"].push_back(describe_model(model));
+  const Json& described = json["models"];
+  if (std::ranges::all_of(described, [](const Json& model) { return model.contains("error"); }))
+    throw InputError(described.front()["error"].get<std::string>());
   return json;
 }
 
@@ -202,8 +206,7 @@ Described describe(const InfoArguments& arguments) {
   if (sequence.ok()) return {"sequence", describe_sequence(**sequence)};
   // Models beside a damaged sequence, or beside several, do not stand for them.
   if (value_or_throw(find_sequence_folder(path))) throw InputError(sequence.error().message);
-  const auto models = find_models({path});
-  if (models.ok()) return {"models", describe_models(*models)};
+  if (const auto models = find_models_to_show(path)) return {"models", describe_models(*models)};
   throw InputError(sequence.error().message);
 }
 

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "number_validator.hpp"
+#include "resight/core/files.hpp"
 #include "resight/inspection/quick_check.hpp"
 #include "resight/sensor/disparity_error.hpp"
 
@@ -168,6 +169,13 @@ std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where, c
   auto sequence = value_or_throw(open_posed_sequence(where, options));
   print_notes(*sequence);
   return sequence;
+}
+
+std::optional<std::vector<ModelLocation>> find_models_to_show(const std::filesystem::path& where) {
+  auto models = find_models({where});
+  if (models.ok()) return *std::move(models);
+  if (!models.error().message.starts_with(file_error(where, "").message)) throw InputError(models.error().message);
+  return std::nullopt;
 }
 
 }  // namespace resight::app

@@ -2,10 +2,12 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "resight/inspection/finding.hpp"
+#include "resight/io/model_source.hpp"
 #include "resight/io/sequence.hpp"
 
 namespace CLI {
@@ -34,5 +36,9 @@ void warn_about_faults(const Sequence& sequence, bool uses_poses, const std::str
 /// Same for uses that need camera poses.
 [[nodiscard]] std::unique_ptr<Sequence> open_posed_input(const std::filesystem::path& where,
                                                          const OpenSequenceOptions& options);
+
+/// Models that `where` holds although it is no sequence. If one of its files is to blame, such as a damaged
+/// models_info.json, throws an InputError that names it. None if there is nothing of the kind.
+[[nodiscard]] std::optional<std::vector<ModelLocation>> find_models_to_show(const std::filesystem::path& where);
 
 }  // namespace resight::app

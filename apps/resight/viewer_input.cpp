@@ -84,8 +84,8 @@ ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::pa
     scene.library = open_library(input);
     return scene;
   }
-  auto models = find_models({input});
-  if (!models.ok() || models->empty())
+  auto models = find_models_to_show(input);
+  if (!models)
     throw InputError(file_error(input,
                                 "is nothing to view (expected results of 'resight recognize', a sequence, a model "
                                 "library or models)")

@@ -46,6 +46,11 @@ const Row kSequenceRows[] = {
     {"InfoOfNothing", kNothing, "info empty", 2, "empty: no sequence found"},
     {"InfoOfUnfinishedResults", both(write("res/summary.json", "{}"), write("res/.resight-unfinished", "")), "info res",
      2, "res: is not finished"},
+    {"InfoOfABrokenModel", write("bad.ply", "ply\nformat"), "info bad.ply", 2, "bad\\.ply: "},
+    {"InfoOfModelsWithABrokenList", both(move("meshes", "models"), write("models/models_info.json", "{")),
+     "info models", 2, "models_info\\.json"},
+    {"ViewOfModelsWithABrokenList", both(move("meshes", "models"), write("models/models_info.json", "{")),
+     "view models --no-open", 2, "models_info\\.json"},
     {"InfoOfATruncatedLibrary", cut("models.resight", 0.7), "info models.resight", 2, "models\\.resight: truncated"},
 
     // Sequences.
