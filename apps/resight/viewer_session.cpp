@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "resight/viewer/access_guard.hpp"
@@ -26,7 +26,9 @@ void ViewerSession::show(SceneData& scene, AnnotationService* annotation) {
 void ViewerSession::open() {
   const std::string address = fmt::format("http://127.0.0.1:{}/#token={}", server_.port(), token_);
   print("{}\n(for this user only; Ctrl-C ends it)\n", address);
-  std::fflush(stdout);  // a program that waits for the address may read it through a pipe
+  // A program that waits for the address may read it through a pipe. Without the address nobody can see the page.
+  if (!finish_output() && no_open_)
+    throw std::runtime_error("the address could not be written to the terminal, pipe or file");
   if (!no_open_) browser_.emplace(address);
 }
 

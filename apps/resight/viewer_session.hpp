@@ -25,7 +25,7 @@ class ViewerSession {
   ViewerSession(SceneData& scene, const ViewerSessionOptions& options) : ViewerSession(options) { show(scene); }
   /// What the session shows; to be called before open(). Both must be there as long as requests are answered.
   void show(SceneData& scene, AnnotationService* annotation = nullptr);
-  /// Prints the address, and opens it in the browser.
+  /// Prints the address, and opens it in the browser. Throws if it cannot be printed.
   void open();
   /// Same, and answers requests until the process gets SIGINT or SIGTERM.
   void open_until_interrupted();

@@ -73,6 +73,12 @@ TEST_F(CommandLineResults, AnnotateBeginsNoProjectIfThePortIsTaken) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(CommandLineResults, ViewEndsIfNobodyLearnsItsAddress) {
+  const int status = run_script(folder_, "timeout 20 " RESIGHT_PROGRAM " view views --no-open >/dev/full 2>errors");
+  EXPECT_EQ(status, 1) << "124: it serves";
+  EXPECT_THAT(read_text(folder_ / "errors"), testing::HasSubstr("the address could not be written"));
+}
+
 TEST_F(CommandLineResults, TrackWritesNoCloudWithoutDepth) {
   no_depth_at_all()(folder_);
   const Outcome outcome = run(folder_, "track --sequence views --poses refine --out poses.txt --fused cloud.ply");
