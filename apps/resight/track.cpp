@@ -201,6 +201,7 @@ void run_track(const TrackArguments& arguments) {
                                                 .journal = journal ? &*journal : nullptr,
                                                 .adjust_objects = library.has_value(),
                                                 .num_threads = arguments.num_threads});
+  check_outputs(arguments);  // Again: another program may have written them meanwhile.
   write_outputs(arguments, *sequence, found, library);
   if (journal) journal->remove();  // Last: whatever ends the program before, what was tracked is not lost.
 }

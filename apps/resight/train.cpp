@@ -37,7 +37,10 @@ void tell_uncolored(const ModelLibrary& library) {
 void run_train(const TrainArguments& arguments) {
   std::vector<ModelLocation> locations = value_or_throw(find_models(arguments.inputs));
   if (arguments.metres_per_unit) set_unit(locations, *arguments.metres_per_unit);
-  check_output_file(arguments.out, kLibrarySignature, "model library", arguments.inputs);
+  const auto check_out = [&] {
+    check_output_file(arguments.out, kLibrarySignature, "model library", arguments.inputs);
+  };
+  check_out();
   TrainOptions options;
   options.num_threads = arguments.num_threads;
   ModelLibrary library;
@@ -50,6 +53,7 @@ void run_train(const TrainArguments& arguments) {
   }
   for (const std::string& warning : warnings) print_warning(warning);
   tell_uncolored(library);
+  check_out();  // Again: another program may have written the file meanwhile.
   value_or_throw(save_library(library, arguments.out));
   for (const ObjectModel& object : library.objects)
     print("{:>4} {:<28} {:5.1f} cm, {:6d} surface points, {:5d} SIFT, {:5d} SHOT\n", object.bop_id, object.name,

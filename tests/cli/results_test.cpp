@@ -88,6 +88,15 @@ TEST_F(CommandLineResults, TrackWritesNoCloudWithoutDepth) {
   EXPECT_FALSE(fs::exists(folder_ / "cloud.ply"));
 }
 
+TEST_F(CommandLineResults, TrainKeepsAFileThatCameMeanwhile) {
+  const int status =
+      run_script(folder_, "{ timeout 60 " RESIGHT_PROGRAM
+                          " train meshes --out new.resight >output 2>errors & "
+                          "until [ -s errors ]; do sleep 0.01; done; echo mine >new.resight; wait $!; }");
+  EXPECT_EQ(status, 2);
+  EXPECT_EQ(read_text(folder_ / "new.resight"), "mine\n");
+}
+
 TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   const Outcome outcome = run(folder_, "recognize --models models.resight --sequence views --out out --stream");
   ASSERT_EQ(outcome.status, 0) << testing::PrintToString(outcome.errors);
