@@ -17,12 +17,14 @@ namespace {
 // Candidates are the same if they differ by less at the objects on which they agree.
 constexpr double kSameCandidate_m = 0.01;
 
+using PlacePair = std::pair<const ObjectPlace*, const ObjectPlace*>;
+
 // A possible relative pose of two components.
 struct Candidate {
   int component_a = 0;
   int component_b = 0;
   Rigid3 a_from_b;  // Between the frames of the components.
-  std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
+  std::vector<PlacePair> agreed;
   double surface_score = 0;
 };
 
@@ -99,17 +101,28 @@ class PartJoiner {
     return points;
   }
 
-  [[nodiscard]] std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> find_agreed(
-      std::span<const ObjectPlace> in_a, std::span<const ObjectPlace> in_b, const Rigid3& a_from_b) const {
-    std::vector<std::pair<const ObjectPlace*, const ObjectPlace*>> agreed;
+  [[nodiscard]] std::vector<PlacePair> find_agreed(std::span<const ObjectPlace> in_a, std::span<const ObjectPlace> in_b,
+                                                   const Rigid3& a_from_b) const {
+    std::vector<PlacePair> agreed;
     for (const ObjectPlace& a : in_a) {
       const auto b = std::ranges::find_if(in_b, [&](const ObjectPlace& p) {
-        return p.object == a.object && is_same_place(model(a), a.component_from_object,
-                                                     a_from_b * p.component_from_object, options_.same_place);
+        return is_same(a, p, a_from_b) && std::ranges::none_of(agreed, [&](const PlacePair& other) {
+                 return is_one_object({&a, &p}, other);
+               });
       });
       if (b != in_b.end()) agreed.emplace_back(&a, &*b);
     }
     return agreed;
+  }
+
+  // Noisy observations of one object may make several places, which are no further evidence.
+  [[nodiscard]] bool is_one_object(const PlacePair& x, const PlacePair& y) const {
+    return is_same(*x.first, *y.first, Rigid3::identity()) || is_same(*x.second, *y.second, Rigid3::identity());
+  }
+
+  [[nodiscard]] bool is_same(const ObjectPlace& a, const ObjectPlace& b, const Rigid3& a_from_b) const {
+    return a.object == b.object &&
+           is_same_place(model(a), a.component_from_object, a_from_b * b.component_from_object, options_.same_place);
   }
 
   // Least squares over the objects' axes, which are scaled to the size of the object.

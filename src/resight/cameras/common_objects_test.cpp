@@ -90,6 +90,24 @@ TEST(CommonObjects, OneIsNot) {
   EXPECT_EQ(join_by_objects(s.track, {}, s.library).num_components, 2);
 }
 
+TEST(CommonObjects, OneAtSeveralPlacesIsNot) {
+  TwoSides s;
+  const auto see_at = [&](int view, double off_m) {
+    const Rigid3 pose = Rigid3::from_translation({off_m, 0, 0}) * s.world_from_object[0];
+    s.observed.push_back({view, 0, s.world_from_camera[static_cast<std::size_t>(view)].inverse() * pose});
+  };
+  see_at(0, 0);
+  see_at(1, 0.028);
+  see_at(2, 0.027);
+  see_at(2, 0.04);  // Too far from the first one, but not from the medoid of the first three.
+  see_at(3, 0.03);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_components, 2);
+  see_at(4, 0.058);
+  see_at(5, 0.057);
+  see_at(5, 0.07);
+  EXPECT_EQ(join_by_objects(s.track, s.observed, s.library).num_components, 2) << "it is split on both sides";
+}
+
 TEST(CommonObjects, OneThatHasMovedIsIgnored) {
   TwoSides s;
   for (int v = 0; v < 6; ++v) {
