@@ -71,7 +71,8 @@ void add_depth_bias(const CheckArguments& arguments, const Sequence& sequence, C
     report.facts.push_back(fmt::format(
         "depth at 1 m is {:.1f} +- {:.1f} mm too {}, and at 2 m four times as much; preset default corrects it in "
         "recordings of a moving camera, --depth-bias {:.4f} everywhere",
-        1e3 * std::abs(bias.per_m), 1e3 * bias.sigma_per_m, bias.per_m > 0 ? "small" : "large", bias.per_m));
+        1e3 * std::abs(bias.per_m), 1e3 * bias.sigma_per_m, bias.per_m > 0 ? "small" : "large",
+        arguments.input.depth_bias_per_m + bias.per_m));  // A given one was corrected before.
 }
 
 // The bias can be measured nevertheless.

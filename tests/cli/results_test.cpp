@@ -16,6 +16,8 @@
 #include "cli.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/printable.hpp"
+#include "resight/io/sequence.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 
 namespace resight::cli_test {
 namespace {
@@ -380,6 +382,17 @@ TEST_F(CommandLineResults, FindingsInTheSequenceAreReplaced) {
   EXPECT_EQ(run(folder_, "check views --out views/pictures").status, 0);
   const Json report = Json::parse(read_text(folder_ / "views/pictures/findings.json"));
   EXPECT_EQ(report["findings"], Json::array()) << "the picture would pass for one of this check";
+}
+
+TEST_F(CommandLineResults, TheAdvisedDepthBiasReplacesAGivenOne) {
+  const auto writer = create_sequence(folder_ / "biased", DatasetFormat::kBop);
+  ASSERT_TRUE(writer.ok()) << writer.error().message;
+  for (const RgbdFrame& frame : test::render_biased_views(0.02)) ASSERT_TRUE((*writer)->write_view(frame, {}).ok());
+  ASSERT_TRUE((*writer)->finish().ok());
+  const std::string output = run(folder_, "check biased --depth-bias 0.03").output;
+  std::smatch advised;
+  ASSERT_TRUE(std::regex_search(output, advised, std::regex("--depth-bias (-?[0-9.]+)"))) << output;
+  EXPECT_NEAR(std::stod(advised[1]), 0.02, 0.004);
 }
 
 TEST_F(CommandLineResults, NoSecretAddressIsLeftBehindBySignals) {
