@@ -165,15 +165,16 @@ std::vector<std::string> list_facts(const SequenceMeasurements& measured) {
 
 std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured, bool knows_sizes) {
   std::vector<std::string> unmeasured;
-  if (!knows_sizes && (!measured.poses || measured.poses->all_equal))
-    unmeasured.emplace_back(
-        "a unit of the depth that is off by less than ten (it needs --models, or the poses of a camera that moves)");
+  if (const auto why = inspection::why_unit_is_unmeasured(measured); why && !knows_sizes)
+    unmeasured.push_back(fmt::format("a unit of the depth that is off by less than ten ({})", *why));
   if (measured.pairs.size() < inspection::kMinComparedPairs)
     unmeasured.push_back(
         fmt::format("intrinsics, {}and the time of the depth ({} of {} pairs of views could be matched, at least {} "
                     "are needed)",
                     measured.has_poses ? "poses " : "", measured.pairs.size(), measured.num_tried_pairs,
                     inspection::kMinComparedPairs));
+  else if (const auto why = inspection::why_intrinsics_are_unmeasured(measured))
+    unmeasured.push_back(fmt::format("intrinsics ({})", *why));
   if (!all_shifts(measured).peak())
     unmeasured.emplace_back("the registration of depth to colour (the depth has too few contours)");
   return unmeasured;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/inspection/find_faults.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -158,10 +160,43 @@ TEST(FindFaults, OnlyPosesOrKnownObjectsTellTheUnitOfDepth) {
   const test::MemorySequence still(standing);
   for (const Sequence* sequence : {static_cast<const Sequence*>(&fixed), static_cast<const Sequence*>(&still)}) {
     const auto measured = measure_sequence(*sequence, {.max_views = 24, .num_threads = 1}).value();
-    ASSERT_EQ(list_unmeasured(measured, false).size(), 1U);
+    const std::size_t num_others = sequence == &still ? 1 : 0;  // Intrinsics.
+    ASSERT_EQ(list_unmeasured(measured, false).size(), 1 + num_others);
     EXPECT_NE(list_unmeasured(measured, false).front().find("unit of the depth"), std::string::npos);
-    EXPECT_TRUE(list_unmeasured(measured, true).empty());
+    EXPECT_EQ(list_unmeasured(measured, true).size(), num_others);
   }
+}
+
+// The jitter of a tracker is no motion that tells a scale.
+TEST(FindFaults, JitteringPosesOfAStandingCameraTellNoUnit) {
+  Rng rng(3);
+  std::vector<RgbdFrame> standing;
+  for (int v = 0; v < 5; ++v) {
+    standing.push_back(render_view(swinging_camera(0), 0.0015, v + 1));
+    for (double& coordinate : standing.back().world_from_camera.translation) coordinate += 0.0002 * rng.normal();
+  }
+  const auto measured = measure_sequence(test::MemorySequence(standing), {.max_views = 24, .num_threads = 1}).value();
+  const std::vector<std::string> unmeasured = list_unmeasured(measured, false);
+  ASSERT_EQ(unmeasured.size(), 2U);
+  EXPECT_NE(unmeasured[0].find("unit of the depth"), std::string::npos);
+  EXPECT_NE(unmeasured[1].find("intrinsics"), std::string::npos);
+}
+
+TEST(FindFaults, WhatTheMotionDoesNotTellIsNotMeasured) {
+  const auto good = measure_sequence(good_sequence(), {.max_views = 24, .num_threads = 1}).value();
+  const auto unmeasured = [&](const std::function<void(SequenceMeasurements&)>& change) {
+    SequenceMeasurements measured = good;
+    change(measured);
+    const std::vector<std::string> list = list_unmeasured(measured);
+    return list.size() == 1 ? list.front() : std::to_string(list.size()) + " lines";
+  };
+  const auto scale = [](SequenceMeasurements & m) -> auto& { return m.poses->readings.front().fit.log_scale; };
+  EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics.reset(); }), testing::HasSubstr("intrinsics (12 of 12 pairs"));
+  EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics->log_focal.standard_error = 0.1; }),
+              testing::HasSubstr("intrinsics (the views tell the focal length"));
+  EXPECT_THAT(unmeasured([](auto& m) { m.pair_shift_px = 4; }), testing::HasSubstr("intrinsics (views differ by 4.0"));
+  EXPECT_THAT(unmeasured([&](auto& m) { scale(m).reset(); }), testing::HasSubstr("unit of the depth"));
+  EXPECT_THAT(unmeasured([&](auto& m) { scale(m)->standard_error = 0.1; }), testing::HasSubstr("unit of the depth"));
 }
 
 TEST(FindFaults, OneBlurredViewOfSeveralIsNoFault) {

@@ -14,7 +14,6 @@ namespace {
 constexpr int kFitSteps = 8;
 constexpr double kStep = 1e-4;            // Of the numerical derivative.
 constexpr double kMinTranslation = 0.01;  // Share of the distance of the scene; shorter ones tell no scale.
-constexpr std::size_t kMinFitPairs = 4;
 
 /// Up to three parameters; the residuals do not depend on those that are not used.
 using Parameters = Eigen::Vector3d;
@@ -147,7 +146,7 @@ GivenPosesFit fit_pose_scale(std::span<const ViewPair> pairs, const Camera& came
       reached.size(), Parameters(*rough, 0, 0),
       [&](std::size_t p, const Parameters& v) { return match_residuals(reached[p].matches, camera, scaled(p, v[0])); });
   GivenPosesFit fit;
-  fit.log_scale = {fitted.values[0], fitted.standard_errors[0]};
+  fit.log_scale = Estimate{fitted.values[0], fitted.standard_errors[0]};
   for (std::size_t p = 0; p < reached.size(); ++p)
     fit.pair_errors_px.push_back(median_error_px(reached[p].matches, camera, scaled(p, fitted.values[0])));
   fit.error_px = upper_median(fit.pair_errors_px);

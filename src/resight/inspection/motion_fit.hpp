@@ -23,14 +23,16 @@ struct IntrinsicsFit {
   Estimate center_x_px;
   Estimate center_y_px;
 };
-/// None with fewer than 4 pairs.
+inline constexpr std::size_t kMinFitPairs = 4;
+/// None with fewer than kMinFitPairs pairs.
 [[nodiscard]] std::optional<IntrinsicsFit> fit_intrinsics(std::span<const ViewPair> pairs, const Camera& camera);
 
 /// The poses of a sequence under one reading of them, and how well it explains what the views show.
 struct GivenPosesFit {
   /// Median over the pairs of the median distance of their matches; infinite if the poses reach no pair.
   double error_px = std::numeric_limits<double>::infinity();
-  Estimate log_scale;  ///< Natural logarithm of depth over poses: translations must be multiplied by the scale.
+  /// Natural logarithm of depth over poses: translations must be multiplied by the scale. None if no pair moves.
+  std::optional<Estimate> log_scale;
   std::vector<double> pair_errors_px;
 };
 /// Relative motion b_from_a of a pair as poses give it; none if they do not reach there.

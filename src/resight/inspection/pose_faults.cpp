@@ -20,6 +20,7 @@ constexpr double kMinTimeGain = 2;            // The same for another time: the 
 constexpr double kMaxLogScale = 0.06;
 constexpr double kMaxLogFocal = 0.08;
 constexpr double kMaxCenter = 0.06;  // Of the image's width.
+constexpr double kMaxUnsure = 3;     // Times the limit. With a larger error, even a grossly wrong value would not show.
 constexpr std::size_t kMinFarPairs = 3;
 
 /// Standard errors by which an estimate must differ: four, and more for few pairs, whose standard errors are uncertain
@@ -29,6 +30,12 @@ double sure_errors(std::size_t num_pairs, std::size_t num_parameters) {
   const std::size_t freedom = std::max(num_pairs, num_parameters + 1) - num_parameters;
   return freedom <= kOfFew.size() ? kOfFew[freedom - 1] : 4;
 }
+
+double sure_scale_error(const GivenPosesFit& fit) {
+  return sure_errors(fit.pair_errors_px.size(), 1) * fit.log_scale->standard_error;
+}
+
+double sure_intrinsics_errors(const SequenceMeasurements& all) { return sure_errors(all.pairs.size(), 3); }
 
 struct PoseContext {
   const SequenceMeasurements& all;
@@ -95,15 +102,16 @@ bool add_time(const PoseContext& c) {
 
 bool add_scale(const PoseContext& c) {
   const GivenPosesFit& fit = c.poses.readings.front().fit;
-  const double log_scale = fit.log_scale.value;
-  const double limit = std::max(kMaxLogScale, sure_errors(fit.pair_errors_px.size(), 1) * fit.log_scale.standard_error);
+  if (!fit.log_scale) return false;
+  const double log_scale = fit.log_scale->value;
+  const double limit = std::max(kMaxLogScale, sure_scale_error(fit));
   if (std::abs(log_scale) < limit || c.excess_px(fit.error_px) > 0.8 * c.excess_px(c.poses.given.error_px))
     return false;
   const double scale = std::exp(log_scale);
   const bool is_unit = std::abs(std::abs(log_scale) - std::log(1000)) < 0.3;
   c.add(is_unit ? "pose_unit" : "depth_scale",
         fmt::format("the motion that depth shows is {:.4g} times that of the poses (+- {:.1f} %)", scale,
-                    100 * fit.log_scale.standard_error),
+                    100 * fit.log_scale->standard_error),
         is_unit && scale < 1 ? "divide the translations by 1000: they are in millimetres where metres are expected"
         : is_unit            ? "multiply the translations by 1000: they are in metres where millimetres are expected"
                   : fmt::format("--depth-scale {:.3g} times the present one, if the poses are right", 1 / scale),
@@ -114,7 +122,7 @@ bool add_scale(const PoseContext& c) {
 bool add_intrinsics(const PoseContext& c) {
   if (!c.all.intrinsics) return false;
   const IntrinsicsFit& fit = *c.all.intrinsics;
-  const double sigmas = sure_errors(c.all.pairs.size(), 3);
+  const double sigmas = sure_intrinsics_errors(c.all);
   const double focal_limit = std::max(kMaxLogFocal, sigmas * fit.log_focal.standard_error);
   const auto margin_of_center = [&](const Estimate& e) {
     return std::abs(e.value) / std::max(kMaxCenter * c.all.camera.width, sigmas * e.standard_error);
@@ -156,6 +164,28 @@ void add_drift(const PoseContext& c) {
 }
 
 }  // namespace
+
+std::optional<std::string> why_unit_is_unmeasured(const SequenceMeasurements& all) {
+  const bool moves = all.poses && !all.poses->all_equal && all.poses->readings.front().fit.log_scale;
+  if (!moves || all.pairs.size() < kMinComparedPairs)
+    return "it needs --models, or the poses of a camera that moves";
+  const double error = sure_scale_error(all.poses->readings.front().fit);
+  if (error > kMaxUnsure * kMaxLogScale)
+    return fmt::format("the motion between views tells it to {:.0f} % only", 100 * (std::exp(error) - 1));
+  return std::nullopt;
+}
+
+std::optional<std::string> why_intrinsics_are_unmeasured(const SequenceMeasurements& all) {
+  if (all.pair_shift_px <= kMinMotion_px)
+    return fmt::format("views differ by {:.1f} px, more than {:.0f} px are needed", all.pair_shift_px, kMinMotion_px);
+  if (!all.intrinsics)
+    return fmt::format("{} of {} pairs of views could be matched, at least {} are needed", all.pairs.size(),
+                       all.num_tried_pairs, kMinFitPairs);
+  const double error = sure_intrinsics_errors(all) * all.intrinsics->log_focal.standard_error;
+  if (error > kMaxUnsure * kMaxLogFocal)
+    return fmt::format("the views tell the focal length to {:.0f} % only", 100 * (std::exp(error) - 1));
+  return std::nullopt;
+}
 
 void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>& findings) {
   if (measured.pairs.size() < kMinComparedPairs) return;
