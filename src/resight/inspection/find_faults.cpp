@@ -175,6 +175,8 @@ std::vector<std::string> list_unmeasured(const SequenceMeasurements& measured, b
                     inspection::kMinComparedPairs));
   else if (const auto why = inspection::why_intrinsics_are_unmeasured(measured))
     unmeasured.push_back(fmt::format("intrinsics ({})", *why));
+  if (const auto why = inspection::why_poses_are_unmeasured(measured))
+    unmeasured.push_back(fmt::format("poses ({})", *why));
   if (!all_shifts(measured).peak())
     unmeasured.emplace_back("the registration of depth to colour (the depth has too few contours)");
   return unmeasured;

@@ -190,13 +190,54 @@ TEST(FindFaults, WhatTheMotionDoesNotTellIsNotMeasured) {
     const std::vector<std::string> list = list_unmeasured(measured);
     return list.size() == 1 ? list.front() : std::to_string(list.size()) + " lines";
   };
-  const auto scale = [](SequenceMeasurements & m) -> auto& { return m.poses->readings.front().fit.log_scale; };
+  const auto scale = [](SequenceMeasurements& m) -> std::optional<Estimate>& { return m.poses->readings.front().fit.log_scale; };
   EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics.reset(); }), testing::HasSubstr("intrinsics (12 of 12 pairs"));
   EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics->log_focal.standard_error = 0.1; }),
               testing::HasSubstr("intrinsics (the views tell the focal length"));
   EXPECT_THAT(unmeasured([](auto& m) { m.pair_shift_px = 4; }), testing::HasSubstr("intrinsics (views differ by 4.0"));
   EXPECT_THAT(unmeasured([&](auto& m) { scale(m).reset(); }), testing::HasSubstr("unit of the depth"));
   EXPECT_THAT(unmeasured([&](auto& m) { scale(m)->standard_error = 0.1; }), testing::HasSubstr("unit of the depth"));
+  EXPECT_THAT(unmeasured([](auto& m) {
+                for (std::size_t i = 2; i < m.pairs.size(); ++i) m.pairs[i].shows_change = true;
+              }),
+              testing::AnyOf(testing::HasSubstr("poses"), "2 lines"));
+}
+
+/// Most of the texture is on a thing that moves in the middle of the sequence; little is on the wall.
+test::MemorySequence sequence_with_move(int num_views) {
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < num_views; ++v) {
+    const test::BallScene scene{
+        .ball_m = {v < num_views / 2 ? 0.0 : 0.12, 0.1, 0.2}, .ball_radius_m = 0.2, .ball_print = true};
+    const Rigid3 pose = swinging_camera(v);
+    RgbdFrame frame = sharpen(test::render_ball_scene(scene, pose, 0.0015, static_cast<std::uint64_t>(v + 1)));
+    for (int y = 0; y < frame.color.height(); ++y)
+      for (int x = 0; x < frame.color.width(); ++x) {
+        const Eigen::Vector3d p = pose * frame.camera.unproject(x, y, frame.depth_m(x, y));
+        const bool is_ball = (p - scene.ball_m).norm() < scene.ball_radius_m + 0.01;
+        if (!is_ball && std::abs(p.x() + 0.5) > 0.2) frame.color(x, y) = {128, 128, 128};
+      }
+    frame.name = std::to_string(v);
+    frames.push_back(std::move(frame));
+  }
+  return test::MemorySequence(std::move(frames));
+}
+
+// Of five views, most pairs are of the thing before and after the move; of eight, all that are far apart.
+TEST(FindFaults, AThingThatHasMovedIsNoPoseError) {
+  for (const int num_views : {5, 8}) {
+    const auto measured = measure_sequence(sequence_with_move(num_views), {.max_views = 24, .num_threads = 1}).value();
+    EXPECT_GE(std::ranges::count(measured.pairs, true, &ViewPair::shows_change), 3) << "the matches are on what stays";
+    EXPECT_EQ(std::ranges::count(measured.far_pairs, false, &ViewPair::shows_change), 0);
+    EXPECT_EQ(names_of(find_faults(measured)), "");
+    EXPECT_EQ(list_unmeasured(measured).size(), num_views == 5 ? 1U : 0U);
+  }
+}
+
+TEST(FindFaults, PoseErrorsAreFoundWhereAThingHasMoved) {
+  const test::MemorySequence moved = sequence_with_move(8);
+  for (const char* name : {"poses_noisy", "poses_drift", "poses_inverted", "poses_1_view_late"})
+    EXPECT_NE(names_of(check(test::BrokenSequence(moved, name))), "") << name;
 }
 
 TEST(FindFaults, OneBlurredViewOfSeveralIsNoFault) {

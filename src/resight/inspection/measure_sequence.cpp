@@ -8,6 +8,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/core/statistics.hpp"
+#include "resight/inspection/internal/changed_pairs.hpp"
 #include "resight/inspection/pose_readings.hpp"
 #include "resight/sensor/color_offset.hpp"
 
@@ -112,9 +113,7 @@ double median_over(const std::vector<ViewPair>& pairs, const ValueOf& value_of) 
   return upper_median(std::move(values));
 }
 
-using DepthOfViews = std::map<int, Image<float>>;
-
-double measure_still_share(const SequenceMeasurements& all, const DepthOfViews& depths_m) {
+double measure_still_share(const SequenceMeasurements& all, const inspection::DepthOfViews& depths_m) {
   constexpr double kMinSameShare = 0.4;  // Of the measured pixels: most of the scene stays.
   const auto stands_still = [&](const ViewPair& pair) {
     const Image<float>& first = depths_m.at(pair.a);
@@ -164,7 +163,7 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   }
   all.depth_unit_m = upper_median(std::move(medians_m));
   if (!is_usable(all)) return all;
-  DepthOfViews depths_m;
+  inspection::DepthOfViews depths_m;
   for (const auto& [v, frame] : views.frames) depths_m.emplace(v, frame.depth_m);
   if (const auto shift = find_unregistered_shift(all.half_shifts))
     for (auto& [v, frame] : views.frames) align_colors(*shift, frame);
@@ -185,9 +184,10 @@ Result<SequenceMeasurements> measure_sequence(const Sequence& sequence, const Me
   all.pair_shift_px = median_over(all.pairs, median_shift_px);
   all.intrinsics = fit_intrinsics(all.pairs, all.camera);
   if (!sequence.has_poses()) return all;
-  auto poses = measure_poses(sequence, all);
+  const auto poses = read_poses(sequence);
   if (!poses.ok()) return poses.error();
-  all.poses = std::move(poses).value();
+  inspection::mark_changed_pairs(*poses, depths_m, all);
+  all.poses = measure_poses(*poses, all);
   return all;
 }
 

@@ -121,7 +121,7 @@ std::optional<IntrinsicsFit> fit_intrinsics(std::span<const ViewPair> pairs, con
 GivenPosesFit evaluate_poses(std::span<const ViewPair> pairs, const Camera& camera, const GivenMotion& motion) {
   GivenPosesFit fit;
   for (const ViewPair& pair : pairs)
-    if (const std::optional<Rigid3> given = motion(pair))
+    if (const std::optional<Rigid3> given = pair.shows_change ? std::nullopt : motion(pair))
       fit.pair_errors_px.push_back(median_error_px(pair.matches, camera, *given));
   if (!fit.pair_errors_px.empty()) fit.error_px = upper_median(fit.pair_errors_px);
   return fit;
@@ -131,7 +131,7 @@ GivenPosesFit fit_pose_scale(std::span<const ViewPair> pairs, const Camera& came
   std::vector<ViewPair> reached;
   std::vector<Rigid3> given;
   for (const ViewPair& pair : pairs)
-    if (const std::optional<Rigid3> b_from_a = motion(pair)) {
+    if (const std::optional<Rigid3> b_from_a = pair.shows_change ? std::nullopt : motion(pair)) {
       reached.push_back(pair);
       given.push_back(*b_from_a);
     }

@@ -27,7 +27,8 @@ inline constexpr std::size_t kMinFitPairs = 4;
 /// None with fewer than kMinFitPairs pairs.
 [[nodiscard]] std::optional<IntrinsicsFit> fit_intrinsics(std::span<const ViewPair> pairs, const Camera& camera);
 
-/// The poses of a sequence under one reading of them, and how well it explains what the views show.
+/// The poses of a sequence under one reading of them, and how well it explains what the views show. Pairs that show a
+/// change say nothing.
 struct GivenPosesFit {
   /// Median over the pairs of the median distance of their matches; infinite if the poses reach no pair.
   double error_px = std::numeric_limits<double>::infinity();

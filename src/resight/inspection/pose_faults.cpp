@@ -31,6 +31,10 @@ double sure_errors(std::size_t num_pairs, std::size_t num_parameters) {
   return freedom <= kOfFew.size() ? kOfFew[freedom - 1] : 4;
 }
 
+std::size_t num_steady_pairs(const SequenceMeasurements& all) {
+  return static_cast<std::size_t>(std::ranges::count(all.pairs, false, &ViewPair::shows_change));
+}
+
 double sure_scale_error(const GivenPosesFit& fit) {
   return sure_errors(fit.pair_errors_px.size(), 1) * fit.log_scale->standard_error;
 }
@@ -167,12 +171,20 @@ void add_drift(const PoseContext& c) {
 
 std::optional<std::string> why_unit_is_unmeasured(const SequenceMeasurements& all) {
   const bool moves = all.poses && !all.poses->all_equal && all.poses->readings.front().fit.log_scale;
-  if (!moves || all.pairs.size() < kMinComparedPairs)
+  if (!moves || num_steady_pairs(all) < kMinComparedPairs)
     return "it needs --models, or the poses of a camera that moves";
   const double error = sure_scale_error(all.poses->readings.front().fit);
   if (error > kMaxUnsure * kMaxLogScale)
     return fmt::format("the motion between views tells it to {:.0f} % only", 100 * (std::exp(error) - 1));
   return std::nullopt;
+}
+
+std::optional<std::string> why_poses_are_unmeasured(const SequenceMeasurements& all) {
+  const std::size_t num_steady = num_steady_pairs(all);
+  const bool is_compared = all.poses && !all.poses->all_equal && all.pairs.size() >= kMinComparedPairs;
+  if (!is_compared || num_steady >= kMinComparedPairs) return std::nullopt;
+  return fmt::format("in {} of {} pairs of views, something else has moved", all.pairs.size() - num_steady,
+                     all.pairs.size());
 }
 
 std::optional<std::string> why_intrinsics_are_unmeasured(const SequenceMeasurements& all) {
@@ -193,7 +205,7 @@ void add_pose_faults(const SequenceMeasurements& measured, std::vector<Finding>&
   const PoseContext c{measured, measured.poses ? *measured.poses : none, findings, measured.pairs.front().b};
   const bool moves = measured.pair_shift_px > kMinMotion_px;
   if (moves && add_intrinsics(c)) return;
-  if (!measured.poses || add_fixed(c)) return;
+  if (!measured.poses || add_fixed(c) || num_steady_pairs(measured) < kMinComparedPairs) return;
   if (add_convention(c) || add_scale(c) || add_time(c)) return;
   if (!add_accuracy(c)) add_drift(c);
 }

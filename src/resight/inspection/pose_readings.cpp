@@ -36,16 +36,22 @@ GivenMotion motion_of(const std::vector<Rigid3>& poses, const PoseReading& readi
 
 }  // namespace
 
-Result<PoseMeasurements> measure_poses(const Sequence& sequence, const SequenceMeasurements& measured) {
-  PoseMeasurements result;
+Result<std::vector<Rigid3>> read_poses(const Sequence& sequence) {
   std::vector<Rigid3> poses;
-  Eigen::AlignedBox3d box;
   for (int v = 0; v < sequence.num_views(); ++v) {
     auto pose = sequence.read_pose(v);
     if (!pose.ok()) return pose.error();
     poses.push_back(*pose);
-    box.extend(pose->translation);
-    result.farthest_m = std::max(result.farthest_m, pose->translation.norm());
+  }
+  return poses;
+}
+
+PoseMeasurements measure_poses(const std::vector<Rigid3>& poses, const SequenceMeasurements& measured) {
+  PoseMeasurements result;
+  Eigen::AlignedBox3d box;
+  for (const Rigid3& pose : poses) {
+    box.extend(pose.translation);
+    result.farthest_m = std::max(result.farthest_m, pose.translation.norm());
   }
   result.extent_m = box.sizes().norm();
   result.all_equal = std::ranges::all_of(poses, [&](const Rigid3& p) { return is_same_pose(p, poses.front()); });
@@ -63,7 +69,8 @@ Result<PoseMeasurements> measure_poses(const Sequence& sequence, const SequenceM
     const PoseReading reading{.inverted = false, .opengl = false, .views_late = 0.25 * quarters};
     GivenPosesFit fit = evaluate_poses(measured.pairs, measured.camera, motion(reading));
     // Fewer pairs may agree by chance.
-    if (2 * fit.pair_errors_px.size() >= measured.pairs.size()) result.shifted.push_back({reading, std::move(fit)});
+    if (2 * fit.pair_errors_px.size() >= result.given.pair_errors_px.size())
+      result.shifted.push_back({reading, std::move(fit)});
   }
   return result;
 }

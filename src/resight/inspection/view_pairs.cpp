@@ -52,11 +52,13 @@ ViewPair match_view_pair(int a, const ViewFeatures& features_a, int b, const Vie
   const auto pose =
       estimate_pose(mutual, {.inlier_distance_m = 0.04, .max_normal_angle_rad = 1.2, .min_inliers = kMinInliers});
   if (!pose) return pair;
-  for (const int i : pose->inliers) {
-    const Correspondence& c = mutual[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d p_in_a = c.model_point.cast<double>();
-    const Eigen::Vector3d p_in_b = c.scene_point.cast<double>();
-    pair.matches.push_back({camera.project(p_in_a), camera.project(p_in_b), p_in_a.z(), p_in_b.z()});
+  std::vector<bool> agrees(mutual.size());
+  for (const int i : pose->inliers) agrees[static_cast<std::size_t>(i)] = true;
+  for (std::size_t i = 0; i < mutual.size(); ++i) {
+    const Eigen::Vector3d p_in_a = mutual[i].model_point.cast<double>();
+    const Eigen::Vector3d p_in_b = mutual[i].scene_point.cast<double>();
+    (agrees[i] ? pair.matches : pair.others)
+        .push_back({camera.project(p_in_a), camera.project(p_in_b), p_in_a.z(), p_in_b.z()});
   }
   pair.b_from_a = refine_motion(pair.matches, camera, pose->scene_from_model);
   pair.error_px = median_error_px(pair.matches, camera, pair.b_from_a);

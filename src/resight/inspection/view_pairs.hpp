@@ -24,8 +24,10 @@ struct ViewPair {
   int a = 0;
   int b = 0;
   std::vector<MatchedPoint> matches;  ///< Those that agree with the motion.
+  std::vector<MatchedPoint> others;   ///< Those that do not: most of them are wrong.
   Rigid3 b_from_a;                    ///< Translation in the unit of the depths.
   double error_px = 0;                ///< Median distance of the matches in the image of b.
+  bool shows_change = false;          ///< The matches are on what has moved: they say nothing about poses.
 };
 
 /// Units of the residuals of matches. A SIFT keypoint and the depth beside it are off by about a pixel together; no

@@ -15,6 +15,8 @@ inline constexpr std::size_t kMinComparedPairs = 3;
 
 /// Why a unit of the depth that is off by less than ten would not show in the motion between views; none if it would.
 [[nodiscard]] std::optional<std::string> why_unit_is_unmeasured(const SequenceMeasurements& measured);
+/// The same of wrong poses, where enough pairs could be matched. Those that are all equal are checked by other means.
+[[nodiscard]] std::optional<std::string> why_poses_are_unmeasured(const SequenceMeasurements& measured);
 /// The same of a wrong focal length.
 [[nodiscard]] std::optional<std::string> why_intrinsics_are_unmeasured(const SequenceMeasurements& measured);
 
