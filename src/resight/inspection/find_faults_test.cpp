@@ -190,7 +190,9 @@ TEST(FindFaults, WhatTheMotionDoesNotTellIsNotMeasured) {
     const std::vector<std::string> list = list_unmeasured(measured);
     return list.size() == 1 ? list.front() : std::to_string(list.size()) + " lines";
   };
-  const auto scale = [](SequenceMeasurements& m) -> std::optional<Estimate>& { return m.poses->readings.front().fit.log_scale; };
+  const auto scale = [](SequenceMeasurements& m) -> std::optional<Estimate>& {
+    return m.poses->readings.front().fit.log_scale;
+  };
   EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics.reset(); }), testing::HasSubstr("intrinsics (12 of 12 pairs"));
   EXPECT_THAT(unmeasured([](auto& m) { m.intrinsics->log_focal.standard_error = 0.1; }),
               testing::HasSubstr("intrinsics (the views tell the focal length"));
@@ -447,6 +449,21 @@ TEST(CheckQuickly, SeesPosesInMetresOfACameraThatHardlyTurns) {
       EXPECT_NE(found.find("in metres where millimetres"), std::string::npos)
           << step_m.transpose() << ", turned by " << turn_rad << ": " << found;
     }
+}
+
+// By 0.17 rad per view: the rotations alone make most of the depths agree, before the camera has moved far.
+TEST(CheckQuickly, SeesPosesInMetresOfACameraThatCirclesQuickly) {
+  const test::BallScene scene{.ball_m = {0, 0, 0.25}, .ball_radius_m = 0.25};
+  std::vector<RgbdFrame> frames;
+  for (int v = 0; v < 5; ++v) {
+    const double angle = -0.35 + 0.17 * v;
+    const Rigid3 pose = test::look_at_point({std::sin(angle), -std::cos(angle), 0.6}, scene.ball_m);
+    frames.push_back(test::render_ball_scene(scene, pose, 0.0015, static_cast<std::uint64_t>(v + 1)));
+  }
+  EXPECT_EQ(names_of(check_quickly(test::MemorySequence(frames), true)), "");
+  for (RgbdFrame& frame : frames) frame.world_from_camera.translation *= 0.001;
+  const std::string found = names_of(check_quickly(test::MemorySequence(frames), true));
+  EXPECT_NE(found.find("in metres where millimetres"), std::string::npos) << found;
 }
 
 TEST(CheckQuickly, LeavesSlowAndStandingCamerasAlone) {

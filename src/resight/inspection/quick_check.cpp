@@ -22,7 +22,9 @@ constexpr double kMinMove_rad = 0.2;
 constexpr double kMinMove = 0.05;         // Of the median depth.
 constexpr double kMinMoveInMetres = 0.1;  // Of the median depth.
 constexpr int kMaxNearViews = 4;
-constexpr double kMaxGivenShare = 0.6;  // Good poses: 0.8 and more of what both views see.
+constexpr double kGoodShare = 0.8;      // Good poses: this and more of what both views see.
+constexpr double kMaxGivenShare = 0.6;  // More may be chance: smooth surfaces agree nearly, and poses may be coarse.
+constexpr double kMaxRest = 0.25;       // Of the disagreement, that another reading must leave then.
 constexpr double kMinOtherShare = 0.75;
 constexpr int kMinPixels = 300;
 
@@ -77,12 +79,12 @@ void check_poses(const RgbdFrame& a, const RgbdFrame& b, int view, std::vector<F
   const Rigid3& from_a = a.world_from_camera;
   const Rigid3& from_b = b.world_from_camera;
   const double given = agreeing_share(a, b, from_b.inverse() * from_a);
-  if (given > kMaxGivenShare) return;
+  if (given > kGoodShare) return;
   const std::vector<Reading> readings = other_readings(from_a, from_b);
   std::vector<double> shares;
   for (const Reading& reading : readings) shares.push_back(agreeing_share(a, b, reading.b_from_a));
   const auto best = std::ranges::max_element(shares);
-  if (*best < kMinOtherShare) return;
+  if (*best < kMinOtherShare || (given > kMaxGivenShare && 1 - *best > kMaxRest * (1 - given))) return;
   const Reading& reading = readings[static_cast<std::size_t>(best - shares.begin())];
   findings.push_back(
       {.fault = reading.fault,
