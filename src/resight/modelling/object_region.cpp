@@ -99,7 +99,7 @@ class RegionFinder {
   }
 
   [[nodiscard]] bool looks_down_on(const Vector3d& normal) const {
-    return -normal.y() > std::sin(options_.min_tilt_rad);  // y points down in the image.
+    return -normal.y() > std::cos(options_.max_pitch_rad);  // y points down in the image.
   }
 
   // Considers the objects that are about as near to the expected position as the nearest. With a previous region, the
@@ -343,7 +343,7 @@ ObjectRegion transform(const Rigid3& a_from_b, const ObjectRegion& region_in_b) 
 void ObjectRegionOptions::check() const {
   check_positive("ObjectRegionOptions.max_depth_m", max_depth_m);
   check_positive("ObjectRegionOptions.plane_distance_m", plane_distance_m);
-  check_in_range("ObjectRegionOptions.min_tilt_rad", min_tilt_rad, 0.02, 1.5);
+  check_in_range("ObjectRegionOptions.max_pitch_rad", max_pitch_rad, 0.05, 1.55);
   check_positive("ObjectRegionOptions.min_support_area_m2", min_support_area_m2);
   check_positive("ObjectRegionOptions.min_height_m", min_height_m);
   check_positive("ObjectRegionOptions.max_height_m", max_height_m);

@@ -47,9 +47,11 @@ struct FootMarginOptions {
 
 /// All values are ours.
 struct ObjectRegionOptions {
-  double max_depth_m = 1.6;            ///< Farther points are background.
-  double plane_distance_m = 0.006;     ///< Of a plane's points from it.
-  double min_tilt_rad = 0.17;          ///< Of the camera down towards the plane (10 deg).
+  double max_depth_m = 1.6;         ///< Farther points are background.
+  double plane_distance_m = 0.006;  ///< Of a plane's points from it.
+  /// How steeply the camera may look down on the plane (80 deg). A wall in front of it is at 90 deg. The camera is held
+  /// upright.
+  double max_pitch_rad = 1.4;
   double min_support_area_m2 = 0.004;  ///< Of what is seen of a level surface.
   double min_height_m = 0.006;         ///< Of what stands on a support.
   double max_height_m = 0.45;

@@ -52,6 +52,31 @@ TEST(ObjectRegion, FollowsAWalkAroundAnObject) {
   }
 }
 
+/// A slab of 2.5 cm on a plane, seen from 0.9 m by a camera that looks down by `pitch_rad`.
+PreparedView look_down_on_slab(double pitch_rad) {
+  RgbdFrame frame;
+  frame.camera = {320, 240, 280, 280, 159.5, 119.5};
+  frame.color = Image<Rgb8>(320, 240);
+  frame.depth_m = Image<float>(320, 240);
+  const Eigen::Vector3d up(0, -std::cos(pitch_rad), -std::sin(pitch_rad));
+  for (int v = 0; v < 240; ++v)
+    for (int u = 0; u < 320; ++u) {
+      const double slab_m = std::abs(u - 160) < 12 && std::abs(v - 120) < 12 ? 0.025 : 0;
+      const double depth_m = (slab_m - 0.9 * std::sin(pitch_rad)) / up.dot(frame.camera.unproject(u, v, 1));
+      frame.depth_m(u, v) = depth_m > 0 ? static_cast<float>(depth_m) : std::numeric_limits<float>::quiet_NaN();
+    }
+  return prepare_view(std::move(frame));
+}
+
+TEST(ObjectRegion, APlaneBelowASteepCameraIsTakenForAWall) {
+  ObjectRegionOptions options;
+  EXPECT_TRUE(find_object_region(look_down_on_slab(0.5), options).has_value());
+  EXPECT_TRUE(find_object_region(look_down_on_slab(1.3), options).has_value());
+  options.max_pitch_rad = 0.7;
+  EXPECT_TRUE(find_object_region(look_down_on_slab(0.5), options).has_value());
+  EXPECT_FALSE(find_object_region(look_down_on_slab(1.3), options).has_value());
+}
+
 TEST(ObjectRegion, NothingStandsOnAnEmptyTable) {
   RecordedView view = test::record("novel", 120)[0];
   // Only the table near the camera is left.
