@@ -136,8 +136,18 @@ class ObjectTracker {
       }
       if (i == 0) first_region_ = *region;
       Image<std::uint8_t> mask = segment_object(view.cloud, *region, options_.segment);
-      if (count_set(mask) < kMinMaskPixels)
-        return Error{fmt::format("lost at view {}: nothing stands where the object was", view.frame.name)};
+      const bool is_lost = count_set(mask) < kMinMaskPixels;
+      if (is_lost && track_.is_camera_still) {
+        // A plain surface around the object looks still from all sides. The masks before lack parts of the object, too.
+        track_.is_camera_still = false;
+        frames[i] = view.frame;
+        for (; track_.views.size() > 1; track_.views.pop_back())
+          frames[track_.views.size() - 1] = std::move(track_.views.back().frame);
+        region = first_region_;
+        i = 0;  // Again from view 1.
+        continue;
+      }
+      if (is_lost) return Error{fmt::format("lost at view {}: nothing stands where the object was", view.frame.name)};
       track_.views.push_back({view.frame, std::move(mask)});
       const TrainingView& first = track_.views[0];
       if (i == 0)

@@ -141,6 +141,32 @@ TEST(TrackObject, AStartWithoutMotionIsNoTurntable) {
   EXPECT_FALSE(track->is_camera_still);
 }
 
+// A plain surface around the object has the same depths from all sides: to the camera, the object alone turns.
+TEST(TrackObject, ACircleAboveAPlainSurfaceIsNoTurntable) {
+  RecordingOptions options;
+  options.step_deg = 15;
+  options.elevation_deg = 60;
+  options.off_axis_m = 0.1;
+  options.num_threads = 2;
+  std::vector<RecordedView> views = simulate_recording(make_procedural_object("milk_carton")->mesh, options);
+  for (RecordedView& view : views) {
+    const Eigen::Vector3d up = view.camera_from_object.rotation.col(2);
+    const double offset_m = up.dot(view.camera_from_object.translation);
+    RgbdFrame& frame = view.frame;
+    for (int v = 0; v < frame.depth_m.height(); ++v)
+      for (int u = 0; u < frame.depth_m.width(); ++u) {
+        if (view.mask(u, v) != 0) continue;
+        frame.depth_m(u, v) = static_cast<float>(offset_m / up.dot(frame.camera.unproject(u, v, 1)));
+        frame.color(u, v) = {128, 128, 128};
+      }
+  }
+  Recording circle = split(std::move(views));
+  const auto track = track_object(std::move(circle.frames), track_on_two_threads());
+  ASSERT_TRUE(track.ok()) << track.error().message;
+  EXPECT_FALSE(track->is_camera_still);
+  EXPECT_LT(find_trajectory_error(circle.object_from_camera, poses_of(*track)).max_rad, 0.1);
+}
+
 TEST(TrackObject, AViewOfAnotherSizeIsRefused) {
   Recording walk = split(test::record("milk_carton", 24, false, RecordingKind::kWalk));
   walk.frames.resize(3);
