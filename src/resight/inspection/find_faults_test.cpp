@@ -451,11 +451,11 @@ TEST(CheckQuickly, SeesPosesInMetresOfACameraThatHardlyTurns) {
     }
 }
 
-// By 0.17 rad per view: the rotations alone make most of the depths agree, before the camera has moved far.
+// By 0.17 rad per view: the rotation alone makes most of the depths agree.
 TEST(CheckQuickly, SeesPosesInMetresOfACameraThatCirclesQuickly) {
   const test::BallScene scene{.ball_m = {0, 0, 0.25}, .ball_radius_m = 0.25};
   std::vector<RgbdFrame> frames;
-  for (int v = 0; v < 5; ++v) {
+  for (int v = 0; v < 2; ++v) {
     const double angle = -0.35 + 0.17 * v;
     const Rigid3 pose = test::look_at_point({std::sin(angle), -std::cos(angle), 0.6}, scene.ball_m);
     frames.push_back(test::render_ball_scene(scene, pose, 0.0015, static_cast<std::uint64_t>(v + 1)));
