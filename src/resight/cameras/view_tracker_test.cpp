@@ -137,6 +137,24 @@ TEST(ViewTracker, AnUntexturedFloorIsNoPlace) {
   EXPECT_EQ(second.component, 1);
 }
 
+// The normals of an active stereo camera are off by 0.4 rad. Their noise must not pass for a sign that the camera stands
+// still.
+TEST(ViewTracker, AnUntexturedFloorOfNoisyDepthIsNotFollowed) {
+  BallScene bare;
+  bare.has_ball = bare.textured = false;
+  ViewTracker tracker;
+  for (int v = 0; v < 6; ++v) {
+    const double x_m = -0.2 + 0.015 * v;
+    RgbdFrame frame = test::render_ball_scene(bare, test::look_at_point({x_m, -2, 0.7}, {x_m, -1.72, 0}));
+    frame.camera.noise = {.constant_m = 0.001, .quadratic_per_m = 0.004, .nearest_m = 0};
+    Rng rng(static_cast<std::uint64_t>(100 + v));
+    for (float& z_m : frame.depth_m.data())
+      z_m += static_cast<float>(axial_noise_m(frame.camera.noise, static_cast<double>(z_m)) * rng.normal());
+    tracker.add_view(prepare_view(std::move(frame)));
+  }
+  EXPECT_EQ(tracker.finish().num_components, 6);
+}
+
 TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
   // The ball does not rotate, but moves in front of a static background; poses relative to it move the opposite way.
   ViewTracker tracker;

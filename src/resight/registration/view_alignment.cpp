@@ -23,6 +23,8 @@ constexpr double kConvergedStep = 4e-5;
 // Directions whose information is below this share of the best-known direction count as unconstrained and stay
 // unchanged.
 constexpr double kMinEigenvalueRatio = 3e-4;
+// So do those whose information could be chance, in standard deviations of what the noise of the normals makes of it.
+constexpr double kMinNoiseSigmas = 3;
 constexpr float kBrightnessGate = 4;  // In units of brightness_sigma.
 // Largest point-to-point distance of a pair, in units of its largest point-to-plane distance.
 constexpr float kMaxPairDistance = 3;
@@ -44,6 +46,7 @@ struct RowProducts {
   using Row = Eigen::Matrix<float, 8, 1>;
   using Products = Eigen::Matrix<float, 8, 6>;
   Products own = Products::Zero();
+  Products own_outside = Products::Zero();  // Of pairs whose normals differ by more than the gate.
   Products with_other = Products::Zero();
   Products of_brightness = Products::Zero();
 
@@ -52,10 +55,11 @@ struct RowProducts {
     row << arm.cross(direction), direction, residual, 0.0F;
     return row;
   }
-  void add_distance(const Row& row, const Row& other, float weight) {
+  void add_distance(const Row& row, const Row& other, float weight, bool is_pair) {
+    Products& of_row = is_pair ? own : own_outside;
     const Eigen::Matrix<float, 6, 1> weighted = weight * row.head<6>();
     for (int c = 0; c < 6; ++c) {
-      own.col(c) += weighted[c] * row;
+      of_row.col(c) += weighted[c] * row;
       with_other.col(c) += weighted[c] * other;
     }
   }
@@ -71,6 +75,7 @@ struct Sums {
   // the matrix claims information along a featureless floor. The noise of two independent normals cancels. Symmetric
   // only in the total.
   Matrix6 unbiased = Matrix6::Zero();
+  Matrix6 noise = Matrix6::Zero();  // What noise adds to the matrix: the difference of the two.
   double distance_m = 0;
   int num_pairs = 0;
   double brightness[5] = {};  // Sums of a, b, a^2, b^2 and a b over num_bright pairs.
@@ -85,7 +90,9 @@ struct Sums {
     const Eigen::Matrix<double, 8, 6> of_brightness = products.of_brightness.cast<double>();
     equations.matrix += (own + of_brightness).topRows<6>();
     equations.right += (own + of_brightness).row(6).transpose();
-    unbiased += products.with_other.cast<double>().topRows<6>() + of_brightness.topRows<6>();
+    const Matrix6 with_other = products.with_other.cast<double>().topRows<6>();
+    unbiased += with_other + of_brightness.topRows<6>();
+    noise += (own + products.own_outside.cast<double>()).topRows<6>() - with_other;
   }
   void add_brightness(double a, double b) {
     const double terms[5] = {a, b, a * a, b * b, a * b};
@@ -101,6 +108,7 @@ struct Sums {
   void add(const Sums& other) {
     equations += other.equations;
     unbiased += other.unbiased;
+    noise += other.noise;
     distance_m += other.distance_m;
     num_pairs += other.num_pairs;
     for (int k = 0; k < 5; ++k) brightness[k] += other.brightness[k];
@@ -175,12 +183,15 @@ class LevelTarget {
     if (at.has_normal() && offset.squaredNorm() < kMaxPairDistance * gate * kMaxPairDistance * gate) {
       const float distance = at.normal.dot(offset);
       const Eigen::Vector3f normal_in_view = view_from_target_rotation_ * at.normal;
-      if (std::abs(distance) < gate && normal_in_view.dot(sample.normal) > min_cosine_) {
-        const auto weight = static_cast<float>(tukey(distance / gate));
-        // Derivatives of the motion of the point along a direction, in the view's frame, with respect to a twist of the
-        // view.
+      const float cosine = normal_in_view.dot(sample.normal);
+      const auto weight = static_cast<float>(std::abs(distance) < gate ? tukey(distance / gate) : 0);
+      // Derivatives of the motion of the point along a direction, in the view's frame, with respect to a twist of the
+      // view.
+      if (weight > 0)
         products.add_distance(RowProducts::row(sample.position, normal_in_view, distance),
-                              RowProducts::row(sample.position, sample.normal, 0), weight / sigma_sq);
+                              RowProducts::row(sample.position, sample.normal, 0), weight / sigma_sq,
+                              cosine > min_cosine_);
+      if (std::abs(distance) < gate && cosine > min_cosine_) {
         sums.distance_m += std::abs(distance);
         ++sums.num_pairs;
         if (brightness_sigma_ > 0) add_brightness(sample, q, pixel, weight, products, sums);
@@ -255,32 +266,36 @@ Sums sum_pairs(std::span<const AlignmentPoint> samples, std::span<const Alignmen
   for (const Sums& sums : partial) all.add(sums);
   all.equations.matrix = Matrix6(all.equations.matrix.selfadjointView<Eigen::Upper>());  // To the last bit.
   all.unbiased = 0.5 * Matrix6(all.unbiased + all.unbiased.transpose());
+  all.noise = 0.5 * Matrix6(all.noise + all.noise.transpose());
   return all;
 }
 
-// Projection onto the motions that the information constrains.
-Matrix6 onto_known_motions(const Matrix6& information) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
-  Matrix6 projection = Matrix6::Zero();
-  for (int i = 0; i < 6; ++i) {
-    const Twist motion = solver.eigenvectors().col(i);
-    if (solver.eigenvalues()[i] > kMinEigenvalueRatio * solver.eigenvalues()[5])
-      projection += motion * motion.transpose();
+// What the pairs tell of a motion.
+struct Knowledge {
+  Matrix6 information;  // Without what noise adds.
+  Matrix6 noise;        // Standard deviation of the information along a motion that they do not constrain.
+
+  Knowledge(const Sums& sums, double information_per_pair)
+      : information(information_per_pair * sums.unbiased),
+        noise(information_per_pair * sums.noise / std::sqrt(std::max(1.0, information_per_pair * sums.num_pairs))) {}
+
+  // Projection onto the motions that the information constrains.
+  [[nodiscard]] Matrix6 onto_known_motions() const {
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(information);
+    Matrix6 projection = Matrix6::Zero();
+    for (int i = 0; i < 6; ++i) {
+      const Twist motion = solver.eigenvectors().col(i);
+      const double by_chance = kMinNoiseSigmas * motion.dot(noise * motion);
+      if (solver.eigenvalues()[i] > std::max(kMinEigenvalueRatio * solver.eigenvalues()[5], by_chance))
+        projection += motion * motion.transpose();
+    }
+    return projection;
   }
-  return projection;
-}
-
-// Least-squares step. Directions that neither data nor prior constrain stay unchanged.
-Twist solve_step(const Matrix6& h, const Matrix6& unbiased, const Twist& g) {
-  const Matrix6 known = onto_known_motions(unbiased);
-  const Matrix6 regular = known * h * known + (Matrix6::Identity() - known);
-  return -known * Twist(regular.ldlt().solve(known * g));
-}
-
-Matrix6 known_information(const Matrix6& unbiased) {
-  const Matrix6 known = onto_known_motions(unbiased);
-  return known * unbiased * known;
-}
+  [[nodiscard]] Matrix6 known_information() const {
+    const Matrix6 known = onto_known_motions();
+    return known * information * known;
+  }
+};
 
 Twist prior_information(const AlignViewOptions& options) {
   const auto inverse_sq = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0.0; };
@@ -290,20 +305,24 @@ Twist prior_information(const AlignViewOptions& options) {
   return information;
 }
 
+// Least-squares step. What the pairs do not constrain is left to the prior, and stays unchanged without one.
+Twist solve_step(const Sums& sums, const Rigid3& given, const Rigid3& pose, const AlignViewOptions& options) {
+  const double weight = options.information_per_pair;
+  const Matrix6 known = Knowledge(sums, weight).onto_known_motions();
+  const Twist prior = prior_information(options);
+  Matrix6 matrix = known * (weight * sums.equations.matrix) * known + (Matrix6::Identity() - known);
+  matrix.diagonal() += prior;
+  const Twist right = known * (weight * sums.equations.right) + prior.cwiseProduct(to_twist(given.inverse() * pose));
+  return -Twist(matrix.ldlt().solve(right));
+}
+
 Rigid3 align_level(std::span<const AlignmentPoint> samples, std::span<const AlignmentTarget> targets, std::size_t level,
                    const Rigid3& given, Rigid3 pose, double gate_m, const AlignViewOptions& options) {
-  const Twist prior = prior_information(options);
   const double converged_step = std::ldexp(kConvergedStep, static_cast<int>(level));
   for (int i = 0; i < options.max_iterations; ++i) {
     const Sums sums = sum_pairs(samples, targets, level, pose, gate_m, options);
     if (sums.num_pairs == 0) break;
-    Matrix6 h = options.information_per_pair * sums.equations.matrix;
-    Matrix6 unbiased = options.information_per_pair * sums.unbiased;
-    h.diagonal() += prior;
-    unbiased.diagonal() += prior;
-    const Twist g =
-        options.information_per_pair * sums.equations.right + prior.cwiseProduct(to_twist(given.inverse() * pose));
-    const Twist step = solve_step(h, unbiased, g);
+    const Twist step = solve_step(sums, given, pose, options);
     pose = pose * from_twist(step);
     if (step.cwiseAbs().maxCoeff() < converged_step) break;
   }
@@ -345,7 +364,7 @@ AlignedView evaluate_alignment(const AlignmentView& view, std::span<const Alignm
       sum_pairs(samples, targets, 0, world_from_camera, options.min_distance_m, options, CostOfPairs::kComputed);
   AlignedView aligned;
   aligned.world_from_camera = world_from_camera;
-  aligned.information = options.information_per_pair * known_information(sums.unbiased);
+  aligned.information = Knowledge(sums, options.information_per_pair).known_information();
   const double num_samples = std::max<double>(1, static_cast<double>(samples.size()));
   aligned.overlap = sums.num_matched / num_samples;
   aligned.seen_through = sums.num_seen_through / num_samples;
