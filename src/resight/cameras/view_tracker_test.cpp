@@ -137,8 +137,8 @@ TEST(ViewTracker, AnUntexturedFloorIsNoPlace) {
   EXPECT_EQ(second.component, 1);
 }
 
-// The normals of an active stereo camera are off by 0.4 rad. Their noise must not pass for a sign that the camera stands
-// still.
+// The normals of an active stereo camera are off by 0.4 rad. Their noise must not pass for a sign that the camera
+// stands still.
 TEST(ViewTracker, AnUntexturedFloorOfNoisyDepthIsNotFollowed) {
   BallScene bare;
   bare.has_ball = bare.textured = false;
