@@ -61,22 +61,23 @@ std::vector<std::string> render_tuw_models(const std::vector<ModelLocation>& mod
 }
 
 // The files of the true changes of a sequence, or none for a single view. They count and name all views.
-ChangeFiles find_changes(const std::filesystem::path& in, const Sequence& sequence, OpenSequenceOptions options) {
-  const auto folder = value_or_throw(find_sequence_folder(in));
+ChangeFiles find_changes(const ConvertArguments& arguments, const Sequence& sequence) {
+  const auto folder = value_or_throw(find_sequence_folder(arguments.in));
   if (!folder) return {};
+  OpenSequenceOptions options = arguments.input;
+  const bool may_lack_views = options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s ||
+                              options.views.to_s || options.views.max_views;
   options.views = {};
-  const auto whole = value_or_throw(open_sequence(in, options));
-  if (whole->num_views() != sequence.num_views()) {
-    std::vector<std::string> all;
-    for (int i = 0; i < whole->num_views(); ++i) all.push_back(whole->view_name(i));
-    const ChangeFiles left_out = find_change_files(*folder, all);
-    if (!left_out.events.empty() || !left_out.changes.empty())
+  const auto opened = may_lack_views ? value_or_throw(open_sequence(arguments.in, options)) : nullptr;
+  const Sequence& whole = opened ? *opened : sequence;
+  std::vector<std::string> views;
+  for (int i = 0; i < whole.num_views(); ++i) views.push_back(whole.view_name(i));
+  ChangeFiles changes = find_change_files(*folder, views);
+  if (whole.num_views() != sequence.num_views()) {
+    if (!changes.events.empty() || !changes.changes.empty())
       print_warning("the true changes are left out, because not all views are converted");
     return {};
   }
-  std::vector<std::string> views;
-  for (int i = 0; i < sequence.num_views(); ++i) views.push_back(sequence.view_name(i));
-  ChangeFiles changes = find_change_files(*folder, views);
   if (!changes.events.empty()) value_or_throw(read_true_changes(changes.events, sequence.num_views()));
   return changes;
 }
@@ -96,8 +97,8 @@ void run_convert(const ConvertArguments& arguments) {
     throw InputError(fmt::format("{}; {}", sequence.error().message, models.error().message));
   if (sequence.ok()) {
     print_notes(**sequence);
-    const ConversionSummary summary = value_or_throw(
-        convert_sequence(**sequence, arguments.out, format, find_changes(arguments.in, **sequence, arguments.input)));
+    const ConversionSummary summary =
+        value_or_throw(convert_sequence(**sequence, arguments.out, format, find_changes(arguments, **sequence)));
     print("{} views, {} annotated objects: {}\n", summary.num_views, summary.num_objects, arguments.out.string());
     return;
   }

@@ -157,11 +157,13 @@ class Evaluation {
   std::set<std::string> draw_worst_views(const std::vector<EvaluatedRun>& runs,
                                          const std::filesystem::path& folder) const {
     std::set<std::string> pictures;
+    std::map<std::string, SequenceTruth> truths;  // By sequence.
     for (const WorstView& worst : find_worst_views(runs, kNumPictures)) {
       const auto sequence = value_or_throw(open_evaluated(worst.run->sequence));
       const RgbdFrame frame = value_or_throw(sequence->read_view(worst.view));
-      const SequenceTruth truth = value_or_throw(read_sequence_truth(*sequence, library_));
-      const auto& objects = truth.views[static_cast<std::size_t>(worst.view)].objects;
+      if (!truths.contains(worst.run->sequence))
+        truths[worst.run->sequence] = value_or_throw(read_sequence_truth(*sequence, library_));
+      const auto& objects = truths[worst.run->sequence].views[static_cast<std::size_t>(worst.view)].objects;
       const auto jpeg = encode_jpeg(draw_evaluated_view(frame, library_, objects, worst.evaluated()));
       pictures.insert(worst_view_picture(worst));
       value_or_throw(write_file(folder / worst_view_picture(worst),

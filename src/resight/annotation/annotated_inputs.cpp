@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
-#include <type_traits>
 
+#include "resight/annotation/internal/hash_values.hpp"
 #include "resight/core/hash.hpp"
 
 namespace resight {
@@ -27,13 +26,6 @@ std::uint64_t hash_rounded_pose(const Rigid3& world_from_camera, std::uint64_t s
   return hash_text(text, seed);
 }
 
-template <typename T>
-std::uint64_t hash_whole_numbers(std::span<const T> values, std::uint64_t seed) {
-  static_assert(std::has_unique_object_representations_v<T>);
-  const std::span<const std::byte> bytes = std::as_bytes(values);
-  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, seed);
-}
-
 std::uint64_t hash_pixels(const RgbdFrame& frame, std::uint64_t seed) {
   const Camera& camera = frame.camera;
   seed = hash_text(fmt::format("{} {} {:.4f} {:.4f} {:.4f} {:.4f}\n", camera.width, camera.height, camera.fx, camera.fy,
@@ -42,7 +34,7 @@ std::uint64_t hash_pixels(const RgbdFrame& frame, std::uint64_t seed) {
   std::vector<std::int32_t> steps;
   for (const float z : frame.depth_m.data())
     steps.push_back(std::isnan(z) ? 0 : static_cast<std::int32_t>(std::lround(kDepthSteps_per_m * z)));
-  return hash_whole_numbers<Rgb8>(frame.color.data(), hash_whole_numbers<std::int32_t>(steps, seed));
+  return annotation::hash_values(frame.color.data(), annotation::hash_values<std::int32_t>(steps, seed));
 }
 
 }  // namespace

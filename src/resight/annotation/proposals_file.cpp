@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <type_traits>
 
 #include "resight/annotation/annotated_inputs.hpp"
 #include "resight/annotation/annotation_json.hpp"
+#include "resight/annotation/internal/hash_values.hpp"
 #include "resight/core/files.hpp"
 #include "resight/core/hash.hpp"
 #include "resight/core/input_file.hpp"
@@ -18,16 +18,10 @@
 namespace resight {
 namespace {
 
+using annotation::hash_values;
 using nlohmann::json;
 
 constexpr const char* kFormat = "resight proposals 1";
-
-template <typename T>
-std::uint64_t hash_values(std::span<const T> values, std::uint64_t seed) {
-  static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
-  const std::span<const std::byte> bytes = std::as_bytes(values);
-  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, seed);
-}
 
 std::uint64_t hash_pose(const Rigid3& world_from_camera, std::uint64_t seed) {
   const Eigen::Matrix4d pose = world_from_camera.matrix();

@@ -8,7 +8,7 @@
 namespace resight {
 
 /// The value of a JSON number (nlohmann::basic_json) that is whole, from `least` to `largest`; none for all other
-/// values. The library's own conversion of a larger number, or of a fraction, is undefined.
+/// values. The library itself does not check: a number beyond the type is undefined behaviour.
 template <std::integral Integer, typename Json>
 [[nodiscard]] std::optional<Integer> json_integer(const Json& json, Integer least, Integer largest) {
   if (!json.is_number_integer()) return std::nullopt;

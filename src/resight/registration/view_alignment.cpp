@@ -23,7 +23,8 @@ constexpr double kConvergedStep = 4e-5;
 // Directions whose information is below this share of the best-known direction count as unconstrained and stay
 // unchanged.
 constexpr double kMinEigenvalueRatio = 3e-4;
-// So do those whose information could be chance, in standard deviations of what the noise of the normals makes of it.
+// Noisy normals alone seem to give information. Directions with less than so many standard deviations of that count as
+// unconstrained, too.
 constexpr double kMinNoiseSigmas = 3;
 constexpr float kBrightnessGate = 4;  // In units of brightness_sigma.
 // Largest point-to-point distance of a pair, in units of its largest point-to-plane distance.
