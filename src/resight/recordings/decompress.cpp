@@ -16,8 +16,13 @@
 namespace resight::recordings {
 namespace {
 
-/// Output grows in these steps, so that a small hostile file does not make us allocate the size that it declares.
-constexpr std::size_t kOutputStep = std::size_t{16} << 20;
+/// Makes room for more output, at most `max_bytes` in all. Output grows as it is written: a small hostile file does
+/// not make us allocate the size that it declares.
+void grow(std::string& output, std::size_t max_bytes) {
+  constexpr std::size_t kMinStep = std::size_t{64} << 10;
+  constexpr std::size_t kMaxStep = std::size_t{16} << 20;
+  output.resize(std::min(max_bytes, output.size() + std::clamp(output.size(), kMinStep, kMaxStep)));
+}
 
 Error damaged(std::string_view compression) {
   return Error{fmt::format("a chunk compressed with {} is damaged", compression)};
@@ -31,7 +36,7 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
   std::string output;
   std::size_t written = 0;
   while (true) {
-    if (written == output.size()) output.resize(std::min(size + 1, output.size() + kOutputStep));
+    if (written == output.size()) grow(output, size + 1);
     std::size_t out_bytes = output.size() - written;
     std::size_t in_bytes = bytes.size();
     const std::size_t hint =
@@ -55,7 +60,7 @@ Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
   std::string output;
   std::size_t written = 0;
   while (true) {
-    if (written == output.size()) output.resize(std::min(size + 1, output.size() + kOutputStep));
+    if (written == output.size()) grow(output, size + 1);
     const std::size_t space = output.size() - written;
     stream.next_out = output.data() + written;
     stream.avail_out = static_cast<unsigned>(space);
@@ -76,7 +81,7 @@ Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   std::string output;
   std::size_t written = 0;
   while (true) {
-    if (written == output.size()) output.resize(std::min(size + 1, output.size() + kOutputStep));
+    if (written == output.size()) grow(output, size + 1);
     ZSTD_outBuffer out{output.data(), output.size(), written};
     const std::size_t before = input.pos;
     const std::size_t hint = ZSTD_decompressStream(context.get(), &out, &input);
