@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "resight/core/check.hpp"
@@ -21,6 +25,8 @@ constexpr double kFloorSigma_m = 0.003;
 constexpr double kFloorSigma_rad = 0.003;
 constexpr double kMaxOpenSigma = 0.02;  // Metres and radians; less certain directions count as unconstrained.
 constexpr int kNumRounds = 2;           // Rounds of loop closure; the second starts from adjusted poses.
+constexpr int kLoopNeighbors = 30;      // Keyframes that surfaces connect a keyframe to: time grows with the views.
+constexpr double kMinLoopOverlap = 0.1;
 
 TwistMatrix feature_information() { return twist_information(kFeatureSigma_rad, kFeatureSigma_m); }
 
@@ -38,6 +44,11 @@ struct Keyframe {
   int view = 0;
   AlignmentView alignment;
   ViewFeatures features;
+};
+
+struct KeyframePair {
+  std::size_t a = 0, b = 0;
+  auto operator<=>(const KeyframePair&) const = default;
 };
 
 // A possible connection of a view to a keyframe.
@@ -75,7 +86,12 @@ struct ViewTracker::Impl {
   }
   [[nodiscard]] int component_of(const Keyframe& k) const { return views[static_cast<std::size_t>(k.view)].component; }
 
-  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int component, const Rigid3& pose) const;
+  // 1 for a step that makes a keyframe.
+  [[nodiscard]] double viewpoint_distance(const Rigid3& a, const Rigid3& b) const {
+    return (a.translation - b.translation).norm() / options.keyframe.shift_m +
+           rotation_angle_rad(a.rotation, b.rotation) / options.keyframe.rotation_rad;
+  }
+  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(int component, const Rigid3& pose, int count) const;
   [[nodiscard]] std::vector<AlignmentTarget> targets_of(const std::vector<std::size_t>& chosen) const;
   [[nodiscard]] bool fits(const AlignedView& aligned, double min_overlap) const;
   [[nodiscard]] bool agrees_with_matches(const AlignedView& aligned, int num_matches) const;
@@ -83,11 +99,14 @@ struct ViewTracker::Impl {
   [[nodiscard]] std::optional<Join> follow(const AlignmentView& view) const;
   [[nodiscard]] std::optional<Join> find_by_features(const AlignmentView& view, const ViewFeatures& features) const;
   [[nodiscard]] std::optional<Join> join_to(std::size_t keyframe, const AlignmentView& view,
-                                            const ViewFeatures& features) const;
+                                            const ViewFeatures& features, int num_threads) const;
   [[nodiscard]] bool is_keyframe(const Join& join) const;
   void add_edges(int view, const AlignmentView& alignment, const Join& join);
 
-  [[nodiscard]] std::optional<PoseEdge> measure_pair(const Keyframe& a, const Keyframe& b, bool match) const;
+  [[nodiscard]] std::vector<KeyframePair> pairs_to_align() const;
+  [[nodiscard]] std::vector<KeyframePair> pairs_to_match(const std::map<KeyframePair, PoseEdge>& measured) const;
+  [[nodiscard]] std::optional<PoseEdge> measure_by_surfaces(const KeyframePair& pair) const;
+  [[nodiscard]] std::optional<PoseEdge> measure_by_features(const KeyframePair& pair) const;
   void close_loops(bool match);
   void adjust();
 
@@ -99,19 +118,14 @@ struct ViewTracker::Impl {
 };
 
 // Keyframes of the component with the most similar viewpoints, nearest first.
-std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int component, const Rigid3& pose) const {
+std::vector<std::size_t> ViewTracker::Impl::nearest_keyframes(int component, const Rigid3& pose, int count) const {
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < keyframes.size(); ++k) {
-    if (component_of(keyframes[k]) != component) continue;
-    const Rigid3& other = pose_of(keyframes[k]);
-    const double distance = (other.translation - pose.translation).norm() / options.keyframe.shift_m +
-                            rotation_angle_rad(other.rotation, pose.rotation) / options.keyframe.rotation_rad;
-    order.emplace_back(distance, k);
-  }
+  for (std::size_t k = 0; k < keyframes.size(); ++k)
+    if (component_of(keyframes[k]) == component) order.emplace_back(viewpoint_distance(pose_of(keyframes[k]), pose), k);
   std::ranges::sort(order);
+  order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
   std::vector<std::size_t> nearest;
-  for (const auto& [distance, k] : order)
-    if (nearest.size() < static_cast<std::size_t>(options.num_targets)) nearest.push_back(k);
+  for (const auto& [distance, k] : order) nearest.push_back(k);
   return nearest;
 }
 
@@ -147,7 +161,7 @@ std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
     starts.push_back(last.world_from_camera *
                      (views[views.size() - 2].world_from_camera.inverse() * last.world_from_camera));
   std::optional<Join> best;
-  const std::vector<std::size_t> near = nearest_keyframes(last.component, last.world_from_camera);
+  const std::vector<std::size_t> near = nearest_keyframes(last.component, last.world_from_camera, options.num_targets);
   if (near.empty()) return best;
   for (const Rigid3& start : starts) {
     Join join{static_cast<int>(near.front()), align_view(view, targets_of(near), start, options.align)};
@@ -165,11 +179,12 @@ std::optional<Join> ViewTracker::Impl::follow(const AlignmentView& view) const {
 }
 
 std::optional<Join> ViewTracker::Impl::join_to(std::size_t keyframe, const AlignmentView& view,
-                                               const ViewFeatures& features) const {
+                                               const ViewFeatures& features, int num_threads) const {
   const Keyframe& k = keyframes[keyframe];
   const std::optional<ViewMatch> match = match_views(k.features, features, options.match);
   if (!match) return std::nullopt;
   AlignViewOptions align = options.align;
+  align.num_threads = num_threads;
   align.prior_sigma_m = kFeatureSigma_m;
   align.prior_sigma_rad = kFeatureSigma_rad;
   const std::vector<AlignmentTarget> targets{{&k.alignment, pose_of(k)}};
@@ -189,7 +204,7 @@ std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& vie
   const auto try_all = [&](std::size_t begin, std::size_t end) {
     std::optional<Join> best;
     for (std::size_t k = begin; k < end; ++k) {
-      std::optional<Join> join = join_to(k, view, features);
+      std::optional<Join> join = join_to(k, view, features, options.num_threads);
       if (join && (!best || join->score() > best->score())) best = std::move(join);
     }
     return best;
@@ -201,7 +216,7 @@ std::optional<Join> ViewTracker::Impl::find_by_features(const AlignmentView& vie
 bool ViewTracker::Impl::is_keyframe(const Join& join) const {
   const Rigid3& pose = join.aligned.world_from_camera;
   const int component = component_of(keyframes[static_cast<std::size_t>(join.keyframe)]);
-  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(component, pose).front()]);
+  const Rigid3& nearest = pose_of(keyframes[nearest_keyframes(component, pose, 1).front()]);
   return (nearest.translation - pose.translation).norm() > options.keyframe.shift_m ||
          rotation_angle_rad(nearest.rotation, pose.rotation) > options.keyframe.rotation_rad;
 }
@@ -212,7 +227,7 @@ void ViewTracker::Impl::add_edges(int view, const AlignmentView& alignment, cons
   const Keyframe& first = keyframes[static_cast<std::size_t>(join.keyframe)];
   AlignViewOptions near = options.align;
   near.num_levels = 1;
-  for (const std::size_t k : nearest_keyframes(component_of(first), pose)) {
+  for (const std::size_t k : nearest_keyframes(component_of(first), pose, options.num_targets)) {
     if (static_cast<int>(k) == join.keyframe) continue;
     const std::vector<AlignmentTarget> target{{&keyframes[k].alignment, pose_of(keyframes[k])}};
     const AlignedView aligned = align_view(alignment, target, pose, near);
@@ -295,52 +310,71 @@ void ViewTracker::Impl::add_posed_view(const PreparedView& view) {
   views.push_back(std::move(tracked));
 }
 
-// `match`: also by features, for pairs that are not known to overlap.
-std::optional<PoseEdge> ViewTracker::Impl::measure_pair(const Keyframe& a, const Keyframe& b, bool match) const {
-  const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
-  std::optional<AlignedView> best;
-  int num_matches = 0;
-  TwistMatrix information = TwistMatrix::Zero();
-  AlignViewOptions align = options.align;
-  align.num_threads = 1;  // Pairs are measured in parallel.
-  if (component_of(a) == component_of(b) && evaluate_alignment(b.alignment, target, pose_of(b), align).overlap > 0.1) {
-    const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
-    if (is_plausible(aligned)) best = aligned;
-  }
-  if (!best && match) {
-    if (const std::optional<ViewMatch> found = match_views(a.features, b.features, options.match)) {
-      align.prior_sigma_m = kFeatureSigma_m;
-      align.prior_sigma_rad = kFeatureSigma_rad;
-      const AlignedView aligned = align_view(b.alignment, target, pose_of(a) * found->a_from_b, align);
-      information += feature_information();
-      num_matches = found->num_inliers;
-      if (agrees_with_matches(aligned, num_matches)) best = aligned;
-    }
-  }
-  if (!best) return std::nullopt;
-  const std::vector<AlignmentTarget> back{{&b.alignment, best->world_from_camera}};
-  const AlignedView reverse = evaluate_alignment(a.alignment, back, pose_of(a), align);
-  if (!(num_matches > 0 ? agrees_with_matches(reverse, num_matches) : is_plausible(reverse))) return std::nullopt;
-  return PoseEdge{a.view, b.view, pose_of(a).inverse() * best->world_from_camera,
-                  edge_information(best->information + information)};
+// Each keyframe with those of the nearest viewpoints in its component.
+std::vector<KeyframePair> ViewTracker::Impl::pairs_to_align() const {
+  std::set<KeyframePair> pairs;
+  for (std::size_t b = 0; b < keyframes.size(); ++b)
+    for (const std::size_t a : nearest_keyframes(component_of(keyframes[b]), pose_of(keyframes[b]), kLoopNeighbors + 1))
+      if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
+  return {pairs.begin(), pairs.end()};
 }
 
-// Measures all pairs of keyframes again; edges to other views stay.
-void ViewTracker::Impl::close_loops(bool match) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+// Pairs that are not measured: first those that would join components, near views first, then those of near viewpoints.
+std::vector<KeyframePair> ViewTracker::Impl::pairs_to_match(const std::map<KeyframePair, PoseEdge>& measured) const {
+  std::vector<std::tuple<bool, double, KeyframePair>> order;
   for (std::size_t b = 0; b < keyframes.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a) pairs.emplace_back(a, b);
-  const bool match_all = match && pairs.size() <= static_cast<std::size_t>(options.max_feature_pairs);
-  std::vector<std::optional<PoseEdge>> measured(pairs.size());
-  parallel_for(pairs.size(), options.num_threads, [&](std::size_t p) {
-    measured[p] = measure_pair(keyframes[pairs[p].first], keyframes[pairs[p].second], match_all);
-  });
-  const auto joins = [](const PoseEdge& e, int a, int b) { return (e.a == a && e.b == b) || (e.a == b && e.b == a); };
-  for (const std::optional<PoseEdge>& edge : measured) {
-    if (!edge) continue;
-    std::erase_if(edges, [&](const PoseEdge& e) { return joins(e, edge->a, edge->b); });
-    edges.push_back(*edge);
-  }
+    for (std::size_t a = 0; a < b; ++a) {
+      if (measured.contains({a, b})) continue;
+      const Keyframe &first = keyframes[a], &second = keyframes[b];
+      if (component_of(first) == component_of(second))
+        order.emplace_back(true, viewpoint_distance(pose_of(first), pose_of(second)), KeyframePair{a, b});
+      else
+        order.emplace_back(false, second.view - first.view, KeyframePair{a, b});
+    }
+  std::ranges::sort(order);
+  order.resize(std::min(order.size(), static_cast<std::size_t>(options.max_feature_pairs)));
+  std::vector<KeyframePair> pairs;
+  for (const auto& [is_joined, distance, pair] : order) pairs.push_back(pair);
+  return pairs;
+}
+
+std::optional<PoseEdge> ViewTracker::Impl::measure_by_surfaces(const KeyframePair& pair) const {
+  const Keyframe &a = keyframes[pair.a], &b = keyframes[pair.b];
+  const std::vector<AlignmentTarget> target{{&a.alignment, pose_of(a)}};
+  AlignViewOptions align = options.align;
+  align.num_threads = 1;  // Pairs are measured in parallel.
+  if (evaluate_alignment(b.alignment, target, pose_of(b), align).overlap <= kMinLoopOverlap) return std::nullopt;
+  const AlignedView aligned = align_view(b.alignment, target, pose_of(b), align);
+  if (!is_plausible(aligned)) return std::nullopt;
+  const std::vector<AlignmentTarget> back{{&b.alignment, aligned.world_from_camera}};
+  if (!is_plausible(evaluate_alignment(a.alignment, back, pose_of(a), align))) return std::nullopt;
+  return PoseEdge{a.view, b.view, pose_of(a).inverse() * aligned.world_from_camera,
+                  edge_information(aligned.information)};
+}
+
+std::optional<PoseEdge> ViewTracker::Impl::measure_by_features(const KeyframePair& pair) const {
+  const Keyframe &a = keyframes[pair.a], &b = keyframes[pair.b];
+  const std::optional<Join> join = join_to(pair.a, b.alignment, b.features, 1);
+  if (!join) return std::nullopt;
+  return PoseEdge{a.view, b.view, pose_of(a).inverse() * join->aligned.world_from_camera,
+                  edge_information(join->information)};
+}
+
+// Measures pairs of keyframes again; their edges are replaced, others stay. `match`: also by features.
+void ViewTracker::Impl::close_loops(bool match) {
+  std::map<KeyframePair, PoseEdge> measured;
+  const auto measure = [&](const std::vector<KeyframePair>& pairs, auto method) {
+    std::vector<std::optional<PoseEdge>> found(pairs.size());
+    parallel_for(pairs.size(), options.num_threads, [&](std::size_t p) { found[p] = (this->*method)(pairs[p]); });
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+      if (found[p]) measured.emplace(pairs[p], *found[p]);
+  };
+  measure(pairs_to_align(), &Impl::measure_by_surfaces);
+  if (match) measure(pairs_to_match(measured), &Impl::measure_by_features);
+  std::set<std::pair<int, int>> views_measured;
+  for (const auto& [pair, edge] : measured) views_measured.emplace(edge.a, edge.b);
+  std::erase_if(edges, [&](const PoseEdge& e) { return views_measured.contains(std::minmax(e.a, e.b)); });
+  for (const auto& [pair, edge] : measured) edges.push_back(edge);
 }
 
 // Adjusts all poses. Edges that do not fit are dropped, which may split components.
@@ -351,10 +385,15 @@ void ViewTracker::Impl::adjust() {
   std::vector<int> components;
   for (const TrackedView& view : views) components.push_back(view.component);
   for (const PoseEdge& e : edges) {
-    const int keep = components[static_cast<std::size_t>(e.a)], move = components[static_cast<std::size_t>(e.b)];
+    int keep = components[static_cast<std::size_t>(e.a)], move = components[static_cast<std::size_t>(e.b)];
     if (keep == move) continue;
-    const Rigid3 keep_from_move =
+    Rigid3 keep_from_move =
         poses[static_cast<std::size_t>(e.a)] * e.a_from_b * poses[static_cast<std::size_t>(e.b)].inverse();
+    // Given poses keep their world.
+    if (last_given && components[static_cast<std::size_t>(*last_given)] == move) {
+      std::swap(keep, move);
+      keep_from_move = keep_from_move.inverse();
+    }
     for (std::size_t v = 0; v < poses.size(); ++v) {
       if (components[v] != move) continue;
       poses[v] = keep_from_move * poses[v];

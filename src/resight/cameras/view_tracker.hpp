@@ -40,7 +40,9 @@ struct TrackViewsOptions {
   PlausibilityOptions plausible{.min_overlap = 0.2, .max_seen_through = 0.15, .min_correlation = 0.3};
   int num_targets = 3;            ///< Keyframes that a view is aligned to.
   double max_edge_error_sq = 60;  ///< Edges that fit worse after the adjustment are dropped.
-  int max_feature_pairs = 3000;   ///< Pairs of keyframes that are matched by features to close loops.
+  /// Pairs of keyframes that are matched by features to close loops: first those that would join components, then
+  /// those of near viewpoints.
+  int max_feature_pairs = 3000;
   SiftOptions sift{.root_sift = true};
   MatchViewsOptions match;
   FewMatchesOptions few_matches;
@@ -102,8 +104,8 @@ class ViewTracker {
   /// Restores the next view from the result of an earlier run without a mask. `view` is required for keyframes only;
   /// otherwise it may be null. Throws std::invalid_argument for a keyframe without its view.
   void restore_view(const TrackerStep& step, const PreparedView* view);
-  /// Adds a view whose pose is known approximately; finish() refines it. The view becomes a keyframe if it can be
-  /// aligned. All given views form one component.
+  /// Adds a view whose pose is known approximately; finish() refines it. All given views form one component, whose
+  /// frame is the world of these poses, whatever joins it.
   void add_posed_view(const PreparedView& view);
   /// Closes loops and adjusts all poses. Further views may be added afterwards.
   [[nodiscard]] CameraTrack finish();

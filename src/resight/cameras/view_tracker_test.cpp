@@ -179,6 +179,37 @@ TEST(ViewTracker, WithAMaskItIsTheThingThatIsFollowed) {
   EXPECT_LT(find_trajectory_error(truth, poses_of(track)).max_m, 0.004);
 }
 
+PreparedView see_from(const Rigid3& truth, const Rigid3& given, int name) {
+  PreparedView view = see({}, truth, name);
+  view.frame.world_from_camera = given;
+  return view;
+}
+
+// Of six pairs three may be matched: those of neighbours connect all views.
+TEST(ViewTracker, OfManyPairsTheNearestAreMatched) {
+  TrackViewsOptions options;
+  options.max_feature_pairs = 3;
+  options.given_sigma_m = 1;
+  ViewTracker tracker(options);
+  std::vector<Rigid3> truth;
+  for (int v = 0; v < 4; ++v) {
+    truth.push_back(walk(v, 9));
+    const Rigid3 shift{Eigen::Matrix3d::Identity(), {1.5 * v, 0, 0}};  // No two views overlap.
+    tracker.add_posed_view(see_from(truth.back(), shift * truth.back(), v));
+  }
+  EXPECT_LT(find_trajectory_error(truth, poses_of(tracker.finish())).rms_m, 0.001);
+}
+
+TEST(ViewTracker, GivenPosesKeepTheirWorld) {
+  ViewTracker tracker;
+  tracker.add_view(see({}, walk(0, 9), 0));
+  const Rigid3 given = Rigid3{Eigen::Matrix3d::Identity(), {5, 0, 0}} * walk(1, 9);
+  tracker.add_posed_view(see_from(walk(1, 9), given, 1));
+  const CameraTrack track = tracker.finish();
+  ASSERT_EQ(track.num_components, 1);
+  EXPECT_LT(test::shift_m(track.views[1].world_from_camera, given), 0.01);
+}
+
 TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
   Rng rng(4);
   ViewTracker tracker;
@@ -189,9 +220,7 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
     given.push_back(v == 0 ? truth[0]
                            : truth[static_cast<std::size_t>(v)] *
                                  Rigid3{Rigid3::from_axis_angle({noise.y(), 1, 0}, 0.01).rotation, 0.007 * noise});
-    PreparedView view = see({}, truth.back(), v);
-    view.frame.world_from_camera = given.back();
-    tracker.add_posed_view(view);
+    tracker.add_posed_view(see_from(truth.back(), given.back(), v));
   }
   const std::vector<Rigid3> refined = poses_of(tracker.finish());
   EXPECT_GT(find_trajectory_error(truth, given).rms_m, 0.007);
@@ -201,11 +230,7 @@ TEST(ViewTracker, RefinesGivenPosesInTheirWorld) {
 
 TEST(ViewTracker, GivenPosesAreRelatedToEachOther) {
   ViewTracker tracker;
-  const auto add_given = [&](int v) {
-    PreparedView view = see({}, walk(v, 9), v);
-    view.frame.world_from_camera = walk(v, 9);
-    tracker.add_posed_view(view);
-  };
+  const auto add_given = [&](int v) { tracker.add_posed_view(see_from(walk(v, 9), walk(v, 9), v)); };
   add_given(0);
   RgbdFrame blind = test::render_ball_scene({}, walk(1, 9));
   std::ranges::fill(blind.depth_m.data(), std::numeric_limits<float>::quiet_NaN());
