@@ -65,5 +65,13 @@ for object in cereal_blue tea_box; do
   grep -q "^0 .* $object\$" with_objects.txt || fail "$object is not among the objects: $(cat with_objects.txt)"
 done
 
+# The limit of threads does not hold for root.
+as_user="" && [ "$(id -u)" != 0 ] || as_user="setpriv --reuid=12345 --clear-groups"
+if $as_user "$resight" --version >/dev/null 2>err; then
+  $as_user prlimit --nproc=1 "$resight" track --sequence "$sequence" --out none.txt >/dev/null 2>err
+  [ $? = 1 ] || fail "without threads, the program does not end with 1"
+  [ "$(cat err)" = "resight: failed: the system allows no more threads" ] || fail "without threads: $(cat err)"
+fi
+
 [ $failures = 0 ] && echo "all as it should be"
 exit $failures

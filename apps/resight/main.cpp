@@ -6,6 +6,8 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <new>
+#include <system_error>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -44,6 +46,14 @@ std::string describe_mistake(const CLI::ParseError& error, CLI::App& app, const 
                            : first.front() == '-' ? "unknown option '" + first + "'"
                                                   : "unknown command '" + first + "'";
   return what + " (commands: " + names + "; see resight --help)";
+}
+
+std::string describe(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "out of memory";
+  const auto* const system = dynamic_cast<const std::system_error*>(&error);
+  if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again)
+    return "the system allows no more threads";
+  return error.what();
 }
 
 // An empty value, as of a variable of a shell that is not set, means nothing and would be taken for no option.
@@ -98,13 +108,13 @@ void resight::app::print_warning(const std::string& what) { print_error_line("wa
 
 int main(int argc, char** argv) {
   resight::keep_freed_memory();
-  resight::app::clean_up_when_interrupted();
   try {
+    resight::app::clean_up_when_interrupted();
     const int status = run_program(argc, argv);
     if (finish_output()) return status;
     print_error_line("", "the output could not be written to the terminal, pipe or file (is the disk full?)");
   } catch (const std::exception& error) {
-    print_error_line("failed: ", error.what());
+    print_error_line("failed: ", describe(error));
   } catch (...) {
     print_error_line("failed ", "for an unknown reason");
   }
