@@ -264,10 +264,9 @@ std::function<void()> add_evaluate(CLI::App& app, EvaluateArguments& a, std::opt
   command->add_option("--out", a.out, "Folder for the results; runs that it already contains are not computed again")
       ->required();
   command->add_option("--presets", a.presets, "Presets, separated by commas")->capture_default_str();
-  command
-      ->add_option("-k,--previous-views", a.previous_views,
-                   "Numbers of previous views that are used with the current one: numbers and ranges, e.g. 0-2,5")
-      ->capture_default_str();
+  command->add_option("-k,--previous-views", a.previous_views,
+                      "Numbers of previous views that are used with the current one: numbers and ranges, e.g. 0-2,5 "
+                      "[num_previous_views: 5]");
   command->add_option("--config", a.config, "TOML file that overrides individual settings of all presets");
   command->add_flag("--without-clustering", a.without_clustering, "Also evaluate without clustering of hypotheses");
   command->add_flag("--bop", a.bop,

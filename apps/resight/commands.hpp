@@ -161,7 +161,7 @@ struct EvaluateArguments {
   std::filesystem::path dataset;
   std::filesystem::path out;
   std::string presets = "mvr,mvr-chd,default";
-  std::string previous_views = "5";
+  std::optional<std::string> previous_views;  ///< Otherwise that of the settings.
   std::optional<std::filesystem::path> config;
   bool without_clustering = false;  ///< Also run without clustering.
   int shard = 1;

@@ -218,7 +218,11 @@ std::string fingerprint(const RecognizerConfig& config, std::uint64_t hash) {
 
 std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
   std::vector<RecognizerConfig> configs;
-  const std::vector<int> previous_views = parse_previous_views(arguments.previous_views);
+  std::vector<std::optional<int>> previous_views{std::nullopt};
+  if (arguments.previous_views) {
+    const std::vector<int> given = parse_previous_views(*arguments.previous_views);
+    previous_views.assign(given.begin(), given.end());
+  }
   std::vector<std::string> presets;
   for (const std::string& preset : split(arguments.presets, ','))
     if (std::ranges::find(presets, preset) == presets.end()) presets.push_back(preset);
@@ -226,7 +230,7 @@ std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
   for (const std::string& preset : presets)
     for (const bool clustered : {true, false}) {
       if (!clustered && !arguments.without_clustering) continue;
-      for (const int k : previous_views) {
+      for (const std::optional<int> k : previous_views) {
         RecognizerConfig config;
         try {
           config = make_config(preset, arguments.config, k, arguments.num_threads);
@@ -234,6 +238,8 @@ std::vector<RecognizerConfig> make_configs(const EvaluateArguments& arguments) {
           throw InputError(fmt::format("--presets: {}", error.what()));
         }
         if (arguments.seed) config.set_seed(*arguments.seed);
+        if (arguments.without_clustering && !config.hypotheses.cluster)
+          throw InputError("--without-clustering: has no effect, because the settings do without clustering");
         if (!clustered) config.hypotheses.cluster.reset();
         configs.push_back(config);
       }

@@ -24,6 +24,12 @@ const Row kArgumentRows[] = {
     {"ChangesTum", kNothing, kChangesTum, 0, "", "out"},
     {"Convert", kNothing, kConvert, 0, "", "out"},
     {"Evaluate", kNothing, kEvaluate, 0, "", "out/results.json"},
+    {"EvaluateWithTheKOfItsSettings", write("c.toml", "num_previous_views = 1\n"),
+     "evaluate --models models.resight --dataset views --presets mvr --config c.toml --out out", 0, "",
+     "out/runs/views.mvr.k1.json"},
+    {"EvaluateTwiceWithoutClustering", write("c.toml", "[hypotheses.cluster]\nenabled = false\n"),
+     "evaluate --models models.resight --dataset views --config c.toml --without-clustering --out out", 2,
+     "--without-clustering: has no effect, because the settings do without clustering"},
     {"Train", kNothing, kTrain, 0, "", "new.resight"},
 
     // The command line.

@@ -91,7 +91,7 @@ void SearchPlanner::record(int number, std::span<const Detection> detections, st
 }
 
 void SearchPlanner::request_full_search() {
-  request_search();
+  novelty_.forget_last_search();
   search_of_track_.clear();
 }
 

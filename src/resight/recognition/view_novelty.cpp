@@ -46,6 +46,11 @@ bool ViewNovelty::needs_search(const PreparedView& view, const ChangeResult& cha
   return true;
 }
 
+void ViewNovelty::forget_last_search() {
+  if (!searched_.empty()) searched_.pop_back();
+  request_search();
+}
+
 bool ViewNovelty::shows_something_new(const PreparedView& view, const ChangeResult& changes) const {
   const Rigid3f world_from_camera(view.frame.world_from_camera);
   const OrganizedCloud& cloud = view.cloud;

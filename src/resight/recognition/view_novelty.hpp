@@ -18,6 +18,8 @@ class ViewNovelty {
   [[nodiscard]] bool needs_search(const PreparedView& view, const ChangeResult& changes);
   /// The next view is searched in any case.
   void request_search() { views_since_search_ = -1; }
+  /// The search of the last view was incomplete: what it shows has not been searched, and the next view is searched.
+  void forget_last_search();
 
  private:
   struct SearchedView {

@@ -41,6 +41,15 @@ TEST(ViewNovelty, AnotherSideIsNew) {
   EXPECT_FALSE(w.needs_search(w.cameras[1]));
 }
 
+TEST(ViewNovelty, WhatASearchLeftOutIsNew) {
+  Watch w;
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
+  w.novelty.forget_last_search();
+  EXPECT_TRUE(w.needs_search(w.cameras[1]));
+  EXPECT_TRUE(w.needs_search(w.cameras[0]));
+  EXPECT_FALSE(w.needs_search(w.cameras[0]));
+}
+
 TEST(ViewNovelty, ANearerViewIsNew) {
   Watch w;
   const Eigen::Vector3d eye = w.cameras[0].translation;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "resight/models/pose_distance.hpp"
 #include "resight/report/internal/html.hpp"
 
 namespace resight::report {
@@ -58,9 +59,9 @@ std::string event_text(const ObjectEvent& event, const ModelLibrary& library) {
   std::string html = fmt::format("<li><span class=\"tag {0}\">{0}</span>{1} <span class=\"soft\">#{2}</span>", kind,
                                  object_tag(event.object, library), event.track);
   if (event.kind == ObjectEventKind::kMoved && event.world_from_object_before && event.world_from_object_after) {
-    const double distance_m =
-        (event.world_from_object_after->translation - event.world_from_object_before->translation).norm();
-    html += fmt::format(" by {:.1f} cm", 100 * distance_m);
+    const ObjectModel& model = library.objects[static_cast<std::size_t>(event.object)];
+    const PoseDifference move = compare_poses(*event.world_from_object_after, *event.world_from_object_before, model);
+    html += fmt::format(" by {:.1f} cm", 100 * move.center_distance_m);
   }
   return html + fmt::format(" <span class=\"soft\">confidence {}</span></li>\n", number(event.confidence, 2));
 }

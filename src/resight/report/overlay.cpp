@@ -12,6 +12,7 @@
 
 #include "resight/core/check.hpp"
 #include "resight/report/internal/drawing.hpp"
+#include "resight/sensor/reduce_frame.hpp"
 
 namespace resight {
 namespace {
@@ -62,7 +63,12 @@ void cross_out(cv::Mat& canvas, const cv::Rect& box, Rgb8 color, int thickness_p
 
 void tint_changes(Image<Rgb8>& picture, const Camera& camera, const Rigid3& world_from_camera,
                   const ChangeResult& changes, double opacity) {
-  if (changes.novel_mask.size() == picture.size()) report::tint(picture, changes.novel_mask, kNovelColor, opacity);
+  // Of a view that was reduced for the work. The first view has no mask.
+  const Image<std::uint8_t>& mask = changes.novel_mask;
+  if (mask.size() > 0) {
+    const int divisor = picture.width() / mask.width();
+    report::tint(picture, enlarge_mask(mask, divisor, picture.width(), picture.height()), kNovelColor, opacity);
+  }
   const Image<std::uint8_t> removed =
       report::project_points(camera, world_from_camera.inverse(), changes.removed_in_world);
   report::tint(picture, removed, kRemovedColor, opacity);

@@ -146,6 +146,16 @@ TEST(DrawOverlay, TintsNovelPixelsGreenAndRemovedPointsRed) {
   EXPECT_EQ(draw_overlay(frame, make_library(), update, {}, {}, {.show_changes = false}), frame.color);
 }
 
+TEST(DrawOverlay, TintsNovelPixelsOfAReducedView) {
+  const RgbdFrame frame = make_frame();
+  SceneUpdate update;
+  update.changes.novel_mask = Image<std::uint8_t>(frame.camera.width / 2, frame.camera.height / 2, 0);
+  update.changes.novel_mask(50, 100) = 1;
+  const Image<Rgb8> picture = draw_overlay(frame, make_library(), update, {}, {}, kNoLabels);
+  EXPECT_GT(picture(101, 201).g, picture(101, 201).r + 50);
+  EXPECT_EQ(picture(102, 200), frame.color(102, 200)) << "beside the mask";
+}
+
 TEST(DrawChanges, IsGreyButForTheChanges) {
   RgbdFrame frame = make_frame();
   frame.color(10, 10) = {250, 20, 90};

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <numbers>
 
 #include "resight/report/html_report.hpp"
 #include "resight/report/report_test_scene.hpp"
@@ -105,6 +106,20 @@ TEST(ReportPages, AChangeIsShownAtTheViewAtWhichItHappened) {
   EXPECT_THAT(format_report("Long", std::vector{run}, library), HasSubstr(cell));
   EXPECT_THAT(format_report_page("Long", std::vector{run}, library, 0), HasSubstr(cell));
   EXPECT_THAT(format_report_page("Long", std::vector{run}, library, 1), Not(HasSubstr(cell)));
+}
+
+// Its origin lies elsewhere.
+TEST(ReportPages, AMoveIsOneOfTheObjectsCenter) {
+  auto library = test::make_library();
+  library.objects[0].center = {0.08F, 0, 0};
+  ReportRun run = make_long_run(1);
+  ObjectEvent& move = run.views[0].update.events.emplace_back();
+  move.kind = ObjectEventKind::kMoved;
+  move.object = 0;
+  move.world_from_object_before = Rigid3::identity();
+  move.world_from_object_after = Rigid3::from_axis_angle({0, 0, 1}, std::numbers::pi);
+  move.world_from_object_after->translation = {0.16 + 0.05, 0, 0};
+  EXPECT_THAT(format_report("Turned", std::vector{run}, library), HasSubstr(" by 5.0 cm"));
 }
 
 TEST_F(ReportFolder, PicturesOfALongRunAreFilesThatItsPagesShow) {

@@ -74,6 +74,15 @@ RgbdFrame reduce_frame(const RgbdFrame& frame, int divisor) {
   return reduced;
 }
 
+Image<std::uint8_t> enlarge_mask(const Image<std::uint8_t>& reduced, int divisor, int width, int height) {
+  require(divisor >= 1 && divisor * reduced.width() <= width && divisor * reduced.height() <= height,
+          "enlarge_mask: the mask is not of a frame of this size");
+  Image<std::uint8_t> enlarged(width, height, 0);
+  for (int v = 0; v < divisor * reduced.height(); ++v)
+    for (int u = 0; u < divisor * reduced.width(); ++u) enlarged(u, v) = reduced(u / divisor, v / divisor);
+  return enlarged;
+}
+
 Result<RgbdFrame> read_reduced_view(const Sequence& sequence, int view, int max_pixels) {
   Result<RgbdFrame> frame = sequence.read_view(view);
   if (!frame) return frame;

@@ -63,6 +63,16 @@ TEST(ReduceFrame, ColoursAreMeansAndDepthsAreMeasured) {
   EXPECT_THROW((void)reduce_frame(frame, 0), std::invalid_argument);
 }
 
+TEST(EnlargeMask, EachPixelBecomesItsBlock) {
+  Image<std::uint8_t> mask(2, 1, 0);
+  mask(1, 0) = 7;
+  const Image<std::uint8_t> large = enlarge_mask(mask, 3, 7, 5);
+  EXPECT_EQ(large.width(), 7);
+  for (int v = 0; v < 5; ++v)
+    for (int u = 0; u < 7; ++u) EXPECT_EQ(large(u, v), v < 3 && u >= 3 && u < 6 ? 7 : 0) << u << ' ' << v;
+  EXPECT_THROW((void)enlarge_mask(mask, 4, 7, 5), std::invalid_argument);
+}
+
 TEST(ReadReducedView, LargeViewsAreReduced) {
   const test::MemorySequence sequence({slanted_plane(67, 50), slanted_plane(30, 50), RgbdFrame{}});
   EXPECT_EQ(read_reduced_view(sequence, 0, 3000)->camera.width, 33);

@@ -319,7 +319,7 @@ void PoseScorer::compare_colors(const Confirmed& confirmed, const MatchCriteria&
   fit.pattern_similarity = pattern_similarity(expected, seen, criteria.appearance.chroma_weight);
 }
 
-double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed) const {
+double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& confirmed, bool use_color) const {
   const float z = pixels_[confirmed.pixels.front()].z_m;  // Not of the cloud, which ends at prepare.max_depth_m.
   const float cell_px = std::max(2.0F, kCellSpacings * model.spacing_m * static_cast<float>(view_.frame.camera.fx) / z);
   Silhouette silhouette(confirmed.outline, cell_px);
@@ -332,7 +332,7 @@ double PoseScorer::count_continuing(const SampledModel& model, const Confirmed& 
     return cloud.has_normal(from) && cloud.has_normal(to) &&
            continues_shape({cloud.point(from), cloud.normal(from)}, {cloud.point(to), cloud.normal(to)},
                            kMaxContinuationOffset_m) &&
-           continues_color(lab_[from], lab_[to]);
+           (!use_color || continues_color(lab_[from], lab_[to]));
   };
   int num_cells = 0;
   silhouette.visit_around([&](const Eigen::Vector2f& px, int known_pixel) {
@@ -371,7 +371,8 @@ PoseFit PoseScorer::score_fine(const SampledModel& model, const Rigid3& camera_f
   if (!confirmed.colors.empty()) compare_colors(confirmed, criteria, fit);
   fit.explained_share = fit.num_explained / num_visible;
   if (!fit.reaches(least)) return fit;
-  fit.explained_share = fit.num_explained / (num_visible + count_continuing(model, confirmed));
+  fit.explained_share =
+      fit.num_explained / (num_visible + count_continuing(model, confirmed, criteria.appearance.use_color));
   return fit;
 }
 

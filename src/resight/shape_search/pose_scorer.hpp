@@ -146,7 +146,7 @@ class PoseScorer {
                       float margin_m, Confirmed& confirmed) const;
   [[nodiscard]] static PoseFit shape_fit(const Confirmed& confirmed);
   void compare_colors(const Confirmed& confirmed, const MatchCriteria& criteria, PoseFit& fit) const;
-  [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed) const;
+  [[nodiscard]] double count_continuing(const SampledModel& model, const Confirmed& confirmed, bool use_color) const;
   [[nodiscard]] float margin_at_center(const SampledModel& model, const Rigid3f& camera_from_object,
                                        const DepthMargin& margin) const;
 

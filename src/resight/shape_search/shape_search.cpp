@@ -68,6 +68,11 @@ struct ShapeSearch::Impl {
         symmetry_motions[o] = shape_symmetry_motions(library.objects[o], *criteria.symmetry_step_rad);
     parallel_for(objects.size(), options.num_threads,
                  [&](std::size_t o) { objects[o] = make_sampled_model(library.objects[o], kMaxModelSamples); });
+    if (!criteria.appearance.use_color)
+      for (SampledModel& object : objects) {
+        object.linear_light.clear();
+        object.chroma.clear();
+      }
     std::vector<PointPairTable::Samples> samples;
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const auto diameter_m = static_cast<double>(library.objects[o].diameter_m);

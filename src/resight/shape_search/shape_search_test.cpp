@@ -145,6 +145,16 @@ TEST(ShapeSearch, AnObjectOfUnknownColoursIsFoundByItsShape) {
   EXPECT_LT((pose.translation - c.box.world_from_object.translation).norm(), 0.004);
 }
 
+TEST(ShapeSearch, WithoutUseColorColoursSayNothing) {
+  PlainThings c;
+  for (ObjectModel& model : c.library.objects)
+    for (std::size_t i = 0; i < model.surface.size(); ++i)
+      model.surface.colors[i] = i % 2 == 0 ? Rgb8{240, 20, 20} : Rgb8{20, 20, 240};
+  EXPECT_EQ(best_of(ShapeSearch(c.library, {}).search(c.searched), 0), nullptr);
+  const MatchCriteria shape_only{.appearance = {.use_color = false}};
+  EXPECT_NE(best_of(ShapeSearch(c.library, {}, shape_only).search(c.searched), 0), nullptr);
+}
+
 TEST(ShapeSearch, TriesAPoseAsTheSearchWould) {
   const PlainThings c;
   const ShapeSearch search(c.library, {});
