@@ -25,8 +25,10 @@ void set_unit(std::vector<ModelLocation>& locations, double metres_per_unit) {
 }
 
 void tell_uncolored(const ModelLibrary& library) {
-  const auto num_uncolored =
-      std::ranges::count_if(library.objects, [](const ObjectModel& object) { return !object.surface.has_colors(); });
+  // Training views may give features to a surface without colours.
+  const auto num_uncolored = std::ranges::count_if(library.objects, [](const ObjectModel& object) {
+    return !object.surface.has_colors() && object.sift.size() == 0;
+  });
   if (num_uncolored > 0)
     print_error_line("note: ", fmt::format("{} of {} objects have no colours and are recognised by shape alone",
                                            num_uncolored, library.objects.size()));

@@ -43,6 +43,7 @@ class Summarizer {
     summary_.ghosts.num_published_places += run.num_published_places;
     summary_.changes.are_scored |= run.has_changes;
     summary_.changes.events += run.events;
+    summary_.times.num_threads.insert(run.num_threads);
     for (std::size_t v = 0; v < run.views.size(); ++v) add_view(v, run.views[v]);
   }
 

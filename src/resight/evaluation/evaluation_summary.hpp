@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,7 +61,8 @@ struct FoundSummary {
 };
 
 struct TimeSummary {
-  StageTimes stages;  ///< Sums over the views.
+  StageTimes stages;            ///< Sums over the views.
+  std::set<int> num_threads{};  ///< That the runs were measured with.
   /// Per view number, mean over the sequences (paper, Fig. 7).
   std::vector<double> mean_view_wall_s;
 };

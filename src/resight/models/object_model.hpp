@@ -14,8 +14,8 @@ namespace resight {
 struct ObjectModel {
   std::string name;  ///< Unique in its library. Also the name in TUW files.
   int bop_id = 0;    ///< obj_id of BOP files, >= 1, unique in its library; 0 = not assigned yet.
-  /// Complete surface on a voxel grid, with normals, for verification and drawing. Without colours if they are unknown;
-  /// the object is then recognised by its shape alone and has no SIFT features.
+  /// Complete surface on a voxel grid, with normals, for verification and drawing. Without colours if they are unknown:
+  /// then only training views give the object SIFT features, and without those it is recognised by its shape alone.
   PointCloud surface;
   CodedFeatures sift;
   CodedFeatures shot;

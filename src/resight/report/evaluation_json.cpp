@@ -96,6 +96,7 @@ Json configuration_json(const ConfigurationSummary& c) {
 Json times_json(const ConfigurationSummary& c) {
   Json json = key_json(c);
   json["num_views"] = c.num_views;
+  json["num_threads"] = c.times.num_threads;
   json["seconds_per_view"] = number(c.times.stages.total_wall_s() / c.num_views);
   json["stages"] = Json::array();
   for (const StageTime& stage : c.times.stages.stages())

@@ -89,8 +89,10 @@ TEST(EvaluationReport, TimesHoldTheSharesOfChangesAndClustering) {
       view.times.add("cluster", 0.01, 0.02);
       view.times.add("verification", 0.25, run.is_clustered ? 0.58 : 0.725);
     }
+  runs[1].num_threads = 8;
   const std::string text = format_evaluation_times({"set", "1"}, summarize_runs(runs));
   expect_whole_tables(text);
+  EXPECT_NE(text.find("Threads: 1, 8."), std::string::npos) << text;
   // Of 250 + 100 + 50 + 20 + 580 ms, changes take 150; clustering saves 145 of 725 ms.
   EXPECT_NE(text.find("| `mvr-chd` | 5 | 445.0 | 1000.0 | 100.0 | 50.0 | 15.0 % | 20.0 | 580.0 |"), std::string::npos)
       << text;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string_view>
 
 #include "resight/core/printable.hpp"
@@ -96,7 +98,10 @@ std::string to_csv_field(const std::string& name) {
 
 std::string format_evaluation_times(const EvaluationHeader& header,
                                     std::span<const ConfigurationSummary> configurations) {
+  std::set<int> num_threads;
+  for (const ConfigurationSummary& c : configurations) num_threads.merge(std::set(c.times.num_threads));
   std::string text = evaluation_title("Times", header, configurations) +
+                     fmt::format(" Threads: {}.", fmt::join(num_threads, ", ")) +
                      " Per view. Features, matching and hypotheses of a view are computed once and counted in "
                      "every configuration that uses them.\n";
   text += view_time_table(configurations) + clustering_time_table(configurations);
