@@ -93,7 +93,7 @@ bool fills_hole(const PreparedView& view, const PreparedView& newest, const Pair
   std::size_t num_in_holes = 0;
   for (const int i : region) {
     const int seen_at = pair.of_view.pixels[static_cast<std::size_t>(i)];
-    num_in_holes += seen_at >= 0 && !newest.cloud.has_point(static_cast<std::size_t>(seen_at)) ? 1U : 0U;
+    num_in_holes += seen_at >= 0 && std::isnan(newest.frame.depth_m[static_cast<std::size_t>(seen_at)]) ? 1U : 0U;
   }
   if (2 * num_in_holes <= region.size()) return false;
   int num_bordering = 0;

@@ -57,7 +57,8 @@ class PointTest {
   [[nodiscard]] FrustumLimits view_volume(const Camera& camera) const {
     return ViewFrustum{camera, options_.min_depth_m, options_.max_depth_m, options_.frustum_margin_rad}.limits();
   }
-  [[nodiscard]] std::vector<Evidence> classify_unexplained(const Points& in_camera, const PreparedView& view) const;
+  [[nodiscard]] std::vector<Evidence> classify_unexplained(const Points& in_camera, const PreparedView& view,
+                                                           const OrganizedCloud& measured) const;
   [[nodiscard]] std::vector<std::uint8_t> find_seen_through(const std::vector<int>& pixels, const PreparedView& view,
                                                             const PreparedView& earlier) const;
 
@@ -66,10 +67,11 @@ class PointTest {
 };
 
 /// What the view says about points of the past that nothing of it explains.
-std::vector<Evidence> PointTest::classify_unexplained(const Points& in_camera, const PreparedView& view) const {
+std::vector<Evidence> PointTest::classify_unexplained(const Points& in_camera, const PreparedView& view,
+                                                      const OrganizedCloud& measured) const {
   const DepthImage image{view.frame.camera, view.frame.depth_m};
   std::vector<Evidence> evidence =
-      classify_occlusion(in_camera, collect_points(view.cloud), SphericalBins(options_.bin_size_rad),
+      classify_occlusion(in_camera, collect_points(measured), SphericalBins(options_.bin_size_rad),
                          options_.occlusion_margin_m, num_threads_);
   if (!options_.require_return) return evidence;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
@@ -83,8 +85,10 @@ std::vector<Evidence> PointTest::classify_unexplained(const Points& in_camera, c
 std::vector<Evidence> PointTest::classify_previous(const Points& psi_in_camera, const PreparedView& view,
                                                    Image<std::uint8_t>* explained_pixels) const {
   const Camera& camera = view.frame.camera;
+  // The cloud of the view ends at prepare.max_depth_m; what lies beyond explains and hides points, too.
+  const OrganizedCloud measured = back_project(camera, view.frame.depth_m);
   const std::vector<std::uint8_t> explained =
-      find_explained_points(psi_in_camera, view.cloud, camera, options_.tolerance_m, num_threads_, explained_pixels);
+      find_explained_points(psi_in_camera, measured, camera, options_.tolerance_m, num_threads_, explained_pixels);
   const FrustumLimits volume = view_volume(camera);
   std::vector<Evidence> evidence(psi_in_camera.size(), Evidence::kPresent);
   std::vector<std::size_t> open;
@@ -96,7 +100,7 @@ std::vector<Evidence> PointTest::classify_previous(const Points& psi_in_camera, 
     open.push_back(i);
     open_in_camera.push_back(psi_in_camera[i]);
   }
-  const std::vector<Evidence> classified = classify_unexplained(open_in_camera, view);
+  const std::vector<Evidence> classified = classify_unexplained(open_in_camera, view, measured);
   for (std::size_t i = 0; i < open.size(); ++i) evidence[open[i]] = classified[i];
   return evidence;
 }

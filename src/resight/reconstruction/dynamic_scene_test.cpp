@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "resight/changes/analytic_scene_test_util.hpp"
 #include "resight/reconstruction/removal_history_test_util.hpp"
+#include "resight/sensor/testing/ball_scene.hpp"
 
 namespace resight {
 namespace {
@@ -134,6 +136,32 @@ TEST(DynamicScene, CorrectsGivenPosesBeforeItComparesViews) {
     ASSERT_EQ(times.stages().size(), 2U);
     EXPECT_EQ(times.stages()[0].stage, "poses");
   }
+}
+
+// The table behind the ball is beyond the limit, and still shows that the ball is new, or gone.
+TEST(DynamicScene, WhatLiesBeyondTheLimitOfDepthIsStillEvidence) {
+  const auto count_changed = [](const DynamicSceneOptions& options, double height_m, bool added) {
+    const Rigid3 camera = test::look_at_point({-0.9, -0.8, height_m}, {0.1, 0.05, 0.12});
+    test::BallScene with_ball, without;
+    without.has_ball = false;
+    DynamicScene scene(options);
+    scene.add_view(
+        prepare_view(test::render_ball_scene(added ? without : with_ball, camera, 0.001, 1), options.prepare));
+    const ChangeResult changes = scene.add_view(
+        prepare_view(test::render_ball_scene(added ? with_ball : without, camera, 0.001, 2), options.prepare));
+    return added ? static_cast<std::size_t>(std::ranges::count(changes.novel_mask.data(), 1))
+                 : changes.removed_in_world.size();
+  };
+  DynamicSceneOptions points, depth;
+  depth.changes.test = DepthTestOptions{};
+  const auto near = [](DynamicSceneOptions options, double max_depth_m) {
+    options.prepare.max_depth_m = max_depth_m;
+    return options;
+  };
+  const auto num_removed = static_cast<double>(count_changed(points, 0.45, false));
+  EXPECT_NEAR(static_cast<double>(count_changed(near(points, 1.35), 0.45, false)), num_removed, 0.05 * num_removed);
+  const auto num_added = static_cast<double>(count_changed(depth, 0.25, true));
+  EXPECT_NEAR(static_cast<double>(count_changed(near(depth, 1.3), 0.25, true)), num_added, 0.05 * num_added);
 }
 
 TEST(DynamicScene, WithoutChangeDetectionTheGhostStays) {
