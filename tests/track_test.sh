@@ -26,7 +26,11 @@ head -c 100 good.png >"$depth"
 [ $? = 2 ] || fail "a truncated view is no bad input"
 grep -v ^track err >told
 { [ "$(wc -l <told)" = 1 ] && grep -q '000004.png' told; } || fail "expected one line on the truncated view: $(cat told)"
+cp parts.txt.partial sensor.txt.partial
 cp good.png "$depth"
+"$resight" track --sequence "$sequence" --sensor time-of-flight --out sensor.txt >/dev/null 2>err ||
+  fail "with another sensor: $(tail -1 err)"
+! grep -q 'tracked before' err || fail "another sensor goes on from the journal of the first"
 "$resight" track --sequence "$sequence" --out parts.txt >/dev/null 2>err || fail "the second run failed: $(tail -1 err)"
 [ "$(grep -c 'tracked before' err)" = 4 ] || fail "not what was tracked is taken over: $(cat err)"
 cmp -s <(grep -v '^#' whole.txt) <(grep -v '^#' parts.txt) || fail "an interrupted run ends with other poses"

@@ -38,15 +38,22 @@ PreparedView read_prepared(const Sequence& sequence, int view, int num_threads) 
   return prepare_view(value_or_throw(sequence.read_view(view)), options);
 }
 
-// What the first view holds: other intrinsics, or another unit of depth, are another job.
+// What the first view holds: other intrinsics, another unit of depth, sensor or topic are another job.
 std::uint64_t hash_first_view(const Sequence& sequence) {
   if (sequence.num_views() == 0) return kHashSeed;
   const RgbdFrame frame = value_or_throw(sequence.read_view(0));
   const Camera& camera = frame.camera;
-  const std::uint64_t intrinsics = hash_text(
-      fmt::format("{}x{} {} {} {} {}", camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy));
-  const std::span<const float> depth = frame.depth_m.data();
-  return checksum_bytes({reinterpret_cast<const std::uint8_t*>(depth.data()), depth.size_bytes()}, intrinsics);
+  const DepthNoise& noise = camera.noise;
+  std::uint64_t hash =
+      hash_text(fmt::format("{}x{} {} {} {} {} noise {} {} {} {} {} {}", camera.width, camera.height, camera.fx,
+                            camera.fy, camera.cx, camera.cy, noise.constant_m, noise.quadratic_per_m, noise.nearest_m,
+                            noise.grazing, noise.lateral_px, noise.lateral_grazing_px));
+  const auto add = [&](const auto& pixels) {
+    hash = checksum_bytes({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size_bytes()}, hash);
+  };
+  add(std::span(frame.depth_m.data()));
+  add(std::span(frame.color.data()));
+  return hash;
 }
 
 std::string describe_job(const Sequence& sequence, const std::filesystem::path& folder) {

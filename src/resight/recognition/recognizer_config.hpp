@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -189,6 +190,12 @@ inline void declare(OptionVisitor& v, RecognizerConfig& o) {
   v.rule(o.remember_objects || (!o.search.max_new_share && !o.search.place_interval),
          "search.max_new_share and search.place_interval have no effect unless remember_objects = true: a view that is "
          "not searched needs the objects of others (set both to \"off\")");
+  // Pose correction takes points 3 px from an edge (AlignmentViewOptions).
+  const double min_cap_px = std::max({3.0, o.integrate.min_edge_distance_px, o.verify.visibility.min_edge_distance_px,
+                                      o.shape.enabled ? o.shape.scene.min_edge_distance_px : 0});
+  v.rule(o.prepare.edges.max_distance_px >= min_cap_px,
+         "prepare.edges.max_distance_px must be at least 3 and every min_edge_distance_px: else no point is far enough "
+         "from an edge");
 }
 
 }  // namespace resight

@@ -120,6 +120,8 @@ TEST(RecognizerConfig, RefusesCombinationsWithoutEffect) {
   EXPECT_THROW(config.check(), std::invalid_argument) << "planes without segments, which this rule needs";
   config.verify.planes->spacing_m.reset();
   EXPECT_NO_THROW(config.check());
+  config.integrate.min_edge_distance_px = 5.5;
+  EXPECT_THROW(config.check(), std::invalid_argument) << "no point is integrated";
 }
 
 TEST(OptionsReference, NamesEveryOptionWithItsValues) {
