@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "commands.hpp"
 #include "output_paths.hpp"
@@ -66,8 +69,13 @@ ObjectTrack follow(const std::filesystem::path& folder, const OpenSequenceOption
   return followed;
 }
 
-// Key views of an existing model.
-ObjectTrack read_model_views(const std::filesystem::path& folder) {
+// Of an existing model: its key views, and what it declares.
+struct KnownModel {
+  ObjectTrack track;
+  DeclaredModelInfo declared;
+};
+
+KnownModel read_known_model(const std::filesystem::path& folder) {
   const std::vector<ModelLocation> found = value_or_throw(find_models({folder}));
   ModelSource source = value_or_throw(read_model(found.front()));
   if (found.size() > 1 || source.views.empty())
@@ -75,9 +83,13 @@ ObjectTrack read_model_views(const std::filesystem::path& folder) {
         file_error(folder,
                    "does not contain exactly one model with views (a folder written by 'resight model' was expected)")
             .message);
-  ObjectTrack track;
-  track.views = std::move(source.views);
-  return track;
+  KnownModel model{{}, {.symmetries = std::move(source.symmetries), .bop_id = source.bop_id}};
+  std::erase_if(source.views, [](const TrainingView& view) {
+    return std::ranges::all_of(view.mask.data(), [](std::uint8_t is_object) { return is_object == 0; });
+  });
+  if (source.views.empty()) throw InputError(file_error(folder, "has no view whose mask shows the object").message);
+  model.track.views = std::move(source.views);
+  return model;
 }
 
 }  // namespace
@@ -93,7 +105,12 @@ void run_model(const ModelArguments& arguments) {
     for (const std::filesystem::path& folder : arguments.sequences)
       static_cast<void>(open_object_views(folder, arguments.input));
   std::optional<ObjectTrack> whole;
-  if (arguments.onto) whole = read_model_views(*arguments.onto);
+  DeclaredModelInfo declared;
+  if (arguments.onto) {
+    KnownModel known = read_known_model(*arguments.onto);
+    whole = std::move(known.track);
+    declared = std::move(known.declared);
+  }
   for (const std::filesystem::path& folder : arguments.sequences) {
     ObjectTrack track = follow(folder, arguments.input, track_options);
     whole =
@@ -104,7 +121,7 @@ void run_model(const ModelArguments& arguments) {
     recordings += (recordings.empty() ? "" : ", ") + folder.string();
   ObjectModelBuild build = value_of(recordings, build_model(whole->views, build_options));
   build.report.closure_error_m = whole->closure_error_m;
-  value_or_throw(write_object_model(arguments.out, whole->views, build));
+  value_or_throw(write_object_model(arguments.out, whole->views, build, declared));
   print_text(format_report(build.report));
   print("model {}: {}\n", folder_name(arguments.out), arguments.out.string());
 }

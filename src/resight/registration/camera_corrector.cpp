@@ -56,11 +56,12 @@ CorrectedCamera CameraCorrector::correct(const AlignmentView& view, const Rigid3
   for (const View& earlier : views_)
     if (earlier.view.levels.size() >= view.levels.size()) targets.push_back({&earlier.view, earlier.world_from_camera});
   if (targets.empty()) return {given, {}};
-  // Most given poses are right; the finest level alone confirms them.
+  // Most given poses are right; the finest level alone confirms them. It says nothing about directions in which the
+  // surfaces are farther off than its pairs may be.
   AlignViewOptions near = align_;
   near.num_levels = 1;
-  if (const AlignedView aligned = align_view(view, targets, given, near); !is_surprising(aligned, given))
-    return {given, measure(aligned, given, given)};
+  const AlignedView finest = align_view(view, targets, given, near);
+  if (is_constrained(finest) && !is_surprising(finest, given)) return {given, measure(finest, given, given)};
   // Poses of a tracker drift: the motion since the last view is known better than the pose.
   const Rigid3 moved = views_.back().world_from_camera * (views_.back().given.inverse() * given);
   const AlignedView as_given = evaluate_alignment(view, targets, given, align_);
@@ -105,6 +106,13 @@ PoseCorrection CameraCorrector::measure(const AlignedView& aligned, const Rigid3
 bool CameraCorrector::is_too_far(const AlignedView& aligned, const Rigid3& start) const {
   const Twist off = to_twist(aligned.world_from_camera.inverse() * start);
   return off.head<3>().norm() > kMaxSigmas * options_.sigma_rad || off.tail<3>().norm() > kMaxSigmas * options_.sigma_m;
+}
+
+bool CameraCorrector::is_constrained(const AlignedView& aligned) const {
+  constexpr double kMaxShareOfPrior = 0.5;
+  const TwistMatrix prior = twist_information(options_.sigma_rad, options_.sigma_m);
+  const TwistMatrix covariance = (aligned.information + prior).inverse();
+  return (covariance.diagonal().array() * prior.diagonal().array()).maxCoeff() < kMaxShareOfPrior * kMaxShareOfPrior;
 }
 
 bool CameraCorrector::is_surprising(const AlignedView& aligned, const Rigid3& world_from_camera) const {

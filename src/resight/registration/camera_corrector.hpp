@@ -67,6 +67,8 @@ class CameraCorrector {
   [[nodiscard]] PoseCorrection measure(const AlignedView& aligned, const Rigid3& world_from_camera,
                                        const Rigid3& given) const;
   [[nodiscard]] bool is_too_far(const AlignedView& aligned, const Rigid3& start) const;
+  /// Whether the surfaces tell each direction clearly better than the given pose does.
+  [[nodiscard]] bool is_constrained(const AlignedView& aligned) const;
   [[nodiscard]] bool is_surprising(const AlignedView& aligned, const Rigid3& world_from_camera) const;
 
   CorrectCameraOptions options_;
