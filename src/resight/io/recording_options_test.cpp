@@ -135,6 +135,36 @@ TEST_F(RecordingOptions, MessagesThatCannotBeDecodedAreCounted) {
   EXPECT_THAT((*sequence)->notes(), Contains("1 of 1 messages with transforms cannot be decoded and are left out"));
 }
 
+// Drivers leave the times in the headers unset, or write whole seconds. The first colour image has no depth.
+TEST_F(RecordingOptions, ImagesWhoseHeadersRepeatArePairedByTheTimesOfRecording) {
+  for (const double second : {0.0, 10.0}) {
+    recording_ = TestRecording();
+    add_info(recording_, "/rgb/camera_info");
+    for (int i = 0; i < 4; ++i) {
+      const double time_s = 10 + 0.1 * i;
+      const std::string color(3 * kImageWidth * kImageHeight, static_cast<char>('0' + i));
+      recording_.add("/rgb/image_raw", "sensor_msgs/Image", time_s,
+                     recordings::image_message(second, "camera", "bgr8", kImageWidth, kImageHeight, color));
+      std::string depth;
+      for (int p = 0; p < kImageWidth * kImageHeight; ++p)
+        depth += recordings::packed(static_cast<std::uint16_t>(1000 + 100 * i));
+      if (i > 0)
+        recording_.add("/depth/image_raw", "sensor_msgs/Image", time_s + 0.004,
+                       recordings::image_message(second, "camera", "16UC1", kImageWidth, kImageHeight, depth));
+    }
+    const auto sequence = open();
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    ASSERT_EQ((*sequence)->num_views(), 3);
+    for (int v = 0; v < 3; ++v) {
+      const auto frame = (*sequence)->read_view(v);
+      ASSERT_TRUE(frame.ok()) << frame.error().message;
+      EXPECT_EQ(frame->color(1, 1).r, '1' + v);
+      EXPECT_NEAR(frame->depth_m(1, 1), 1.1 + 0.1 * v, 1e-6);
+    }
+    EXPECT_THAT((*sequence)->notes(), Contains(HasSubstr("paired by the times of recording")));
+  }
+}
+
 TEST_F(RecordingOptions, OdometryAndPoses) {
   TestRecording odometry;
   TestRecording poses;

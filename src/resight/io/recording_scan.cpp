@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "resight/io/internal/recording_scan.hpp"
 
+#include <fmt/format.h>
+
+#include <set>
 #include <utility>
 
 #include "resight/io/internal/time_pairs.hpp"
@@ -26,6 +29,13 @@ std::vector<RecordedPair> pair_by(StampOf stamp_of, const RecordingScan& scan, d
     pairs.push_back({scan.colors[pair.color].entry, depth.entry, depth.stamp_ns});
   }
   return pairs;
+}
+
+/// Whether most images share the time of their header with others: it is unset, or tells whole seconds.
+bool headers_repeat(const std::vector<StampedImage>& images) {
+  std::set<std::int64_t> stamps_ns;
+  for (const StampedImage& image : images) stamps_ns.insert(image.stamp_ns);
+  return stamps_ns.size() * 2 < images.size();
 }
 
 }  // namespace
@@ -67,7 +77,8 @@ RecordedPairs pair_images(const RecordingScan& scan, double max_difference_s) {
   auto by_header = pair_by(&header_stamp, scan, max_difference_s);
   auto by_recording = pair_by(&recorded_stamp, scan, max_difference_s);
   const bool clocks_differ = by_header.size() * 4 < by_recording.size();
-  return {clocks_differ ? std::move(by_recording) : std::move(by_header), clocks_differ};
+  const bool prefers_recording = clocks_differ || headers_repeat(scan.colors) || headers_repeat(scan.depths);
+  return {prefers_recording ? std::move(by_recording) : std::move(by_header), prefers_recording};
 }
 
 }  // namespace resight::io

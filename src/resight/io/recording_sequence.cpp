@@ -227,7 +227,8 @@ Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   note_undecodable(scan.num_bad_transforms, scan.num_transform_messages, "messages with transforms");
   const RecordedPairs images = pair_images(scan, options.topics.max_time_difference_s);
   if (images.by_recording_times)
-    notes_.emplace_back("the times in the headers do not fit together: images are paired by the times of recording");
+    notes_.emplace_back(
+        "the times in the headers do not fit together, or repeat: images are paired by the times of recording");
   if (const auto done = find_views(images.pairs, *poses, options); !done) return done;
   const auto first = read_view(0);
   if (!first) return Error{first.error().message};

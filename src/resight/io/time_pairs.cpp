@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 /// An image of either stream, linked to those before and after it in time that have no partner yet.
 struct Moment {
   double time_s = 0;
+  std::size_t ordinal = 0;  ///< Among the images of its stream that have this time.
   bool is_color = false;
   std::size_t index = 0;
   std::size_t before = 0;
@@ -21,14 +23,21 @@ struct Moment {
   bool has_partner = false;
 };
 
-/// Moments by time, between two that are never paired.
+void add_stream(std::span<const double> times_s, bool is_color, std::vector<Moment>& moments) {
+  std::map<double, std::size_t> num_of_time;
+  for (std::size_t i = 0; i < times_s.size(); ++i)
+    if (std::isfinite(times_s[i]))
+      moments.push_back({.time_s = times_s[i], .ordinal = num_of_time[times_s[i]]++, .is_color = is_color, .index = i});
+}
+
+/// Moments by time, between two that are never paired. Of one time, the first colour and depth images lie side by side,
+/// then the second ones: that is all that is known of their order.
 std::vector<Moment> merge_streams(std::span<const double> colors_s, std::span<const double> depths_s) {
   std::vector<Moment> moments(1);
-  for (std::size_t i = 0; i < colors_s.size(); ++i)
-    if (std::isfinite(colors_s[i])) moments.push_back({.time_s = colors_s[i], .is_color = true, .index = i});
-  for (std::size_t i = 0; i < depths_s.size(); ++i)
-    if (std::isfinite(depths_s[i])) moments.push_back({.time_s = depths_s[i], .is_color = false, .index = i});
-  std::ranges::stable_sort(moments.begin() + 1, moments.end(), {}, &Moment::time_s);
+  add_stream(colors_s, true, moments);
+  add_stream(depths_s, false, moments);
+  std::ranges::stable_sort(moments.begin() + 1, moments.end(), {},
+                           [](const Moment& moment) { return std::pair(moment.time_s, moment.ordinal); });
   moments.emplace_back();
   for (std::size_t m = 1; m + 1 < moments.size(); ++m) {
     moments[m].before = m - 1;

@@ -35,7 +35,7 @@ std::vector<TimePair> pair_by_force(std::span<const double> colors_s, std::span<
     color_is_taken[c] = depth_is_taken[d] = true;
     pairs.push_back({c, d});
   }
-  std::ranges::sort(pairs, {}, [&](const TimePair& pair) { return colors_s[pair.color]; });
+  std::ranges::sort(pairs, {}, [&](const TimePair& pair) { return std::pair(colors_s[pair.color], pair.color); });
   return pairs;
 }
 
@@ -48,6 +48,20 @@ TEST(PairByTime, IsWhatTryingAllPairsFinds) {
     for (double& time_s : depths_s) time_s = rng.uniform(0, 0.3);
     EXPECT_EQ(pair_by_time(colors_s, depths_s, 0.05), pair_by_force(colors_s, depths_s, 0.05)) << round;
   }
+}
+
+// Headers may have no time at all, or whole seconds.
+TEST(PairByTime, ImagesOfOneTimeArePairedInTheirOrder) {
+  Rng rng(8);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<double> colors_s(rng.below(13));
+    std::vector<double> depths_s(rng.below(13));
+    for (double& time_s : colors_s) time_s = static_cast<double>(rng.below(3));
+    for (double& time_s : depths_s) time_s = static_cast<double>(rng.below(3));
+    EXPECT_EQ(pair_by_time(colors_s, depths_s, 0.05), pair_by_force(colors_s, depths_s, 0.05)) << round;
+  }
+  const std::vector<double> unset_s(3, 0.0);
+  EXPECT_THAT(pair_by_time(unset_s, unset_s, 0.02), ElementsAre(TimePair{0, 0}, TimePair{1, 1}, TimePair{2, 2}));
 }
 
 // A colour image that is a little nearer to the depth image of another one must not take it.

@@ -45,7 +45,7 @@ struct RecordedPairs {
 };
 
 /// Pairs the images by the times in their headers, in the order of time. If these do not fit together (clocks of two
-/// devices), by the times of recording.
+/// devices), or most of them repeat, by the times of recording.
 [[nodiscard]] RecordedPairs pair_images(const RecordingScan& scan, double max_difference_s);
 
 }  // namespace resight::io

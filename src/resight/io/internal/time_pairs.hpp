@@ -14,7 +14,7 @@ struct TimePair {
 
 /// Pairs colour with depth images that lie at most `max_gap_s` apart in time: the nearest two first, then the nearest
 /// of the others, as the tools of TUM do. An image is in one pair at most. Times that are not finite belong to no pair.
-/// The pairs are in the order of the colour times.
+/// Images of one time are paired in their order. The pairs are in the order of the colour times.
 [[nodiscard]] std::vector<TimePair> pair_by_time(std::span<const double> colors_s, std::span<const double> depths_s,
                                                  double max_gap_s);
 
