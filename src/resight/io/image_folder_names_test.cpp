@@ -77,6 +77,24 @@ TEST(ImageFolder, NamesThatAreTimes) {
   EXPECT_NEAR((*sequence)->read_pose(2)->translation.x(), 3, 1e-6);
 }
 
+// A program writes fractions without the zeros at their end, and one trigger may give both images one time.
+TEST(ImageFolder, TimesArePairedAndOrderedAsNumbers) {
+  io::TestDirectory directory;
+  const std::vector<std::pair<std::string, std::string>> times = {{"1700000000.05", "1700000000.05"},
+                                                                  {"1700000000.5", "1700000000.507"},
+                                                                  {"1700000001.05", "1700000001.057"},
+                                                                  {"1700000001.1", "1700000001.107"}};
+  for (const auto& [color, depth] : times) {
+    ASSERT_TRUE(write_color(directory / "rgb" / (color + ".jpg"), Image<Rgb8>(kWidth, kHeight)).ok());
+    ASSERT_TRUE(write_depth(directory / "depth" / (depth + ".png"), Image<float>(kWidth, kHeight, 1.5F), 0.001).ok());
+  }
+  io::write_text(directory / "intrinsics.txt", kMatrix);
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  ASSERT_EQ((*sequence)->num_views(), 4);
+  for (int v = 0; v < 4; ++v) EXPECT_EQ((*sequence)->view_name(v), times[static_cast<std::size_t>(v)].first);
+}
+
 // As with --follow, when the first view is there alone.
 TEST(ImageFolder, TheNameOfAViewStaysWhenOthersFollow) {
   for (const auto& [first, second] : {std::pair<std::string, std::string>{"cam1_#_0001", "cam1_#_0002"},

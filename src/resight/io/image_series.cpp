@@ -127,6 +127,16 @@ std::vector<bool> guess_key_runs(const DigitRuns& runs) {
   return is_key;
 }
 
+/// Whether the names hold a decimal fraction, as times do.
+bool is_decimal(std::string_view pattern) { return pattern.find("#.#") != pattern.npos; }
+
+/// Whether the names are times whose order is theirs: numbers, with a decimal fraction or without.
+bool tells_times(const FileSeries& series) {
+  const bool is_number = is_decimal(series.pattern) || series.pattern.find('#') == series.pattern.rfind('#');
+  return is_number &&
+         std::ranges::none_of(series.files, [](const auto& file) { return std::isnan(file.second.time_s); });
+}
+
 /// Removes the numbers that are the same in all names, such as those of "color_640x480".
 void set_keys(FileSeries& series, const std::vector<std::string>& names) {
   const DigitRuns first = split_digits(names.front());
@@ -144,7 +154,8 @@ void set_keys(FileSeries& series, const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < runs.digits.size(); ++i) {
       if (!differs[i]) continue;
       if (!key.empty()) key += '.';
-      key += without_zeros(runs.digits[i]);
+      // A fraction keeps its zeros: .05 is not .5.
+      key += i > 0 && is_decimal(series.pattern) ? runs.digits[i] : without_zeros(runs.digits[i]);
       digits.push_back(runs.digits[i]);
       end = runs.ends[i];
     }
@@ -220,7 +231,8 @@ bool holds_kind(const std::vector<FileSeries>& all, SeriesKind kind) {
 }
 
 std::vector<ImagePair> find_pairs(const FileSeries& color, const FileSeries& depth) {
-  std::vector<ImagePair> pairs = pair_by_key(color, depth);
+  std::vector<ImagePair> pairs;
+  if (!tells_times(color) || !tells_times(depth)) pairs = pair_by_key(color, depth);
   return pairs.empty() ? pair_series_by_time(color, depth) : pairs;
 }
 
@@ -306,6 +318,8 @@ Result<std::optional<PairedSeries>> pair_series(const std::vector<FileSeries>& a
   std::ranges::sort(paired.pairs, [](const ImagePair& a, const ImagePair& b) {
     return natural_less(a.color.file.filename().string(), b.color.file.filename().string());
   });
+  if (tells_times(paired.color))
+    std::ranges::stable_sort(paired.pairs, {}, [](const ImagePair& pair) { return pair.color.time_s; });
   return std::optional(std::move(paired));
 }
 

@@ -26,7 +26,8 @@ struct FileSeries {
   std::filesystem::path folder;
   std::string pattern;  ///< File name with # for each number, such as "frame-#.depth.png", or "*.png".
   SeriesKind kind = SeriesKind::kOther;
-  std::map<std::string, SeriesFile> files;  ///< By the numbers that differ, without leading zeros, or by the name.
+  std::map<std::string, SeriesFile>
+      files;  ///< By the numbers that differ, without leading zeros of whole ones, or by the name.
   [[nodiscard]] std::string label() const;  ///< For messages: folder and pattern.
 };
 
