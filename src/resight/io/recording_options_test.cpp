@@ -190,6 +190,26 @@ TEST_F(RecordingOptions, OdometryAndPoses) {
   }
 }
 
+// Poses of something else, such as a target, do not move a camera that is fixed to the world.
+TEST_F(RecordingOptions, PosesDoNotMoveAFixedCamera) {
+  for (const char* frame : {"base", "world"}) {
+    recording_ = TestRecording();
+    add_views(recording_, {});
+    add_info(recording_, "/rgb/camera_info");
+    recording_.add("/tf_static", "tf2_msgs/TFMessage", 9,
+                   recordings::transform_message(9, "world", "camera", Rigid3::from_translation({0.5, 0, 1})));
+    for (int i = 0; i < 4; ++i) {
+      const double time_s = 10 + 0.1 * i;
+      recording_.add("/target", "geometry_msgs/PoseStamped", time_s,
+                     recordings::pose_message(time_s, frame, Rigid3::from_translation({0.5 * i, 0, 0})));
+    }
+    const auto sequence = open();
+    ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+    EXPECT_LT(((*sequence)->read_pose(2)->translation - Eigen::Vector3d(0.5, 0, 1)).norm(), 1e-6) << frame;
+    EXPECT_THAT((*sequence)->notes(), Contains("poses: camera in world")) << frame;
+  }
+}
+
 TEST_F(RecordingOptions, FramesThatNothingConnects) {
   add_views(recording_, {});
   add_info(recording_, "/rgb/camera_info");

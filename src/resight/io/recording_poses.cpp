@@ -46,8 +46,9 @@ Result<RecordedPoses> RecordedPoses::make(const Recording& recording, const Reco
   // Odometry also tells where a frame is, if no transform does.
   for (const StampedTransform& transform : odometry) poses.transforms_.add(transform, false);
   poses.camera_frame_ = given.camera_frame.empty() ? topics.color_frame : given.camera_frame;
-  if (stamped_poses.empty() || poses.transforms_.is_moving(poses.camera_frame_)) poses.pose_topic_.clear();
   poses.posed_frame_ = poses.transforms_.root_of(poses.camera_frame_);
+  const bool is_fixed = poses.transforms_.knows(poses.camera_frame_) && is_world_name(poses.posed_frame_);
+  if (stamped_poses.empty() || is_fixed || poses.transforms_.is_moving(poses.camera_frame_)) poses.pose_topic_.clear();
   if (!poses.pose_topic_.empty())
     for (StampedTransform& transform : stamped_poses) {
       if (transform.parent.empty()) transform.parent = "world";
