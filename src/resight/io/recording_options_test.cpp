@@ -225,6 +225,34 @@ TEST_F(RecordingOptions, FramesThatNothingConnects) {
   EXPECT_THAT(notes(), Contains(HasSubstr("nothing fixes it to a frame that moves (base): was /tf_static recorded?")));
 }
 
+TEST_F(RecordingOptions, UnusedTopicsMayBeUnreadable) {
+  add_views(recording_, {});
+  add_info(recording_, "/rgb/camera_info");
+  recording_.add_cut("/debug/image_raw", "sensor_msgs/Image", 9);
+  const auto sequence = open();
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->num_views(), 3);
+  EXPECT_THAT((*sequence)->notes(), Contains(HasSubstr("damaged, what can be read is used: ")));
+  TestRecording damaged;
+  damaged.add_cut("/rgb/image_raw", "sensor_msgs/Image", 9);
+  add_views(damaged, {});
+  recording_ = damaged;
+  EXPECT_THAT(error(), testing::AllOf(HasSubstr("has no topic of colour images"), HasSubstr("record is damaged")));
+}
+
+TEST_F(RecordingOptions, UnusedStreamsOfLibrealsenseMayBeUnreadable) {
+  const TopicsOfTest topics{.color = "/device_0/sensor_1/Color_0/image/data",
+                            .depth = "/device_0/sensor_0/Depth_0/image/data"};
+  add_views(recording_, topics);
+  add_info(recording_, "/device_0/sensor_1/Color_0/info/camera_info");
+  recording_.add_cut("/device_0/sensor_0/Infrared_1/tf/0", "geometry_msgs/Transform", 9);
+  const auto sequence = open();
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->num_views(), 3);
+  recording_.add_cut("/device_0/sensor_0/Depth_0/tf/0", "geometry_msgs/Transform", 9);
+  EXPECT_THAT(error(), HasSubstr("record is damaged"));
+}
+
 TEST_F(RecordingOptions, SeveralTopicsMustBeChosen) {
   add_views(recording_,
             {.color = "/a/rgb/image_raw", .depth = "/a/depth/image_raw", .color_frame = "a", .depth_frame = "a"});

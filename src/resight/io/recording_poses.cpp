@@ -96,7 +96,9 @@ Result<void> RecordedPoses::read_librealsense(const Recording& recording, const 
     const RecordedTopic& topic = recording.topics()[t];
     const bool is_unit =
         topic.name.ends_with("/option/Depth_Units/value") || topic.name.ends_with("/option/Depth Units/value");
-    const bool is_transform = topic.type == "geometry_msgs/Transform";
+    const bool is_of_color = topic.name.starts_with(color + "/tf/");
+    const bool is_of_depth = topic.name.starts_with(depth + "/tf/");
+    const bool is_transform = topic.type == "geometry_msgs/Transform" && (is_of_color || is_of_depth);
     if (!is_transform && !(is_unit && topic.type == "std_msgs/Float32")) continue;
     const auto bytes = first.read(static_cast<int>(t), 4096);
     if (!bytes) return bytes.error();
@@ -108,8 +110,8 @@ Result<void> RecordedPoses::read_librealsense(const Recording& recording, const 
     }
     const auto transform = decode_plain_transform(**bytes, topic.layout, topic.name);
     if (!transform) return transform.error();
-    if (topic.name.starts_with(color + "/tf/")) color_from_reference = *transform;
-    if (topic.name.starts_with(depth + "/tf/")) depth_from_reference = *transform;
+    if (is_of_color) color_from_reference = *transform;
+    if (is_of_depth) depth_from_reference = *transform;
   }
   if (color_from_reference && depth_from_reference)
     color_from_depth_ = *color_from_reference * depth_from_reference->inverse();

@@ -221,8 +221,11 @@ Result<void> RecordingSequence::prepare(const OpenSequenceOptions& options) {
   if (const auto done = find_registration(*poses); !done) return done;
   depth_unit_m_ = options.depth_scale_m ? options.depth_scale_m : poses->depth_unit_m();
   describe(*poses, options);
-  const std::string& damage = recording_->damage().empty() ? scan.damage : recording_->damage();
-  if (!damage.empty()) notes_.push_back("damaged, what can be read is used: " + damage);
+  for (const std::string& damage : {recording_->damage(), scan.damage, topics_.damage}) {
+    if (damage.empty()) continue;
+    notes_.push_back("damaged, what can be read is used: " + damage);
+    break;
+  }
   note_undecodable(scan.num_bad_images, scan.num_images, "images");
   note_undecodable(scan.num_bad_transforms, scan.num_transform_messages, "messages with transforms");
   const RecordedPairs images = pair_images(scan, options.topics.max_time_difference_s);

@@ -43,14 +43,15 @@ int rank_topic(const RecordedTopic& topic, ImageContent content) {
   return contains(name, "depth") && !contains(name, "rgb") ? rank - 16 : rank;
 }
 
-Result<std::vector<ImageTopic>> list_image_topics(const Recording& recording, const FirstMessages& first) {
+/// Topics whose first message cannot be read are left out; `damage` becomes the last reason.
+std::vector<ImageTopic> list_image_topics(const Recording& recording, const FirstMessages& first, std::string& damage) {
   std::vector<ImageTopic> images;
   const auto& topics = recording.topics();
   for (std::size_t t = 0; t < topics.size(); ++t) {
     if (!is_image_type(topics[t].type)) continue;
     const auto bytes = first.read(static_cast<int>(t), kImageStartBytes);
-    if (!bytes) return bytes.error();
-    if (!*bytes) continue;
+    if (!bytes) damage = bytes.error().message;
+    if (!bytes || !*bytes) continue;
     const auto start = decode_image_start(**bytes, topics[t]);
     if (!start) continue;
     const ImageContent content = content_of(start->encoding, topics[t].name);
@@ -155,13 +156,14 @@ Result<std::optional<std::string>> FirstMessages::read(int topic, std::size_t ma
 
 Result<ViewTopics> find_view_topics(const Recording& recording, const RecordingTopics& given) {
   const FirstMessages first(recording);
-  const auto images = list_image_topics(recording, first);
-  if (!images) return images.error();
-  const auto color = choose_image_topic(recording, *images, ImageContent::kColor, given.color);
-  if (!color) return color.error();
-  const auto depth = choose_image_topic(recording, *images, ImageContent::kDepth, given.depth);
-  if (!depth) return depth.error();
   ViewTopics topics;
+  const std::vector<ImageTopic> images = list_image_topics(recording, first, topics.damage);
+  const auto color = choose_image_topic(recording, images, ImageContent::kColor, given.color);
+  const auto depth = choose_image_topic(recording, images, ImageContent::kDepth, given.depth);
+  if (!color || !depth) {
+    const std::string& message = color ? depth.error().message : color.error().message;
+    return Error{topics.damage.empty() ? message : fmt::format("{}; damaged: {}", message, topics.damage)};
+  }
   topics.color = color->topic;
   topics.depth = depth->topic;
   topics.color_frame = color->frame;

@@ -19,6 +19,7 @@ struct ViewTopics {
   std::string depth_encoding;
   std::optional<CameraInfoMessage> color_info;
   std::optional<CameraInfoMessage> depth_info;
+  std::string damage;  ///< Why the first message of a topic of images could not be read. It is not chosen.
 };
 
 /// Finds colour and depth by type, encoding and name, or takes those that are given, with their CameraInfo. The error

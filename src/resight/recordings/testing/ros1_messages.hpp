@@ -71,14 +71,11 @@ inline std::string pose_message(double time_s, const std::string& frame, const R
 class TestRecording {
  public:
   void add(const std::string& topic, const std::string& type, double time_s, const std::string& message) {
-    const auto [it, is_new] = channels_.try_emplace(topic, static_cast<std::uint16_t>(channels_.size() + 1));
-    if (is_new) {
-      add_record(3, packed(it->second) + packed_text(type) + packed_text("ros1msg") + packed_text(""));
-      add_record(4, packed(it->second) + packed(it->second) + packed_text(topic) + packed_text("ros1") +
-                        packed(std::uint32_t{0}));
-    }
-    const auto time_ns = static_cast<std::uint64_t>(time_s * 1e9);
-    add_record(5, packed(it->second) + packed(std::uint32_t{0}) + packed(time_ns) + packed(time_ns) + message);
+    add_message(topic, type, time_s, packed(static_cast<std::uint64_t>(time_s * 1e9)) + message);
+  }
+  /// A message that cannot be read: its record ends too early.
+  void add_cut(const std::string& topic, const std::string& type, double time_s) {
+    add_message(topic, type, time_s, "");
   }
   [[nodiscard]] std::string bytes() const {
     const std::string magic("\x89MCAP0\r\n", 8);
@@ -87,6 +84,16 @@ class TestRecording {
   }
 
  private:
+  void add_message(const std::string& topic, const std::string& type, double time_s, const std::string& rest) {
+    const auto [it, is_new] = channels_.try_emplace(topic, static_cast<std::uint16_t>(channels_.size() + 1));
+    if (is_new) {
+      add_record(3, packed(it->second) + packed_text(type) + packed_text("ros1msg") + packed_text(""));
+      add_record(4, packed(it->second) + packed(it->second) + packed_text(topic) + packed_text("ros1") +
+                        packed(std::uint32_t{0}));
+    }
+    const auto time_ns = static_cast<std::uint64_t>(time_s * 1e9);
+    add_record(5, packed(it->second) + packed(std::uint32_t{0}) + packed(time_ns) + rest);
+  }
   [[nodiscard]] static std::string record(char op, const std::string& content) {
     return std::string(1, op) + packed(static_cast<std::uint64_t>(content.size())) + content;
   }
