@@ -365,7 +365,9 @@ Result<ChunkCache::Chunk> McapFile::load_chunk(std::uint32_t part) const {
 
 Result<std::string> McapFile::read(const MessageEntry& entry, std::size_t max_bytes) const {
   constexpr std::uint64_t kMessageHead = 2 + 4 + 8 + 8;
-  const bool in_file = entry.part == kOutsideChunks || chunks_.at(entry.part - 1).compression.empty();
+  // A chunk with a checksum is read as a whole, to compare it.
+  const bool in_file = entry.part == kOutsideChunks ||
+                       (chunks_.at(entry.part - 1).compression.empty() && chunks_[entry.part - 1].crc == 0);
   if (in_file) {
     const std::uint64_t begin = entry.part == kOutsideChunks ? 0 : chunks_[entry.part - 1].offset;
     const auto record = record_at(begin + entry.offset);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "resight/core/crc32.hpp"
 #include "resight/core/random.hpp"
 #include "resight/recordings/internal/decompress.hpp"
 #include "resight/recordings/message.hpp"
@@ -132,9 +133,10 @@ std::string mcap_record(int op, const std::string& content) {
          recordings::packed(static_cast<std::uint64_t>(content.size())) + content;
 }
 
-std::string mcap_chunk(const std::string& records) {
+std::string mcap_chunk(const std::string& records, std::uint32_t crc = 0) {
   std::string content(16, '\0');  // first and last time
-  content += recordings::packed(static_cast<std::uint64_t>(records.size())) + std::string(8, '\0');
+  content += recordings::packed(static_cast<std::uint64_t>(records.size())) + recordings::packed(crc);
+  content += recordings::packed_text("");  // not compressed
   content += recordings::packed(static_cast<std::uint64_t>(records.size())) + records;
   return mcap_record(6, content);
 }
@@ -146,18 +148,58 @@ std::string mcap_chunk_index(std::size_t begin, std::size_t bytes, std::size_t i
   return mcap_record(8, content);
 }
 
+const std::string kMcapChannel = recordings::packed(std::uint16_t{1});
+
+/// Of one channel, with its schema.
+std::string mcap_lists() {
+  return mcap_record(3, kMcapChannel + recordings::packed_text("std_msgs/String") + recordings::packed_text("ros1msg") +
+                            recordings::packed_text("")) +
+         mcap_record(4, kMcapChannel + kMcapChannel + recordings::packed_text("/a") + recordings::packed_text("ros1") +
+                            recordings::packed(std::uint32_t{0}));
+}
+
+std::string mcap_message(const std::string& text) {
+  return mcap_record(5, kMcapChannel + std::string(20, '\0') + text);
+}
+
+/// Of a chunk that begins with a message.
+std::string mcap_index_of_one() {
+  return mcap_record(7, kMcapChannel + recordings::packed_text(std::string(16, '\0')));
+}
+
+/// A file whose summary lists only this chunk of one message. The other records lie around it.
+std::string mcap_of_chunk(const std::string& before, const std::string& chunk, const std::string& after) {
+  const std::string magic("\x89MCAP0\r\n", 8);
+  std::string bytes = magic + before;
+  const std::size_t begin = bytes.size();
+  bytes += chunk + mcap_index_of_one() + after + mcap_record(15, std::string(4, '\0'));
+  const std::string summary = recordings::packed(std::uint64_t{bytes.size()});
+  bytes += mcap_lists() + mcap_chunk_index(begin, chunk.size(), mcap_index_of_one().size());
+  return bytes + mcap_record(2, summary + std::string(12, '\0')) + magic;
+}
+
+TEST(RecordingDamage, UncompressedChunksWithAWrongChecksumAreNotRead) {
+  const std::string message = mcap_message("hello");
+  for (const std::uint32_t damage : {0U, 1U}) {
+    TemporaryFile file;
+    const std::string chunk = mcap_chunk(message, compute_crc32(message) ^ damage);
+    const auto recording = open_recording(file.write(mcap_of_chunk("", chunk, "")));
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    ASSERT_EQ((*recording)->messages().size(), 1U);
+    const auto read = (*recording)->read((*recording)->messages().front(), kMaxMessageBytes);
+    EXPECT_EQ(read.ok() ? *read : read.error().message.substr(read.error().message.rfind('(')),
+              damage == 0 ? "hello" : "(its checksum does not match)");
+  }
+}
+
 // A message in a chunk, at whose end lies a chunk with the same index behind it. A file of such chunks would take a
 // time that grows with the square of its size.
 TEST(RecordingDamage, ChunksOfMcapWithinEachOtherAreNotIndexed) {
-  const std::string channel = recordings::packed(std::uint16_t{1});
-  const std::string lists = mcap_record(3, channel + recordings::packed_text("std_msgs/String") +
-                                               recordings::packed_text("ros1msg") + recordings::packed_text("")) +
-                            mcap_record(4, channel + channel + recordings::packed_text("/a") +
-                                               recordings::packed_text("ros1") + recordings::packed(std::uint32_t{0}));
-  const std::string message = mcap_record(5, channel + std::string(20, '\0') + "hello");
+  const std::string lists = mcap_lists();
+  const std::string message = mcap_message("hello");
   const std::string inner = mcap_chunk(message);
   const std::string outer = mcap_chunk(lists + message + inner);
-  const std::string index = mcap_record(7, channel + recordings::packed_text(std::string(16, '\0')));
+  const std::string index = mcap_index_of_one();
   std::string bytes("\x89MCAP0\r\n", 8);
   const std::size_t outer_begin = bytes.size();
   bytes += outer + index;
