@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -90,7 +91,8 @@ class McapFile final : public IndexedRecording {
   [[nodiscard]] Result<std::uint64_t> index_chunk(std::string_view chunk_index);
   [[nodiscard]] Result<void> read_message_indexes(std::uint64_t begin, std::uint64_t bytes, std::uint32_t part);
   [[nodiscard]] Result<std::uint32_t> add_chunk(const McapRecord& record);
-  [[nodiscard]] Result<void> scan();
+  /// Reads the records from `begin` on, until one ends at `end`, or until that which ends the data.
+  [[nodiscard]] Result<void> scan(std::uint64_t begin, std::uint64_t end);
   [[nodiscard]] std::optional<std::uint64_t> content_of_cut_chunk(std::uint64_t offset) const;
   [[nodiscard]] Result<void> scan_record(const McapRecord& record);
   [[nodiscard]] Result<void> scan_chunk(std::uint32_t part);
@@ -238,14 +240,19 @@ Result<void> McapFile::read_summary(std::uint64_t begin, std::uint64_t end) {
     return fields.value<std::uint64_t>();
   };
   std::ranges::sort(chunk_indexes, {}, begin_of);
-  // Of chunks within each other, each would read the same bytes again.
-  std::uint64_t end_of_last = 0;
+  // Of chunks within each other, each would read the same bytes again. Messages may lie between them.
+  const auto scan_gap = [&](std::uint64_t gap_begin, std::uint64_t gap_end) {
+    if (const auto done = scan(gap_begin, gap_end); !done) index_.damage = done.error().message;
+  };
+  std::uint64_t end_of_last = kMcapMagic.size();
   for (const std::string_view index : chunk_indexes) {
     if (begin_of(index) < end_of_last) return fail("the list of chunks is damaged");
+    scan_gap(end_of_last, begin_of(index));
     const auto chunk_end = index_chunk(index);
     if (!chunk_end) return chunk_end.error();
     end_of_last = *chunk_end;
   }
+  scan_gap(end_of_last, begin);
   return {};
 }
 
@@ -308,8 +315,8 @@ std::optional<std::uint64_t> McapFile::content_of_cut_chunk(std::uint64_t offset
   return offset + kRecordHeaderBytes + head->head_bytes;
 }
 
-Result<void> McapFile::scan() {
-  for (std::uint64_t offset = kMcapMagic.size();;) {
+Result<void> McapFile::scan(std::uint64_t begin, std::uint64_t end) {
+  for (std::uint64_t offset = begin; offset != end;) {
     const auto record = record_at(offset);
     if (!record) {
       const auto content = content_of_cut_chunk(offset);
@@ -318,11 +325,13 @@ Result<void> McapFile::scan() {
       continue;
     }
     if (record->op == McapOp::kDataEnd || record->op == McapOp::kFooter) return {};
+    if (record->end() > end) return fail("the list of chunks is damaged");
     if (static_cast<std::uint8_t>(record->op) == 0)
       return fail(fmt::format("the record at byte {} is damaged", offset));
     if (const auto done = scan_record(*record); !done) return done;
     offset = record->end();
   }
+  return {};
 }
 
 Result<void> McapFile::build_index() {
@@ -346,7 +355,8 @@ Result<void> McapFile::build_index() {
   chunk_sizes_.clear();
   cache_.clear();
   topic_of_channel_.clear();
-  if (const auto done = scan(); !done) index_.damage = done.error().message;
+  if (const auto done = scan(kMcapMagic.size(), std::numeric_limits<std::uint64_t>::max()); !done)
+    index_.damage = done.error().message;
   return {};
 }
 

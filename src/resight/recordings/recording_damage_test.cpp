@@ -192,6 +192,16 @@ TEST(RecordingDamage, UncompressedChunksWithAWrongChecksumAreNotRead) {
   }
 }
 
+TEST(RecordingDamage, WhatLiesBesideTheListedChunksIsRead) {
+  TemporaryFile file;
+  const auto recording = open_recording(file.write(
+      mcap_of_chunk(mcap_record(1, std::string(8, '\0')) + mcap_message("first"), mcap_chunk(mcap_message("second")),
+                    mcap_message("third") + mcap_chunk(mcap_message("fourth")) + mcap_index_of_one())));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ((*recording)->damage(), "");
+  EXPECT_THAT(read_all(**recording), testing::UnorderedElementsAre("first", "second", "third", "fourth"));
+}
+
 // A message in a chunk, at whose end lies a chunk with the same index behind it. A file of such chunks would take a
 // time that grows with the square of its size.
 TEST(RecordingDamage, ChunksOfMcapWithinEachOtherAreNotIndexed) {
