@@ -42,11 +42,9 @@ class SplitRecording final : public IndexedRecording {
     index_.damage = part->damage();
     parts_.push_back(std::move(part));
   }
-  void lacks(const std::vector<std::string>& missing) {
-    const std::string text = fmt::format("{} of the files of metadata.yaml {} missing ({})", missing.size(),
-                                         missing.size() == 1 ? "is" : "are", printable(missing.front()));
-    index_.damage += (index_.damage.empty() ? "" : "; ") + text;
-  }
+  /// After the last part: no part is added to a damaged recording.
+  void add_damage(const std::string& text) { index_.damage += (index_.damage.empty() ? "" : "; ") + text; }
+  [[nodiscard]] bool is_empty() const { return parts_.empty(); }
   [[nodiscard]] std::string format() const override { return parts_.front()->format(); }
   [[nodiscard]] Result<std::string> read(const MessageEntry& entry, std::size_t max_bytes) const override {
     return parts_.at(entry.part)->read(places_in_part_.at(entry.offset), max_bytes);
@@ -68,14 +66,15 @@ RecordingResult open_file(const fs::path& file) {
   return file_error(file, "is no recording (expected a ROS 1 bag 2.0, an MCAP file or a ROS 2 bag)");
 }
 
+bool is_part_name(const fs::path& name) { return name.extension() == ".db3" || name.extension() == ".mcap"; }
+
 /// The parts of a ROS 2 bag, in the order of their numbers.
 std::vector<fs::path> list_parts(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string extension = it->path().extension().string();
     std::error_code ignored;
-    if ((extension == ".db3" || extension == ".mcap") && it->is_regular_file(ignored)) parts.push_back(it->path());
+    if (is_part_name(it->path()) && it->is_regular_file(ignored)) parts.push_back(it->path());
   }
   // Of equal length: name_9 precedes name_10.
   std::ranges::sort(parts, [](const fs::path& a, const fs::path& b) {
@@ -101,16 +100,26 @@ std::vector<std::string> list_missing_parts(const fs::path& folder) {
     if (begin == std::string::npos) continue;
     const std::string name = line.substr(begin, line.find_last_not_of(" \"'\r") + 1 - begin);
     std::error_code ignored;
-    if (!fs::exists(folder / fs::path(name).filename(), ignored)) missing.push_back(name);
+    fs::path file = folder / fs::path(name).filename();
+    const bool is_there = fs::exists(file, ignored);
+    if (!is_there && (file.extension() != ".zstd" || !fs::exists(file.replace_extension(), ignored)))
+      missing.push_back(name);
   }
   return missing;
 }
 
-bool has_compressed_parts(const fs::path& folder) {
+/// The parts that are compressed as a whole and were not unpacked.
+std::vector<std::string> list_packed_parts(const fs::path& folder) {
+  std::vector<std::string> packed;
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".zstd") return true;
-  return false;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    const fs::path unpacked = fs::path(it->path()).replace_extension();
+    if (it->path().extension() == ".zstd" && is_part_name(unpacked) && !fs::exists(unpacked, ignored))
+      packed.push_back(it->path().filename().string());
+  }
+  std::ranges::sort(packed);
+  return packed;
 }
 
 }  // namespace
@@ -162,19 +171,30 @@ Result<std::unique_ptr<Recording>> open_recording(const std::filesystem::path& w
   std::error_code error;
   if (!std::filesystem::is_directory(where, error)) return recordings::open_file(where);
   const auto parts = recordings::list_parts(where);
+  const std::vector<std::string> packed = recordings::list_packed_parts(where);
   if (parts.empty())
-    return file_error(where, recordings::has_compressed_parts(where)
-                                 ? "its files are compressed as a whole; unpack them with zstd -d"
-                                 : "holds no *.db3 or *.mcap");
+    return file_error(where, packed.empty() ? "holds no *.db3 or *.mcap"
+                                            : "its files are compressed as a whole; unpack them with zstd -d");
   const std::vector<std::string> missing = recordings::list_missing_parts(where);
-  if (parts.size() == 1 && missing.empty()) return recordings::open_file(parts.front());
+  if (parts.size() == 1 && missing.empty() && packed.empty()) return recordings::open_file(parts.front());
   auto split = std::make_unique<recordings::SplitRecording>();
+  std::string empty;
   for (const auto& part : parts) {
+    if (std::filesystem::is_empty(part, error)) {  // as a recorder that was killed leaves it
+      empty = printable(part.filename().string());
+      continue;
+    }
     auto opened = recordings::open_file(part);
     if (!opened) return opened.error();
     split->add(std::move(*opened));
   }
-  if (!missing.empty()) split->lacks(missing);
+  if (split->is_empty()) return file_error(where, "its files are empty");
+  if (!packed.empty())
+    split->add_damage(fmt::format("{} is compressed; unpack it with zstd -d", printable(packed.front())));
+  if (!empty.empty()) split->add_damage(empty + " is empty");
+  if (!missing.empty())
+    split->add_damage(fmt::format("{} of the files of metadata.yaml {} missing ({})", missing.size(),
+                                  missing.size() == 1 ? "is" : "are", printable(missing.front())));
   return Result<std::unique_ptr<Recording>>(std::move(split));
 }
 

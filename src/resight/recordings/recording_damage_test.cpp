@@ -110,6 +110,18 @@ TEST(RecordingDamage, MissingPartsAreNamed) {
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_THAT((*recording)->damage(), HasSubstr("1 of the files of metadata.yaml is missing (bag_1.db3)"));
   EXPECT_FALSE((*recording)->messages().empty());
+  // As rosbag2 leaves them whose files are compressed as a whole, before and after they are unpacked.
+  write_metadata("    - bag_0.db3.zstd\n    - bag_1.db3.zstd\n");
+  std::ofstream(folder / "bag_1.db3.zstd") << "x";
+  EXPECT_THAT((*open_recording(folder))->damage(), "bag_1.db3.zstd is compressed; unpack it with zstd -d");
+  fs::remove(folder / "bag_1.db3.zstd");
+  // As a recorder leaves the last one that was killed.
+  std::ofstream(folder / "bag_1.db3") << "";
+  const auto with_empty = open_recording(folder);
+  ASSERT_TRUE(with_empty.ok()) << with_empty.error().message;
+  EXPECT_THAT((*with_empty)->damage(), "bag_1.db3 is empty");
+  EXPECT_EQ((*with_empty)->messages().size(), (*recording)->messages().size());
+  fs::remove(folder / "bag_1.db3");
   std::ofstream(folder / "metadata.yaml") << "a:\n  relative_file_paths:";
   EXPECT_EQ((*open_recording(folder))->damage(), "");
   fs::remove_all(folder);
