@@ -12,6 +12,7 @@
 
 #include "resight/core/printable.hpp"
 #include "resight/io/images.hpp"
+#include "resight/io/internal/image_decoder.hpp"
 #include "resight/io/internal/text.hpp"
 #include "resight/recordings/message.hpp"
 #include "resight/sensor/rgbd_frame.hpp"
@@ -93,6 +94,26 @@ Result<Image<Rgb8>> decode_raw_color(const ImageMessage& image, std::string_view
     return Error{fmt::format("{}: an image of {}x{} cannot be {}", what, image.width, image.height, image.encoding)};
   }
   return from_bgr(bgr);
+}
+
+/// image_transport compresses a Bayer pattern as a grey picture. Its format begins with the encoding.
+bool holds_bayer_pattern(const CompressedImageMessage& image) {
+  if (!image.format.starts_with("bayer_")) return false;
+  const auto decoder = make_image_decoder(image.data);
+  if (!decoder) return false;
+  const auto header = (*decoder)->read_header();
+  return header.ok() && header->num_channels == 1;
+}
+
+Result<Image<Rgb8>> decode_bayer_pattern(const Image<Rgb8>& grey, std::string_view format, std::string_view what) {
+  std::string pattern;
+  for (const Rgb8& c : grey.data()) pattern += static_cast<char>(c.r);
+  ImageMessage image;
+  image.encoding = format.substr(0, format.find(';'));
+  image.width = image.row_bytes = static_cast<std::uint32_t>(grey.width());
+  image.height = static_cast<std::uint32_t>(grey.height());
+  image.data = pattern;
+  return decode_raw_color(image, what);
 }
 
 Image<float> scale_whole_numbers(const Image<std::uint16_t>& raw, double metres_per_unit) {
@@ -201,7 +222,9 @@ Result<Image<Rgb8>> decode_color_message(std::string_view bytes, const RecordedT
   }
   const auto image = decode_compressed_image(bytes, topic.layout, topic.name);
   if (!image) return image.error();
-  return decode_color(image->data, topic.name, kMaxViewPixels);
+  auto color = decode_color(image->data, topic.name, kMaxViewPixels);
+  if (!color || !holds_bayer_pattern(*image)) return color;
+  return decode_bayer_pattern(*color, image->format, topic.name);
 }
 
 Result<Image<float>> decode_depth_message(std::string_view bytes, const RecordedTopic& topic,

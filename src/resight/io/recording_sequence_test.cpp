@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <opencv2/imgcodecs.hpp>
 
 #include "resight/io/convert.hpp"
 #include "resight/io/images.hpp"
@@ -191,6 +192,24 @@ TEST(RecordingImages, BayerPatterns) {
   EXPECT_EQ(red_share("bayer_bggr8", {1, 1}), (Rgb8{120, 0, 0}));
   EXPECT_EQ(red_share("bayer_gbrg8", {0, 1}), (Rgb8{120, 0, 0}));
   EXPECT_EQ(red_share("bayer_grbg8", {1, 0}), (Rgb8{120, 0, 0}));
+}
+
+// image_transport compresses the pattern as a grey picture, or the colours that it makes of it.
+TEST(RecordingImages, CompressedBayerPatterns) {
+  const auto decode = [](const cv::Mat& stored, const std::string& format) {
+    std::vector<unsigned char> png;
+    EXPECT_TRUE(cv::imencode(".png", stored, png));
+    const auto color = io::decode_color_message(compressed_message(format, {png.begin(), png.end()}), kCompressed);
+    EXPECT_TRUE(color.ok()) << color.error().message;
+    return color.ok() ? (*color)(4, 4) : Rgb8{};
+  };
+  cv::Mat red(8, 8, CV_8UC1, cv::Scalar(0));
+  for (int v = 0; v < 8; v += 2)
+    for (int u = 0; u < 8; u += 2) red.at<unsigned char>(v, u) = 120;
+  EXPECT_EQ(decode(red, "bayer_rggb8; png compressed "), (Rgb8{120, 0, 0}));
+  EXPECT_EQ(decode(red, "mono8; png compressed "), (Rgb8{120, 120, 120}));
+  const cv::Mat colors(8, 8, CV_8UC3, cv::Scalar(1, 2, 3));
+  EXPECT_EQ(decode(colors, "bayer_rggb8; png compressed bgr8"), (Rgb8{3, 2, 1}));
 }
 
 TEST(RecordingImages, DepthEncodings) {
