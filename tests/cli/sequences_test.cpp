@@ -43,6 +43,7 @@ const Row kSequenceRows[] = {
     {"InfoOfASequence", kNothing, "info views", 0, ""},
     {"InfoOfALibrary", kNothing, "info models.resight --json", 0, ""},
     {"InfoOfModels", kNothing, "info meshes", 0, ""},
+    {"InfoOfASequenceWithMetadata", write("tum/metadata.yaml", "camera: realsense\n"), "info tum", 0, ""},
     {"InfoOfNothing", kNothing, "info empty", 2, "empty: no sequence found"},
     {"InfoOfUnfinishedResults", both(write("res/summary.json", "{}"), write("res/.resight-unfinished", "")), "info res",
      2, "res: is not finished"},

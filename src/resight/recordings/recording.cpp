@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint64_t kMaxMetadataBytes = 1U << 20;
+
 /// A ROS 2 bag of several files, one after the other.
 class SplitRecording final : public IndexedRecording {
  public:
@@ -86,7 +88,7 @@ std::vector<fs::path> list_parts(const fs::path& folder) {
 /// The parts that metadata.yaml of a ROS 2 bag names, but which are not there.
 std::vector<std::string> list_missing_parts(const fs::path& folder) {
   std::vector<std::string> missing;
-  const auto text = read_file(folder / "metadata.yaml", 1U << 20);
+  const auto text = read_file(folder / "metadata.yaml", kMaxMetadataBytes);
   constexpr std::string_view kKey = "relative_file_paths:";
   const std::size_t list = text.ok() ? text->find(kKey) : std::string::npos;
   if (list == std::string::npos) return missing;
@@ -120,6 +122,12 @@ std::vector<std::string> list_packed_parts(const fs::path& folder) {
   }
   std::ranges::sort(packed);
   return packed;
+}
+
+/// Other programs write a metadata.yaml, too.
+bool has_bag_metadata(const fs::path& folder) {
+  const auto text = read_file(folder / "metadata.yaml", kMaxMetadataBytes);
+  return text.ok() && text->find("rosbag2_bagfile_information") != std::string::npos;
 }
 
 }  // namespace
@@ -159,8 +167,8 @@ Result<void> ChunkSizes::add(std::uint64_t size) {
 bool is_recording(const std::filesystem::path& where) {
   std::error_code error;
   if (std::filesystem::is_directory(where, error)) {
-    if (std::filesystem::is_regular_file(where / "metadata.yaml", error)) return true;
-    return !recordings::list_parts(where).empty();
+    return !recordings::list_parts(where).empty() || !recordings::list_packed_parts(where).empty() ||
+           recordings::has_bag_metadata(where);
   }
   const auto start = read_file_start(where, recordings::kSqliteMagic.size());
   return start.ok() && (start->starts_with("#ROSBAG") || start->starts_with("#ROSRECORD") ||

@@ -152,5 +152,19 @@ TEST(Recording, RefusesOtherFiles) {
   EXPECT_TRUE(is_recording(recorded("ros2.db3")));
 }
 
+TEST(Recording, AFolderIsABagByWhatItsMetadataSays) {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("resight_recordings_{}_Metadata", ::getpid());
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  std::ofstream(folder / "metadata.yaml") << "camera: realsense\n";
+  EXPECT_FALSE(is_recording(folder));
+  std::ofstream(folder / "bag_0.db3.zstd") << "x";
+  EXPECT_TRUE(is_recording(folder));
+  fs::remove(folder / "bag_0.db3.zstd");
+  std::ofstream(folder / "metadata.yaml") << "rosbag2_bagfile_information:\n  version: 5\n";
+  EXPECT_TRUE(is_recording(folder)) << "it can be said what it lacks";
+  fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace resight
