@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "resight/io/internal/recording_topics.hpp"
+#include "resight/io/internal/recording_scan.hpp"
 #include "resight/io/internal/test_data.hpp"
 #include "resight/recordings/testing/ros1_messages.hpp"
 
@@ -349,6 +349,22 @@ TEST_F(RecordingOptions, PartsOfABag) {
   io::write_text(directory_ / "packed/metadata.yaml", "x\n");
   io::write_text(directory_ / "packed/bag_0.db3.zstd", "x");
   EXPECT_THAT(open_sequence(directory_ / "packed").error().message, HasSubstr("zstd -d"));
+}
+
+TEST_F(RecordingOptions, ImagesBehindTooManyTransformsAreFound) {
+  for (int i = 0; i < 5; ++i)
+    recording_.add("/tf", "tf2_msgs/TFMessage", 9 + 0.1 * i,
+                   recordings::transform_message(9 + 0.1 * i, "world", "camera", Rigid3()));
+  add_views(recording_, {});
+  io::write_text(directory_ / "r.mcap", recording_.bytes());
+  const auto recording = open_recording(directory_ / "r.mcap");
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  const auto topics = io::find_view_topics(**recording, {});
+  ASSERT_TRUE(topics.ok()) << topics.error().message;
+  const io::RecordingScan scan = io::scan_recording(**recording, *topics, 3);
+  EXPECT_EQ(scan.colors.size(), 3U);
+  EXPECT_EQ(scan.depths.size(), 3U);
+  EXPECT_THAT(scan.damage, HasSubstr("more than 3 transforms"));
 }
 
 }  // namespace

@@ -40,14 +40,17 @@ bool headers_repeat(const std::vector<StampedImage>& images) {
 
 }  // namespace
 
-RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics) {
+RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics, std::size_t max_transforms) {
   constexpr std::size_t kMaxTransformBytes = 1U << 20;
-  constexpr std::size_t kMaxTransforms = 1U << 22;  // an hour of 100 frames at 10 Hz
   RecordingScan scan;
   for (const MessageEntry& entry : recording.messages()) {
     const RecordedTopic& topic = recording.topics()[static_cast<std::size_t>(entry.topic)];
     const bool is_image = entry.topic == topics.color || entry.topic == topics.depth;
     if (!is_image && !holds_transforms(topic.type)) continue;
+    if (!is_image && scan.transforms.size() > max_transforms) {  // Images may have poses of a file.
+      scan.damage = fmt::format("holds more than {} transforms; those behind them are left out", max_transforms);
+      continue;
+    }
     const auto bytes = recording.read(entry, is_image ? kImageStartBytes : kMaxTransformBytes);
     if (!bytes) {
       scan.damage = bytes.error().message;
@@ -61,9 +64,6 @@ RecordingScan scan_recording(const Recording& recording, const ViewTopics& topic
         continue;
       }
       (entry.topic == topics.color ? scan.colors : scan.depths).push_back({entry, start->header.stamp_ns});
-    } else if (scan.transforms.size() > kMaxTransforms) {
-      scan.damage = "more transforms than are read";
-      break;
     } else if (const auto transforms = decode_transforms(*bytes, topic)) {
       for (const StampedTransform& transform : *transforms) scan.transforms.push_back({entry.topic, transform});
     } else {

@@ -28,9 +28,11 @@ struct RecordingScan {
   std::size_t num_bad_images = 0;  ///< They cannot be decoded and are left out.
   std::size_t num_transform_messages = 0;
   std::size_t num_bad_transforms = 0;
-  std::string damage;  ///< If a message could not be read: the reason. What lies behind it is left out.
+  std::string damage;  ///< If a message could not be read, the reason: what lies behind it is left out.
 };
-[[nodiscard]] RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics);
+inline constexpr std::size_t kMaxTransforms = 1U << 22;  ///< An hour of 100 frames at 10 Hz.
+[[nodiscard]] RecordingScan scan_recording(const Recording& recording, const ViewTopics& topics,
+                                           std::size_t max_transforms = kMaxTransforms);
 
 /// A colour image and the depth image nearest in time.
 struct RecordedPair {
