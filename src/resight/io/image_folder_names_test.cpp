@@ -98,6 +98,7 @@ TEST(ImageFolder, TimesArePairedAndOrderedAsNumbers) {
 // As with --follow, when the first view is there alone.
 TEST(ImageFolder, TheNameOfAViewStaysWhenOthersFollow) {
   for (const auto& [first, second] : {std::pair<std::string, std::string>{"cam1_#_0001", "cam1_#_0002"},
+                                      {"#_0001_cam1", "#_0002_cam1"},
                                       {"cam1_#_1305031102.175304", "cam1_#_1305031102.211214"},
                                       {"1305031102.175304", "1305031103.005100"}}) {
     io::TestDirectory directory;
@@ -123,7 +124,7 @@ TEST(ImageFolder, TheNameOfAViewStaysWhenOthersFollow) {
   }
 }
 
-TEST(ImageFolder, SinglePairsOfTimesAreComparedByTime) {
+TEST(ImageFolder, SinglePairsAreComparedByTimeOrNumber) {
   const auto num_views = [](const std::string& color, const std::string& depth) {
     io::TestDirectory directory;
     EXPECT_TRUE(write_color(directory / "rgb" / (color + ".jpg"), Image<Rgb8>(kWidth, kHeight)).ok());
@@ -135,6 +136,8 @@ TEST(ImageFolder, SinglePairsOfTimesAreComparedByTime) {
   EXPECT_EQ(num_views("1305031102.175304", "1305031102.160407"), 1);
   EXPECT_EQ(num_views("1305031102.175304", "1305031102.975304"), 0) << "0.8 s apart";
   EXPECT_EQ(num_views("1305031102.5", "1305031109.5"), 0) << "only the fractions agree";
+  EXPECT_EQ(num_views("0001_cam1", "0001_cam2"), 1);
+  EXPECT_EQ(num_views("0001_cam1", "0002_cam1"), 0) << "only the cameras agree";
 }
 
 TEST(ImageFolder, NamesThatAreMillisecondsWithFractions) {

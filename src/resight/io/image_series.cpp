@@ -120,10 +120,15 @@ std::string series_word(std::string_view lower_name) {
   return has_any(lower_name, {"color", "colour", "rgb"}) ? "*color*" : "*";
 }
 
-/// Of a single file: all numbers of a time, otherwise the last one, so that its name stays if others follow.
+/// Of a single file: all numbers of a time, otherwise the last one, or a longer one with leading zeros, which counts
+/// images. Its name and partner stay if others follow.
 std::vector<bool> guess_key_runs(const DigitRuns& runs) {
   std::vector<bool> is_key(runs.digits.size(), !std::isnan(time_of_digits(runs.digits)));
-  if (!is_key.empty()) is_key.back() = true;
+  if (is_key.empty()) return is_key;
+  std::size_t best = is_key.size() - 1;
+  for (std::size_t i = 0; i < is_key.size(); ++i)
+    if (runs.digits[i].starts_with('0') && runs.digits[i].size() > runs.digits[best].size()) best = i;
+  is_key[best] = true;
   return is_key;
 }
 
