@@ -230,6 +230,21 @@ TEST_F(Corrector, MendsAPoseThatIsOffInAnyDirection) {
     }
 }
 
+// Only the ball constrains the direction in which these poses are off, and is off by more than the pairs of the finest
+// level may be.
+TEST_F(Corrector, MendsAPoseThatIsOffAlongFloorAndWall) {
+  const Eigen::Vector3d target(0.05, 0.1, 0.05);
+  const Rigid3 first = test::look_at_point({-0.9, -0.8, 0.75}, target);
+  const Rigid3 second = test::look_at_point({-0.95, -0.7, 0.8}, target);
+  for (const double shift_x_m : {0.015, 0.025, 0.035}) {
+    CameraCorrector corrector(options());
+    corrector.add_view(prepared({}, first, 0.002));
+    PreparedView view = prepared({}, second, 0.002, 2);
+    view.frame.world_from_camera.translation.x() += shift_x_m;
+    EXPECT_LT(shift_m(corrector.add_view(view).world_from_camera, second), 0.003) << shift_x_m;
+  }
+}
+
 TEST_F(Corrector, LeavesARightPoseBitByBit) {
   CameraCorrector corrector(options());
   corrector.add_view(prepared({}, first_pose(), 0.001));
