@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "camera_run.hpp"
@@ -15,6 +15,7 @@
 #include "recognition_run.hpp"
 #include "resight/changes/change_regions.hpp"
 #include "resight/core/files.hpp"
+#include "resight/core/input_file.hpp"
 #include "resight/io/images.hpp"
 #include "resight/io/ply.hpp"
 #include "resight/recognition/stage_options.hpp"
@@ -34,22 +35,37 @@ constexpr const char* kOverlay = ".png";
 constexpr const char* kNovelMask = "_novel.png";
 constexpr const char* kRemovedMask = "_removed.png";
 constexpr const char* kCloud = ".ply";
+constexpr const char* kEnds[] = {kOverlay, kNovelMask, kRemovedMask, kCloud};
 
-// Those that an earlier run over more views, or over other ones, has left in the folder of our results.
-void remove_files_of_other_views(const std::filesystem::path& folder, const std::vector<ViewChangeRecord>& views) {
-  std::set<std::string> names;
-  for (const ViewChangeRecord& view : views) names.insert(view.view_name);
-  std::vector<std::string> others;
-  std::error_code error;
-  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string file = it->path().filename().string();
-    if (!file.ends_with(kRemovedMask)) continue;
-    const std::string view = file.substr(0, file.size() - std::string_view(kRemovedMask).size());
-    if (!names.contains(view)) others.push_back(view);
+constexpr const char* kChangesFile = "changes.json";
+
+/// The files of all views. Two views may have a file in common: `cup_removed.png` is the mask of `cup`, but also the
+/// picture of `cup_removed`.
+std::set<std::string> name_files(const Sequence& sequence) {
+  std::set<std::string> files;
+  for (int v = 0; v < sequence.num_views(); ++v)
+    for (const char* end : kEnds)
+      if (const std::string file = sequence.view_name(v) + end; !files.insert(file).second)
+        throw InputError(fmt::format("view '{}': its file {} would also be one of another view (rename the view)",
+                                     sequence.view_name(v), file));
+  return files;
+}
+
+/// The files that the results in a folder name as theirs.
+std::vector<std::string> list_old_files(const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  const auto text = read_file(folder / kChangesFile);
+  if (!text) return files;
+  const auto old = nlohmann::json::parse(*text, nullptr, false);
+  if (!old.is_object() || !old.contains("views")) return files;
+  for (const auto& view : old["views"]) {
+    const auto name = view.is_object() ? view.find("name") : view.end();
+    if (name == view.end() || !name->is_string()) continue;
+    for (const char* end : kEnds)
+      if (std::string file = name->get<std::string>() + end; file.find('/') == std::string::npos)
+        files.push_back(std::move(file));
   }
-  for (const std::string& view : others)  // The mask by which they are known goes last.
-    for (const char* end : {kOverlay, kNovelMask, kCloud, kRemovedMask})
-      std::filesystem::remove(folder / (view + end), error);
+  return files;
 }
 
 // The reconstruction with its changes: red = removed, green = novel, otherwise the colours of the scene.
@@ -95,6 +111,7 @@ void run_changes(const ChangesArguments& arguments) {
   const RecognizerConfig config =
       make_config(arguments.preset, arguments.config, arguments.num_previous_views, arguments.num_threads);
   const auto given = open_recorded_input(arguments.sequence, arguments.input, arguments.poses);
+  const std::set<std::string> files = name_files(*given);
   auto folder = value_or_throw(PendingDirectory::create(arguments.out, ExistingFolder::kFill));
   const auto tracked = estimate_poses(*given, arguments.sequence, arguments.poses, nullptr, arguments.num_threads);
   const Sequence& sequence = tracked ? static_cast<const Sequence&>(*tracked) : *given;
@@ -119,9 +136,12 @@ void run_changes(const ChangesArguments& arguments) {
     progress.report(v + 1, fmt::format("{}: {}{}", frame.name, count_regions(record.views.back()),
                                        changes.pose_suspect ? ", camera pose suspect" : ""));
   }
-  value_or_throw(write_file(folder.path() / "changes.json", format_scene_changes_json(record)));
+  value_or_throw(write_file(folder.path() / kChangesFile, format_scene_changes_json(record)));
+  const std::vector<std::string> old_files = list_old_files(arguments.out);
   value_or_throw(folder.commit());
-  remove_files_of_other_views(arguments.out, record.views);
+  std::error_code error;
+  for (const std::string& file : old_files)  // Those of other views, and of more.
+    if (!files.contains(file)) std::filesystem::remove(arguments.out / file, error);
   print("{} views: {}\n", sequence.num_views(), arguments.out.string());
 }
 

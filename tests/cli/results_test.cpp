@@ -49,6 +49,18 @@ TEST_F(CommandLineResults, ChangesOfOtherViewsGo) {
   EXPECT_EQ(list(folder_ / "out").size(), 2 * 4 + 1U) << testing::PrintToString(list(folder_ / "out"));
 }
 
+TEST_F(CommandLineResults, ChangesRemoveOnlyTheirOwnFiles) {
+  fs::rename(folder_ / "tuw/cloud_01.pcd", folder_ / "tuw/table_removed.pcd");
+  ASSERT_EQ(run(folder_, kChangesTuw).status, 0);
+  for (const char* end : {".png", "_novel.png", "_removed.png", ".ply"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "out/table_removed" += end)) << end;
+    write_text(folder_ / "out/photo" += end, "mine");
+  }
+  const std::vector<std::string> before = list(folder_ / "out");
+  ASSERT_EQ(run(folder_, kChangesTuw).status, 0);
+  EXPECT_EQ(list(folder_ / "out"), before);
+}
+
 TEST_F(CommandLineResults, AnnotateWarnsAboutTheViews) {
   no_depth_at_all()(folder_);
   const Outcome outcome = run(folder_, "annotate --models nowhere --sequence views --out out --no-open");
