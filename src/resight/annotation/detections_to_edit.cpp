@@ -56,22 +56,64 @@ Result<void> check_cameras(const RecognitionResults& results, const std::vector<
                std::to_string(num_elsewhere) + " of " + std::to_string(results.views.size()) + " views"};
 }
 
+/// The recogniser may have corrected the pose of the camera; the annotation is in the frame of the given poses.
+Result<Rigid3> given_from_corrected(const StoredView& view, int number, const Sequence& sequence) {
+  const auto camera = sequence.read_pose(number);
+  if (!camera) return camera.error();
+  return *camera * view.world_from_camera.inverse();
+}
+
 Result<DetectionsOfTrack> collect_detections(const RecognitionResults& results, const std::vector<int>& views,
                                              const Sequence& sequence, const ModelLibrary& library) {
   DetectionsOfTrack tracks;
   for (std::size_t v = 0; v < results.views.size(); ++v) {
-    const auto camera = sequence.read_pose(views[v]);
-    if (!camera) return camera.error();
-    // The recogniser may have corrected the pose of the camera; the annotation is in the frame of the given poses.
-    const Rigid3 given_from_corrected = *camera * results.views[v].world_from_camera.inverse();
+    const auto given = given_from_corrected(results.views[v], views[v], sequence);
+    if (!given) return given.error();
     for (const StoredDetection& detection : results.views[v].detections) {
       const int object = library.find(detection.object);
       if (object < 0) return Error{"the detections name '" + detection.object + "', which is not in the library"};
-      tracks[detection.track].push_back(
-          {views[v], object, detection.score, given_from_corrected * detection.world_from_object});
+      tracks[detection.track].push_back({views[v], object, detection.score, *given * detection.world_from_object});
     }
   }
   return tracks;
+}
+
+/// How a track begins: its event "found" or "added"; null if it has none.
+const StoredEvent* find_beginning(const std::vector<StoredEvent>& events, int track) {
+  const auto found = std::ranges::find_if(
+      events, [&](const StoredEvent& e) { return e.track == track && (e.kind == "found" || e.kind == "added"); });
+  return found == events.end() ? nullptr : &*found;
+}
+
+/// An object that was added elsewhere before its old place was seen free has two tracks up to the view that reports the
+/// move. The report supersedes the beginning of the second track, so the detections of that belong to the first one.
+Result<void> join_moved_tracks(const RecognitionResults& results, const std::vector<int>& views,
+                               const Sequence& sequence, const ModelLibrary& library, DetectionsOfTrack& tracks) {
+  for (const StoredEvent& event : results.events) {
+    if (event.kind != "moved" || !event.world_from_object_after) continue;
+    const auto v = static_cast<std::size_t>(event.view);
+    const auto given = given_from_corrected(results.views[v], views[v], sequence);
+    if (!given) return given.error();
+    const Rigid3 after = *given * *event.world_from_object_after;
+    const auto is_start_of_move = [&](const auto& entry) {
+      const PlacedDetection& last = entry.second.back();
+      const ObjectModel& model = library.objects[static_cast<std::size_t>(last.object)];
+      return entry.first != event.track && model.name == event.object && last.view < views[v] &&
+             is_same_place(model, last.world_from_object, after, kSamePlace) &&
+             find_beginning(results.events, entry.first) == nullptr;
+    };
+    for (auto track = tracks.begin(); track != tracks.end();) {
+      if (!is_start_of_move(*track)) {
+        ++track;
+        continue;
+      }
+      std::vector<PlacedDetection>& moved = tracks[event.track];
+      moved.insert(moved.end(), track->second.begin(), track->second.end());
+      std::ranges::stable_sort(moved, {}, &PlacedDetection::view);
+      track = tracks.erase(track);
+    }
+  }
+  return {};
 }
 
 /// The placements of one track: a new one begins where the pose differs from that of the last one.
@@ -104,19 +146,18 @@ std::vector<AnnotatedObject> find_placements(const std::vector<PlacedDetection>&
 /// Extends a track to what its events say of its beginning and end.
 void extend_track(const std::vector<StoredEvent>& events, const std::vector<int>& views, int track, int num_views,
                   std::vector<AnnotatedObject>& placements) {
-  bool was_added = false;
   int removed_at = num_views;
   for (const StoredEvent& event : events) {
     if (event.track != track) continue;
     const int view = views[static_cast<std::size_t>(event.view)];
-    if (event.kind == "added") was_added = true;
     if (event.kind == "removed") removed_at = view;
     if (event.kind != "moved" && event.kind != "removed") continue;
     for (std::size_t i = 0; i + 1 < placements.size(); ++i)
       if (placements[i].last_view >= view && placements[i + 1].first_view > view && placements[i].first_view < view)
         placements[i].last_view = view - 1;
   }
-  if (!was_added) placements.front().first_view = 0;
+  const StoredEvent* beginning = find_beginning(events, track);
+  if (beginning != nullptr && beginning->kind == "found") placements.front().first_view = 0;
   AnnotatedObject& last = placements.back();
   last.last_view = removed_at > last.last_view ? removed_at - 1 : num_views - 1;
 }
@@ -128,8 +169,10 @@ Result<AnnotationEdit> detections_to_edit(const RecognitionResults& results, con
   const auto views = number_views(results, sequence);
   if (!views) return views.error();
   if (const auto same = check_cameras(results, *views, sequence); !same) return same.error();
-  const auto tracks = collect_detections(results, *views, sequence, library);
+  auto tracks = collect_detections(results, *views, sequence, library);
   if (!tracks) return tracks.error();
+  if (const auto joined = join_moved_tracks(results, *views, sequence, library, *tracks); !joined)
+    return joined.error();
   AnnotationEdit edit{.title = "Start from detections", .changes = {}};
   int next_track = 0;
   for (const auto& [track, detections] : *tracks) {

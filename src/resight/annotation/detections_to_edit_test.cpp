@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "resight/annotation/annotated_scene_test.hpp"
 
 namespace resight {
@@ -32,6 +34,66 @@ RecognitionResults recognise(const test::AnnotatedScene& scene, const Rigid3& ow
     event.track = object.track;
   }
   return results;
+}
+
+/// What a view shows of the one object of run_with_one_object(): nothing if its track is -1.
+struct Seen {
+  int track = -1;
+  double x_m = 0;
+};
+
+/// Its poses are off by 5 cm like those of the cameras.
+RecognitionResults run_with_one_object(const test::AnnotatedScene& scene, const std::vector<Seen>& seen,
+                                       const std::vector<StoredEvent>& events) {
+  const Rigid3 own_from_world = Rigid3::from_translation({0.05, 0, 0});
+  RecognitionResults results;
+  for (std::size_t v = 0; v < seen.size(); ++v) {
+    StoredView& view = results.views.emplace_back();
+    view.name = scene.view_name(static_cast<int>(v));
+    view.world_from_camera = own_from_world * *scene.read_pose(static_cast<int>(v));
+    if (seen[v].track < 0) continue;
+    StoredDetection& detection = view.detections.emplace_back();
+    detection.object = scene.library.objects[0].name;
+    detection.track = seen[v].track;
+    detection.score = 1;
+    detection.world_from_object = own_from_world * Rigid3::from_translation({seen[v].x_m, 0, 0.8});
+  }
+  for (StoredEvent event : events) {
+    event.object = scene.library.objects[0].name;
+    const auto v = static_cast<std::size_t>(event.view);
+    if (event.kind == "moved") event.world_from_object_after = results.views[v].detections[0].world_from_object;
+    results.events.push_back(event);
+  }
+  return results;
+}
+
+StoredEvent make_event(int view, const char* kind, int track) {
+  StoredEvent event;
+  event.view = view;
+  event.kind = kind;
+  event.track = track;
+  return event;
+}
+
+/// Track, first and last view of each placement.
+std::vector<std::array<int, 3>> list_placements(const RecognitionResults& results, const test::AnnotatedScene& scene) {
+  const auto edit = detections_to_edit(results, scene, scene.library);
+  EXPECT_TRUE(edit.ok());
+  std::vector<std::array<int, 3>> placements;
+  for (const AnnotationChange& change : edit->changes) {
+    const AnnotatedObject& object = std::get<PutObject>(change).object;
+    placements.push_back({object.track, object.first_view, object.last_view});
+  }
+  return placements;
+}
+
+// Track 4 came at view 2. At view 4, track 1 was seen to have left: it had moved.
+TEST(DetectionsToEdit, AMoveBeginsWhereTheSecondTrackDoes) {
+  const test::AnnotatedScene scene;
+  const RecognitionResults results =
+      run_with_one_object(scene, {{1, 0}, {1, 0}, {4, 0.2}, {4, 0.2}, {1, 0.2}, {1, 0.2}},
+                          {make_event(0, "found", 1), make_event(3, "still_there", 4), make_event(4, "moved", 1)});
+  EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 2, 5}));
 }
 
 // As with `--poses auto`.
