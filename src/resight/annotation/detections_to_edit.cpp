@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "resight/models/pose_distance.hpp"
 
@@ -116,17 +117,20 @@ Result<void> join_moved_tracks(const RecognitionResults& results, const std::vec
   return {};
 }
 
-/// The placements of one track: a new one begins where the pose differs from that of the last one.
-std::vector<AnnotatedObject> find_placements(const std::vector<PlacedDetection>& detections, int track,
-                                             const ModelLibrary& library) {
+/// The placements of one track: a new one begins where the pose differs from that of the last one, and after a removal.
+std::vector<AnnotatedObject> find_placements(const std::vector<PlacedDetection>& detections,
+                                             const std::vector<int>& removals, int track, const ModelLibrary& library) {
   std::vector<AnnotatedObject> placements;
   double best_score = 0;
   for (const PlacedDetection& d : detections) {
-    const bool is_new = placements.empty() || placements.back().object != d.object ||
+    const auto removal =
+        placements.empty() ? removals.end() : std::ranges::upper_bound(removals, placements.back().last_view);
+    const bool was_removed = removal != removals.end() && *removal <= d.view;
+    const bool is_new = placements.empty() || was_removed || placements.back().object != d.object ||
                         !is_same_place(library.objects[static_cast<std::size_t>(d.object)],
                                        placements.back().world_from_object, d.world_from_object, kSamePlace);
     if (is_new) {
-      if (!placements.empty()) placements.back().last_view = d.view - 1;
+      if (!placements.empty()) placements.back().last_view = (was_removed ? *removal : d.view) - 1;
       placements.push_back({.id = -1,
                             .track = track,
                             .object = d.object,
@@ -143,15 +147,20 @@ std::vector<AnnotatedObject> find_placements(const std::vector<PlacedDetection>&
   return placements;
 }
 
+/// The views in which a track had events of a kind.
+std::vector<int> list_views_of(std::string_view kind, int track, const std::vector<StoredEvent>& events,
+                               const std::vector<int>& views) {
+  std::vector<int> found;
+  for (const StoredEvent& event : events)
+    if (event.track == track && event.kind == kind) found.push_back(views[static_cast<std::size_t>(event.view)]);
+  return found;
+}
+
 /// Extends a track to what its events say of its beginning and end.
-void extend_track(const std::vector<StoredEvent>& events, const std::vector<int>& views, int track, int num_views,
+void extend_track(const std::vector<StoredEvent>& events, const std::vector<int>& moves,
+                  const std::vector<int>& removals, int track, int num_views,
                   std::vector<AnnotatedObject>& placements) {
-  int removed_at = num_views;
-  for (const StoredEvent& event : events) {
-    if (event.track != track) continue;
-    const int view = views[static_cast<std::size_t>(event.view)];
-    if (event.kind == "removed") removed_at = view;
-    if (event.kind != "moved" && event.kind != "removed") continue;
+  for (const int view : moves) {
     for (std::size_t i = 0; i + 1 < placements.size(); ++i)
       if (placements[i].last_view >= view && placements[i + 1].first_view > view && placements[i].first_view < view)
         placements[i].last_view = view - 1;
@@ -159,7 +168,8 @@ void extend_track(const std::vector<StoredEvent>& events, const std::vector<int>
   const StoredEvent* beginning = find_beginning(events, track);
   if (beginning != nullptr && beginning->kind == "found") placements.front().first_view = 0;
   AnnotatedObject& last = placements.back();
-  last.last_view = removed_at > last.last_view ? removed_at - 1 : num_views - 1;
+  const auto removal = std::ranges::upper_bound(removals, last.last_view);
+  last.last_view = (removal == removals.end() ? num_views : *removal) - 1;
 }
 
 }  // namespace
@@ -179,8 +189,10 @@ Result<AnnotationEdit> detections_to_edit(const RecognitionResults& results, con
     const bool is_confirmed =
         std::ranges::any_of(results.events, [id = track](const auto& e) { return e.track == id; });
     if (!is_confirmed) continue;
-    auto placements = find_placements(detections, next_track++, library);
-    extend_track(results.events, *views, track, sequence.num_views(), placements);
+    const std::vector<int> moves = list_views_of("moved", track, results.events, *views);
+    const std::vector<int> removals = list_views_of("removed", track, results.events, *views);
+    auto placements = find_placements(detections, removals, next_track++, library);
+    extend_track(results.events, moves, removals, track, sequence.num_views(), placements);
     for (const AnnotatedObject& placement : placements) edit.changes.emplace_back(PutObject{placement});
   }
   return edit;

@@ -96,6 +96,23 @@ TEST(DetectionsToEdit, AMoveBeginsWhereTheSecondTrackDoes) {
   EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 2, 5}));
 }
 
+TEST(DetectionsToEdit, AnObjectThatWasPutBackHadLeft) {
+  const test::AnnotatedScene scene;
+  const RecognitionResults results =
+      run_with_one_object(scene, {{1, 0}, {1, 0}, {-1, 0}, {-1, 0}, {1, 0}, {1, 0}},
+                          {make_event(0, "found", 1), make_event(2, "removed", 1), make_event(4, "added", 1)});
+  EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 4, 5}));
+}
+
+// It was found in view 1, so it has been there from the first view on, although it was added later.
+TEST(DetectionsToEdit, TheFirstEventTellsTheBeginning) {
+  const test::AnnotatedScene scene;
+  const RecognitionResults results = run_with_one_object(
+      scene, {{-1, 0}, {1, 0}, {-1, 0}, {1, 0.2}, {-1, 0}, {-1, 0}},
+      {make_event(1, "found", 1), make_event(2, "removed", 1), make_event(3, "added", 1), make_event(5, "removed", 1)});
+  EXPECT_THAT(list_placements(results, scene), testing::ElementsAre(std::array{0, 0, 1}, std::array{0, 3, 4}));
+}
+
 // As with `--poses auto`.
 TEST(DetectionsToEdit, TheFrameOfTheResultsMayBeAnother) {
   const test::AnnotatedScene scene;
