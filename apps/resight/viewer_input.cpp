@@ -71,18 +71,28 @@ ViewerScene open_results(const ViewArguments& arguments) {
   return scene;
 }
 
-ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::path& input) {
+ViewerScene open_sequence(const fs::path& sequence, const OpenSequenceOptions& input,
+                          const std::optional<fs::path>& models) {
   ViewerScene scene;
-  scene.title = folder_name(input);
-  const bool is_folder_of_views = !is_library(input) && value_or_throw(find_sequence_folder(input));
-  if (is_folder_of_views || arguments.sequence) {
-    scene.sequence = open_input(arguments.sequence.value_or(input), arguments.input);
-    if (arguments.models) scene.library = open_library(*arguments.models);
-    return scene;
-  }
+  scene.title = folder_name(sequence);
+  scene.sequence = open_input(sequence, input);
+  if (models) scene.library = open_library(*models);
+  return scene;
+}
+
+/// Every path is shown or refused.
+ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::path& input) {
   if (is_library(input)) {
+    if (arguments.models) throw InputError(file_error(input, "is a model library, and so is --models").message);
+    if (arguments.sequence) return open_sequence(*arguments.sequence, arguments.input, input);
+    ViewerScene scene;
+    scene.title = folder_name(input);
     scene.library = open_library(input);
     return scene;
+  }
+  if (value_or_throw(find_sequence_folder(input))) {
+    if (arguments.sequence) throw InputError(file_error(input, "is a sequence, and so is --sequence").message);
+    return open_sequence(input, arguments.input, arguments.models);
   }
   auto models = find_models_to_show(input);
   if (!models)
@@ -90,6 +100,10 @@ ViewerScene open_sequence_or_models(const ViewArguments& arguments, const fs::pa
                                 "is nothing to view (expected results of 'resight recognize', a sequence, a model "
                                 "library or models)")
                          .message);
+  if (arguments.sequence || arguments.models)
+    throw InputError(file_error(input, "holds models, which are shown without --sequence and --models").message);
+  ViewerScene scene;
+  scene.title = folder_name(input);
   scene.models = *std::move(models);
   return scene;
 }
