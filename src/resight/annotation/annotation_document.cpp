@@ -21,6 +21,7 @@ bool is_near(const Eigen::Vector3d& position_m) {
   return position_m.allFinite() && position_m.cwiseAbs().maxCoeff() <= kMaxPosition_m;
 }
 
+// Numbers are those that the journal keeps: it is checked again when it is read.
 Result<void> check_object(const AnnotatedObject& object, const AnnotationLimits& limits) {
   if (!is_below(object.object, limits.num_objects)) return Error{fmt::format("there is no object {}", object.object)};
   if (!is_below(object.first_view, limits.num_views) || !is_below(object.last_view, limits.num_views))
@@ -30,16 +31,16 @@ Result<void> check_object(const AnnotatedObject& object, const AnnotationLimits&
         fmt::format("the placement ends at view {} before it begins at view {}", object.last_view, object.first_view)};
   if (!object.world_from_object.is_rigid() || !is_near(object.world_from_object.translation))
     return Error{"the pose is not a rigid motion within 10 km"};
-  if (object.id < -1 || object.track < -1 || object.id > kMaxNumber || object.track > kMaxNumber)
+  if (object.id < 0 || object.track < 0 || object.id > kMaxNumber || object.track > kMaxNumber)
     return Error{"the number of a placement or track is out of range"};
   return {};
 }
 
 Undo apply_one(AnnotationDocument& document, PutObject& change, const AnnotationLimits& limits) {
   AnnotatedObject& object = change.object;
+  if (object.id == -1) object.id = document.next_id;
+  if (object.track == -1) object.track = document.next_track;
   if (const auto valid = check_object(object, limits); !valid) return valid.error();
-  if (object.id < 0) object.id = document.next_id;
-  if (object.track < 0) object.track = document.next_track;
   document.next_id = std::max(document.next_id, object.id + 1);
   document.next_track = std::max(document.next_track, object.track + 1);
   const auto old = document.objects.find(object.id);
@@ -98,14 +99,14 @@ Result<void> check_event(const UnknownObjectEvent& event, const AnnotationLimits
   if (!is_near(event.before_in_world_m.value_or(Eigen::Vector3d::Zero())) ||
       !is_near(event.after_in_world_m.value_or(Eigen::Vector3d::Zero())))
     return Error{"a place is not within 10 km"};
-  if (event.id < -1 || event.id > kMaxNumber) return Error{"the number of an event is out of range"};
+  if (event.id < 0 || event.id > kMaxNumber) return Error{"the number of an event is out of range"};
   return {};
 }
 
 Undo apply_one(AnnotationDocument& document, PutUnknownEvent& change, const AnnotationLimits& limits) {
   UnknownObjectEvent& event = change.event;
+  if (event.id == -1) event.id = document.next_id;
   if (const auto valid = check_event(event, limits); !valid) return valid.error();
-  if (event.id < 0) event.id = document.next_id;
   document.next_id = std::max(document.next_id, event.id + 1);
   const auto old = document.unknown_events.find(event.id);
   const AnnotationChange undo = old == document.unknown_events.end() ? AnnotationChange(DropUnknownEvent{event.id})

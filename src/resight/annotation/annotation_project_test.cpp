@@ -131,6 +131,29 @@ TEST_F(AnnotationProjectTest, AFailedEditTakesNoNumbers) {
   EXPECT_TRUE(project->document().objects.contains(0));
 }
 
+TEST_F(AnnotationProjectTest, WhatTheJournalCouldNotTellAgainIsRefused) {
+  const UnknownObjectEvent event{.id = -1,
+                                 .view = 2,
+                                 .kind = AnnotatedEventKind::kAdded,
+                                 .name = "cup",
+                                 .before_in_world_m = std::nullopt,
+                                 .after_in_world_m = Eigen::Vector3d(1, 2, 3)};
+  AnnotatedObject last = make_object(0.1);
+  last.id = last.track = 1000000;
+  AnnotatedObject next_of_track = make_object(0.2);
+  next_of_track.id = 0;
+  {
+    const auto project = open();
+    ASSERT_EQ(project->act(put(last), 0).kind, Kind::kApplied);
+    EXPECT_EQ(project->act(put(make_object(0.2)), 1).kind, Kind::kInvalid) << "the next number is out of range";
+    EXPECT_EQ(project->act(put(next_of_track), 1).kind, Kind::kInvalid);
+    EXPECT_EQ(project->act(AnnotationEdit{"Event", {PutUnknownEvent{event}}}, 1).kind, Kind::kInvalid);
+  }
+  const auto project = open();
+  ASSERT_NE(project, nullptr);
+  EXPECT_EQ(project->document().objects.size(), 1U);
+}
+
 TEST_F(AnnotationProjectTest, WhatCannotBeWrittenDoesNotCount) {
   const auto project = open();
   ASSERT_EQ(project->act(put(make_object(0.1)), 0).kind, Kind::kApplied);
