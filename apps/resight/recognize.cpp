@@ -66,6 +66,8 @@ void report_view(const RecognizeArguments& arguments, const ViewRecord& view, co
 // How the sequence was opened, for `resight view`. Files are named from the folder of the results, as the inputs are.
 std::vector<std::string> describe_input(const RecognizeArguments& arguments) {
   std::vector<std::string> given = arguments.given_input;
+  const auto max_views = std::ranges::find(given, "--max-views");
+  if (arguments.follow.is_on && max_views != given.end()) given.erase(max_views, max_views + 2);  // Not of the folder.
   const std::string poses = with_poses({}, arguments.poses).poses;
   if (!poses.empty()) given.insert(given.end(), {"--poses", poses});
   for (std::string& text : given) {

@@ -125,6 +125,13 @@ TEST_F(CommandLineResults, AStreamHoldsTheViewsOfTheResults) {
   EXPECT_EQ(views, nlohmann::json::parse(read_text(folder_ / "out/detections.json"))["views"]);
 }
 
+TEST_F(CommandLineResults, TheNumberOfLiveViewsIsNoOptionOfTheFolder) {
+  const std::string follow = "recognize --models models.resight --sequence views --every 2 --follow --max-views 1";
+  ASSERT_EQ(run(folder_, follow + " --out out").status, 0);
+  const Json summary = Json::parse(read_text(folder_ / "out/summary.json"));
+  EXPECT_EQ(summary["inputs"]["sequence_options"], Json::array({"--every", "2"}));
+}
+
 TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {
   const auto detections = [&] {
     EXPECT_EQ(run(folder_, kRecognize).status, 0);
