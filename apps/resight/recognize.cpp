@@ -15,6 +15,7 @@
 #include "output_paths.hpp"
 #include "recognition_run.hpp"
 #include "resight/core/files.hpp"
+#include "resight/io/recognition_results.hpp"
 #include "resight/io/trace_file.hpp"
 #include "resight/models/library_file.hpp"
 #include "resight/report/html_report.hpp"
@@ -70,9 +71,10 @@ std::vector<std::string> describe_input(const RecognizeArguments& arguments) {
   if (arguments.follow.is_on && max_views != given.end()) given.erase(max_views, max_views + 2);  // Not of the folder.
   const std::string poses = with_poses({}, arguments.poses).poses;
   if (!poses.empty()) given.insert(given.end(), {"--poses", poses});
-  for (std::string& text : given) {
+  for (std::size_t i = 1; i < given.size(); ++i) {
     std::error_code error;
-    if (std::filesystem::is_regular_file(text, error)) text = path_from(arguments.out, text);
+    if (may_name_file(given[i - 1], given[i]) && std::filesystem::is_regular_file(given[i], error))
+      given[i] = path_from(arguments.out, given[i]);
   }
   return given;
 }

@@ -132,6 +132,14 @@ TEST_F(CommandLineResults, TheNumberOfLiveViewsIsNoOptionOfTheFolder) {
   EXPECT_EQ(summary["inputs"]["sequence_options"], Json::array({"--every", "2"}));
 }
 
+TEST_F(CommandLineResults, ValuesThatAreNoFilesStayAsTheyAre) {
+  write_text(folder_ / "2", "");
+  write_text(folder_ / "fixed", "");
+  ASSERT_EQ(run(folder_, std::string(kRecognize) + " --max-views 2 --poses fixed").status, 0);
+  const Json summary = Json::parse(read_text(folder_ / "out/summary.json"));
+  EXPECT_EQ(summary["inputs"]["sequence_options"], Json::array({"--max-views", "2", "--poses", "fixed"}));
+}
+
 TEST_F(CommandLineResults, ATraceBelongsToItsRunAndChangesNothing) {
   const auto detections = [&] {
     EXPECT_EQ(run(folder_, kRecognize).status, 0);

@@ -123,15 +123,23 @@ Result<void> add_inputs(const std::filesystem::path& file, RecognitionResults& r
   results.models = path_of("models");
   const json& options = member(inputs, "sequence_options");
   if (!options.is_array()) return {};
-  for (const json& option : options) {
-    const std::string text = as_text(option).value_or("");
+  std::string option;
+  for (const json& name_or_value : options) {
+    const std::string text = as_text(name_or_value).value_or("");
     const std::filesystem::path as_file = file.parent_path() / text;
-    results.sequence_options.push_back(io::is_file(as_file) ? as_file.lexically_normal().string() : text);
+    const bool is_file = may_name_file(option, text) && io::is_file(as_file);
+    results.sequence_options.push_back(is_file ? as_file.lexically_normal().string() : text);
+    option = text;
   }
   return {};
 }
 
 }  // namespace
+
+bool may_name_file(std::string_view option, std::string_view value) {
+  return option == "--intrinsics" || option == "--depth-intrinsics" || option == "--color-from-depth" ||
+         (option == "--poses" && value != "fixed");
+}
 
 bool has_recognition_results(const std::filesystem::path& folder) { return io::is_file(folder / kDetectionsFile); }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "resight/core/result.hpp"
@@ -69,6 +70,9 @@ struct RecognitionResults {
   std::vector<std::string> sequence_options;
   std::optional<TraceFile> trace;  ///< With `--trace`.
 };
+
+/// Whether the value of an option of RecognitionResults::sequence_options may be the name of a file.
+[[nodiscard]] bool may_name_file(std::string_view option, std::string_view value);
 
 /// Whether the folder holds results of `resight recognize`.
 [[nodiscard]] bool has_recognition_results(const std::filesystem::path& folder);

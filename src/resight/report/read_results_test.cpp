@@ -32,7 +32,7 @@ class ReadResults : public testing::Test {
     ReportRun run = test::make_run();
     run.sequence_path = "../data/000001";
     run.models_path = "/models/all.resight";
-    run.sequence_options = {"--depth-scale", "0.001", "--poses", "detections.json"};  // A file that is there.
+    run.sequence_options = {"--every", "2", "--poses", "detections.json"};  // A file that is there.
     ASSERT_TRUE(write_results(folder_, run, test::make_library()).ok());
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -56,12 +56,13 @@ class ReadResults : public testing::Test {
 
 TEST_F(ReadResults, ReadsWhatWasWritten) {
   EXPECT_TRUE(has_recognition_results(folder_));
+  store("2", "no value of --every");
   const auto results = read_recognition_results(folder_);
   ASSERT_TRUE(results.ok()) << results.error().message;
   const ReportRun run = test::make_run();
   EXPECT_EQ(results->preset, "default");
   EXPECT_EQ(results->sequence_options,
-            (std::vector<std::string>{"--depth-scale", "0.001", "--poses", (folder_ / "detections.json").string()}));
+            (std::vector<std::string>{"--every", "2", "--poses", (folder_ / "detections.json").string()}));
   EXPECT_EQ(results->version, "1.2.3");
   EXPECT_EQ(results->sequence, (folder_ / "../data/000001").lexically_normal());
   EXPECT_EQ(results->models, "/models/all.resight");
