@@ -20,6 +20,14 @@ export RESIGHT_TEST_SEQUENCE=$PWD/scene/test/000001
 write_scene 3 -90 -90 true >scene.toml
 run simulate scene.toml --out scene --format bop --seed 1
 run train scene/models --out models.resight
+run recognize --models models.resight --sequence scene/test/000001 --poses fixed --max-views 1 --out recorded
+check_places() { # check_places RESULTS: objects are where the sequence shows them, not on the other side
+  awk -F, 'FNR == 1 { next }
+           { split($6, t, " ") }
+           NR == FNR { x_mm[$3] = t[1]; next }
+           $3 in x_mm { ++n; d = t[1] - x_mm[$3]; if (d * d > 400) exit wrong = 1 }
+           END { exit wrong || !n }' recorded/detections.csv "$1/detections.csv" || fail "$1: objects are elsewhere"
+}
 recognize=("$resight" recognize --models models.resight --camera openni2 --stream)
 
 LD_LIBRARY_PATH=camera "${recognize[@]}" --out live >lines 2>err &
@@ -33,6 +41,7 @@ wait $program || fail "a stop ends with status $?: $(tail -1 err)"
 [ "$(wc -l <lines)" -ge 2 ] || fail "no views of the camera: $(cat err)"
 grep -q 'focal length 262.5 px' err || fail "the focal length is not that of the field of view: $(cat err)"
 grep -q '"object": *"tea_box"' live/detections.json || fail "the tea is not recognised"
+check_places live
 grep -q '"sequence": *"openni2"' live/summary.json || fail "summary.json does not name the camera"
 
 # A recording ends by itself.
@@ -41,6 +50,7 @@ LD_LIBRARY_PATH=player timeout 120 "$resight" recognize --models models.resight 
   --out played --stream >lines 2>err || fail "a recording ends with status $?: $(tail -1 err)"
 [ "$(wc -l <lines)" -ge 1 ] || fail "no views of the recording: $(cat err)"
 grep -q '"object": *"tea_box"' played/detections.json || fail "the tea is not recognised in the recording"
+check_places played
 
 LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight --camera "openni2:$PWD/scene.toml" \
   --out no >lines 2>err

@@ -44,7 +44,8 @@ struct OpenniSession {
   OpenniSession& operator=(const OpenniSession&) = delete;
 };
 
-Image<Rgb8> to_color_image(const openni::VideoFrameRef& frame) {
+// Images that are mirrored are turned back.
+Image<Rgb8> to_color_image(const openni::VideoFrameRef& frame, bool is_mirrored) {
   const bool is_grey = frame.getVideoMode().getPixelFormat() == openni::PIXEL_FORMAT_GRAY8;
   if (!is_grey && frame.getVideoMode().getPixelFormat() != openni::PIXEL_FORMAT_RGB888)
     throw InputError("openni2: the colours are neither RGB nor grey");
@@ -53,19 +54,20 @@ Image<Rgb8> to_color_image(const openni::VideoFrameRef& frame) {
     const auto* row =
         static_cast<const std::uint8_t*>(frame.getData()) + static_cast<std::ptrdiff_t>(v) * frame.getStrideInBytes();
     for (int u = 0; u < color.width(); ++u)
-      color(u, v) = is_grey ? Rgb8{row[u], row[u], row[u]} : Rgb8{row[3 * u], row[3 * u + 1], row[3 * u + 2]};
+      color(is_mirrored ? color.width() - 1 - u : u, v) =
+          is_grey ? Rgb8{row[u], row[u], row[u]} : Rgb8{row[3 * u], row[3 * u + 1], row[3 * u + 2]};
   }
   return color;
 }
 
-Image<float> to_depth_image(const openni::VideoFrameRef& frame) {
+Image<float> to_depth_image(const openni::VideoFrameRef& frame, bool is_mirrored) {
   const double unit_m = frame.getVideoMode().getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM ? 1e-4 : 1e-3;
   Image<float> depth_m(frame.getWidth(), frame.getHeight(), std::numeric_limits<float>::quiet_NaN());
   for (int v = 0; v < depth_m.height(); ++v) {
     const auto* row = reinterpret_cast<const openni::DepthPixel*>(
         static_cast<const std::uint8_t*>(frame.getData()) + static_cast<std::ptrdiff_t>(v) * frame.getStrideInBytes());
     for (int u = 0; u < depth_m.width(); ++u)
-      if (row[u] != 0) depth_m(u, v) = static_cast<float>(row[u] * unit_m);
+      if (row[u] != 0) depth_m(is_mirrored ? depth_m.width() - 1 - u : u, v) = static_cast<float>(row[u] * unit_m);
   }
   return depth_m;
 }
@@ -107,6 +109,8 @@ struct OpenniCamera::Impl {
 
 void OpenniCamera::Impl::open_stream(CameraStream& opened, openni::SensorType type, const char* what) {
   require_ok(opened.stream.create(device, type), std::string("has no ") + what + " stream");
+  // Drivers mirror by default. A recording stays as it was recorded, whatever is set.
+  if (!device.isFile()) opened.stream.setMirroringEnabled(false);
   require_ok(opened.stream.start(), std::string("the ") + what + " stream cannot be started");
 }
 
@@ -162,8 +166,8 @@ FollowedView OpenniCamera::Impl::make_view() {
   FollowedView view;
   view.frame = {.name = fmt::format("{:06d}", depth.frame.getFrameIndex()),
                 .camera = camera,
-                .color = to_color_image(color.frame),
-                .depth_m = to_depth_image(depth.frame),
+                .color = to_color_image(color.frame, color.stream.getMirroringEnabled()),
+                .depth_m = to_depth_image(depth.frame, depth.stream.getMirroringEnabled()),
                 .world_from_camera = Rigid3()};
   view.image_id = num_views++;
   color.frame.release();

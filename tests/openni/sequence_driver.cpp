@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A driver of OpenNI2 whose camera shows the sequence that RESIGHT_TEST_SEQUENCE names, 10 views a second, again and
-// again. It stands in for a device in openni_test.sh.
+// again. As those of real cameras, its images are mirrored until somebody switches that off. It stands in for a device
+// in openni_test.sh.
 #include <Driver/OniDriverAPI.h>
 
 #include <atomic>
@@ -43,7 +44,7 @@ class SequenceStream : public oni::driver::StreamBase {
     };
     const float horizontal = fov(camera.width, camera.fx), vertical = fov(camera.height, camera.fy);
     const int max_value = 10000;
-    const OniBool off = FALSE;
+    const OniBool is_mirrored = is_mirrored_ ? TRUE : FALSE;
     const OniCropping uncropped{};
     const auto status = [&](const auto& value) {
       return static_cast<OniStatus>(copy_property(&value, sizeof(value), data, size));
@@ -58,12 +59,17 @@ class SequenceStream : public oni::driver::StreamBase {
       case ONI_STREAM_PROPERTY_MAX_VALUE:
         return is_depth() ? status(max_value) : ONI_STATUS_NOT_SUPPORTED;
       case ONI_STREAM_PROPERTY_MIRRORING:
-        return status(off);
+        return status(is_mirrored);
       case ONI_STREAM_PROPERTY_CROPPING:
         return status(uncropped);
       default:
         return ONI_STATUS_NOT_SUPPORTED;
     }
+  }
+  OniStatus setProperty(int id, const void* data, int /*size*/) override {
+    if (id != ONI_STREAM_PROPERTY_MIRRORING) return ONI_STATUS_NOT_SUPPORTED;
+    is_mirrored_ = *static_cast<const OniBool*>(data) != FALSE;
+    return ONI_STATUS_OK;
   }
   OniBool isPropertySupported(int id) override {
     return id == ONI_STREAM_PROPERTY_VIDEO_MODE || id == ONI_STREAM_PROPERTY_HORIZONTAL_FOV ||
@@ -74,7 +80,7 @@ class SequenceStream : public oni::driver::StreamBase {
   void notifyAllProperties() override {
     for (const int id :
          {ONI_STREAM_PROPERTY_VIDEO_MODE, ONI_STREAM_PROPERTY_HORIZONTAL_FOV, ONI_STREAM_PROPERTY_VERTICAL_FOV,
-          ONI_STREAM_PROPERTY_MAX_VALUE, ONI_STREAM_PROPERTY_CROPPING}) {
+          ONI_STREAM_PROPERTY_MAX_VALUE, ONI_STREAM_PROPERTY_MIRRORING, ONI_STREAM_PROPERTY_CROPPING}) {
       char data[64];
       int size = sizeof(data);
       if (getProperty(id, data, &size) == ONI_STATUS_OK) raisePropertyChanged(id, data, size);
@@ -113,13 +119,16 @@ class SequenceStream : public oni::driver::StreamBase {
     frame->croppingEnabled = FALSE;
     frame->sensorType = type_;
     frame->stride = mode_.resolutionX * static_cast<int>(is_depth() ? sizeof(OniDepthPixel) : sizeof(OniRGB888Pixel));
+    const auto width = static_cast<std::size_t>(mode_.resolutionX);
     for (std::size_t i = 0; i < from.color.size(); ++i) {
-      const float z_m = from.depth_m[i];
+      const std::size_t shown = is_mirrored_ ? i + width - 1 - 2 * (i % width) : i;
+      const float z_m = from.depth_m[shown];
+      const resight::Rgb8& color = from.color[shown];
       if (is_depth())
         static_cast<OniDepthPixel*>(frame->data)[i] =
             std::isnan(z_m) ? OniDepthPixel{0} : static_cast<OniDepthPixel>(std::lround(1000 * z_m));
       else
-        static_cast<OniRGB888Pixel*>(frame->data)[i] = {from.color[i].r, from.color[i].g, from.color[i].b};
+        static_cast<OniRGB888Pixel*>(frame->data)[i] = {color.r, color.g, color.b};
     }
     raiseNewFrame(frame);
     getServices().releaseFrame(frame);
@@ -129,6 +138,7 @@ class SequenceStream : public oni::driver::StreamBase {
   OniSensorType type_;
   OniVideoMode mode_{};
   std::atomic<bool> is_running_ = false;
+  std::atomic<bool> is_mirrored_ = true;
   std::thread thread_;
 };
 
