@@ -44,6 +44,11 @@ grep -q '"object": *"tea_box"' live/detections.json || fail "the tea is not reco
 check_places live
 grep -q '"sequence": *"openni2"' live/summary.json || fail "summary.json does not name the camera"
 
+! grep -q 'does not register' err || fail "a warning of depth that is registered: $(cat err)"
+
+RESIGHT_TEST_UNREGISTERED=1 LD_LIBRARY_PATH=camera timeout 60 "${recognize[@]}" --max-views 1 --out other >lines 2>err
+grep -q 'warning: .*does not register its depth to its colours' err || fail "no word of unregistered depth: $(cat err)"
+
 # A recording ends by itself.
 LD_LIBRARY_PATH=camera timeout 60 "$record_camera" "$PWD/camera.oni" 20 >log 2>&1 || fail "not recorded: $(cat log)"
 LD_LIBRARY_PATH=player timeout 120 "$resight" recognize --models models.resight --camera "openni2:$PWD/camera.oni" \
@@ -51,6 +56,7 @@ LD_LIBRARY_PATH=player timeout 120 "$resight" recognize --models models.resight 
 [ "$(wc -l <lines)" -ge 1 ] || fail "no views of the recording: $(cat err)"
 grep -q '"object": *"tea_box"' played/detections.json || fail "the tea is not recognised in the recording"
 check_places played
+grep -q 'note: .*does not tell whether its depth is registered' err || fail "no word of the registration: $(cat err)"
 
 LD_LIBRARY_PATH=player timeout 60 "$resight" recognize --models models.resight --camera "openni2:$PWD/scene.toml" \
   --out no >lines 2>err

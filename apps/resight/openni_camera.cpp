@@ -97,10 +97,11 @@ struct OpenniCamera::Impl {
   LensDistortion lens;
   int num_skipped = 0;
   int num_views = 0;
-  std::string note;
+  std::vector<std::string> notes;
 
   void open_stream(CameraStream& opened, openni::SensorType type, const char* what);
   void register_depth();
+  void tell_registration();
   void play_once();
   void find_camera(const OpenCameraOptions& options);
   bool read(CameraStream& from, int timeout_ms);
@@ -118,6 +119,14 @@ void OpenniCamera::Impl::register_depth() {
   if (device.isImageRegistrationModeSupported(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR))
     device.setImageRegistrationMode(openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR);
   device.setDepthColorSyncEnabled(true);
+}
+
+void OpenniCamera::Impl::tell_registration() {
+  if (device.getImageRegistrationMode() == openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR) return;
+  if (device.isFile())
+    notes.emplace_back("the recording does not tell whether its depth is registered to its colours");
+  else
+    print_warning("openni2: the camera does not register its depth to its colours: objects may get a wrong surface");
 }
 
 void OpenniCamera::Impl::play_once() {
@@ -139,11 +148,11 @@ void OpenniCamera::Impl::find_camera(const OpenCameraOptions& options) {
     const CalibratedCamera given = value_or_throw(read_intrinsics(options.intrinsics, width, height));
     camera = given.camera;
     lens = given.lens;
-    note = "intrinsics of --intrinsics";
+    notes = {"intrinsics of --intrinsics"};
   } else {
     const double focal_px = 0.5 * width / std::tan(0.5 * depth.stream.getHorizontalFieldOfView());
     camera = {width, height, focal_px, focal_px, 0.5 * (width - 1), 0.5 * (height - 1)};
-    note = fmt::format("focal length {:.1f} px from the field of view of the depth (--intrinsics)", focal_px);
+    notes = {fmt::format("focal length {:.1f} px from the field of view of the depth (--intrinsics)", focal_px)};
   }
   if (!camera.is_valid()) throw InputError("openni2: the camera tells no field of view: give --intrinsics");
   if (options.sensor != nullptr) camera.noise = options.sensor->noise;
@@ -189,6 +198,7 @@ OpenniCamera::OpenniCamera(const OpenCameraOptions& options) : impl_(std::make_u
   impl_->open_stream(impl_->color, openni::SENSOR_COLOR, "colour");
   impl_->play_once();
   impl_->find_camera(options);
+  impl_->tell_registration();
 }
 
 OpenniCamera::~OpenniCamera() {
@@ -218,7 +228,7 @@ bool OpenniCamera::has_ended() const { return impl_->depth.has_ended() || impl_-
 
 int OpenniCamera::num_skipped() const { return impl_->num_skipped; }
 
-std::vector<std::string> OpenniCamera::notes() const { return {impl_->note}; }
+std::vector<std::string> OpenniCamera::notes() const { return impl_->notes; }
 
 #else
 

@@ -159,11 +159,25 @@ class SequenceDevice : public oni::driver::DeviceBase {
     *num_sensors = 2;
     return ONI_STATUS_OK;
   }
+  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override {
+    return mode == ONI_IMAGE_REGISTRATION_OFF || std::getenv("RESIGHT_TEST_UNREGISTERED") == nullptr;
+  }
+  OniBool isPropertySupported(int id) override { return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION; }
+  OniStatus getProperty(int id, void* data, int* size) override {
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_SUPPORTED;
+    return static_cast<OniStatus>(copy_property(&registration_, sizeof(registration_), data, size));
+  }
+  OniStatus setProperty(int id, const void* data, int size) override {
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != sizeof(registration_)) return ONI_STATUS_NOT_SUPPORTED;
+    std::memcpy(&registration_, data, sizeof(registration_));
+    return ONI_STATUS_OK;
+  }
   oni::driver::StreamBase* createStream(OniSensorType type) override { return new SequenceStream(frames_, type); }
   void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
 
  private:
   const std::vector<RgbdFrame>& frames_;
+  OniImageRegistrationMode registration_ = ONI_IMAGE_REGISTRATION_OFF;
   OniVideoMode modes_[2] = {};
   OniSensorInfo sensors_[2] = {};
 };
