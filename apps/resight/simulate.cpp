@@ -111,6 +111,8 @@ void run_simulate(const SimulateArguments& arguments) {
     throw InputError("simulate: neither a scene script nor --preset was given");
   if (!arguments.object.empty() && !is_recording(arguments.preset))
     throw InputError("simulate: --object requires --preset turntable-recording or walk-recording");
+  if (arguments.noise_free && arguments.preset == kBenchmarkRecordings)
+    throw InputError(fmt::format("simulate: --noise-free does not apply to --preset {}", kBenchmarkRecordings));
   check_new_folder(arguments.out);
   if (is_recording(arguments.preset)) return simulate_recordings(arguments);
   if (arguments.preset == kBenchmark || arguments.preset == kBenchmark2) return simulate_benchmark(arguments);

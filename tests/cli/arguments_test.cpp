@@ -88,6 +88,8 @@ const Row kArgumentRows[] = {
     {"UnknownRecordedObject", kNothing, "simulate --preset turntable-recording --object nonsense --out out", 2,
      "nonsense"},
     {"ObjectOfAScene", kNothing, "simulate --preset demo --object mug --out out", 2, "--object"},
+    {"RecordingsWithoutNoise", kNothing, "simulate --preset dynamic-tabletop-recordings --noise-free --out out", 2,
+     "--noise-free does not apply to --preset dynamic-tabletop-recordings"},
     {"NoScene", kNothing, "simulate --out out", 2, "neither"},
     {"TwoScenes", kNothing, "simulate scene.toml --preset demo --out out", 2, "simulate: .*excludes"},
 
