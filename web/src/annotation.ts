@@ -153,6 +153,16 @@ export function presentInterval(residuals: ViewResidual[], view: number, numView
   return [first, last];
 }
 
+/** The views at the ends of that interval of which no residual tells. As it ends at free space, it may be shorter. */
+export function unknownEnds(residuals: ViewResidual[], view: number, numViews: number): [number, number][] {
+  const [first, last] = presentInterval(residuals, view, numViews);
+  const there = residuals.map((each) => each.view).filter((each) => first <= each && each <= last);
+  const ends: [number, number][] = [];
+  if (first > 0) ends.push([first, Math.min(view, ...there) - 1]);
+  if (last < numViews - 1) ends.push([Math.max(view, ...there) + 1, last]);
+  return ends.filter(([begin, end]) => begin <= end);
+}
+
 /** A placement that begins at a view. */
 export const beginAt = (placement: Placement, view: number): Placement => ({
   ...placement,

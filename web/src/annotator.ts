@@ -15,6 +15,7 @@ import {
   type RegionKey,
   splitAt,
   toRun,
+  unknownEnds,
   type ViewResidual,
 } from "./annotation";
 import { type Api, StatusError } from "./api";
@@ -198,13 +199,22 @@ export class Annotator {
   }
   private async findPlace(object: number, view: number, u: number, v: number): Promise<void> {
     const { pose } = await this.api.post<{ pose: Pose }>("place", { object, view, u, v });
-    const found = await this.api.post<ViewResidual[]>("assess", { object, pose });
-    const [first_view, last_view] = presentInterval(found, view, this.app.scene.views.length);
+    const [first_view, last_view] = await this.findInterval(object, pose, view);
     const refined = await this.refinePose(object, pose, first_view, last_view, true);
     await this.send({
       title: `Place ${this.nameOf(object)}`,
       changes: [putObject({ object, first_view, last_view, pose: refined })],
     });
+  }
+  /** The views around `view` in which the object may be. The server tells of some views of a long sequence, and then of
+   * those where the interval may end. */
+  private async findInterval(object: number, pose: Pose, view: number): Promise<[number, number]> {
+    const numViews = this.app.scene.views.length;
+    const found = await this.api.post<ViewResidual[]>("assess", { object, pose });
+    for (let ends = unknownEnds(found, view, numViews); ends.length > 0; ends = unknownEnds(found, view, numViews))
+      for (const [first_view, last_view] of ends)
+        found.push(...(await this.api.post<ViewResidual[]>("assess", { object, pose, first_view, last_view })));
+    return presentInterval(found, view, numViews);
   }
 
   setPose(pose: Pose, title = "Move", id = this.selected()?.id): Promise<boolean> {

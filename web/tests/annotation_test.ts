@@ -10,6 +10,7 @@ import {
   presentInterval,
   splitAt,
   toRun,
+  unknownEnds,
   type ViewResidual,
 } from "../src/annotation";
 import { multiply, transformPoint, type Vec3 } from "../src/geometry";
@@ -136,4 +137,16 @@ test("free space bounds the views in which an object is there", () => {
   assert.deepEqual(presentInterval(residuals, 2, 5), [1, 2]);
   assert.deepEqual(presentInterval(residuals, 4, 5), [4, 4]);
   assert.deepEqual(presentInterval([], 2, 5), [0, 4]);
+
+  const spread = [true, false, false, false, true].map((isGone, i) => residual(5 * i, isGone));
+  assert.deepEqual(unknownEnds(spread, 10, 21), [
+    [1, 4],
+    [16, 19],
+  ]);
+  assert.deepEqual(unknownEnds(spread, 2, 21), [
+    [1, 1],
+    [16, 19],
+  ]);
+  assert.deepEqual(unknownEnds(spread.slice(1, 4), 10, 21), [], "it is there from the first view to the last");
+  assert.deepEqual(unknownEnds([...spread, residual(1, false), residual(19, true), residual(18, false)], 10, 21), []);
 });

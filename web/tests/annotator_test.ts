@@ -133,6 +133,19 @@ test("a split has the pose of the edit before it; checking twice unchecks", asyn
   assert.deepEqual(server.checked_views, []);
 });
 
+test("a placement ends where the views show free space, also between those that were asked about first", async () => {
+  const post = server.post.bind(server);
+  server.post = async (what, body: { pose?: Pose; first_view?: number; last_view?: number }) => {
+    if (what !== "assess") return post(what, body);
+    const { first_view = 0, last_view = kNumViews - 1 } = body; // the server tells of both ends
+    return [...new Set([first_view, last_view])].map((view) => ({ view, is_gone: view !== 2 }));
+  };
+  app.goTo(2);
+  annotator.placing = 0;
+  await annotator.place(1, 1);
+  assert.deepEqual(at(2), { ...at(2), first_view: 2, last_view: 2 });
+});
+
 test("what cannot be done is said, and nothing is sent", async () => {
   for (const action of [() => annotator.leftHere(), () => annotator.movedHere()]) {
     assert.equal(await action(), false);

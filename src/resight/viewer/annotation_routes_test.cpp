@@ -167,6 +167,12 @@ TEST_F(AnnotationRoutes, PosesAreFoundFittedAndAssessed) {
   ASSERT_EQ(assessed.size(), 6U);
   EXPECT_EQ(assessed[0]["is_gone"], false);
   EXPECT_EQ(assessed[5]["is_gone"], true);
+  const json some = ask("POST", "/assess",
+                        {{"object", object.object},
+                         {"pose", pose_numbers(object.world_from_object)},
+                         {"first_view", 3},
+                         {"last_view", 4}});
+  EXPECT_EQ(some, json::array({assessed[3], assessed[4]}));
   EXPECT_TRUE(get("/symmetries/0").is_array());
 }
 
@@ -262,8 +268,7 @@ TEST_F(AnnotationRoutes, WrongValuesAreRefusedAndChangeNothing) {
                            json{{"object", 0}, {"pose", {1, 2}}, {"first_view", 0}, {"last_view", 1}},
                            json{{"object", 99}, {"pose", pose}, {"first_view", 0}, {"last_view", 1}}}) {
     EXPECT_EQ(status_of(post("/refine", body)), 400) << body;
-    const bool is_posed = body["object"] == 0 && body["pose"].size() == 16;  // views are not asked for
-    EXPECT_EQ(status_of(post("/assess", body)), is_posed ? 200 : 400) << body;
+    EXPECT_EQ(status_of(post("/assess", body)), 400) << body;
   }
 }
 

@@ -137,9 +137,12 @@ HttpResponse answer_refine(const AnnotationTask& task, ViewStore& store, const j
 
 HttpResponse answer_assess(const AnnotationTask& task, ViewStore& store, const json& body) {
   const auto posed = parse_posed_object(body, *task.library);
-  if (!posed) return refuse("expected an object and a pose");
+  const auto first = body.contains("first_view") ? whole_number(body, "first_view", store.num_views()) : 0;
+  const auto last =
+      body.contains("last_view") ? whole_number(body, "last_view", store.num_views()) : store.num_views() - 1;
+  if (!posed || !first || !last || *last < *first) return refuse("expected an object, a pose and a range of views");
   nlohmann::ordered_json views = nlohmann::ordered_json::array();
-  for (const int view : choose_views(0, store.num_views() - 1, kMaxAssessedViews)) {
+  for (const int view : choose_views(*first, *last, kMaxAssessedViews)) {
     const auto loaded = load_views(store, {view});
     if (!loaded) return make_text_response(500, loaded.error().message);
     views.push_back(
