@@ -126,7 +126,7 @@ class PlyReader {
       if (has_normal) {
         const Eigen::Vector3f n = vector3(columns.normal);
         const float norm = n.norm();
-        mesh_.normals.push_back(std::isfinite(norm) && norm > 0 ? Eigen::Vector3f(n / norm) : Eigen::Vector3f::UnitZ());
+        mesh_.normals.push_back(std::isfinite(norm) && norm > 0 ? Eigen::Vector3f(n / norm) : Eigen::Vector3f::Zero());
       }
       if (has_color) {
         const auto channel = [&](int k) {

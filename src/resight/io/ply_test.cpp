@@ -80,6 +80,21 @@ TEST(Ply, AsciiExtrasPolygonsAndTextureV) {
       << "v points up in the file, the origin is top left in memory";
 }
 
+TEST(Ply, NormalsThatAreNoneAreComputed) {
+  io::TestDirectory directory;
+  io::write_text(directory / "mesh.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+                 "property list uchar int vertex_indices\nend_header\n"
+                 "0 0 0 0 0 0\n0 0.1 0 nan nan nan\n0 0 0.1 0 0 0\n3 0 1 2\n");
+  const auto content = read_ply(directory / "mesh.ply");
+  ASSERT_TRUE(content.ok()) << content.error().message;
+  EXPECT_THAT(content->mesh.normals, testing::Each(Eigen::Vector3f(0, 0, 0)));
+  const auto read = read_mesh(directory / "mesh.ply");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_THAT(read->mesh.normals, testing::Each(Eigen::Vector3f(1, 0, 0)));
+}
+
 TEST(Ply, BigEndian) {
   std::string bytes =
       "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty short "
