@@ -12,6 +12,7 @@
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
+#include "resight/io/tuw_models.hpp"
 #include "resight/recordings/recording.hpp"
 #include "resight/sensor/disparity_error.hpp"
 
@@ -82,7 +83,7 @@ std::vector<path> find_sequence_folders(const path& directory) {
   std::vector<path> found;
   std::vector<path> training;
   for (const std::string& name : io::list_directories(directory)) {
-    if (name.starts_with("models")) continue;
+    if (name.starts_with("models") || (name == "views" && is_tuw_model(directory))) continue;
     const path below = directory / name;
     if (is_sequence(below)) {
       found.push_back(below);

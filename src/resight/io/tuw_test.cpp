@@ -7,6 +7,7 @@
 #include "resight/io/organized_pcd.hpp"
 #include "resight/io/tuw_changes.hpp"
 #include "resight/io/tuw_ground_truth.hpp"
+#include "resight/io/tuw_models.hpp"
 
 namespace resight {
 namespace {
@@ -68,6 +69,15 @@ TEST(TuwSequence, AnnotationsBesideTheTestSet) {
   EXPECT_TRUE((*sequence)->read_ground_truth(0)->empty());
   EXPECT_FALSE((*open_sequence(directory / "test_set/set_00002"))->has_ground_truth());
   EXPECT_THAT(open_sequence(directory / "test_set").error().message, HasSubstr("holds 2 sequences"));
+}
+
+TEST(TuwSequence, TheViewsOfAModelAreNone) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("cloud_0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr).ok());
+  EXPECT_THAT(find_sequence_folders(directory / "mug"), testing::IsEmpty());
+  EXPECT_THAT(open_sequence(directory / "mug").error().message, HasSubstr("no sequence found"));
+  EXPECT_TRUE(open_sequence(directory / "mug/views").ok()) << "unless they are named";
 }
 
 TEST(TuwSequence, BadTruthNamesItsFile) {
