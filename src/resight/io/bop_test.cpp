@@ -64,6 +64,28 @@ TEST(BopScene, ReadsUnitsNamesAndPoses) {
   EXPECT_LT(((*truth)[0].camera_from_object.translation - Eigen::Vector3d(0.01, 0.02, 0.5)).norm(), 1e-12);
 }
 
+TEST(BopScene, GivenIntrinsicsMustFitTheImages) {
+  io::TestDirectory directory;
+  write_scene(directory / "scene", 1, true);
+  OpenSequenceOptions options;
+  options.intrinsics = (directory / "k.yaml").string();
+  const auto open = [&](const std::string& size) {
+    io::write_text(directory / "k.yaml", "fx: 510\nfy: 510\ncx: 1.5\ncy: 1\ndepth_scale: 0.001\n" + size);
+    return open_sequence(directory / "scene", options);
+  };
+  EXPECT_THAT(open("width: 8\nheight: 6\n").error().message,
+              HasSubstr("--intrinsics: the intrinsics are for images of 8x6, but these have 4x3"));
+  const auto sequence = open("width: 4\nheight: 3\n");
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_EQ((*sequence)->read_view(0)->camera.fx, 510);
+  EXPECT_NEAR((*sequence)->read_view(0)->depth_m(1, 1), 0.5, 1e-7);
+  EXPECT_THAT((*sequence)->notes(), testing::Contains(HasSubstr("the unit of depth in k.yaml (0.001 m) is not used")));
+  options.depth_scale_m = 0.0002;
+  EXPECT_THAT((*open(""))->notes(), testing::IsEmpty());
+  options.intrinsics = "510,510,5,1";
+  EXPECT_THAT(open("").error().message, HasSubstr("the centre (5, 1) lies outside the images of 4x3"));
+}
+
 TEST(BopScene, NotesImagesThatNoCameraNames) {
   io::TestDirectory directory;
   write_scene(directory / "scene", 2, true);

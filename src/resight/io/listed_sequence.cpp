@@ -10,6 +10,7 @@
 #include "resight/io/images.hpp"
 #include "resight/io/internal/depth_arrays.hpp"
 #include "resight/io/internal/files.hpp"
+#include "resight/io/internal/image_decoder.hpp"
 #include "resight/sensor/rectify.hpp"
 
 namespace resight::io {
@@ -132,6 +133,17 @@ class ListedSequence final : public Sequence {
 };
 
 }  // namespace
+
+Result<void> check_image_size(const Calibration& calibration, const fs::path& image, std::string_view what) {
+  constexpr std::size_t kBytesOfHeader = std::size_t{1} << 16;
+  const auto start = read_file_start(image, kBytesOfHeader);
+  if (!start) return {};  // read_view() reports a damaged image.
+  const auto decoder = make_image_decoder(*start);
+  if (!decoder) return {};
+  const auto header = (*decoder)->read_header();
+  if (!header) return {};
+  return check_calibration(calibration, header->width, header->height, what);
+}
 
 std::string describe_enlarged_depth(const SequenceTable& table) {
   if (table.depth_camera || table.views.empty()) return "";

@@ -65,6 +65,22 @@ Result<void> choose_views(SequenceTable& table, const ViewChoice& choice) {
   return {};
 }
 
+/// The unit of depth remains that of the sequence.
+Result<void> set_intrinsics(SequenceTable& table, const OpenSequenceOptions& options) {
+  if (options.intrinsics.empty()) return {};
+  const auto calibration = parse_calibration(options.intrinsics);
+  if (!calibration) return calibration.error();
+  table.lens = calibration->lens;
+  for (ListedView& view : table.views) view.intrinsics = calibration->intrinsics;
+  if (table.is_recording) return {};  // Its images are checked when they are read.
+  const ListedView& first = table.views.front();
+  const auto unit_m = calibration->metres_per_unit;
+  if (unit_m && !options.depth_scale_m && std::abs(*unit_m / first.metres_per_unit - 1) > 1e-6)
+    table.notes.push_back(fmt::format("the unit of depth in {} ({:.6g} m) is not used (--depth-scale)",
+                                      fs::path(options.intrinsics).filename().string(), *unit_m));
+  return check_image_size(*calibration, first.color, "--intrinsics");
+}
+
 }  // namespace
 
 Rigid3 to_world_from_camera(const Rigid3& pose, PoseConvention convention) {
@@ -100,12 +116,7 @@ Result<void> apply_options(Sequence& sequence, const OpenSequenceOptions& option
 
 Result<void> apply_options(SequenceTable& table, const OpenSequenceOptions& options) {
   if (const auto done = set_depth_camera(table, options); !done) return done;
-  if (!options.intrinsics.empty()) {
-    const auto calibration = parse_calibration(options.intrinsics);
-    if (!calibration) return calibration.error();
-    table.lens = calibration->lens;
-    for (ListedView& view : table.views) view.intrinsics = calibration->intrinsics;
-  }
+  if (const auto done = set_intrinsics(table, options); !done) return done;
   if (options.depth_scale_m) {
     table.npy_unit_m = options.depth_scale_m;
     for (ListedView& view : table.views) view.metres_per_unit = *options.depth_scale_m;

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "resight/io/internal/files.hpp"
-#include "resight/io/internal/image_decoder.hpp"
 #include "resight/io/internal/listed_sequence.hpp"
 #include "resight/io/internal/sequences.hpp"
 #include "resight/io/internal/text.hpp"
@@ -139,18 +138,6 @@ fs::path find_tum_poses(const fs::path& directory) {
   return {};
 }
 
-/// Published intrinsics are for one size.
-Result<void> check_image_size(const Calibration& calibration, const fs::path& image, const fs::path& directory) {
-  constexpr std::size_t kBytesOfHeader = std::size_t{1} << 16;
-  const auto start = read_file_start(image, kBytesOfHeader);
-  if (!start) return {};  // read_view() reports a damaged image.
-  const auto decoder = make_image_decoder(*start);
-  if (!decoder) return {};
-  const auto header = (*decoder)->read_header();
-  if (!header) return {};
-  return check_calibration(calibration, header->width, header->height, directory.string());
-}
-
 }  // namespace
 
 bool is_tum_sequence(const fs::path& directory) {
@@ -196,7 +183,7 @@ SequenceResult open_tum_sequence(const fs::path& directory, const OpenSequenceOp
   if (table.views.size() < pairs->size())
     table.notes.push_back(fmt::format("{} of {} views have no pose near in time and are left out",
                                       pairs->size() - table.views.size(), pairs->size()));
-  if (const auto fits = check_image_size(*calibration, table.views.front().color, directory); !fits)
+  if (const auto fits = check_image_size(*calibration, table.views.front().color, directory.string()); !fits)
     return fits.error();
   return make_listed_sequence(std::move(table));
 }

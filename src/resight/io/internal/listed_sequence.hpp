@@ -64,6 +64,10 @@ struct SequenceTable {
 /// without a pose are left out, with a note.
 [[nodiscard]] Result<void> assign_poses(SequenceTable& table, const std::filesystem::path& file);
 
+/// check_calibration() for the size that the header of an image names.
+[[nodiscard]] Result<void> check_image_size(const Calibration& calibration, const std::filesystem::path& image,
+                                            std::string_view what);
+
 /// A note for the user, if the depth of the first view has fewer pixels than its colours. Empty otherwise.
 [[nodiscard]] std::string describe_enlarged_depth(const SequenceTable& table);
 
