@@ -66,8 +66,9 @@ ChangeFiles find_changes(const ConvertArguments& arguments, const Sequence& sequ
   if (!folder) return {};
   OpenSequenceOptions options = arguments.input;
   const bool may_lack_views = options.views.every != 1 || options.views.min_motion_m != 0 || options.views.from_s ||
-                              options.views.to_s || options.views.max_views;
+                              options.views.to_s || options.views.max_views || !options.poses.empty();
   options.views = {};
+  if (!options.poses.empty()) options.poses = "fixed";  // A file leaves views without a pose out.
   const auto opened = may_lack_views ? value_or_throw(open_sequence(arguments.in, options)) : nullptr;
   const Sequence& whole = opened ? *opened : sequence;
   std::vector<std::string> views;

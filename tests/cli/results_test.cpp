@@ -250,6 +250,19 @@ TEST_F(CommandLineResults, VeryManyKeysAreNoResults) {
   EXPECT_EQ(Json::parse(deep.output)["version"], 1);
 }
 
+TEST_F(CommandLineResults, TrueChangesAreThoseOfAllViews) {
+  write_text(folder_ / "tum/events.json", R"({"events": [[1, "added", "cube"]]})");
+  const std::string poses = read_text(folder_ / "tum/groundtruth.txt");
+  write_text(folder_ / "all.txt", poses);
+  write_text(folder_ / "two.txt", poses.substr(poses.find('\n') + 1));
+  EXPECT_EQ(run(folder_, "convert tum all --to bop --poses all.txt").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "all/events.json"));
+  const Outcome two = run(folder_, "convert tum two --to bop --poses two.txt");
+  EXPECT_EQ(two.status, 0);
+  EXPECT_THAT(two.errors, testing::Contains(testing::HasSubstr("the true changes are left out")));
+  EXPECT_FALSE(fs::exists(folder_ / "two/events.json"));
+}
+
 TEST_F(CommandLineResults, JsonOnTheTerminalKeepsAllNames) {
   const std::string name = "v\xE2\x80\xAE\x7F";
   fs::rename(folder_ / "views", folder_ / name);
