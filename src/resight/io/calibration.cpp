@@ -208,7 +208,7 @@ Result<Calibration> read_calibration(const fs::path& file) {
   const auto of_colmap = parse_colmap_cameras(*text, file.string());
   if (!of_colmap) return of_colmap.error();
   if (*of_colmap) return **of_colmap;
-  const auto calibration = calibration_from_fields(parse_fields(*text), file.string());
+  const auto calibration = calibration_from_text(*text, file.string());
   if (!calibration) return calibration.error();
   if (!*calibration)
     return file_error(file,

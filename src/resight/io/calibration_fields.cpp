@@ -84,6 +84,12 @@ std::string last_part(std::string_view name) {
   return to_lower(dot == name.npos ? name : name.substr(dot + 1));
 }
 
+/// The part before, in lower case: "Camera.fx" -> "camera".
+std::string group_of(std::string_view name) {
+  const std::size_t dot = name.find_last_of("./");
+  return dot == name.npos ? "" : to_lower(name.substr(0, dot));
+}
+
 bool is_separator(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == ',' || c == ';' || c == '[' || c == ']' || c == '{' ||
          c == '}' || c == '(' || c == ')' || c == '"' || c == '\'';
@@ -106,15 +112,28 @@ std::string_view without_dash(std::string_view line) {
   return first != line.npos && line.substr(first).starts_with("- ") ? line.substr(first + 2) : line;
 }
 
-/// Words of a text without comments. The end of a name becomes the word ":".
+/// The name in a line "[color]" of an ini file; empty for other lines.
+std::string_view section_name(std::string_view line) {
+  const auto words = split_tokens(line);
+  if (words.size() != 1 || !words[0].starts_with('[') || !words[0].ends_with(']')) return "";
+  const std::string_view name = words[0].substr(1, words[0].size() - 2);
+  return parse_number(name) || name.find_first_of(",;:[") != name.npos ? "" : name;
+}
+
+/// Words of a text without comments. The end of a name becomes the word ":", and the names around it, by the
+/// indentation of YAML or as the section of an ini file, become part of it: "color/fx".
 std::vector<std::string> split_words(std::string_view text) {
   std::vector<std::string> words(1);
+  std::vector<std::pair<int, std::string>> around;  // Indentations and names.
   const auto end_word = [&] {
     if (!words.back().empty()) words.emplace_back();
   };
   while (!text.empty()) {
     std::string_view line = cut_line(text);
-    line = without_dash(line.substr(0, line.find('#')));
+    line = line.substr(0, line.find('#'));
+    auto indentation = static_cast<int>(std::min<std::size_t>(line.find_first_not_of(" \t-"), INT32_MAX));
+    line = without_dash(line);
+    if (const auto section = section_name(line); !section.empty()) around = {{-1, std::string(section) + '/'}};
     if (const auto pair = name_with_number(line)) {
       words.insert(words.end() - 1, {pair->first, ":", pair->second});
       continue;
@@ -124,6 +143,14 @@ std::vector<std::string> split_words(std::string_view text) {
         end_word();
       } else if (c == ':' || c == '=') {
         end_word();
+        if (words.size() > 1) {
+          std::string& name = words[words.size() - 2];
+          while (!around.empty() && around.back().first >= indentation) around.pop_back();
+          const std::string before = around.empty() ? "" : around.back().second;
+          around.emplace_back(indentation, before + name + '/');
+          name.insert(0, before);
+          indentation = INT32_MAX;  // Further names of the line are below the first.
+        }
         words.back().assign(1, ':');
         end_word();
       } else {
@@ -148,13 +175,66 @@ CalibrationFields fields_of(const nlohmann::json& object) {
   return fields;
 }
 
-struct JsonCalibration {
+struct NamedCalibration {
   std::string where;
   Calibration calibration;
 };
 
+/// Of several cameras, that of the colours.
+Result<Calibration> choose_camera(std::vector<NamedCalibration> found, std::string_view what) {
+  const auto is_color = [](const NamedCalibration& c) {
+    return c.where.find("color") != c.where.npos || c.where.find("rgb") != c.where.npos;
+  };
+  std::ranges::stable_sort(found, {}, [&](const NamedCalibration& c) { return is_color(c) ? 0 : 1; });
+  for (const NamedCalibration& other : found)
+    if (is_color(other) == is_color(found.front()) &&
+        other.calibration.intrinsics != found.front().calibration.intrinsics)
+      return Error{
+          fmt::format("{}: holds the intrinsics of several cameras ({}, {}); give one of them by "
+                      "--intrinsics fx,fy,cx,cy",
+                      what, found.front().where, other.where)};
+  return found.front().calibration;
+}
+
+/// The content of a file with lines `name: value` or `name = value`.
+struct GroupedFields {
+  CalibrationFields all;
+  std::map<std::string, CalibrationFields> groups;  ///< By the names around them.
+};
+
+GroupedFields parse_fields(std::string_view text) {
+  const std::vector<std::string> words = split_words(text);
+  GroupedFields fields;
+  std::string group;  // the last name without a value
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i + 1] != ":" || words[i] == ":") continue;
+    std::string name = last_part(words[i]);
+    std::string where = group_of(words[i]);
+    std::vector<double> numbers;
+    std::size_t next = i + 2;
+    if (next < words.size() && words[next] == "!!opencv-matrix") ++next;
+    const bool is_group = next + 1 >= words.size() || words[next + 1] == ":";
+    for (; next < words.size() && !(next + 1 < words.size() && words[next + 1] == ":"); ++next) {
+      const auto number = parse_number(words[next]);
+      if (!number) break;
+      numbers.push_back(*number);
+    }
+    if (numbers.empty() && i + 2 < words.size() && !is_group)
+      fields.all.words[name] = fields.groups[where].words[name] = words[i + 2];
+    if (numbers.empty() && (is_group || (i + 2 < words.size() && words[i + 2] == "!!opencv-matrix"))) group = name;
+    if (name == "data" && !group.empty()) {
+      name = group;
+      where = group_of(where);
+    }
+    if (numbers.empty()) continue;
+    fields.groups[where].numbers.try_emplace(name, numbers);
+    fields.all.numbers.try_emplace(name, std::move(numbers));
+  }
+  return fields;
+}
+
 Result<void> collect_json(const nlohmann::json& json, const std::string& where, int depth,
-                          std::vector<JsonCalibration>& found, std::string_view file) {
+                          std::vector<NamedCalibration>& found, std::string_view file) {
   if (depth > 5 || found.size() > 100) return {};
   if (json.is_array() && !json.empty() && json.front().is_object())
     return collect_json(json.front(), where, depth + 1, found, file);
@@ -181,30 +261,6 @@ std::optional<std::vector<double>> parse_number_list(std::string_view text) {
   return numbers;
 }
 
-CalibrationFields parse_fields(std::string_view text) {
-  const std::vector<std::string> words = split_words(text);
-  CalibrationFields fields;
-  std::string group;  // the last name without a value
-  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
-    if (words[i + 1] != ":" || words[i] == ":") continue;
-    std::string name = last_part(words[i]);
-    std::vector<double> numbers;
-    std::size_t next = i + 2;
-    if (next < words.size() && words[next] == "!!opencv-matrix") ++next;
-    const bool is_group = next + 1 >= words.size() || words[next + 1] == ":";
-    for (; next < words.size() && !(next + 1 < words.size() && words[next + 1] == ":"); ++next) {
-      const auto number = parse_number(words[next]);
-      if (!number) break;
-      numbers.push_back(*number);
-    }
-    if (numbers.empty() && i + 2 < words.size() && !is_group) fields.words[name] = words[i + 2];
-    if (numbers.empty() && (is_group || (i + 2 < words.size() && words[i + 2] == "!!opencv-matrix"))) group = name;
-    if (name == "data" && !group.empty()) name = group;
-    if (!numbers.empty()) fields.numbers.try_emplace(name, std::move(numbers));
-  }
-  return fields;
-}
-
 Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFields& fields, std::string_view what) {
   const auto matrix = find_matrix(fields);
   if (!matrix || matrix->size() < 4) return std::optional<Calibration>();
@@ -228,24 +284,27 @@ Result<std::optional<Calibration>> calibration_from_json(const nlohmann::json& o
   return calibration_from_fields(fields_of(object), what);
 }
 
+Result<std::optional<Calibration>> calibration_from_text(std::string_view text, std::string_view what) {
+  const GroupedFields fields = parse_fields(text);
+  std::vector<NamedCalibration> found;
+  for (const auto& [where, group] : fields.groups)
+    if (const auto calibration = calibration_from_fields(group, what); calibration.ok() && *calibration)
+      found.push_back({where, **calibration});
+  if (found.size() < 2) return calibration_from_fields(fields.all, what);
+  auto chosen = choose_camera(std::move(found), what);
+  if (!chosen) return chosen.error();
+  if (!chosen->metres_per_unit) chosen->metres_per_unit = find_depth_unit(fields.all);
+  return std::optional(*chosen);
+}
+
 Result<Calibration> read_json_calibration(const fs::path& file) {
   const auto json = read_json(file);
   if (!json) return json.error();
   if (const auto numbers = as_numbers(*json)) return calibration_from_numbers(*numbers, file.string());
-  std::vector<JsonCalibration> found;
+  std::vector<NamedCalibration> found;
   if (const auto done = collect_json(*json, "", 0, found, file.string()); !done) return done.error();
   if (found.empty()) return file_error(file, "holds no intrinsics (expected fx, fy, cx, cy or a camera matrix)");
-  const auto is_color = [](const JsonCalibration& c) {
-    return c.where.find("color") != c.where.npos || c.where.find("rgb") != c.where.npos;
-  };
-  std::ranges::stable_sort(found, {}, [&](const JsonCalibration& c) { return is_color(c) ? 0 : 1; });
-  for (const JsonCalibration& other : found)
-    if (is_color(other) == is_color(found.front()) &&
-        other.calibration.intrinsics != found.front().calibration.intrinsics)
-      return file_error(file, fmt::format("holds the intrinsics of several cameras ({}, {}); give one of them by "
-                                          "--intrinsics fx,fy,cx,cy",
-                                          found.front().where, other.where));
-  return found.front().calibration;
+  return choose_camera(std::move(found), file.string());
 }
 
 }  // namespace resight::io

@@ -87,6 +87,35 @@ TEST(Calibration, UsualForms) {
       HasSubstr("several cameras"));
 }
 
+TEST(Calibration, OfSeveralCamerasThatOfTheColours) {
+  io::TestDirectory directory;
+  const auto read = [&](const std::string& name, const std::string& text) {
+    io::write_text(directory / name, text);
+    return io::read_calibration(directory / name);
+  };
+  const std::string depth = "fx: 50\n  fy: 50\n  cx: 3\n  cy: 2\n";
+  const std::string color = "fx: 60\n  fy: 61\n  cx: 3.5\n  cy: 2.5\n";
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+           {"k.yaml", "depth:\n  " + depth + "color:\n  " + color},
+           {"k.yaml", "cameras:\n  depth: {fx: 50, fy: 50, cx: 3, cy: 2}\n  rgb: {fx: 60, fy: 61, cx: 3.5, cy: 2.5}\n"},
+           {"k.yaml",
+            "Depth.fx: 50\nDepth.fy: 50\nDepth.cx: 3\nDepth.cy: 2\nRgb.fx: 60\nRgb.fy: 61\nRgb.cx: 3.5\n"
+            "Rgb.cy: 2.5\n"},
+           {"k.yaml",
+            "depth:\n  camera_matrix:\n    rows: 3\n    data: [50, 0, 3,\n      0, 50, 2, 0, 0, 1]\n"
+            "color:\n  camera_matrix:\n    rows: 3\n    data: [60, 0, 3.5,\n      0, 61, 2.5, 0, 0, 1]\n"},
+           {"k.ini", "[depth]\nfx = 50\nfy = 50\ncx = 3\ncy = 2\n[color]\nfx = 60\nfy = 61\ncx = 3.5\ncy = 2.5\n"}}) {
+    const auto calibration = read(name, text);
+    ASSERT_TRUE(calibration.ok()) << calibration.error().message << "\n" << text;
+    EXPECT_EQ(calibration->intrinsics, (io::Intrinsics{60, 61, 3.5, 2.5})) << text;
+  }
+  EXPECT_THAT(read("k.yaml", "cam0:\n  " + depth + "cam1:\n  " + color).error().message,
+              HasSubstr("several cameras (cam0, cam1)"));
+  const auto with_unit = read("k.yaml", "camera:\n  " + color + "depth_scale: 0.0002\n");
+  ASSERT_TRUE(with_unit.ok()) << with_unit.error().message;
+  EXPECT_EQ(with_unit->metres_per_unit, 0.0002);
+}
+
 TEST(Calibration, OptionsMayHaveBlanks) {
   const auto calibration = io::parse_calibration("60,61,3.5, 2.5");
   ASSERT_TRUE(calibration.ok()) << calibration.error().message;

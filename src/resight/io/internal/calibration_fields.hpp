@@ -22,9 +22,6 @@ struct CalibrationFields {
 /// the text.
 [[nodiscard]] std::optional<std::vector<double>> parse_number_list(std::string_view text);
 
-/// Parses lines `name: value` or `name = value`.
-[[nodiscard]] CalibrationFields parse_fields(std::string_view text);
-
 /// None if the fields hold no intrinsics.
 [[nodiscard]] Result<std::optional<Calibration>> calibration_from_fields(const CalibrationFields& fields,
                                                                          std::string_view what);
@@ -32,6 +29,9 @@ struct CalibrationFields {
 /// The same for the members of a JSON object, without those inside others. None for other values.
 [[nodiscard]] Result<std::optional<Calibration>> calibration_from_json(const nlohmann::json& object,
                                                                        std::string_view what);
+
+/// The same for lines `name: value` or `name = value`. If several groups of them hold a camera, that of the colours.
+[[nodiscard]] Result<std::optional<Calibration>> calibration_from_text(std::string_view text, std::string_view what);
 
 /// The calibration anywhere in a JSON file; of several, that of the colour camera.
 [[nodiscard]] Result<Calibration> read_json_calibration(const std::filesystem::path& file);
