@@ -216,6 +216,17 @@ Result<Calibration> read_calibration(const fs::path& file) {
   return **calibration;
 }
 
+bool complete(Calibration& calibration, const Calibration& other) {
+  const auto take = [](auto& value, const auto& of_other) {
+    const std::remove_cvref_t<decltype(value)> unknown{};
+    if (value == unknown) value = of_other;
+    return of_other == unknown || value == of_other;
+  };
+  return calibration.intrinsics == other.intrinsics && take(calibration.lens, other.lens) &&
+         take(calibration.width, other.width) && take(calibration.height, other.height) &&
+         take(calibration.metres_per_unit, other.metres_per_unit);
+}
+
 Result<Calibration> parse_calibration(std::string_view numbers_or_file, std::string_view option) {
   if (const auto numbers = parse_number_list(numbers_or_file); numbers && !is_file(numbers_or_file))
     return calibration_from_numbers(*numbers, option);
@@ -235,12 +246,17 @@ Result<std::optional<Calibration>> find_calibration(const fs::path& folder, fs::
   if (found.empty()) return std::optional<Calibration>();
   std::ranges::stable_sort(found, {}, [](const FoundCalibration& f) { return is_of_color(f) ? 0 : 1; });
   const FoundCalibration& first = found.front();
-  for (const FoundCalibration& other : found)
-    if (is_of_color(other) == is_of_color(first) && other.calibration.intrinsics != first.calibration.intrinsics)
+  Calibration calibration = first.calibration;
+  source = first.file;
+  for (const FoundCalibration& other : found) {
+    if (is_of_color(other) != is_of_color(first)) continue;
+    const Calibration before = calibration;
+    if (!complete(calibration, other.calibration))
       return file_error(folder, fmt::format("{} and {} hold different intrinsics; choose one by --intrinsics FILE",
                                             first.file.filename().string(), other.file.filename().string()));
-  source = first.file;
-  return std::optional(first.calibration);
+    if (calibration != before) source += ", " + other.file.filename().string();
+  }
+  return std::optional(calibration);
 }
 
 Result<void> check_calibration(const Calibration& calibration, int width, int height, std::string_view what) {

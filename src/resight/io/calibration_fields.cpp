@@ -186,14 +186,14 @@ Result<Calibration> choose_camera(std::vector<NamedCalibration> found, std::stri
     return c.where.find("color") != c.where.npos || c.where.find("rgb") != c.where.npos;
   };
   std::ranges::stable_sort(found, {}, [&](const NamedCalibration& c) { return is_color(c) ? 0 : 1; });
+  Calibration chosen = found.front().calibration;
   for (const NamedCalibration& other : found)
-    if (is_color(other) == is_color(found.front()) &&
-        other.calibration.intrinsics != found.front().calibration.intrinsics)
+    if (is_color(other) == is_color(found.front()) && !complete(chosen, other.calibration))
       return Error{
           fmt::format("{}: holds the intrinsics of several cameras ({}, {}); give one of them by "
                       "--intrinsics fx,fy,cx,cy",
                       what, found.front().where, other.where)};
-  return found.front().calibration;
+  return chosen;
 }
 
 /// The content of a file with lines `name: value` or `name = value`.

@@ -116,6 +116,29 @@ TEST(Calibration, OfSeveralCamerasThatOfTheColours) {
   EXPECT_EQ(with_unit->metres_per_unit, 0.0002);
 }
 
+TEST(Calibration, FilesOfAFolderCompleteEachOther) {
+  io::TestDirectory directory;
+  const std::string matrix = "fx: 60\nfy: 61\ncx: 3.5\ncy: 2.5\n";
+  const auto find = [&](const std::string& a, const std::string& b, std::filesystem::path& source) {
+    io::write_text(directory / "camera_a.yaml", matrix + a);
+    io::write_text(directory / "camera_b.yaml", matrix + b);
+    return io::find_calibration(directory.path(), source);
+  };
+  std::filesystem::path source;
+  const auto found = find("width: 8\n", "k1: -0.3\nk2: 0\np1: 0\np2: 0\ndepth_scale: 0.0002\n", source);
+  ASSERT_TRUE(found.ok() && found->has_value());
+  EXPECT_EQ((*found)->width, 8);
+  EXPECT_FALSE((*found)->lens.is_none());
+  EXPECT_EQ((*found)->metres_per_unit, 0.0002);
+  EXPECT_EQ(source.filename(), "camera_a.yaml, camera_b.yaml");
+  ASSERT_TRUE(find("", "", source).ok());
+  EXPECT_EQ(source.filename(), "camera_a.yaml");
+  for (const auto& [a, b] : {std::pair("depth_scale: 0.001\n", "depth_scale: 0.0002\n"),
+                             {"width: 8\n", "width: 16\n"},
+                             {"k1: -0.3\nk2: 0\np1: 0\np2: 0\n", "k1: 0.3\nk2: 0\np1: 0\np2: 0\n"}})
+    EXPECT_THAT(find(a, b, source).error().message, HasSubstr("camera_a.yaml and camera_b.yaml hold different"));
+}
+
 TEST(Calibration, OptionsMayHaveBlanks) {
   const auto calibration = io::parse_calibration("60,61,3.5, 2.5");
   ASSERT_TRUE(calibration.ok()) << calibration.error().message;

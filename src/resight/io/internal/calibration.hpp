@@ -42,9 +42,12 @@ struct Calibration {
 [[nodiscard]] Result<Calibration> parse_calibration(std::string_view numbers_or_file,
                                                     std::string_view option = "--intrinsics");
 
+/// Adds what only the other one says. False if they contradict each other.
+[[nodiscard]] bool complete(Calibration& calibration, const Calibration& other);
+
 /// The calibration in a folder or in its sub-folder for intrinsics, found by name and content. None if no file holds
-/// one; an error if several differ, or if a file that by its name must hold one cannot be read. `source` becomes the
-/// file.
+/// one; an error if several contradict each other, or if a file that by its name must hold one cannot be read. `source`
+/// becomes the file, with the names of others that add to it.
 [[nodiscard]] Result<std::optional<Calibration>> find_calibration(const std::filesystem::path& folder,
                                                                   std::filesystem::path& source);
 
