@@ -7,13 +7,13 @@
 #include <set>
 
 #include "resight/io/internal/obj_statements.hpp"
+#include "resight/io/internal/polygon.hpp"
 #include "resight/io/internal/text.hpp"
 
 namespace resight::io {
 namespace {
 
 constexpr std::size_t kMaxNames = 4096;
-constexpr int kMaxCorners = 1024;  // triangulate() takes time in the square of their number.
 
 /// The next number, or zero.
 float next_value(TextCursor& cursor) { return static_cast<float>(cursor.next_number().value_or(0)); }
@@ -76,7 +76,7 @@ class ObjParser {
     for (std::string_view token = cursor.next(); !token.empty(); token = cursor.next()) {
       const auto corner = parse_corner(token);
       if (!corner) return Error{"holds a face whose corners are not numbers of vertices"};
-      if (content_.corners.size() - start == kMaxCorners) return Error{"has a face of more than 1024 corners"};
+      if (content_.corners.size() - start == kMaxPolygonCorners) return Error{"has a face of more than 1024 corners"};
       content_.corners.push_back(*corner);
     }
     const auto num_corners = static_cast<int>(content_.corners.size() - start);

@@ -19,9 +19,9 @@ struct PlyContent {
 
 /// Reads ascii, binary little-endian and binary big-endian PLY. Reads x y z, nx ny nz, red green blue (or diffuse_*;
 /// integers 0..255, floats 0..1), texture coordinates per vertex (texture_u/v, u/v, s/t) or per face corner (texcoord),
-/// and vertex_indices (or vertex_index; polygons become fans). Skips everything else. Normals have length 1, or 0 if
-/// the file says none. Vertices keep their order; a vertex is split only if its corner texture coordinates differ.
-/// Fails for points that are not finite and indices out of range.
+/// and vertex_indices (or vertex_index), polygons of at most 1024 corners that are cut into triangles. Skips everything
+/// else. Normals have length 1, or 0 if the file says none. Vertices keep their order; a vertex is split only if its
+/// corner texture coordinates differ. Fails for points that are not finite and indices out of range.
 [[nodiscard]] Result<PlyContent> read_ply(const std::filesystem::path& file);
 /// Same from memory. `name` is used in error messages.
 [[nodiscard]] Result<PlyContent> parse_ply(std::string_view bytes, std::string_view name);

@@ -8,6 +8,7 @@
 
 #include "resight/io/internal/files.hpp"
 #include "resight/io/internal/ply_header.hpp"
+#include "resight/io/internal/polygon.hpp"
 #include "resight/io/ply.hpp"
 
 namespace resight {
@@ -18,7 +19,7 @@ using io::PlyHeader;
 using io::PlyProperty;
 using io::PlyType;
 
-constexpr int kMaxPolygonCorners = 10000;
+constexpr int kMaxListValues = 10000;
 
 /// Column of the first of several names for the same property, or -1.
 int find_first(const PlyElement& element, std::initializer_list<std::string_view> names) {
@@ -79,10 +80,10 @@ class PlyReader {
     return fail(fmt::format("the data of '{}' end too early or are not numbers", element.name));
   }
 
-  /// Reads the values of a list, at most kMaxPolygonCorners.
+  /// Reads the values of a list, at most kMaxListValues.
   bool read_list(const PlyProperty& property, std::vector<double>& list) {
     double count = 0;
-    if (!values_.next(property.count_type, count) || !(count >= 0 && count <= kMaxPolygonCorners) ||
+    if (!values_.next(property.count_type, count) || !(count >= 0 && count <= kMaxListValues) ||
         count != std::floor(count))
       return false;
     list.resize(static_cast<std::size_t>(count));
@@ -152,17 +153,28 @@ class PlyReader {
       const std::vector<double>& polygon = lists[indices];
       for (const double v : polygon)
         if (!(v >= 0 && v <= INT32_MAX)) return fail(fmt::format("face {} refers to vertex {}", i, v));
-      for (std::size_t k = 2; k < polygon.size(); ++k) {
+      if (polygon.size() > io::kMaxPolygonCorners) return fail("has a face of more than 1024 corners");
+      for (const auto& [a, b, c] : cut_into_triangles(polygon)) {
         mesh_.faces.push_back(
-            {static_cast<int>(polygon[0]), static_cast<int>(polygon[k - 1]), static_cast<int>(polygon[k])});
+            {static_cast<int>(polygon[a]), static_cast<int>(polygon[b]), static_cast<int>(polygon[c])});
         if (!has_texcoord || lists[texcoord].size() != 2 * polygon.size()) continue;
-        const auto corner = [&](std::size_t c) {
-          return to_top_left(lists[texcoord][2 * c], lists[texcoord][2 * c + 1]);
-        };
-        corner_uvs_.push_back({corner(0), corner(k - 1), corner(k)});
+        const auto uv = [&](int k) { return to_top_left(lists[texcoord][2 * k], lists[texcoord][2 * k + 1]); };
+        corner_uvs_.push_back({uv(a), uv(b), uv(c)});
       }
     }
     return {};
+  }
+
+  /// By the numbers of corners. Without their vertices, as in a file that lists faces first, it is a fan.
+  std::vector<std::array<int, 3>> cut_into_triangles(const std::vector<double>& polygon) {
+    if (polygon.size() < 3) return {};
+    if (polygon.size() == 3) return {{0, 1, 2}};
+    corners_.clear();
+    for (const double v : polygon) {
+      const auto i = static_cast<std::size_t>(v);
+      corners_.push_back(i < mesh_.vertices.size() ? mesh_.vertices[i] : Eigen::Vector3f::Zero());
+    }
+    return io::triangulate(corners_);
   }
 
   /// Converts texture coordinates per corner to coordinates per vertex. Vertices with several coordinates are
@@ -191,6 +203,7 @@ class PlyReader {
   std::string_view name_;
   io::PlyValueReader values_;
   TriangleMesh mesh_;
+  std::vector<Eigen::Vector3f> corners_;  ///< Of a face.
   std::vector<std::array<Eigen::Vector2f, 3>> corner_uvs_;
 };
 

@@ -95,6 +95,31 @@ TEST(Ply, NormalsThatAreNoneAreComputed) {
   EXPECT_THAT(read->mesh.normals, testing::Each(Eigen::Vector3f(1, 0, 0)));
 }
 
+// A U of 5 squares in a 3x2 rectangle.
+TEST(Ply, ConcaveFacesKeepTheirShape) {
+  const std::string head = "ply\nformat ascii 1.0\n";
+  const std::string vertex = "element vertex 8\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 1\nproperty list ushort int vertex_indices\n";
+  const std::string corners = "0 0 0\n3 0 0\n3 2 0\n2 2 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n";
+  const std::string polygon = "8 7 0 1 2 3 4 5 6\n";
+  const auto read = parse_ply(head + vertex + face + "end_header\n" + corners + polygon, "t");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->mesh.faces.size(), 6U);
+  double area = 0;
+  for (const auto& [a, b, c] : read->mesh.faces) {
+    const auto& v = read->mesh.vertices;
+    area += 0.5 * (v[b] - v[a]).cross(v[c] - v[a]).norm();
+  }
+  EXPECT_NEAR(area, 5, 1e-6);
+  const auto read_polygon = [&](int num_corners) {
+    std::string list = std::to_string(num_corners);
+    for (int i = 0; i < num_corners; ++i) list += " " + std::to_string(i % 8);
+    return parse_ply(head + vertex + face + "end_header\n" + corners + list + "\n", "t");
+  };
+  EXPECT_EQ(read_polygon(1024)->mesh.faces.size(), 1022U);
+  EXPECT_THAT(read_polygon(1025).error().message, HasSubstr("t: has a face of more than 1024 corners"));
+}
+
 TEST(Ply, BigEndian) {
   std::string bytes =
       "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty short "
