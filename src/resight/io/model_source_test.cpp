@@ -89,6 +89,23 @@ TEST(TuwModel, ComesBack) {
   EXPECT_THAT(write_tuw_model(directory.path(), "mug", views, nullptr).error().message, HasSubstr("exists already"));
 }
 
+TEST(TuwModel, CloudsWithZBackwardAreTurned) {
+  io::TestDirectory directory;
+  const std::vector<TrainingView> views = {io::random_training_view("0", 1)};
+  ASSERT_TRUE(write_tuw_model(directory.path(), "mug", views, nullptr).ok());
+  const auto file = directory / "mug/views/cloud_00000000.pcd";
+  auto cloud = read_pcd(file);
+  ASSERT_TRUE(cloud.ok()) << cloud.error().message;
+  for (Eigen::Vector3f& p : cloud->points) p = {p.x(), -p.y(), -p.z()};
+  ASSERT_TRUE(write_pcd(file, *cloud).ok());
+  const auto model = read_model(find_models({directory / "mug"})->front());
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  const RgbdFrame& frame = model->views.at(0).frame;
+  EXPECT_EQ(io::depth_difference_m(frame.depth_m, views[0].frame.depth_m), 0);
+  const Rigid3 turn = Rigid3::from_rotation(Eigen::Vector3d(1, -1, -1).asDiagonal());
+  EXPECT_LT(io::pose_difference(frame.world_from_camera, views[0].frame.world_from_camera * turn), 1e-12);
+}
+
 TEST(FindModels, YcbObjectsAreNamedByTheirFolder) {
   io::TestDirectory directory;
   for (const char* object : {"003_cracker_box", "005_tomato_soup_can"})

@@ -68,7 +68,7 @@ Result<TrainingView> read_view(const path& cloud_file) {
   const auto object_from_camera = read_pose(companion(cloud_file, "pose_", ".txt"));
   if (!object_from_camera) return object_from_camera.error();
   frame->name = cloud_file.stem().string();
-  frame->world_from_camera = *object_from_camera;
+  frame->world_from_camera = *object_from_camera * find_points_from_camera(cloud->points);
   if (const auto done = check_frame(*frame); !done) return io::file_error(cloud_file, done.error().message);
   auto mask = read_view_mask(cloud_file, cloud->width, cloud->height);
   if (!mask) return mask.error();
