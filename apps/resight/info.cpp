@@ -159,20 +159,22 @@ Json describe_models(const std::vector<ModelLocation>& models) {
   return json;
 }
 
-// Numbers and texts of a results file, without its lists. An object in the order of its keys takes the square of their
-// number: those inside others are left out, and a file of very many keys is none of ours.
+// Numbers and texts of a results file, without its lists. The parser takes the square of the number of keys of an
+// object and of the objects of a list: those inside others are left out, and a file of very many keys is none of ours.
 Json describe_results(const std::filesystem::path& file) {
   constexpr int kMaxKeys = 1000;
   int num_keys = 0;
-  const auto is_kept = [&](int depth, Json::parse_event_t event, const Json&) {
-    return event != Json::parse_event_t::key || (depth == 1 && ++num_keys <= kMaxKeys);
+  using Event = Json::parse_event_t;
+  const auto is_kept = [&](int depth, Event event, const Json&) {
+    if (event == Event::object_start || event == Event::array_start) return depth == 0;
+    return event != Event::key || (depth == 1 && ++num_keys <= kMaxKeys);
   };
   const Json all = Json::parse(value_or_throw(read_file(file)), is_kept, false);
   if (num_keys > kMaxKeys) throw InputError(file_error(file, "has too many keys for results of resight").message);
   if (!all.is_object()) throw InputError(file_error(file, "is not valid JSON").message);
   Json json;
   for (const auto& [name, value] : all.items())
-    if (!value.is_structured()) json[name] = value;
+    if (value.is_primitive()) json[name] = value;
   return json;
 }
 

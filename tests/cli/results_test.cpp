@@ -250,6 +250,15 @@ TEST_F(CommandLineResults, VeryManyKeysAreNoResults) {
   EXPECT_EQ(Json::parse(deep.output)["version"], 1);
 }
 
+TEST_F(CommandLineResults, LongListsOfResultsTakeLittleTime) {
+  std::string items = "{}";
+  for (int i = 0; i < 400000; ++i) items += ",{}";
+  write_text(folder_ / "long/summary.json", R"({"a": 1, "b": [)" + items + R"(], "c": "x", "d": {"e": 2}})");
+  const Outcome outcome = run(folder_, "info long --json");
+  ASSERT_EQ(outcome.status, 0);
+  EXPECT_EQ(Json::parse(outcome.output), (Json{{"path", "long"}, {"kind", "results"}, {"a", 1}, {"c", "x"}}));
+}
+
 TEST_F(CommandLineResults, TrueChangesAreThoseOfAllViews) {
   write_text(folder_ / "tum/events.json", R"({"events": [[1, "added", "cube"]]})");
   const std::string poses = read_text(folder_ / "tum/groundtruth.txt");
