@@ -232,9 +232,10 @@ SequenceTable make_table(const PairedSeries& series, const FolderCamera& camera)
     view.image_id = static_cast<int>(table.views.size());
     view.color = pair.color.file;
     view.depth = pair.depth.file;
-    const auto own = camera.of_views.find(view.name);
-    view.intrinsics = (own == camera.of_views.end() ? camera.calibration : own->second).intrinsics;
-    view.metres_per_unit = camera.calibration.metres_per_unit.value_or(kMillimetre_m);
+    if (const auto own = camera.of_views.find(view.name); own != camera.of_views.end()) view.own_camera = own->second;
+    const Calibration& calibration = view.own_camera ? *view.own_camera : camera.calibration;
+    view.intrinsics = calibration.intrinsics;
+    view.metres_per_unit = calibration.metres_per_unit.value_or(kMillimetre_m);
     view.time_s = pair.depth.time_s;
     table.views.push_back(std::move(view));
   }

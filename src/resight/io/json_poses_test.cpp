@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "resight/io/images.hpp"
@@ -108,6 +110,34 @@ TEST(JsonPoses, IntrinsicsOfEachFrame) {
   ASSERT_TRUE(sequence.ok()) << sequence.error().message;
   for (int i = 0; i < kViews; ++i)
     EXPECT_EQ((*sequence)->read_view(i)->camera, (Camera{kNumColumns, kNumRows, 60.0 + i, 61, 3.5, 2.5}));
+}
+
+TEST(JsonPoses, LensAndImageSizeOfEachFrame) {
+  const io::TestDirectory directory;
+  write_nerfstudio(directory.path(), make_poses(), true);
+  const auto change = [&](std::size_t frame, const nlohmann::json& values) {
+    auto content = nlohmann::json::parse(io::read_text(directory / "transforms.json"));
+    content["frames"][frame].update(values);  // Of view 2, 0, 1.
+    io::write_text(directory / "transforms.json", content.dump());
+  };
+  // The outermost pixels see what lies outside the image without distortion.
+  const auto num_missing = [&](int view, const OpenSequenceOptions& options) {
+    const auto sequence = open_sequence(directory.path(), options);
+    EXPECT_TRUE(sequence.ok()) << sequence.error().message;
+    return std::ranges::count_if((*sequence)->read_view(view)->depth_m.data(), [](float z) { return std::isnan(z); });
+  };
+  change(0, {{"k1", 40}, {"k2", 0}, {"p1", 0}, {"p2", 0}});
+  EXPECT_EQ(num_missing(0, {}), 0);
+  EXPECT_GT(num_missing(2, {}), 0);
+  OpenSequenceOptions options;
+  options.intrinsics = "60,61,3.5,2.5";
+  EXPECT_EQ(num_missing(2, options), 0) << "given intrinsics are those of all views";
+  change(0, {{"w", 2 * kNumColumns}, {"h", 2 * kNumRows}});
+  const auto sequence = open_sequence(directory.path());
+  ASSERT_TRUE(sequence.ok()) << sequence.error().message;
+  EXPECT_TRUE((*sequence)->read_view(1).ok());
+  EXPECT_THAT((*sequence)->read_view(2).error().message, HasSubstr("are for images of 16x12, but these have 8x6"));
+  EXPECT_EQ(num_missing(2, options), 0);
 }
 
 TEST(JsonPoses, Record3d) {

@@ -91,13 +91,18 @@ class ListedSequence final : public Sequence {
     if (!depth) return depth.error();
     const Intrinsics& k = listed.intrinsics;
     const Camera camera{color->width(), color->height(), k.fx, k.fy, k.cx, k.cy};
+    if (listed.own_camera) {
+      const auto fits = check_calibration(*listed.own_camera, camera.width, camera.height, listed.name);
+      if (!fits) return fits.error();
+    }
     depth = fit_to_color(std::move(*depth), listed, *color, camera);
     if (!depth) return depth.error();
     RgbdFrame frame{listed.name, camera, std::move(*color), std::move(*depth), listed.world_from_camera};
     if (const auto done = check_frame(frame); !done) return file_error(listed.color, done.error().message);
-    if (!table_.lens.is_none()) {
-      frame.color = undistort_color(frame.color, frame.camera, table_.lens);
-      if (!table_.depth_camera) frame.depth_m = undistort_depth(frame.depth_m, frame.camera, table_.lens);
+    const LensDistortion& lens = listed.own_camera ? listed.own_camera->lens : table_.lens;
+    if (!lens.is_none()) {
+      frame.color = undistort_color(frame.color, frame.camera, lens);
+      if (!table_.depth_camera) frame.depth_m = undistort_depth(frame.depth_m, frame.camera, lens);
     }
     return frame;
   }

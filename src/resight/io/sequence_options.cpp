@@ -71,7 +71,10 @@ Result<void> set_intrinsics(SequenceTable& table, const OpenSequenceOptions& opt
   const auto calibration = parse_calibration(options.intrinsics);
   if (!calibration) return calibration.error();
   table.lens = calibration->lens;
-  for (ListedView& view : table.views) view.intrinsics = calibration->intrinsics;
+  for (ListedView& view : table.views) {
+    view.intrinsics = calibration->intrinsics;
+    view.own_camera.reset();
+  }
   if (table.is_recording) return {};  // Its images are checked when they are read.
   const ListedView& first = table.views.front();
   const auto unit_m = calibration->metres_per_unit;

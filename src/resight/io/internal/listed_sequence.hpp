@@ -31,7 +31,8 @@ struct ListedView {
   std::filesystem::path color;
   std::filesystem::path depth;
   Intrinsics intrinsics;
-  double metres_per_unit = 0.001;                            ///< Unit of a depth image of whole numbers.
+  std::optional<Calibration> own_camera;  ///< With its lens and image size, if the views have several.
+  double metres_per_unit = 0.001;         ///< Unit of a depth image of whole numbers.
   double time_s = std::numeric_limits<double>::quiet_NaN();  ///< Of the depth image; NaN if unknown.
   Rigid3 world_from_camera;
   std::vector<GroundTruthObject> ground_truth;
@@ -46,8 +47,8 @@ struct SequenceTable {
   bool is_recording = false;           ///< The table only lists times and poses.
   bool poses_tell_convention = false;  ///< The format of their file defines it.
   DepthStorage depth_storage = DepthStorage::kPng;
-  std::optional<double> npy_unit_m;         ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
-  LensDistortion lens;                      ///< Of both images. The views that are read are without distortion.
+  std::optional<double> npy_unit_m;  ///< Unit of number arrays. Otherwise metres, and whole numbers are refused.
+  LensDistortion lens;  ///< Of both images, except in views with own_camera. Views that are read have no distortion.
   std::optional<DepthCamera> depth_camera;  ///< None: the depth is registered to the colours.
   bool may_enlarge_depth = false;           ///< Registered depth may have fewer pixels than the colours.
   std::vector<ListedView> views;
